@@ -1,0 +1,52 @@
+//! Boxes along the axes.
+
+use glam::DVec3;
+
+/// A closed box along the axes; empty when `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Box3 {
+    /// Smallest coordinates, model length units.
+    pub min: DVec3,
+    /// Largest coordinates, model length units.
+    pub max: DVec3,
+}
+
+impl Box3 {
+    /// The box of nothing.
+    pub const EMPTY: Self = Self { min: DVec3::splat(f64::INFINITY), max: DVec3::splat(f64::NEG_INFINITY) };
+
+    /// The smallest box that holds all points.
+    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::with)
+    }
+
+    /// This box grown to hold `p`.
+    pub fn with(self, p: DVec3) -> Self {
+        Self { min: self.min.min(p), max: self.max.max(p) }
+    }
+
+    /// The smallest box that holds both.
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        !(self.min.cmple(self.max).all())
+    }
+
+    /// Whether the two, each grown by half of `margin`, touch.
+    pub fn touches(&self, other: &Self, margin: f64) -> bool {
+        (self.min - DVec3::splat(margin)).cmple(other.max).all() && other.min.cmple(self.max + DVec3::splat(margin)).all()
+    }
+
+    /// Length of the diagonal, 0 when empty.
+    pub fn diagonal(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+    }
+
+    /// Middle of the box.
+    pub fn center(&self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+}

@@ -1,0 +1,214 @@
+//! Everything that can go wrong or deserves a word, with measurements instead of text.
+//!
+//! The kernel returns a [`Fault`]; it knows points, gaps and [`Origin`]s but no source text, names or units.
+//! Each family states its code, sentence, labels and help in [`Describe::describe`], asking a [`Say`] for names and
+//! quantities; `lang::diag` is the one place that turns the result into a diagnostic under the script.
+//! Warnings and notes are faults as well: the letter of their code tells, and they travel in a `Vec<Fault>` beside
+//! the value.
+
+mod curves;
+mod files;
+mod mesh;
+mod network;
+mod surface;
+mod values;
+
+use std::fmt;
+
+use glam::DVec3;
+
+pub use curves::CurveFault;
+pub use files::FileFault;
+pub use mesh::MeshFault;
+pub use network::NetworkFault;
+pub use surface::SurfaceFault;
+pub use values::ValueFault;
+
+use super::origin::Origin;
+
+/// Result of kernel work.
+pub type Result<T> = std::result::Result<T, Fault>;
+
+/// One thing that went wrong or deserves a word; families as in `diagnostics.md`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// Families 2 and 3: a value of the wrong kind or outside its range.
+    Value(Box<ValueFault>),
+    /// Family 4: curves.
+    Curve(Box<CurveFault>),
+    /// Family 5: network and chains.
+    Network(Box<NetworkFault>),
+    /// Family 6: surfaces and model.
+    Surface(Box<SurfaceFault>),
+    /// Family 7: meshes.
+    Mesh(Box<MeshFault>),
+    /// Family 8: files.
+    File(Box<FileFault>),
+    /// Stopped from outside (Ctrl-C).
+    Interrupted,
+}
+
+/// A code of `diagnostics.md`, for example `E501`; the letter is the severity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Code(pub &'static str);
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The model is wrong.
+    Error,
+    /// The model is right but probably not meant so.
+    Warning,
+    /// Worth knowing.
+    Note,
+}
+
+impl Code {
+    /// Severity by the letter.
+    pub fn severity(self) -> Severity {
+        match self.0.as_bytes().first() {
+            Some(b'W') => Severity::Warning,
+            Some(b'N') => Severity::Note,
+            _ => Severity::Error,
+        }
+    }
+}
+
+/// What a label points at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The expression that made an entity.
+    Entity(Origin),
+    /// The argument of the call that is being made, by parameter name.
+    Argument(&'static str),
+    /// The n-th value of a list or rest argument, by parameter name.
+    Item(&'static str, usize),
+    /// The call itself.
+    Call,
+}
+
+/// A fault in words, before its subjects are found in the script.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Code of `diagnostics.md`.
+    pub code: Code,
+    /// One sentence without final dot.
+    pub message: String,
+    /// Culprits, the first one foremost, each with a few words.
+    pub labels: Vec<(Subject, String)>,
+    /// Something that can be typed.
+    pub help: Option<String>,
+    /// Further lines.
+    pub notes: Vec<String>,
+}
+
+impl Report {
+    /// A report with a sentence and nothing else yet.
+    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
+        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new() }
+    }
+
+    /// Adds a label.
+    pub fn label(mut self, subject: Subject, text: impl Into<String>) -> Self {
+        self.labels.push((subject, text.into()));
+        self
+    }
+
+    /// Adds a label on an entity's expression.
+    pub fn at(self, origin: Origin, text: impl Into<String>) -> Self {
+        self.label(Subject::Entity(origin), text)
+    }
+
+    /// Sets the help.
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help = Some(text.into());
+        self
+    }
+
+    /// Adds a further line.
+    pub fn note(mut self, text: impl Into<String>) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+}
+
+/// Speaks of entities and quantities as the user does: names and model units.
+pub trait Say {
+    /// Name of the declaration that made the entity, without quotes; empty when it has none.
+    fn name(&self, origin: Origin) -> String;
+    /// A length in model units, for example `0.310 mm`.
+    fn length(&self, length: f64) -> String;
+    /// A point in model units, for example `(4.000, 0.000, 1.250)`.
+    fn point(&self, point: DVec3) -> String;
+    /// An angle given in radians, for example `5.88°`.
+    fn angle(&self, radians: f64) -> String;
+    /// The name in backquotes, or `otherwise` when it has none.
+    fn quoted(&self, origin: Origin, otherwise: &str) -> String {
+        let name = self.name(origin);
+        if name.is_empty() { otherwise.to_owned() } else { format!("`{name}`") }
+    }
+}
+
+/// Says everything in bare numbers; what `Display` uses.
+pub struct Plain;
+
+impl Say for Plain {
+    fn name(&self, _: Origin) -> String {
+        String::new()
+    }
+    fn length(&self, length: f64) -> String {
+        format!("{length:.6}")
+    }
+    fn point(&self, p: DVec3) -> String {
+        format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+    }
+    fn angle(&self, radians: f64) -> String {
+        format!("{:.4}°", radians.to_degrees())
+    }
+}
+
+/// A family of faults that can say what happened.
+pub trait Describe {
+    /// Code, sentence, labels and help.
+    fn describe(&self, say: &dyn Say) -> Report;
+}
+
+impl Describe for Fault {
+    fn describe(&self, say: &dyn Say) -> Report {
+        match self {
+            Self::Value(f) => f.describe(say),
+            Self::Curve(f) => f.describe(say),
+            Self::Network(f) => f.describe(say),
+            Self::Surface(f) => f.describe(say),
+            Self::Mesh(f) => f.describe(say),
+            Self::File(f) => f.describe(say),
+            Self::Interrupted => Report::new("E999", "interrupted"),
+        }
+    }
+}
+
+impl Fault {
+    /// Code of `diagnostics.md`.
+    pub fn code(&self) -> Code {
+        self.describe(&Plain).code
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.describe(&Plain).message)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+macro_rules! from_family {
+    ($($variant:ident($family:ty)),+) => { $(
+        impl From<$family> for Fault {
+            fn from(fault: $family) -> Self {
+                Self::$variant(Box::new(fault))
+            }
+        }
+    )+ };
+}
+from_family!(Value(ValueFault), Curve(CurveFault), Network(NetworkFault), Surface(SurfaceFault), Mesh(MeshFault), File(FileFault));

@@ -1,0 +1,20 @@
+//! Limits that keep bad input from eating the machine (language.md section 9). Checked before allocating.
+
+/// Open brackets inside each other.
+pub const NESTED_BRACKETS: usize = 256;
+/// Prefix or right-associative operators in a row.
+pub const OPERATORS_IN_A_ROW: usize = 64;
+/// Function calls inside each other.
+pub const CALL_DEPTH: usize = 1_000;
+/// Bytes of one script.
+pub const SOURCE_BYTES: u64 = 32 << 20;
+/// Bytes of one data file.
+pub const DATA_BYTES: u64 = 256 << 20;
+/// Members of one list.
+pub const LIST_MEMBERS: usize = 10_000_000;
+/// Elements of one mesh.
+pub const MESH_ELEMENTS: u64 = 100_000_000;
+/// Evaluation steps of one run.
+pub const EVALUATION_STEPS: u64 = 1_000_000_000;
+/// Reports printed in full in one run.
+pub const REPORTS_SHOWN: usize = 20;

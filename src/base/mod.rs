@@ -1,0 +1,11 @@
+//! Floor 0: what every other floor stands on. Knows nothing of curves, text or files.
+
+pub mod bbox;
+pub mod fault;
+pub mod ids;
+pub mod job;
+pub mod limits;
+pub mod math;
+pub mod origin;
+pub mod par;
+pub mod tolerance;

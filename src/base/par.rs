@@ -1,0 +1,53 @@
+//! Work on several threads with results in order: the same bytes whatever the number of threads.
+//!
+//! The only place that knows rayon. Without the feature `parallel` every function here is a plain loop.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+static THREADS: AtomicUsize = AtomicUsize::new(0);
+
+/// Sets how many threads later work may use; 0 means one per core. Takes effect before the first parallel work.
+pub fn set_threads(n: usize) {
+    THREADS.store(n, Ordering::Relaxed);
+}
+
+#[cfg(feature = "parallel")]
+fn pool() -> Option<&'static rayon::ThreadPool> {
+    static POOL: std::sync::OnceLock<Option<rayon::ThreadPool>> = std::sync::OnceLock::new();
+    let n = THREADS.load(Ordering::Relaxed);
+    if n == 1 {
+        return None;
+    }
+    POOL.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(n).build().ok()).as_ref()
+}
+
+/// `[f(0), f(1), … f(n - 1)]`, made on several threads when `n > 1`.
+pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    if n > 1 {
+        use rayon::prelude::*;
+        if let Some(pool) = pool() {
+            return pool.install(|| (0..n).into_par_iter().map(&f).collect());
+        }
+    }
+    (0..n).map(f).collect()
+}
+
+/// Like [`map`] for work that may fail; the failure of the smallest index wins.
+pub fn try_map<T: Send, E: Send>(n: usize, f: impl Fn(usize) -> Result<T, E> + Sync + Send) -> Result<Vec<T>, E> {
+    map(n, f).into_iter().collect()
+}
+
+/// Calls `f(k, part)` on consecutive parts of `items` of `size` items (the last may be shorter).
+pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+    let size = size.max(1);
+    #[cfg(feature = "parallel")]
+    if items.len() > size {
+        use rayon::prelude::*;
+        if let Some(pool) = pool() {
+            pool.install(|| items.par_chunks_mut(size).enumerate().for_each(|(k, part)| f(k, part)));
+            return;
+        }
+    }
+    items.chunks_mut(size).enumerate().for_each(|(k, part)| f(k, part));
+}

@@ -1,0 +1,90 @@
+//! The one place where it is said when two things are the same.
+
+use glam::DVec3;
+
+/// What counts as equal in one model; made once, passed first.
+///
+/// `point` is what the user allows, `rounding` what arithmetic may have done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Two points closer than this are one, model length units.
+    pub point: f64,
+    /// What rounding may have done to a coordinate: 1e-12 × the model's size, model length units.
+    pub rounding: f64,
+    /// Smaller turns are smooth, larger ones are kinks, radians.
+    pub angle: f64,
+    /// Ends iterations on parameters normalised to 0…1.
+    pub parameter: f64,
+}
+
+/// Relative accuracy of a stored arc length (math.md section 4).
+pub const LENGTH_ACCURACY: f64 = 1e-13;
+/// A quotient within this of a whole number is that number (counts of mesh steps).
+pub const WHOLE_NUMBER: f64 = 1e-9;
+/// Smallest sine of the angle between two directions that may span a plane or count as not parallel.
+pub const PARALLEL: f64 = 1e-9;
+/// Relative change at which floating point arithmetic has nothing more to give.
+pub const EPSILON: f64 = 1e-14;
+/// Stated relative error of areas, volumes and moments.
+pub const MEASURE_ACCURACY: f64 = 1e-10;
+
+const DEFAULT_ANGLE_DEG: f64 = 0.1;
+const DEFAULT_PARAMETER: f64 = 1e-9;
+const POINT_SHARE: f64 = 1e-6;
+const ROUNDING_SHARE: f64 = 1e-12;
+
+impl Tolerance {
+    /// Tolerance with the given point distance in a model of the given box diagonal, both in model units.
+    pub fn new(point: f64, diagonal: f64) -> Self {
+        Self { point, rounding: ROUNDING_SHARE * diagonal.max(point), angle: DEFAULT_ANGLE_DEG.to_radians(), parameter: DEFAULT_PARAMETER }
+    }
+
+    /// The default for a model whose box has this diagonal: a millionth of it, rounded down to a power of ten.
+    ///
+    /// `fallback` (model units) is used when the diagonal is zero: a model without points.
+    pub fn from_diagonal(diagonal: f64, fallback: f64) -> Self {
+        if !(diagonal > 0.0 && diagonal.is_finite()) {
+            return Self::new(fallback, 0.0);
+        }
+        let wanted = POINT_SHARE * diagonal;
+        let mut exponent = super::math::log10(wanted).floor() as i32;
+        // The logarithm of an exact power of ten may fall a hair below it.
+        if power_of_ten(exponent + 1) <= wanted {
+            exponent += 1;
+        }
+        Self::new(power_of_ten(exponent), diagonal)
+    }
+
+    /// The same with another angle that separates kinks from smooth turns, radians.
+    pub fn with_angle(self, angle: f64) -> Self {
+        Self { angle, ..self }
+    }
+
+    /// Whether two points are one.
+    pub fn same_point(&self, a: DVec3, b: DVec3) -> bool {
+        a.distance_squared(b) <= self.point * self.point
+    }
+
+    /// Whether a curve with these one-sided tangents (any length but zero) has a kink.
+    pub fn is_kink(&self, before: DVec3, after: DVec3) -> bool {
+        super::math::angle_between(before, after) > self.angle
+    }
+}
+
+/// 10^exponent as the nearest double.
+fn power_of_ten(exponent: i32) -> f64 {
+    format!("1e{exponent}").parse().unwrap_or(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn default_is_a_power_of_ten_at_or_below_a_millionth() {
+        for (diagonal, expected) in [(1000.0, 1e-3), (999.0, 1e-4), (1.0, 1e-6), (12.5, 1e-5), (3e9, 1e3)] {
+            assert_eq!(Tolerance::from_diagonal(diagonal, 1.0).point, expected, "{diagonal}");
+        }
+        assert_eq!(Tolerance::from_diagonal(0.0, 0.001).point, 0.001);
+    }
+}

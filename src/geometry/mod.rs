@@ -1,0 +1,17 @@
+//! Floor 1: curves. Knows nothing of networks, surfaces or text.
+//!
+//! A [`Curve`] is one of a closed set of shapes, each evaluated exactly, plus the word the user made it with.
+
+pub mod build;
+pub mod closest;
+pub mod curve;
+pub mod intersect;
+pub mod motion;
+pub mod nurbs;
+
+pub use build::{Ends, Spline};
+pub use closest::{Closest, closest, closest_pair};
+pub use curve::{Curve, Jet, Kind};
+pub use intersect::{Hit, intersect, self_intersect};
+pub use motion::Motion;
+pub use nurbs::Nurbs;
