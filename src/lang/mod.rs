@@ -1,5 +1,16 @@
 //! Floor 7: the language: text to tree, values, evaluation by dependency, diagnostics.
 
+pub mod cx;
 pub mod diag;
+pub mod eval;
+mod faults;
 pub mod names;
+pub mod origins;
+pub mod plans;
+mod stages;
+pub mod std;
 pub mod syntax;
+pub mod table;
+pub mod types;
+pub mod units;
+pub mod value;

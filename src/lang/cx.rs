@@ -1,0 +1,207 @@
+//! What evaluation and builtins work with: tolerance, units, origins, notes and the stages of the pipeline.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::diag::Diagnostic;
+use super::eval::Machine;
+use super::names::Names;
+use super::origins::{Origins, Sources};
+use super::plans::MeshSpec;
+use super::units::LengthUnit;
+use super::value::{MeshValue, ModuleId, Record, ShellValue, Value};
+use crate::base::bbox::Box3;
+use crate::base::fault::Fault;
+use crate::base::job::Job;
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::io::Files;
+use crate::mesh::Mesh;
+use crate::model::Model;
+use crate::network::{Chain, Network};
+use crate::surface::Surface;
+
+/// Why an evaluation gives no value.
+#[derive(Clone, Debug)]
+pub enum Stop {
+    /// It was reported already.
+    Failed,
+    /// It depends on a declaration that failed: script and place there.
+    Skipped(ModuleId, u32),
+    /// It depends on something that did not parse and was reported there.
+    Broken,
+    /// It asks for the tolerance, which is not known yet; it is evaluated again when it is.
+    NotYet,
+    /// The kernel or a builtin says why; becomes a diagnostic at the call.
+    Fault(Fault),
+    /// Something that cannot happen did.
+    Bug(&'static str),
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+macro_rules! stop_from {
+    ($($family:ident),+) => { $(
+        impl From<crate::base::fault::$family> for Stop {
+            fn from(fault: crate::base::fault::$family) -> Self {
+                Self::Fault(fault.into())
+            }
+        }
+    )+ };
+}
+stop_from!(ValueFault, CurveFault, NetworkFault, SurfaceFault, MeshFault, FileFault);
+
+/// Something a declaration binds, under its unique name (`south`, `ribs[2]`).
+#[derive(Clone, Debug)]
+pub struct Declared<T> {
+    /// Name as the user says it; for a nameless curve its source text.
+    pub name: Arc<str>,
+    /// The declaration and member; geometry that it binds carries it too.
+    pub origin: Origin,
+    /// What it binds.
+    pub value: T,
+}
+
+/// What a script declares, in order of declaration; what the network and the surface model are built from.
+#[derive(Clone, Debug, Default)]
+pub struct Parts {
+    /// `point`s.
+    pub points: Vec<Declared<DVec3>>,
+    /// `curve`s; each is one whole curve whose origin is the declaration's.
+    pub curves: Vec<Declared<Chain>>,
+    /// `modeling curve`s.
+    pub modeling: Vec<Declared<Chain>>,
+    /// `surface`s.
+    pub surfaces: Vec<Declared<Surface>>,
+    /// `shell`s.
+    pub shells: Vec<Declared<Arc<ShellValue>>>,
+    /// `group`s: their things, nested lists flattened.
+    pub groups: Vec<Declared<Vec<Value>>>,
+}
+
+/// The stages that depend on everything declared; the session implements them over the kernel floors.
+///
+/// Each is called at most once per script (mesh: per mesh); results are kept by [`Cx`].
+pub trait Pipeline: Sync {
+    /// Moves ends of measured curves together (`snap d`), once, before anything asks for the tolerance.
+    ///
+    /// `parts.curves` holds the curves that may move; what moved is replaced there and noted (N513).
+    fn snap(&self, cx: &mut Cx, parts: &mut Parts, distance: f64, origin: Origin) -> Result<(), Stop>;
+    /// The network of all curves, nameless ones under declared surfaces included.
+    fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop>;
+    /// Patches, edges and vertices of all declared surfaces.
+    fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop>;
+    /// A declared mesh.
+    fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Stop>;
+}
+
+/// One run: scripts, values, and what builtins may ask for.
+pub struct Cx<'w> {
+    /// All names.
+    pub names: Names,
+    /// Where entities come from.
+    pub origins: Origins,
+    /// Texts of all files.
+    pub sources: Sources,
+    /// Ctrl-C and progress.
+    pub job: &'w Job,
+    pub(super) files: &'w (dyn Files + Sync),
+    pub(super) pipeline: &'w dyn Pipeline,
+    pub(super) unit: LengthUnit,
+    pub(super) tolerance: Option<Tolerance>,
+    pub(super) seen: Box3,
+    pub(super) sink: Vec<Diagnostic>,
+    pub(super) machine: Machine,
+}
+
+impl<'w> Cx<'w> {
+    /// A fresh run.
+    pub fn new(files: &'w (dyn Files + Sync), pipeline: &'w dyn Pipeline, job: &'w Job) -> Self {
+        Self {
+            names: Names::default(),
+            origins: Origins::default(),
+            sources: Sources::default(),
+            job,
+            files,
+            pipeline,
+            unit: super::units::MILLIMETRE,
+            tolerance: None,
+            seen: Box3::EMPTY,
+            sink: Vec::new(),
+            machine: Machine::default(),
+        }
+    }
+
+    /// The tolerance, or [`Stop::NotYet`] while the box that decides it is still being found.
+    ///
+    /// A builtin that needs it asks first thing, before work that would be done twice.
+    pub fn tolerance(&self) -> Result<Tolerance, Stop> {
+        self.tolerance.ok_or(Stop::NotYet)
+    }
+
+    /// The unit of all lengths of this run: that of the main script.
+    pub fn unit(&self) -> LengthUnit {
+        self.unit
+    }
+
+    /// The origin of the call being made; entities made by a builtin carry it.
+    pub fn origin(&mut self) -> Origin {
+        self.machine.origin(&mut self.origins)
+    }
+
+    /// The script whose code is being run.
+    pub fn module(&self) -> ModuleId {
+        self.machine.module()
+    }
+
+    /// Says a note or a warning; the letter of the code decides which.
+    pub fn say(&mut self, fault: &Fault) {
+        let diagnostic = self.diagnose(fault);
+        self.sink.push(diagnostic);
+    }
+
+    /// Counts control points of a surface made without the tolerance into the box that decides its default.
+    ///
+    /// Curves that builtins return are counted without being asked.
+    pub fn seen(&mut self, points: impl IntoIterator<Item = DVec3>) {
+        if self.tolerance.is_none() {
+            self.seen = points.into_iter().fold(self.seen, Box3::with);
+        }
+    }
+
+    /// A record value.
+    pub fn record(&mut self, fields: impl IntoIterator<Item = (&'static str, Value)>) -> Value {
+        let (keys, values) = fields.into_iter().map(|(k, v)| (self.names.intern(k), v)).unzip::<_, _, Vec<_>, Vec<_>>();
+        Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false }))
+    }
+
+    /// The network of a script; evaluates all its curves first.
+    pub fn network(&mut self, module: ModuleId) -> Result<Arc<Network>, Stop> {
+        super::stages::network(self, module)
+    }
+
+    /// The surface model of a script; evaluates all its surfaces first.
+    pub fn model(&mut self, module: ModuleId) -> Result<Arc<Model>, Stop> {
+        super::stages::model(self, module)
+    }
+
+    /// What a script declares; evaluates all its points, curves and surfaces first.
+    pub fn parts(&mut self, module: ModuleId) -> Result<Arc<Parts>, Stop> {
+        super::stages::parts(self, module)
+    }
+
+    /// The mesh behind a value; a declared one is built on first use.
+    pub fn mesh(&mut self, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
+        super::stages::mesh(self, mesh)
+    }
+
+    /// The declared meshes of a script evaluated so far.
+    pub fn meshes(&self, module: ModuleId) -> &[Arc<MeshSpec>] {
+        self.machine.meshes(module)
+    }
+}

@@ -1,0 +1,118 @@
+//! What `mesh`, `check`, `report` and `export` declarations say, resolved to plain data for the session.
+
+use std::sync::Arc;
+
+use super::diag::FileId;
+use super::syntax::ast::Span;
+use super::value::Value;
+use crate::base::origin::Origin;
+use crate::mesh::{Elements, Method};
+
+/// A setting with the expression that says it.
+pub type Said<T> = Option<(T, Origin)>;
+
+/// `on THINGS { … }` of a mesh.
+#[derive(Clone, Debug, Default)]
+pub struct RuleSpec {
+    /// Links, curves, edges, surfaces, patches; nested lists flattened.
+    pub things: Vec<(Value, Origin)>,
+    /// Steps over the whole length.
+    pub count: Said<u32>,
+    /// Target edge length, model units.
+    pub size: Said<f64>,
+    /// Last step over first step.
+    pub bias: Said<f64>,
+    /// Elements of faces.
+    pub elements: Said<Elements>,
+    /// Method of faces.
+    pub method: Said<Method>,
+    /// The clause.
+    pub origin: Origin,
+}
+
+/// `mesh m of things { settings }`.
+#[derive(Clone, Debug)]
+pub struct MeshSpec {
+    /// Name as declared (`m`, `m[2]`).
+    pub name: Arc<str>,
+    /// The declaration.
+    pub origin: Origin,
+    /// Surfaces, shells, curves, points; nested lists flattened, each with the expression that names it.
+    pub things: Vec<(Value, Origin)>,
+    /// Target edge length, model units.
+    pub size: Said<f64>,
+    /// Largest distance mesh–surface, model units.
+    pub chord_error: Said<f64>,
+    /// Largest turn of the normal across an element, radians.
+    pub angle_error: Said<f64>,
+    /// Kind of elements.
+    pub elements: Said<Elements>,
+    /// 1 or 2.
+    pub order: Said<u8>,
+    /// How faces are meshed.
+    pub method: Said<Method>,
+    /// Neighbouring faces share nodes.
+    pub conforming: Said<bool>,
+    /// `on` clauses in order of writing.
+    pub rules: Vec<RuleSpec>,
+}
+
+/// A `check` that was evaluated.
+#[derive(Clone, Debug)]
+pub struct CheckResult {
+    /// Its label, or its source text.
+    pub label: String,
+    /// Whether it holds.
+    pub pass: bool,
+    /// Where it stands.
+    pub file: FileId,
+    /// Where it stands.
+    pub span: Span,
+    /// Left side of its comparison as text; `None` when it is none.
+    pub left: Option<String>,
+    /// Right side of its comparison as text.
+    pub right: Option<String>,
+    /// Left side as a value, for the JSON report.
+    pub left_value: Option<Value>,
+    /// Right side as a value.
+    pub right_value: Option<Value>,
+}
+
+/// A column of a report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Unit of its numbers: `mm`, `deg`, empty.
+    pub unit: String,
+}
+
+/// A `report` as a table.
+#[derive(Clone, Debug)]
+pub struct ReportTable {
+    /// Its label, or the source text of what is reported.
+    pub title: String,
+    /// Columns.
+    pub columns: Vec<Column>,
+    /// Cells: numbers (in model units and degrees), texts, bools, `none`.
+    pub rows: Vec<Vec<Value>>,
+}
+
+/// `export things to "path" { settings }`.
+#[derive(Clone, Debug)]
+pub struct ExportSpec {
+    /// What is written, nested lists flattened.
+    pub things: Vec<(Value, Origin)>,
+    /// Where, as written (interpolated).
+    pub path: String,
+    /// The path expression.
+    pub path_origin: Origin,
+    /// `encoding:` as a word.
+    pub encoding: Said<Arc<str>>,
+    /// `element:` as a word or text.
+    pub element: Said<Arc<str>>,
+    /// `units:` of the file.
+    pub units: Said<super::units::LengthUnit>,
+    /// The declaration.
+    pub origin: Origin,
+}

@@ -1,0 +1,148 @@
+//! The words of the language: functions and fields, each declared once with its docs.
+//!
+//! A function is an entry of a `BUILTINS` table, a field (`c.start`, also written `start(c)`) one of a `FIELDS`
+//! table; help, reference, signatures and suggestions are read from these.
+
+use super::cx::{Cx, Stop};
+use super::types::Ty;
+use super::value::Value;
+
+mod lists;
+mod numbers;
+mod text;
+mod vectors;
+
+/// A parameter of a function.
+#[derive(Debug)]
+pub struct Param {
+    /// As written before the colon.
+    pub name: &'static str,
+    /// What it means, with units.
+    pub docs: &'static str,
+    /// What it takes.
+    pub ty: Ty,
+    /// Loft source of its default.
+    pub default: Option<&'static str>,
+}
+
+impl Param {
+    /// Whether a call may leave it out.
+    pub fn is_optional(&self) -> bool {
+        self.default.is_some() || matches!(self.ty, Ty::Optional(_) | Ty::Rest(_))
+    }
+}
+
+/// Arguments of a call in the order of the parameters: bound, defaulted and coerced to their types.
+pub type Args = Vec<Value>;
+
+/// A function of the language, or a field when it stands in a `FIELDS` table.
+#[derive(Debug)]
+pub struct Builtin {
+    /// Its name.
+    pub name: &'static str,
+    /// First a sentence, then more, with an example in a `loft` fence.
+    pub docs: &'static str,
+    /// Parameters.
+    pub params: &'static [Param],
+    /// What it gives.
+    pub returns: Ty,
+    /// Does it.
+    pub call: fn(&mut Cx, Args) -> Result<Value, Stop>,
+}
+
+impl Builtin {
+    /// `coons(curves: curve…, reparam: smooth|linear = smooth) → surface`.
+    pub fn signature(&self) -> String {
+        let params: Vec<String> = self
+            .params
+            .iter()
+            .map(|p| {
+                let default = p.default.map(|d| format!(" = {d}")).unwrap_or_default();
+                let optional = if matches!(p.ty, Ty::Optional(_)) { "?" } else { "" };
+                format!("{}{optional}: {}{default}", p.name, p.ty.signature())
+            })
+            .collect();
+        format!("{}({}) → {}", self.name, params.join(", "), self.returns.signature())
+    }
+
+    /// The first sentence of the docs.
+    pub fn summary(&self) -> &'static str {
+        self.docs.trim_start().split(['\n', '.']).next().unwrap_or("").trim()
+    }
+}
+
+/// All tables of functions.
+pub const BUILTINS: &[&[Builtin]] = &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS];
+
+/// All tables of fields.
+pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS];
+
+/// All functions.
+pub fn builtins() -> impl Iterator<Item = &'static Builtin> {
+    BUILTINS.iter().flat_map(|t| t.iter())
+}
+
+/// All fields.
+pub fn fields() -> impl Iterator<Item = &'static Builtin> {
+    FIELDS.iter().flat_map(|t| t.iter())
+}
+
+/// Declares functions: docs, name, typed parameters with docs and defaults (loft text), result and body.
+///
+/// The body is a closure without captures `|cx, a, b| -> Result<_, Stop>`; kernel faults convert with `?`.
+#[macro_export]
+macro_rules! builtins {
+    ($($body:tt)+) => { $crate::builtin_table! { BUILTINS $($body)+ } };
+}
+
+/// Declares fields: functions of one value, written `x.f` or `f(x)`; entries of one name differ by what they take.
+#[macro_export]
+macro_rules! fields {
+    ($($body:tt)+) => { $crate::builtin_table! { FIELDS $($body)+ } };
+}
+
+/// The table behind [`builtins!`] and [`fields!`].
+#[macro_export]
+macro_rules! builtin_table {
+    ($table:ident $(
+        $(#[doc = $doc:literal])* fn $name:ident (
+            $( $(#[doc = $pdoc:literal])* $p:ident : $ty:ty $(= $default:literal)? ),* $(,)?
+        ) -> $ret:ty = $body:expr;
+    )+) => {
+        /// Entries in the order of the reference.
+        pub const $table: &[$crate::lang::std::Builtin] = &[ $( $crate::lang::std::Builtin {
+            name: stringify!($name),
+            docs: concat!($($doc, "\n"),*),
+            returns: <$ret as $crate::lang::types::IntoValue>::TY,
+            params: &[ $( $crate::lang::std::Param {
+                name: stringify!($p),
+                docs: concat!($($pdoc, "\n"),*),
+                ty: <$ty as $crate::lang::types::FromValue>::TY,
+                default: $crate::optional_default!($($default)?),
+            } ),* ],
+            call: |cx, args| {
+                let mut args = args.into_iter();
+                $( let $p = $crate::lang::std::take::<$ty>(&mut args)?; )*
+                let _ = args;
+                let run: fn(&mut $crate::lang::cx::Cx, $($ty),*) -> Result<$ret, $crate::lang::cx::Stop> = $body;
+                run(cx, $($p),*).map($crate::lang::types::IntoValue::into_value)
+            },
+        } ),+ ];
+    };
+}
+
+/// `Some(text)` or `None`.
+#[macro_export]
+macro_rules! optional_default {
+    () => {
+        None
+    };
+    ($default:literal) => {
+        Some($default)
+    };
+}
+
+/// The next argument as its Rust type; `bind` has made sure that it fits.
+pub fn take<T: super::types::FromValue>(args: &mut impl Iterator<Item = Value>) -> Result<T, Stop> {
+    args.next().and_then(T::from_value).ok_or(Stop::Bug("an argument was not coerced to its type"))
+}

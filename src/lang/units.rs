@@ -1,0 +1,175 @@
+//! Units: the only converter between what scripts say and model units, degrees and kilograms.
+
+use super::value::{Dim, Quantity};
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LengthUnit {
+    /// As written.
+    pub name: &'static str,
+    /// How many micrometres it has; whole, so that conversions round once.
+    pub micrometres: u64,
+    /// What it is called in the reference.
+    pub docs: &'static str,
+}
+
+/// All units of length.
+pub const LENGTHS: &[LengthUnit] = &[
+    LengthUnit { name: "um", micrometres: 1, docs: "micrometre" },
+    LengthUnit { name: "mm", micrometres: 1_000, docs: "millimetre" },
+    LengthUnit { name: "cm", micrometres: 10_000, docs: "centimetre" },
+    LengthUnit { name: "m", micrometres: 1_000_000, docs: "metre" },
+    LengthUnit { name: "km", micrometres: 1_000_000_000, docs: "kilometre" },
+    LengthUnit { name: "in", micrometres: 25_400, docs: "inch" },
+    LengthUnit { name: "ft", micrometres: 304_800, docs: "foot" },
+];
+
+/// The default model unit.
+pub const MILLIMETRE: LengthUnit = LENGTHS[1];
+
+/// The unit of length of that name.
+pub fn length_unit(name: &str) -> Option<LengthUnit> {
+    LENGTHS.iter().copied().find(|u| u.name == name)
+}
+
+/// Degrees of an angle in radians.
+pub fn degrees(radians: f64) -> f64 {
+    radians * 180.0 / std::f64::consts::PI
+}
+
+/// Radians of an angle in degrees.
+pub fn radians(degrees: f64) -> f64 {
+    degrees * std::f64::consts::PI / 180.0
+}
+
+/// A value in `from`^power as a value in `to`^power, rounded once where the ratio of the two is whole.
+pub fn convert(value: f64, from: LengthUnit, to: LengthUnit, power: i8) -> f64 {
+    if from.micrometres == to.micrometres || power == 0 {
+        return value;
+    }
+    let (mut up, mut down) = (from.micrometres, to.micrometres);
+    let common = gcd(up, down);
+    up /= common;
+    down /= common;
+    let (up, down) = if power < 0 { (down, up) } else { (up, down) };
+    let times = i32::from(power.unsigned_abs());
+    let (up, down) = (crate::base::math::powi(up as f64, times), crate::base::math::powi(down as f64, times));
+    if up == 1.0 { value / down } else { value * up / down }
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+/// One side of a unit: its dimension and the value of one in model units, degrees, kg.
+fn factor(text: &str) -> Option<(Dim, Factor)> {
+    Some(match text {
+        "deg" => (Dim::ANGLE, Factor::Ratio(1.0)),
+        "rad" => (Dim::ANGLE, Factor::Ratio(180.0 / std::f64::consts::PI)),
+        "kg" => (Dim::MASS, Factor::Ratio(1.0)),
+        "t" => (Dim::MASS, Factor::Ratio(1000.0)),
+        _ => {
+            let (name, power) = match text.as_bytes().last()? {
+                b'2' => (&text[..text.len() - 1], 2),
+                b'3' => (&text[..text.len() - 1], 3),
+                _ => (text, 1),
+            };
+            (Dim { length: power, ..Dim::NONE }, Factor::Length(length_unit(name)?, power))
+        }
+    })
+}
+
+enum Factor {
+    Ratio(f64),
+    Length(LengthUnit, i8),
+}
+
+impl Factor {
+    fn apply(&self, value: f64, model: LengthUnit, below: bool) -> f64 {
+        match *self {
+            Self::Ratio(r) if below => value / r,
+            Self::Ratio(r) => value * r,
+            Self::Length(unit, power) => convert(value, unit, model, if below { -power } else { power }),
+        }
+    }
+}
+
+/// A number with a unit text (`mm2`, `kg/m3`, `%`) as a quantity; `None` when there is no such unit.
+pub fn quantity(value: f64, unit: &str, model: LengthUnit) -> Option<Quantity> {
+    if unit == "%" {
+        return Some(Quantity { value: value / 100.0, dim: Dim::NONE, percent: true });
+    }
+    let (above, below) = match unit.split_once('/') {
+        Some((a, b)) => (a, Some(b)),
+        None => (unit, None),
+    };
+    let (mut dim, above) = factor(above)?;
+    let mut value = above.apply(value, model, false);
+    if let Some(below) = below {
+        let (other, below) = factor(below)?;
+        dim = dim.over(other)?;
+        value = below.apply(value, model, true);
+    }
+    Some(Quantity::new(value, dim))
+}
+
+/// The unit that a quantity of this dimension is shown in: `mm`, `deg`, `kg/m3`; empty for bare numbers.
+pub fn unit_text(dim: Dim, model: LengthUnit) -> String {
+    let part = |name: &str, power: i8| match power {
+        1 => name.to_owned(),
+        _ => format!("{name}{power}"),
+    };
+    let parts = [("kg", dim.mass), (model.name, dim.length), ("deg", dim.angle)];
+    let above: Vec<String> = parts.iter().filter(|p| p.1 > 0).map(|p| part(p.0, p.1)).collect();
+    let below: Vec<String> = parts.iter().filter(|p| p.1 < 0).map(|p| part(p.0, -p.1)).collect();
+    match (above.is_empty(), below.is_empty()) {
+        (_, true) => above.join("*"),
+        (true, false) => format!("1/{}", below.join("/")),
+        (false, false) => format!("{}/{}", above.join("*"), below.join("/")),
+    }
+}
+
+/// The fewest digits that read back to the same bits, with an exponent outside 1e-5…1e16; negative zero is zero.
+pub fn number_text(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// A quantity as shortest number and unit, in model units or degrees.
+pub fn quantity_text(q: Quantity, model: LengthUnit) -> String {
+    if q.percent {
+        return format!("{}%", number_text(q.value * 100.0));
+    }
+    format!("{}{}", number_text(q.value), unit_text(q.dim, model))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(value: f64, unit: &str, model: &str, expected: &str) {
+        let model = length_unit(model).expect("a unit of the table");
+        let got = quantity(value, unit, model).map(|q| quantity_text(q, model));
+        assert_eq!(got.as_deref(), Some(expected), "{value}{unit}");
+    }
+
+    #[test]
+    fn literals_convert_with_one_rounding() {
+        check(3.0, "mm", "mm", "3mm");
+        check(0.3, "mm", "m", "0.0003m");
+        check(2.0, "m2", "mm", "2000000mm2");
+        check(1.0, "in", "mm", "25.4mm");
+        check(1.0, "ft", "in", "12in");
+        check(7850.0, "kg/m3", "m", "7850kg/m3");
+        check(7850.0, "kg/m3", "mm", "7.85e-6kg/mm3");
+        check(30.0, "deg", "mm", "30deg");
+        check(12.5, "%", "mm", "12.5%");
+        check(1.0, "t", "mm", "1000kg");
+        check(5.0, "deg/mm", "mm", "5deg/mm");
+        assert!(quantity(1.0, "mm4", MILLIMETRE).is_none());
+        assert!(quantity(1.0, "kg/m/m", MILLIMETRE).is_none());
+    }
+}
