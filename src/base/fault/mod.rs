@@ -21,7 +21,7 @@ pub use curves::CurveFault;
 pub use files::FileFault;
 pub use mesh::MeshFault;
 pub use network::NetworkFault;
-pub use surface::SurfaceFault;
+pub use surface::{NoFlow, SurfaceFault};
 pub use values::ValueFault;
 
 use super::origin::Origin;

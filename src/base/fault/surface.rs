@@ -1,26 +1,657 @@
-//! Family 6.
+//! Family 6: surfaces and the surface model.
 
-use super::{Describe, Report, Say};
+use glam::DVec3;
+
+use super::{Describe, Report, Say, Subject};
 use crate::base::origin::Origin;
 
-/// What can go wrong or deserves a word here.
+/// Why curves span no flow, nearest to success first.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoFlow {
+    /// Fewer curves than any flow has.
+    TooFewCurves {
+        /// How many were given.
+        given: usize,
+    },
+    /// These two meet, so they cannot run the same way, yet every division into two families puts them together.
+    NoFamilies {
+        /// One curve.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Where they meet.
+        at: DVec3,
+    },
+    /// A curve that meets none of the others.
+    Alone {
+        /// The curve.
+        curve: Origin,
+        /// The curve that comes nearest to it.
+        nearest: Origin,
+        /// Smallest distance of the two, model units.
+        gap: f64,
+        /// Where that is, on the lonely curve.
+        at: DVec3,
+    },
+    /// All crossings but some are there.
+    Missing {
+        /// Crossings found.
+        found: usize,
+        /// Crossings of the complete grid.
+        wanted: usize,
+        /// First curve of a missing crossing.
+        a: Origin,
+        /// Second curve of it.
+        b: Origin,
+        /// Smallest distance of the two, model units.
+        gap: f64,
+        /// Where that is, on `a`.
+        at: DVec3,
+    },
+    /// Several flows fit and nothing in the call decides.
+    Several {
+        /// What would decide, as it is typed: "`pole:` or `u:`".
+        decide: &'static str,
+    },
+    /// The named pole is not an end that curves share.
+    NoPole {
+        /// The named point.
+        pole: DVec3,
+        /// The nearest end of a curve.
+        nearest: DVec3,
+    },
+}
+
+/// What can go wrong with a surface, a patch or a shell, or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceFault {
-    ///  surfaces and model:E601: placeholder until the family's owner writes the table out.
-    Other {
-        /// The entity it speaks of.
-        of: Origin,
-        /// What happened.
-        what: String,
+    /// E601: the curves span no flow.
+    FlowUnknown {
+        /// The curves given.
+        curves: Vec<Origin>,
+        /// What is nearest to success.
+        why: NoFlow,
+    },
+    /// E602: two curves of a grid share no node.
+    GridIncomplete {
+        /// One curve.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Smallest distance.
+        gap: f64,
+        /// Where that is, on `a`.
+        at: DVec3,
+        /// Crossings found.
+        found: usize,
+        /// Crossings of the complete grid.
+        wanted: usize,
+    },
+    /// E603: two curves of a grid meet twice.
+    GridDouble {
+        /// One curve.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// First meeting.
+        first: DVec3,
+        /// Second meeting.
+        second: DVec3,
+    },
+    /// E604: the curves of one family are met in different orders, or two meetings coincide in the mean.
+    GridNotMonotone {
+        /// The curve along which they come in the wrong order.
+        curve: Origin,
+        /// The curve that should come first.
+        a: Origin,
+        /// The curve that should come after it.
+        b: Origin,
+        /// Meeting with `a`.
+        first: DVec3,
+        /// Meeting with `b`.
+        second: DVec3,
+    },
+    /// E605: two curves of one family meet away from a pole.
+    FamilyCrosses {
+        /// One curve.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Where they meet.
+        at: DVec3,
+    },
+    /// W606: the two derivatives are parallel or vanish inside.
+    PatchSingular {
+        /// The surface.
+        surface: Origin,
+        /// Where, u and v.
+        uv: (f64, f64),
+        /// Where in space.
+        at: DVec3,
+    },
+    /// W607: the normal flips inside.
+    PatchFolded {
+        /// The surface.
+        surface: Origin,
+        /// Where, u and v.
+        uv: (f64, f64),
+        /// Where in space.
+        at: DVec3,
+        /// Angle between the normal there and that of the neighbouring sample.
+        turn: f64,
+    },
+    /// N608: the Lagrange map may swing out between its curves.
+    TransfiniteOscillation {
+        /// The surface.
+        surface: Origin,
+        /// `u` or `v`.
+        direction: char,
+        /// Curves across that direction.
+        curves: usize,
+        /// Largest sum of the absolute blending values.
+        lebesgue: f64,
+    },
+    /// N609: an end stands out over the border and is left out.
+    EndTrimmed {
+        /// The curve.
+        curve: Origin,
+        /// The border it stands out over.
+        border: Origin,
+        /// The end that is left out.
+        end: DVec3,
+        /// Length left out.
+        length: f64,
+    },
+    /// E611: the boundary crosses itself.
+    LoopSelfIntersects {
+        /// One curve.
+        a: Origin,
+        /// The other one (or the same).
+        b: Origin,
+        /// Where.
+        at: DVec3,
+        /// Fractions of arc length along both.
+        along: (f64, f64),
+    },
+    /// W614: kinks so close that a strip of patches is a sliver.
+    SliverPatch {
+        /// The surface.
+        surface: Origin,
+        /// `u` or `v`: the direction across the strip.
+        direction: char,
+        /// Where the strip begins and ends.
+        from_to: (f64, f64),
+        /// Width of the strip, length.
+        width: f64,
+        /// Width of its narrower neighbour, length.
+        neighbour: f64,
+        /// A point on the strip.
+        at: DVec3,
+    },
+    /// N615: a shell has free edges.
+    ShellOpen {
+        /// The shell.
+        shell: Origin,
+        /// How many free edges.
+        edges: usize,
+        /// Their length.
+        length: f64,
+        /// Middle of the longest one.
+        at: DVec3,
+    },
+    /// E616: no choice of sides makes every edge be used in opposite senses.
+    ShellNotOrientable {
+        /// The shell.
+        shell: Origin,
+        /// One surface at the edge where it fails.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Middle of that edge.
+        at: DVec3,
+    },
+    /// E617: more than two patches at one edge.
+    ShellNonManifold {
+        /// The shell.
+        shell: Origin,
+        /// Surfaces that use the edge.
+        users: Vec<Origin>,
+        /// Middle of the edge.
+        at: DVec3,
+    },
+    /// E618: two faces share no edge.
+    NotAdjacent {
+        /// One face.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Smallest distance of their borders.
+        gap: f64,
+        /// Where that is.
+        at: DVec3,
+    },
+    /// E621: the axis is not a straight line.
+    AxisNotStraight {
+        /// The axis.
+        axis: Origin,
+        /// Its largest distance from the line through its ends.
+        off: f64,
+        /// Where that is.
+        at: DVec3,
+    },
+    /// E622: the profile lies in the axis.
+    GeneratrixOnAxis {
+        /// The profile.
+        profile: Origin,
+        /// First point of the stretch in the axis.
+        from: DVec3,
+        /// Last point of it.
+        to: DVec3,
+    },
+    /// E623: the profile meets the axis between its ends.
+    GeneratrixCrossesAxis {
+        /// The profile.
+        profile: Origin,
+        /// Where.
+        at: DVec3,
+        /// Fraction of the profile's arc length.
+        fraction: f64,
+    },
+    /// E624: the profile runs along the direction in which it is carried.
+    SweepDegenerate {
+        /// The profile.
+        profile: Origin,
+        /// First point of the stretch.
+        from: DVec3,
+        /// Last point of it.
+        to: DVec3,
+    },
+    /// W651: rows of points whose spacing differs much from the mean.
+    GridUneven {
+        /// The surface.
+        surface: Origin,
+        /// `row` or `column`.
+        line: &'static str,
+        /// Its number, from 0.
+        index: usize,
+        /// Its spacing over the mean.
+        ratio: f64,
+        /// Where.
+        at: DVec3,
+    },
+    /// E655 `plane-not-flat`: boundary curves that lie in no one plane.
+    PlaneNotFlat {
+        /// The curve with the point farthest off.
+        curve: Origin,
+        /// Largest distance from the mean plane.
+        off: f64,
+        /// Where that is.
+        at: DVec3,
+        /// What would pass.
+        tolerance: f64,
+    },
+    /// E656 `shell-not-closed`: something that only a closed shell has was asked for.
+    ShellNotClosed {
+        /// The shell.
+        shell: Origin,
+        /// What was asked for, for example "volume".
+        wanted: &'static str,
+        /// Free edges: surface, middle, length; the longest first.
+        free: Vec<(Origin, DVec3, f64)>,
+    },
+    /// E502 `boundary-open`: the curves of a bounded plane do not close.
+    BoundaryOpen {
+        /// The curve after which the gap comes.
+        a: Origin,
+        /// The curve before which it ends.
+        b: Origin,
+        /// End of `a`.
+        end: DVec3,
+        /// Start of `b`.
+        start: DVec3,
     },
 }
 
 impl Describe for SurfaceFault {
     fn describe(&self, say: &dyn Say) -> Report {
-        match self {
-            Self::Other { of, what } => {
-                Report::new(" surfaces and model:E601", format!("{}: {what}", say.quoted(*of, "this"))).at(*of, "here")
+        describe_flow(self, say).or_else(|| describe_shape(self, say)).unwrap_or_else(|| describe_model(self, say))
+    }
+}
+
+/// E601–E605, N609: the grid of curves.
+fn describe_flow(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
+    use SurfaceFault as F;
+    Some(match fault {
+        F::FlowUnknown { curves, why } => describe_no_flow(curves, why, say),
+        F::GridIncomplete { a, b, gap, at, found, wanted } => Report::new(
+            "E602",
+            format!(
+                "{} and {} share no node; their nearest points are {} apart at {}",
+                say.quoted(*a, "a curve along u"),
+                say.quoted(*b, "a curve along v"),
+                say.length(*gap),
+                say.point(*at)
+            ),
+        )
+        .at(*a, "this curve")
+        .at(*b, "does not meet this one")
+        .note(format!("{found} of {wanted} crossings of the grid were found"))
+        .help("let every curve along u cross every curve along v, or leave one of these two out"),
+        F::GridDouble { a, b, first, second } => Report::new(
+            "E603",
+            format!(
+                "{} and {} meet twice, at {} and at {}",
+                say.quoted(*a, "one curve"),
+                say.quoted(*b, "another one"),
+                say.point(*first),
+                say.point(*second)
+            ),
+        )
+        .at(*a, "this curve")
+        .at(*b, "and this one")
+        .help("take the run with one of the two meetings: `c[A..B]`"),
+        F::GridNotMonotone { curve, a, b, first, second } => Report::new(
+            "E604",
+            format!(
+                "along {} the curves come in the wrong order: {} at {}, {} at {}",
+                say.quoted(*curve, "one curve"),
+                say.quoted(*a, "the first"),
+                say.point(*first),
+                say.quoted(*b, "the next"),
+                say.point(*second)
+            ),
+        )
+        .at(*curve, "met in another order than its neighbours")
+        .at(*a, "should come before")
+        .at(*b, "this one")
+        .help("every curve along u must meet the curves along v in the same order"),
+        F::FamilyCrosses { a, b, at } => Report::new(
+            "E605",
+            format!(
+                "{} and {} run the same way but meet at {}",
+                say.quoted(*a, "one curve"),
+                say.quoted(*b, "another one"),
+                say.point(*at)
+            ),
+        )
+        .at(*a, "this curve")
+        .at(*b, "meets this one")
+        .help("curves of one family may share a pole and nothing else; if this is one, say `pole: P`"),
+        F::EndTrimmed { curve, border, end, length } => Report::new(
+            "N609",
+            format!(
+                "{} stands out {} over {} to {}; that end is left out",
+                say.quoted(*curve, "a curve"),
+                say.length(*length),
+                say.quoted(*border, "the border"),
+                say.point(*end)
+            ),
+        )
+        .at(*curve, "trimmed to the border"),
+        _ => return None,
+    })
+}
+
+fn describe_no_flow(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report {
+    let report = |text: String| Report::new("E601", text);
+    match why {
+        NoFlow::TooFewCurves { given } => report(format!("{given} curve{} cannot span a surface", if *given == 1 { "" } else { "s" }))
+            .label(Subject::Call, "needs four borders, or three, or two with common ends")
+            .help("coons(south, east, north, west)"),
+        NoFlow::NoFamilies { a, b, at } => report(format!(
+            "these {} curves fit into no two families: {} and {} meet at {} and would have to run the same way",
+            curves.len(),
+            say.quoted(*a, "one curve"),
+            say.quoted(*b, "another one"),
+            say.point(*at)
+        ))
+        .at(*a, "this curve")
+        .at(*b, "meets this one")
+        .help("say which run along u and which along v: `u: [a, b], v: [c, d]`"),
+        NoFlow::Alone { curve, nearest, gap, at } => report(format!(
+            "{} meets none of the other curves; {} is nearest, {} away at {}",
+            say.quoted(*curve, "a curve"),
+            say.quoted(*nearest, "another one"),
+            say.length(*gap),
+            say.point(*at)
+        ))
+        .at(*curve, "meets nothing")
+        .at(*nearest, "is nearest")
+        .help("end the curves at the same declared points"),
+        NoFlow::Missing { found, wanted, a, b, gap, at } => report(format!(
+            "{found} of {wanted} crossings found: {} and {} share no node; their nearest points are {} apart at {}",
+            say.quoted(*a, "one curve"),
+            say.quoted(*b, "another one"),
+            say.length(*gap),
+            say.point(*at)
+        ))
+        .at(*a, "this curve")
+        .at(*b, "does not meet this one")
+        .help("end both at the same declared point"),
+        NoFlow::Several { decide } => {
+            let mut report = report(format!("these {} curves span more than one surface", curves.len()));
+            for curve in curves {
+                report = report.at(*curve, "");
             }
+            report.help(format!("decide with {decide}"))
         }
+        NoFlow::NoPole { pole, nearest } => report(format!(
+            "no curves end together at the pole {}; the nearest end is {} away at {}",
+            say.point(*pole),
+            say.length(pole.distance(*nearest)),
+            say.point(*nearest)
+        ))
+        .label(Subject::Argument("pole"), "not a common end")
+        .help("the pole is the point in which all curves of one family end"),
+    }
+}
+
+/// W606–N608, E611, W614, E62x, W651, E655: one surface.
+fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
+    use SurfaceFault as F;
+    let uv = |(u, v): (f64, f64)| format!("u {u:.3}, v {v:.3}");
+    Some(match fault {
+        F::PatchSingular { surface, uv: place, at } => {
+            Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
+                .at(*surface, "its two directions fall together there")
+                .help("let no two borders be tangent to each other at a corner, or take the corner as `pole:`")
+        }
+        F::PatchFolded { surface, uv: place, at, turn } => Report::new(
+            "W607",
+            format!(
+                "{} folds over: its normal turns by {} at {}, {}",
+                say.quoted(*surface, "this surface"),
+                say.angle(*turn),
+                uv(*place),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "the map runs back over itself there")
+        .help("add a curve across the fold, or divide the surface in two"),
+        F::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(
+            "N608",
+            format!(
+                "{} may swing out between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
+                say.quoted(*surface, "this surface")
+            ),
+        )
+        .at(*surface, "one polynomial through all curves")
+        .help("`coons` with the same curves stays between them"),
+        F::LoopSelfIntersects { a, b, at, along } => Report::new(
+            "E611",
+            format!(
+                "the boundary crosses itself: {} meets {} at {}, {} % along one and {} % along the other",
+                say.quoted(*a, "one curve"),
+                say.quoted(*b, "another one"),
+                say.point(*at),
+                (along.0 * 100.0).round(),
+                (along.1 * 100.0).round()
+            ),
+        )
+        .at(*a, "this curve")
+        .at(*b, "crosses this one")
+        .help("take the corners in the order in which one walks round the face"),
+        F::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(
+            "W614",
+            format!(
+                "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {:.6} to {:.6}, at {}",
+                say.quoted(*surface, "this surface"),
+                say.length(*width),
+                say.length(*neighbour),
+                from_to.0,
+                from_to.1,
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "the kinks of opposite borders split it here")
+        .help("move the kinks to the same share of the length on both borders"),
+        F::AxisNotStraight { axis, off, at } => Report::new(
+            "E621",
+            format!("the axis {} is not straight: {} off at {}", say.quoted(*axis, "of the rotation"), say.length(*off), say.point(*at)),
+        )
+        .at(*axis, "must be one straight line")
+        .help("axis: line((0, 0, 0), (0, 0, 1))"),
+        F::GeneratrixOnAxis { profile, from, to } => Report::new(
+            "E622",
+            format!("{} lies in the axis from {} to {}", say.quoted(*profile, "the profile"), say.point(*from), say.point(*to)),
+        )
+        .at(*profile, "sweeps no area there")
+        .help("leave that stretch out: `profile[A..B]`"),
+        F::GeneratrixCrossesAxis { profile, at, fraction } => Report::new(
+            "E623",
+            format!(
+                "{} meets the axis between its ends, at {}, {:.1} % along",
+                say.quoted(*profile, "the profile"),
+                say.point(*at),
+                fraction * 100.0
+            ),
+        )
+        .at(*profile, "meets the axis")
+        .help(format!("turn one side of it only: `profile[0%..{:.6}%]`", fraction * 100.0)),
+        F::SweepDegenerate { profile, from, to } => Report::new(
+            "E624",
+            format!(
+                "{} runs along the direction of the sweep from {} to {}: no area",
+                say.quoted(*profile, "the profile"),
+                say.point(*from),
+                say.point(*to)
+            ),
+        )
+        .at(*profile, "parallel to the sweep")
+        .help("choose another `by:`, or leave that stretch out"),
+        F::GridUneven { surface, line, index, ratio, at } => Report::new(
+            "W651",
+            format!(
+                "{line} {index} of {} is spaced {ratio:.1} times unlike the mean at {}",
+                say.quoted(*surface, "this grid"),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "one parameter serves all rows")
+        .help("resample the rows: `[for r in rows: spline(r).points(20)]`"),
+        F::PlaneNotFlat { curve, off, at, tolerance } => Report::new(
+            "E655",
+            format!(
+                "the boundary is not flat: {} is {} off the plane at {}; the tolerance is {}",
+                say.quoted(*curve, "one curve"),
+                say.length(*off),
+                say.point(*at),
+                say.length(*tolerance)
+            ),
+        )
+        .at(*curve, "leaves the plane of the others")
+        .help("`coons` takes borders that are not flat"),
+        F::BoundaryOpen { a, b, end, start } => Report::new(
+            "E502",
+            format!(
+                "the boundary does not close: {} ends at {}, {} starts at {}",
+                say.quoted(*a, "one curve"),
+                say.point(*end),
+                say.quoted(*b, "the next"),
+                say.point(*start)
+            ),
+        )
+        .at(*a, "ends here")
+        .at(*b, "starts elsewhere")
+        .help(format!("the gap is {}; add the curve that joins these two points", say.length(end.distance(*start)))),
+        _ => return None,
+    })
+}
+
+/// N615–E618, E656: patches and shells.
+fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
+    use SurfaceFault as F;
+    match fault {
+        F::ShellOpen { shell, edges, length, at } => Report::new(
+            "N615",
+            format!(
+                "{} is open: {edges} free edge{}, {} long together; the longest passes {}",
+                say.quoted(*shell, "the shell"),
+                if *edges == 1 { "" } else { "s" },
+                say.length(*length),
+                say.point(*at)
+            ),
+        )
+        .at(*shell, "not a closed skin"),
+        F::ShellNotOrientable { shell, a, b, at } => Report::new(
+            "E616",
+            format!(
+                "{} has only one side: {} and {} cannot agree at {}",
+                say.quoted(*shell, "the shell"),
+                say.quoted(*a, "one surface"),
+                say.quoted(*b, "another one"),
+                say.point(*at)
+            ),
+        )
+        .at(*shell, "cannot be given an outside")
+        .help("take the surfaces of the ring apart into two shells"),
+        F::ShellNonManifold { shell, users, at } => {
+            let mut report = Report::new(
+                "E617",
+                format!("{} faces of {} share the edge at {}", users.len(), say.quoted(*shell, "the shell"), say.point(*at)),
+            )
+            .at(*shell, "an edge of a shell joins at most two faces");
+            for user in users {
+                report = report.at(*user, "uses the edge");
+            }
+            report.help("make two shells of them")
+        }
+        F::NotAdjacent { a, b, gap, at } => Report::new(
+            "E618",
+            format!(
+                "{} and {} share no edge; their borders are {} apart at {}",
+                say.quoted(*a, "one face"),
+                say.quoted(*b, "another one"),
+                say.length(*gap),
+                say.point(*at)
+            ),
+        )
+        .at(*a, "this face")
+        .at(*b, "and this one"),
+        F::ShellNotClosed { shell, wanted, free } => {
+            let length: f64 = free.iter().map(|edge| edge.2).sum();
+            let mut report = Report::new(
+                "E656",
+                format!(
+                    "the {wanted} of {} needs a closed shell, but it has {} free edge{}, {} long together",
+                    say.quoted(*shell, "an open shell"),
+                    free.len(),
+                    if free.len() == 1 { "" } else { "s" },
+                    say.length(length)
+                ),
+            )
+            .at(*shell, "open");
+            for (surface, at, length) in free.iter().take(4) {
+                report = report.note(format!(
+                    "free edge of {} through {}, {} long",
+                    say.quoted(*surface, "a surface"),
+                    say.point(*at),
+                    say.length(*length)
+                ));
+            }
+            report.help("add the surfaces that close it to the shell")
+        }
+        // The two functions above answered for all others.
+        other => Report::new("E999", format!("a fault without words: {other:?}")),
     }
 }
