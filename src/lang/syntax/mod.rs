@@ -1,13 +1,203 @@
 //! Text to tree. The only place that knows pest.
+//!
+//! ```text
+//! bytes → tokens (scan) → pieces (split) → shapes (pest, tree, climb; each shape once) → declarations (shape)
+//! ```
+//!
+//! Parsing never stops at a mistake: every piece stands for itself, the sound ones are kept, and the names of broken
+//! ones are listed so that what uses them can be skipped without a second message.
 
 pub mod ast;
+mod climb;
+mod expected;
+mod mistake;
+pub mod number;
+mod scan;
+mod shape;
+mod split;
+mod token;
+mod tree;
 
-use crate::lang::diag::Diagnostic;
+use pest::Parser as _;
+
+use crate::base::limits::SOURCE_BYTES;
+use crate::lang::diag::{Diagnostic, FileId};
 use crate::lang::names::Names;
-use ast::Script;
+use ast::{Bound, Declaration, Script, Span};
+use mistake::Mistake;
+use scan::Tokens;
+use shape::{Filler, Shape, Shapes};
+use split::Piece;
+use token::Kind;
+pub use token::{KEYWORDS, reserved_words};
+
+/// What pest makes of `grammar/loft.pest`.
+#[allow(missing_docs)]
+mod grammar {
+    #[derive(pest_derive::Parser)]
+    #[grammar = "../grammar/loft.pest"]
+    pub struct Grammar;
+}
+use grammar::{Grammar, Rule};
 
 /// Parses a script; every independent mistake is reported and the sound declarations are kept.
-pub fn parse(source: &str, file: crate::lang::diag::FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
-    let _ = (source, file, names);
-    (Script::default(), Vec::new())
+///
+/// The reports are sorted by place. The tree refers to `names`, where new names are entered.
+pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
+    if source.len() as u64 > SOURCE_BYTES {
+        let mistake = Mistake::TooLarge { bytes: source.len() };
+        return (Script::default(), vec![mistake.diagnose(source, file)]);
+    }
+    let tokens = scan::scan(source);
+    let (pieces, mistakes) = split::split(&tokens);
+    let mut parser =
+        Parser { source, file, tokens: &tokens, shapes: Shapes::default(), names, script: Script::default(), found: Vec::new() };
+    parser.script.declarations.reserve(pieces.len());
+    parser.mistakes(mistakes);
+    let (mut own, mut docs) = (tokens.mistakes.iter().peekable(), 0);
+    for mut piece in pieces {
+        let end = piece.tokens.end.checked_sub(1).map_or(0, |last| tokens.ends[last]);
+        while own.next_if(|m| m.place().start < end).is_some() {
+            piece.broken = true;
+        }
+        let doc = parser.doc(&mut docs, piece.tokens.start);
+        parser.piece(&piece, doc);
+    }
+    parser.end()
 }
+
+struct Parser<'a> {
+    source: &'a str,
+    file: FileId,
+    tokens: &'a Tokens,
+    shapes: Shapes,
+    names: &'a mut Names,
+    script: Script,
+    found: Vec<Diagnostic>,
+}
+
+impl Parser<'_> {
+    /// Reports the mistakes of scanner and splitter. A string without end hides brackets: those are not reported too.
+    fn mistakes(&mut self, split: Vec<Mistake>) {
+        let own = &self.tokens.mistakes;
+        let hides = |span: Span| {
+            own.iter().any(|m| match m {
+                Mistake::OpenString { span: string } => {
+                    span.start <= string.end && !self.source[span.start as usize..string.start.max(span.start) as usize].contains("\n\n")
+                }
+                _ => false,
+            })
+        };
+        let split = split.iter().filter(|m| !(matches!(m, Mistake::OpenBracket { .. }) && hides(m.place())));
+        self.found.extend(own.iter().chain(split).map(|m| m.diagnose(self.source, self.file)));
+    }
+
+    /// The `///` lines before a token.
+    fn doc(&self, next: &mut usize, token: usize) -> Option<Box<str>> {
+        let docs = &self.tokens.docs;
+        while docs.get(*next).is_some_and(|&(before, _)| (before as usize) < token) {
+            *next += 1;
+        }
+        let mut text = String::new();
+        while let Some(&(_, span)) = docs.get(*next).filter(|&&(before, _)| before as usize == token) {
+            let line = &self.source[span.start as usize..span.end as usize];
+            if !text.is_empty() {
+                text.push('\n');
+            }
+            text.push_str(line.strip_prefix(' ').unwrap_or(line).trim_end());
+            *next += 1;
+        }
+        (!text.is_empty()).then(|| text.into())
+    }
+
+    fn piece(&mut self, piece: &Piece, doc: Option<Box<str>>) {
+        let (base, end) = (piece.tokens.start, piece.tokens.end);
+        let kinds = &self.tokens.kinds[base..end];
+        if kinds[0].keyword().is_none() {
+            return self.without_keyword(piece);
+        }
+        if piece.broken {
+            return self.broken(base, end);
+        }
+        if let Some(shape) = self.shapes.get(kinds) {
+            let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
+            return self.script.declarations.push(declaration);
+        }
+        match self.shape(base, end) {
+            Ok(shape) => {
+                let declaration: Declaration =
+                    Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(&shape, doc);
+                self.script.declarations.push(declaration);
+                self.shapes.insert(kinds, shape);
+            }
+            Err(diagnostic) => {
+                self.found.push(*diagnostic);
+                self.broken(base, end);
+            }
+        }
+    }
+
+    /// Asks pest.
+    fn shape(&self, base: usize, end: usize) -> Result<Shape, Box<Diagnostic>> {
+        let span = self.tokens.stretch(base, end - 1);
+        let text = &self.source[span.start as usize..span.end as usize];
+        let pairs = Grammar::parse(Rule::single, text).map_err(|error| {
+            let failure = expected::Failure { source: self.source, file: self.file, tokens: self.tokens, base, end };
+            Box::new(failure.diagnose(&error))
+        })?;
+        let place = |s: Span| self.tokens.stretch(base + s.start as usize, base + s.end as usize);
+        tree::build(pairs, self.tokens, base, end).map_err(|refused| Box::new(refused.diagnose(self.source, self.file, place)))
+    }
+
+    /// A piece that starts with no keyword.
+    fn without_keyword(&mut self, piece: &Piece) {
+        let (base, end) = (piece.tokens.start, piece.tokens.end);
+        let kinds = &self.tokens.kinds[base..end];
+        if !piece.broken || kinds[0] == Kind::Name {
+            let next = (end > base + 1).then(|| self.tokens.span(base + 1));
+            let mistake = Mistake::NoKeyword { span: self.tokens.span(base), next, binds: kinds.get(1) == Some(&Kind::Equals) };
+            self.found.push(mistake.diagnose(self.source, self.file));
+        }
+        let bound = match kinds {
+            [Kind::Name, Kind::Equals, ..] => Some(base),
+            [Kind::Name, Kind::Name, ..] => Some(base + 1),
+            [Kind::Name, Kind::Curve, Kind::Name, ..] => Some(base + 2),
+            _ => None,
+        };
+        self.bind_broken(bound);
+    }
+
+    /// Remembers the name that a broken declaration would have bound.
+    fn broken(&mut self, base: usize, end: usize) {
+        let kinds = &self.tokens.kinds[base..end];
+        let bound = match kinds {
+            [Kind::Use | Kind::Import, ..] => kinds.windows(2).rposition(|w| w == [Kind::As, Kind::Name]).map(|at| base + at + 1),
+            [Kind::Modeling, Kind::Curve, Kind::Name, ..] => Some(base + 2),
+            [Kind::Units | Kind::Tolerance | Kind::Snap | Kind::Check | Kind::Report | Kind::Export | Kind::Picture, ..] => None,
+            [_, Kind::Name, ..] => Some(base + 1),
+            _ => None,
+        };
+        self.bind_broken(bound);
+    }
+
+    fn bind_broken(&mut self, token: Option<usize>) {
+        if let Some(token) = token {
+            let span = self.tokens.span(token);
+            let name = self.names.intern(&self.source[span.start as usize..span.end as usize]);
+            self.script.broken.push(Bound { name, span });
+        }
+    }
+
+    /// Reports in order of place; behind a comment without end they say nothing.
+    fn end(self) -> (Script, Vec<Diagnostic>) {
+        let mut found = self.found;
+        if let Some(quiet) = self.tokens.quiet_from {
+            found.retain(|d| d.code.0 == "E104" || d.labels.first().is_none_or(|l| l.span.start < quiet));
+        }
+        found.sort_by_key(|d| d.labels.first().map(|l| l.span.start));
+        (self.script, found)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,257 @@
+//! What is wrong with tokens, brackets and lines, in words.
+
+use super::ast::Span;
+use super::number::{self, Fault};
+use super::token::KEYWORDS;
+use crate::base::limits::SOURCE_BYTES;
+use crate::lang::diag::{Diagnostic, FileId};
+use crate::lang::names::nearest;
+
+/// One mistake of the text, found before parsing.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Mistake {
+    /// E103: a string without end.
+    OpenString { span: Span },
+    /// E104: a comment without end.
+    OpenComment { span: Span },
+    /// E109: comments nested too deep.
+    DeepComment { span: Span },
+    /// E102: a sign that no script may hold.
+    StrangeSign { span: Span },
+    /// E102: no such escape.
+    BadEscape { span: Span },
+    /// E107: a malformed number or unit; `unit` is where the unit begins.
+    BadNumber { span: Span, unit: u32, fault: Fault },
+    /// E101: a bracket never closed; `ended` is what stands where it ought to have been closed and whether that is a
+    /// new declaration; `closers` close it and what is open inside it; `last` is the item they go behind.
+    OpenBracket { span: Span, ended: Option<(Span, bool)>, closers: String, last: Span },
+    /// E102: a closing bracket without an opening one; `inside` is what is open there.
+    StrayBracket { span: Span, inside: Option<Span> },
+    /// E109: nested too deep.
+    TooDeep { span: Span, what: &'static str, limit: usize },
+    /// E105: two declarations on a line.
+    TwoOnLine { first: Span, second: Span },
+    /// E106: a declaration without keyword; `next` is the word or sign behind the first one.
+    NoKeyword { span: Span, next: Option<Span>, binds: bool },
+    /// E110: the source is too large.
+    TooLarge { bytes: usize },
+}
+
+/// Why a declaration that the grammar accepts is refused; spans hold token numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Refused {
+    /// `within` behind something other than `==` or `!=`.
+    Within { span: Span, left: Span },
+    /// `0 < x < 5`
+    Chain { span: Span, left: Span, middle: Span, right: Span },
+    /// Cannot happen while grammar and tree agree.
+    Whole { what: &'static str, span: Span },
+}
+
+impl Refused {
+    /// A pair that lacks a part which the grammar demands.
+    pub fn whole(what: &'static str, start: u32, end: u32) -> Self {
+        Self::Whole { what, span: Span { start, end } }
+    }
+
+    /// The report; `place` turns token numbers into bytes.
+    pub fn diagnose(&self, source: &str, file: FileId, place: impl Fn(Span) -> Span) -> Diagnostic {
+        let text = |span: Span| {
+            let span = place(span);
+            &source[span.start as usize..span.end as usize]
+        };
+        match self {
+            Self::Within { span, left } => Diagnostic::new(
+                "E102",
+                "`within` follows `==` or `!=`",
+                file,
+                place(*span),
+                "no comparison before it that takes a tolerance",
+            )
+            .help(format!("{} == … within …", text(*left))),
+            Self::Chain { span, left, middle, right } => {
+                let help = format!("{} and {} {} {}", text(*left), text(*middle), text(*span), text(*right));
+                Diagnostic::new("E102", "comparisons do not chain", file, place(*span), "a second comparison").help(help)
+            }
+            Self::Whole { what, span } => Diagnostic::new("E102", *what, file, place(*span), "here"),
+        }
+    }
+}
+
+impl Mistake {
+    /// The foremost place.
+    pub fn place(&self) -> Span {
+        match *self {
+            Self::OpenString { span }
+            | Self::OpenComment { span }
+            | Self::DeepComment { span }
+            | Self::StrangeSign { span }
+            | Self::BadEscape { span }
+            | Self::BadNumber { span, .. }
+            | Self::OpenBracket { span, .. }
+            | Self::StrayBracket { span, .. }
+            | Self::TooDeep { span, .. }
+            | Self::NoKeyword { span, .. } => span,
+            Self::TwoOnLine { second, .. } => second,
+            Self::TooLarge { .. } => Span::default(),
+        }
+    }
+
+    /// The report; `source` is the whole file.
+    pub fn diagnose(&self, source: &str, file: FileId) -> Diagnostic {
+        let text = |span: Span| &source[span.start as usize..span.end as usize];
+        let at = self.place();
+        match self {
+            Self::OpenString { .. } => {
+                let label = Span { start: at.start, end: at.start + 1 };
+                Diagnostic::new("E103", "this string has no end", file, label, "opened here")
+                    .label(file, Span { start: at.end, end: at.end }, "the line ends here, and a string ends on its line")
+                    .help(format!("add `\"`: {}\"", tail(text(at))))
+            }
+            Self::OpenComment { .. } => {
+                Diagnostic::new("E104", "this comment has no end", file, at, "opened here").help("add `*/` where it ends")
+            }
+            Self::DeepComment { .. } => Self::too_deep(file, at, "comments", 256),
+            Self::StrangeSign { .. } => strange_sign(text(at), file, at),
+            Self::BadEscape { .. } => Diagnostic::new("E102", format!("`{}` is not an escape", text(at)), file, at, "not an escape")
+                .help("the escapes are \\\" \\\\ \\n \\{ and \\u{1F600}; a backslash itself is written \\\\"),
+            Self::BadNumber { unit, fault, .. } => bad_number(text(at), (*unit - at.start) as usize, *fault, file, at),
+            Self::OpenBracket { ended, closers, last, .. } => {
+                let report = Diagnostic::new("E101", format!("this `{}` is never closed", opener(text(at))), file, at, "opened here");
+                let report = match ended {
+                    Some((span, true)) => report.label(file, *span, "a new declaration starts here, so the list ended before it"),
+                    Some((span, false)) => report.label(file, *span, format!("`{}` closes what was opened before it", text(*span))),
+                    None => report.label(file, Span { start: last.end, end: last.end }, "the script ends here"),
+                };
+                report.help(format!("add `{closers}` after `{}`", text(*last)))
+            }
+            Self::StrayBracket { inside, .. } => {
+                let report = Diagnostic::new("E102", format!("this `{}` closes nothing", text(at)), file, at, "nothing to close");
+                match inside {
+                    Some(span) => {
+                        report.label(file, *span, "what is open here closes otherwise").help(format!("write `{}`", closing(text(*span))))
+                    }
+                    None => report.help(format!("delete the `{}`", text(at))),
+                }
+            }
+            Self::TooDeep { what, limit, .. } => Self::too_deep(file, at, what, *limit),
+            Self::TwoOnLine { first, second } => {
+                Diagnostic::new("E105", "two declarations on one line", file, *second, "a second declaration starts here")
+                    .label(file, *first, "the first one starts here")
+                    .help(format!("start a new line before `{}`", text(*second)))
+            }
+            Self::NoKeyword { next, binds, .. } => no_keyword(source, file, at, *next, *binds),
+            Self::TooLarge { bytes } => Diagnostic::new("E110", format!("the script has {bytes} bytes"), file, at, "too large")
+                .help(format!("the limit is {} MiB; move data to a csv file and `import` it", SOURCE_BYTES >> 20)),
+        }
+    }
+
+    fn too_deep(file: FileId, at: Span, what: &str, limit: usize) -> Diagnostic {
+        Diagnostic::new("E109", format!("nested too deep: more than {limit} {what}"), file, at, format!("number {} starts here", limit + 1))
+            .help("give the inner parts names of their own with `let`")
+    }
+}
+
+/// The last forty characters of a text.
+fn tail(text: &str) -> &str {
+    let text = text.trim_end();
+    text.char_indices().rev().nth(39).map_or(text, |(at, _)| &text[at..])
+}
+
+fn opener(text: &str) -> &str {
+    if text.ends_with('{') { "{" } else { text }
+}
+
+fn closing(opener: &str) -> &'static str {
+    match opener {
+        "(" => ")",
+        "[" => "]",
+        _ => "}",
+    }
+}
+
+fn strange_sign(sign: &str, file: FileId, at: Span) -> Diagnostic {
+    let help = match sign {
+        ";" => "a declaration ends with its line: delete the `;`".to_owned(),
+        "'" | "`" | "“" | "”" | "„" | "‘" | "’" => "a string is written \"like this\"".to_owned(),
+        "#" => "a comment is written `// like this`".to_owned(),
+        "!" => "write `not`".to_owned(),
+        "&&" => "write `and`".to_owned(),
+        "||" => "write `or`".to_owned(),
+        "|" => "write `or`, or `[a, b]` for a list".to_owned(),
+        "**" => "write `^`".to_owned(),
+        "%" => "a ratio has its `%` glued to the number, `5%`; a remainder is `mod(a, b)`".to_owned(),
+        "->" | "=>" => "the type of a result stands behind a colon: `fn f(x: length): curve = …`".to_owned(),
+        "°" => "write `deg`, glued to the number: `30deg`".to_owned(),
+        "×" | "·" => "write `*`".to_owned(),
+        "÷" => "write `/`".to_owned(),
+        "−" | "–" | "—" => "write `-`".to_owned(),
+        "≤" => "write `<=`".to_owned(),
+        "≥" => "write `>=`".to_owned(),
+        "≠" => "write `!=`".to_owned(),
+        "²" | "³" => "write `mm2`, `m3`, or `^ 2`".to_owned(),
+        "…" => "write `..`".to_owned(),
+        "?" => "a choice is written `if c then a else b`".to_owned(),
+        _ => {
+            let c = sign.chars().next().unwrap_or(' ');
+            return Diagnostic::new(
+                "E102",
+                format!("the character {} (U+{:04X}) is not part of the language", shown(c), u32::from(c)),
+                file,
+                at,
+                "not expected here",
+            )
+            .help("delete it, or put it inside a string");
+        }
+    };
+    Diagnostic::new("E102", format!("`{sign}` is not part of the language"), file, at, "not expected here").help(help)
+}
+
+/// A character as it can be printed.
+fn shown(c: char) -> String {
+    if c.is_control() || c.is_whitespace() { c.escape_default().to_string() } else { format!("`{c}`") }
+}
+
+fn bad_number(text: &str, unit: usize, fault: Fault, file: FileId, at: Span) -> Diagnostic {
+    let (digits, unit) = text.split_at(unit.min(text.len()));
+    let report = |message: String, label: &str| Diagnostic::new("E107", message, file, at, label);
+    match fault {
+        Fault::LeadingDot => report(format!("`{text}` is not a number"), "a digit is missing before the dot").help(format!("0{text}")),
+        Fault::TrailingDot => {
+            report(format!("`{text}` is not a number"), "a digit is missing behind the dot").help(text.replacen('.', ".0", 1))
+        }
+        Fault::Underscore => report(format!("`{text}` is not a number"), "`_` stands between two digits").help(number::repaired(digits)),
+        Fault::SecondDot => report(format!("`{text}` has two decimal points"), "one number, one dot"),
+        Fault::TooLarge => {
+            report(format!("`{text}` is too large for a number"), "not finite").help("the largest number is about 1.797e308")
+        }
+        Fault::Unit => {
+            let label = Span { start: at.start + digits.len() as u32, end: at.end };
+            let report = Diagnostic::new("E107", format!("`{unit}` is not a unit"), file, label, "no such unit");
+            match number::meant(unit) {
+                Some(meant) => report.help(format!("{digits}{meant}")),
+                None => report.help("the units are um mm cm m km in ft (also squared and cubed: mm2, m3), deg rad, kg t, kg/m3 and %"),
+            }
+        }
+    }
+}
+
+fn no_keyword(source: &str, file: FileId, at: Span, next: Option<Span>, binds: bool) -> Diagnostic {
+    let text = |span: Span| &source[span.start as usize..span.end as usize];
+    let word = text(at);
+    if binds {
+        // `x = 3`
+        return Diagnostic::new("E106", format!("`{word}` is declared without a keyword"), file, at, "a declaration starts with a keyword")
+            .help(format!("let {word} = …, or `point`, `curve`, `surface` for what belongs to the model"));
+    }
+    let report = Diagnostic::new("E106", format!("`{word}` is not a keyword"), file, at, "no declaration starts with this");
+    let two = next.map(|n| source[at.start as usize..n.end as usize].split_whitespace().collect::<Vec<_>>().join(" "));
+    let words = || KEYWORDS.iter().map(|(word, _)| *word);
+    let found = two.as_deref().filter(|t| t.ends_with(" curve")).and_then(|t| nearest(t, words())).or_else(|| nearest(word, words()));
+    match found {
+        Some(meant) => report.help(format!("did you mean `{meant}`?")),
+        None => {
+            report.help("the keywords are units tolerance snap use import param let fn point curve modeling curve surface shell group mesh check report export picture")
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! Tokens to pieces: cuts a file at the keywords that start a line, before anything is parsed.
+//!
+//! The brackets of a piece are matched here, so that a missing `)` points at its `(`, and its nesting is counted, so
+//! that no text can exhaust the stack of what comes after.
+
+use std::ops::Range;
+
+use super::ast::Span;
+use super::mistake::Mistake;
+use super::scan::Tokens;
+use super::token::Kind;
+use crate::base::limits::{NESTED_BRACKETS, OPERATORS_IN_A_ROW};
+
+/// The tokens of one declaration, or of something that begins like none.
+#[derive(Debug)]
+pub(crate) struct Piece {
+    pub tokens: Range<usize>,
+    /// Something in it was reported already.
+    pub broken: bool,
+}
+
+/// An open bracket and how many prefix operators and `if`s wait inside it.
+struct Open {
+    token: usize,
+    prefixes: usize,
+    choices: usize,
+}
+
+struct Splitter<'a> {
+    tokens: &'a Tokens,
+    open: Vec<Open>,
+    start: usize,
+    broken: bool,
+    /// All that waits inside the open brackets together.
+    waiting: usize,
+    too_deep: bool,
+    pieces: Vec<Piece>,
+    mistakes: Vec<Mistake>,
+}
+
+/// Cuts the tokens of a file into pieces; the mistakes are those of brackets, nesting and lines.
+pub(crate) fn split(tokens: &Tokens) -> (Vec<Piece>, Vec<Mistake>) {
+    let mut splitter = Splitter {
+        tokens,
+        open: vec![Open { token: 0, prefixes: 0, choices: 0 }],
+        start: 0,
+        broken: false,
+        waiting: 0,
+        too_deep: false,
+        pieces: Vec::new(),
+        mistakes: Vec::new(),
+    };
+    for at in 0..tokens.len() {
+        if at > splitter.start && splitter.cuts(at) {
+            splitter.finish(at, true);
+        }
+        splitter.step(at);
+    }
+    if splitter.start < tokens.len() {
+        splitter.finish(tokens.len(), false);
+    }
+    (splitter.pieces, splitter.mistakes)
+}
+
+impl Splitter<'_> {
+    fn kind(&self, at: usize) -> Option<Kind> {
+        self.tokens.kinds.get(at).copied()
+    }
+
+    /// Whether a new declaration begins with this token.
+    fn cuts(&mut self, at: usize) -> bool {
+        let (kind, before) = (self.tokens.kinds[at], self.tokens.kinds[at - 1]);
+        let first = self.tokens.first[at];
+        let inside = self.open.len() > 1;
+        if (!first && inside) || before == Kind::Dot || self.kind(at + 1) == Some(Kind::Colon) {
+            return false;
+        }
+        if kind.keyword().is_none() {
+            return first && before.ends_operand() && self.strays(at, inside);
+        }
+        if (kind == Kind::Let && before.wants_value()) || (kind == Kind::Curve && before == Kind::Modeling) {
+            return false;
+        }
+        let head = self.head_follows(at);
+        match (inside, first) {
+            (true, _) => head,
+            (false, true) => head || before != Kind::Colon,
+            (false, false) => {
+                let second = head && before.ends_operand() && (at > self.start + 1 || self.tokens.kinds[self.start].keyword().is_some());
+                if second {
+                    self.two_on_line(at);
+                }
+                second
+            }
+        }
+    }
+
+    /// Whether a line that starts with no keyword can only be a declaration with a misspelt or missing one.
+    fn strays(&self, at: usize, inside: bool) -> bool {
+        let kind = self.tokens.kinds[at];
+        if inside {
+            return kind == Kind::Name && self.kind(at + 1) == Some(Kind::Name) && self.kind(at + 2) == Some(Kind::Equals);
+        }
+        matches!(kind, Kind::Name | Kind::Number | Kind::Quantity | Kind::Text | Kind::TextHead | Kind::True | Kind::False | Kind::None)
+    }
+
+    /// Whether what follows the keyword can be its head.
+    fn head_follows(&self, at: usize) -> bool {
+        let Some(next) = self.kind(at + 1) else { return false };
+        match self.tokens.kinds[at] {
+            Kind::Units => matches!(next, Kind::Name | Kind::In),
+            Kind::Tolerance | Kind::Snap => matches!(next, Kind::Number | Kind::Quantity | Kind::Name),
+            Kind::Use | Kind::Import => matches!(next, Kind::Text | Kind::TextHead),
+            Kind::Modeling => next == Kind::Curve,
+            Kind::Check | Kind::Report | Kind::Export | Kind::Picture => {
+                matches!(next, Kind::Name | Kind::Text | Kind::TextHead | Kind::Number | Kind::Quantity)
+            }
+            _ => next == Kind::Name,
+        }
+    }
+
+    fn two_on_line(&mut self, at: usize) {
+        let first = self.tokens.span(self.start);
+        self.mistakes.push(Mistake::TwoOnLine { first, second: self.tokens.span(at) });
+    }
+
+    fn step(&mut self, at: usize) {
+        let kind = self.tokens.kinds[at];
+        match kind {
+            Kind::OpenRound | Kind::LineRound | Kind::OpenSquare | Kind::LineSquare | Kind::OpenCurly | Kind::TextHead => self.enter(at),
+            Kind::CloseRound | Kind::CloseSquare | Kind::CloseCurly | Kind::TextTail => self.leave(at),
+            Kind::TextMid => {
+                self.leave(at);
+                self.enter(at);
+            }
+            Kind::Not | Kind::Caret => self.wait(at, true),
+            Kind::Minus if at == self.start || !self.tokens.kinds[at - 1].ends_operand() => self.wait(at, true),
+            Kind::If => self.wait(at, false),
+            Kind::Let if at > self.start => self.wait(at, false),
+            Kind::Comma | Kind::Colon => self.rest(true),
+            Kind::For => self.rest(true),
+            _ if kind.is_infix() => self.rest(false),
+            _ => {}
+        }
+    }
+
+    fn enter(&mut self, at: usize) {
+        self.open.push(Open { token: at, prefixes: 0, choices: 0 });
+        if self.open.len() == NESTED_BRACKETS + 2 {
+            self.deep(at, "brackets", NESTED_BRACKETS);
+        }
+    }
+
+    /// One more prefix or right-associative operator, `if` or `let` that waits for what follows.
+    fn wait(&mut self, at: usize, prefix: bool) {
+        let Some(inner) = self.open.last_mut() else { return };
+        let count = if prefix { &mut inner.prefixes } else { &mut inner.choices };
+        *count += 1;
+        self.waiting += 1;
+        if *count > OPERATORS_IN_A_ROW {
+            self.deep(at, "operators in a row", OPERATORS_IN_A_ROW);
+        } else if self.waiting > 4 * NESTED_BRACKETS {
+            self.deep(at, "operators that wait for each other", 4 * NESTED_BRACKETS);
+        }
+    }
+
+    /// Prefix operators end at an infix one, `if` and `let` at a comma.
+    fn rest(&mut self, all: bool) {
+        let Some(inner) = self.open.last_mut() else { return };
+        self.waiting -= inner.prefixes;
+        inner.prefixes = 0;
+        if all {
+            self.waiting -= inner.choices;
+            inner.choices = 0;
+        }
+    }
+
+    fn deep(&mut self, at: usize, what: &'static str, limit: usize) {
+        if !self.too_deep {
+            self.mistakes.push(Mistake::TooDeep { span: self.tokens.span(at), what, limit });
+        }
+        self.too_deep = true;
+        self.broken = true;
+    }
+
+    fn pop(&mut self) {
+        if let Some(open) = self.open.pop() {
+            self.waiting -= open.prefixes + open.choices;
+        }
+    }
+
+    fn leave(&mut self, at: usize) {
+        let kind = self.tokens.kinds[at];
+        let matches = |open: &Open| closer(self.tokens.kinds[open.token]) == Some(plain(kind));
+        let Some(depth) = self.open.iter().skip(1).rposition(matches) else {
+            if !self.broken {
+                let inside = (self.open.len() > 1).then(|| self.open.last().map(|o| self.tokens.span(o.token))).flatten();
+                self.mistakes.push(Mistake::StrayBracket { span: self.tokens.span(at), inside });
+            }
+            self.broken = true;
+            return;
+        };
+        let unclosed = self.open.len() - 1 - (depth + 1);
+        if unclosed > 0 {
+            if !self.broken {
+                let opener = self.open[depth + 2].token;
+                let closers = self.closers(depth + 2);
+                self.mistakes.push(Mistake::OpenBracket {
+                    span: self.tokens.span(opener),
+                    ended: Some((self.tokens.span(at), false)),
+                    closers,
+                    last: self.last_item(opener, at),
+                });
+            }
+            self.broken = true;
+        }
+        for _ in 0..=unclosed {
+            self.pop();
+        }
+    }
+
+    /// What closes the open brackets from `from` on, innermost first.
+    fn closers(&self, from: usize) -> String {
+        self.open[from..].iter().rev().filter_map(|o| closer(self.tokens.kinds[o.token])).map(text_of_closer).collect()
+    }
+
+    /// The last item before `end` in the bracket opened by `opener`; its last token when the item is long.
+    fn last_item(&self, opener: usize, end: usize) -> Span {
+        let (mut depth, mut first) = (0usize, end);
+        for at in (opener + 1..end).rev() {
+            match self.tokens.kinds[at] {
+                Kind::CloseRound | Kind::CloseSquare | Kind::CloseCurly | Kind::TextTail => depth += 1,
+                Kind::OpenRound | Kind::LineRound | Kind::OpenSquare | Kind::LineSquare | Kind::OpenCurly | Kind::TextHead => {
+                    if depth == 0 {
+                        break;
+                    }
+                    depth -= 1;
+                }
+                Kind::Comma if depth == 0 => break,
+                _ => {}
+            }
+            first = at;
+        }
+        let whole = self.tokens.stretch(first.min(end - 1), end - 1);
+        if whole.end - whole.start <= 40 { whole } else { self.tokens.span(end - 1) }
+    }
+
+    /// Ends the piece before token `end`; `cut` tells whether another declaration begins there.
+    fn finish(&mut self, end: usize, cut: bool) {
+        if self.open.len() > 1 && !self.broken {
+            let opener = self.open[1].token;
+            let ended = cut.then(|| (self.tokens.span(end), true));
+            let closers = self.closers(1);
+            let innermost = self.open.last().map_or(opener, |o| o.token);
+            let last = self.last_item(innermost, end);
+            self.mistakes.push(Mistake::OpenBracket { span: self.tokens.span(opener), ended, closers, last });
+            self.broken = true;
+        }
+        self.pieces.push(Piece { tokens: self.start..end, broken: self.broken });
+        self.start = end;
+        self.broken = false;
+        self.too_deep = false;
+        self.waiting = 0;
+        self.open.truncate(1);
+        self.open[0] = Open { token: end, prefixes: 0, choices: 0 };
+    }
+}
+
+/// What closes an opening token.
+fn closer(kind: Kind) -> Option<Kind> {
+    match kind {
+        Kind::OpenRound | Kind::LineRound => Some(Kind::CloseRound),
+        Kind::OpenSquare | Kind::LineSquare => Some(Kind::CloseSquare),
+        Kind::OpenCurly => Some(Kind::CloseCurly),
+        Kind::TextHead | Kind::TextMid => Some(Kind::TextTail),
+        _ => None,
+    }
+}
+
+/// The middle of a string closes what its end closes.
+fn plain(kind: Kind) -> Kind {
+    if kind == Kind::TextMid { Kind::TextTail } else { kind }
+}
+
+fn text_of_closer(kind: Kind) -> &'static str {
+    match kind {
+        Kind::CloseRound => ")",
+        Kind::CloseSquare => "]",
+        Kind::CloseCurly => "}",
+        _ => "}\"",
+    }
+}
