@@ -8,4 +8,7 @@ pub mod limits;
 pub mod math;
 pub mod origin;
 pub mod par;
+pub mod predicates;
+pub mod quadrature;
+pub mod solve;
 pub mod tolerance;

@@ -25,6 +25,10 @@ pub const WHOLE_NUMBER: f64 = 1e-9;
 pub const PARALLEL: f64 = 1e-9;
 /// Relative change at which floating point arithmetic has nothing more to give.
 pub const EPSILON: f64 = 1e-14;
+/// Share of the largest speed below which a curve stands still: a cusp (math notes §4).
+pub const CUSP: f64 = 1e-10;
+/// Least interval, as a share of the domain, over which a direction is taken where derivatives vanish.
+pub const NUDGE: f64 = 1e-6;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
 

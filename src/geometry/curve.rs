@@ -1,13 +1,18 @@
 //! One curve of any kind: what every caller above this floor works with.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
+use super::arc::EllipticArc;
+use super::arclength::{Lengths, lengths_of};
+use super::composite::Composite;
+use super::helix::Helix;
 use super::motion::Motion;
 use super::nurbs::Nurbs;
+use super::offset::Offset;
+use super::pieces::Pieces;
 use crate::base::bbox::Box3;
-use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 
@@ -82,8 +87,16 @@ impl Kind {
 pub enum Shape {
     /// From a (parameter 0) to b (parameter 1).
     Line(DVec3, DVec3),
+    /// Arc of a circle or an ellipse; the parameter is its angle from 0.
+    Arc(EllipticArc),
     /// Rational B-spline.
     Nurbs(Arc<Nurbs>),
+    /// Helix; the parameter is its angle from 0.
+    Helix(Box<Helix>),
+    /// Offset of a plane curve, with the parameter of that curve.
+    Offset(Box<Offset>),
+    /// Curves in a row.
+    Composite(Arc<Composite>),
 }
 
 /// A curve: exact shape, kind and origin. Cheap to clone.
@@ -98,17 +111,24 @@ struct Inner {
     shape: Shape,
     kind: Kind,
     origin: Origin,
+    lengths: OnceLock<Arc<Lengths>>,
+    pieces: OnceLock<Arc<Pieces>>,
 }
 
 impl Curve {
     /// A curve of this shape.
     pub fn new(shape: Shape, kind: Kind, origin: Origin) -> Self {
-        Self(Arc::new(Inner { shape, kind, origin }))
+        Self(Arc::new(Inner { shape, kind, origin, lengths: OnceLock::new(), pieces: OnceLock::new() }))
     }
 
     /// The same curve, made by another expression.
     pub fn with_origin(&self, origin: Origin) -> Self {
-        Self::new(self.0.shape.clone(), self.0.kind, origin)
+        let Inner { shape, kind, lengths, pieces, .. } = &*self.0;
+        Self(Arc::new(Inner { shape: shape.clone(), kind: *kind, origin, lengths: lengths.clone(), pieces: pieces.clone() }))
+    }
+
+    fn with_shape(&self, shape: Shape) -> Self {
+        Self::new(shape, self.0.kind, self.0.origin)
     }
 
     /// The word it was made with.
@@ -126,19 +146,60 @@ impl Curve {
         self.0.origin
     }
 
+    /// Its pieces, when it is made of several curves.
+    pub fn composite(&self) -> Option<&Composite> {
+        match &self.0.shape {
+            Shape::Composite(c) => Some(c),
+            _ => None,
+        }
+    }
+
     /// First and last parameter.
     pub fn domain(&self) -> (f64, f64) {
         match &self.0.shape {
             Shape::Line(..) => (0.0, 1.0),
+            Shape::Arc(arc) => (0.0, arc.sweep),
             Shape::Nurbs(c) => c.domain(),
+            Shape::Helix(helix) => (0.0, helix.sweep),
+            Shape::Offset(offset) => offset.base.domain(),
+            Shape::Composite(c) => (0.0, c.breaks[c.pieces.len()]),
         }
     }
 
-    /// Point and derivatives at a parameter of the domain.
+    /// Point and derivatives at a parameter of the domain; at a corner those of the piece that follows.
     pub fn jet(&self, t: f64) -> Jet {
         match &self.0.shape {
-            Shape::Line(a, b) => Jet { p: *a + (*b - *a) * t, d1: *b - *a, d2: DVec3::ZERO },
+            Shape::Line(a, b) => line_jet(*a, *b, t),
+            Shape::Arc(arc) => arc.jet(t),
             Shape::Nurbs(c) => c.jet(t),
+            Shape::Helix(helix) => helix.jet(t),
+            Shape::Offset(offset) => offset.jet_of(offset.base.jet(t), offset.base.third(t)),
+            Shape::Composite(c) => {
+                let (i, own) = c.locate(t);
+                c.pieces[i].jet(own)
+            }
+        }
+    }
+
+    /// Like [`Curve::jet`], at a corner with the derivatives of the piece before it.
+    pub fn jet_before(&self, t: f64) -> Jet {
+        match &self.0.shape {
+            Shape::Nurbs(c) => c.jet_in(c.span_before(t), t),
+            Shape::Composite(c) => {
+                let (i, own) = c.locate_before(t);
+                c.pieces[i].jet_before(own)
+            }
+            // Everything else is smooth.
+            _ => self.jet(t),
+        }
+    }
+
+    /// Third derivative, for shapes that follow another one.
+    fn third(&self, t: f64) -> DVec3 {
+        match &self.0.shape {
+            Shape::Arc(arc) => -arc.jet(t).d1,
+            Shape::Nurbs(c) => c.third(t),
+            _ => DVec3::ZERO,
         }
     }
 
@@ -149,12 +210,18 @@ impl Curve {
 
     /// First point.
     pub fn start(&self) -> DVec3 {
-        self.point(self.domain().0)
+        match &self.0.shape {
+            Shape::Line(a, _) => *a,
+            _ => self.point(self.domain().0),
+        }
     }
 
     /// Last point.
     pub fn end(&self) -> DVec3 {
-        self.point(self.domain().1)
+        match &self.0.shape {
+            Shape::Line(_, b) => *b,
+            _ => self.point(self.domain().1),
+        }
     }
 
     /// Whether start and end are one point.
@@ -162,69 +229,186 @@ impl Curve {
         tolerance.same_point(self.start(), self.end())
     }
 
-    /// Arc length, model units (math.md section 4, relative error 1e-13).
+    /// Arc length, model units (math notes §4, relative error 1e-13).
     pub fn length(&self) -> f64 {
-        (self.end() - self.start()).length()
+        match &self.0.shape {
+            Shape::Composite(c) => c.starts()[c.pieces.len()],
+            _ => match self.even_speed() {
+                Some(speed) => speed * (self.domain().1 - self.domain().0),
+                None => self.lengths().total(),
+            },
+        }
     }
 
     /// Arc length from the start to parameter `t`.
     pub fn length_at(&self, t: f64) -> f64 {
-        let (a, b) = self.domain();
-        self.length() * (t - a) / (b - a)
+        match &self.0.shape {
+            Shape::Composite(c) => c.length_at(t),
+            _ => match self.even_speed() {
+                Some(speed) => speed * t.clamp(0.0, self.domain().1),
+                None => self.lengths().at(t),
+            },
+        }
     }
 
     /// Parameter at arc length `s` from the start; `s` outside 0…length gives the nearer end.
     pub fn param_at_length(&self, s: f64) -> f64 {
-        let (a, b) = self.domain();
-        a + (b - a) * (s / self.length()).clamp(0.0, 1.0)
+        match &self.0.shape {
+            Shape::Composite(c) => c.param_at_length(s),
+            _ => match self.even_speed() {
+                Some(speed) => even_param(s, speed, self.domain().1),
+                None => self.lengths().param(s),
+            },
+        }
+    }
+
+    /// Parameters at many arc lengths, appended to `out`; fastest when the lengths ascend.
+    pub fn params_at_lengths(&self, lengths: &[f64], out: &mut Vec<f64>) {
+        out.reserve(lengths.len());
+        match (&self.0.shape, self.even_speed()) {
+            (Shape::Composite(c), _) => out.extend(lengths.iter().map(|s| c.param_at_length(*s))),
+            (_, Some(speed)) => out.extend(lengths.iter().map(|s| even_param(*s, speed, self.domain().1))),
+            (_, None) => {
+                let (table, mut panel) = (self.lengths(), usize::MAX);
+                out.extend(lengths.iter().map(|s| table.param_near(*s, &mut panel)));
+            }
+        }
+    }
+
+    /// `n` equally spaced points along the curve, both ends included (a single one is the start).
+    pub fn points_along(&self, n: usize) -> Vec<DVec3> {
+        let (length, last) = (self.length(), n.saturating_sub(1).max(1));
+        let lengths: Vec<f64> = (0..n).map(|i| length * i as f64 / last as f64).collect();
+        let mut params = Vec::new();
+        self.params_at_lengths(&lengths, &mut params);
+        // The ends are the curve's own, whatever rounding made of the last length.
+        let ends = |i: usize, t: f64| if i + 1 == n && n > 1 { self.end() } else { self.point(t) };
+        params.iter().enumerate().map(|(i, t)| ends(i, *t)).collect()
+    }
+
+    /// Length per parameter where it is the same everywhere and the domain starts at 0.
+    fn even_speed(&self) -> Option<f64> {
+        match &self.0.shape {
+            Shape::Line(a, b) => Some(a.distance(*b)),
+            Shape::Arc(arc) => arc.radius,
+            Shape::Helix(helix) => Some(helix.speed()),
+            _ => None,
+        }
+    }
+
+    /// The table of lengths, made on first use.
+    pub(crate) fn lengths(&self) -> &Lengths {
+        self.0.lengths.get_or_init(|| {
+            Arc::new(match &self.0.shape {
+                Shape::Nurbs(c) if c.degree == 1 && c.polynomial => {
+                    let mut done = 0.0;
+                    let mut before = self.start();
+                    Lengths::proportional(c.breaks().into_iter().map(|(t, _)| {
+                        let p = c.jet_in(c.span_before(t), t).p;
+                        done += p.distance(before);
+                        before = p;
+                        (t, done)
+                    }))
+                }
+                _ => lengths_of(self, &self.knots()),
+            })
+        })
+    }
+
+    /// Its smooth pieces with bounds, made on first use.
+    pub(crate) fn pieces(&self) -> &Pieces {
+        self.0.pieces.get_or_init(|| Arc::new(Pieces::of(self)))
+    }
+
+    /// Parameters between which the curve is one analytic piece, ends included.
+    pub fn knots(&self) -> Vec<f64> {
+        match &self.0.shape {
+            Shape::Nurbs(c) => c.breaks().into_iter().map(|(t, _)| t).collect(),
+            Shape::Offset(offset) => offset.base.knots(),
+            Shape::Composite(c) => {
+                let mut knots = vec![0.0];
+                for (i, piece) in c.pieces.iter().enumerate() {
+                    knots.extend(piece.knots()[1..].iter().map(|t| c.common(i, *t)));
+                }
+                knots
+            }
+            _ => vec![self.domain().0, self.domain().1],
+        }
     }
 
     /// The run backwards, kind and origin kept.
     pub fn reversed(&self) -> Self {
-        match &self.0.shape {
-            Shape::Line(a, b) => Self::new(Shape::Line(*b, *a), self.kind(), self.origin()),
-            Shape::Nurbs(c) => Self::new(Shape::Nurbs(Arc::new(c.reversed())), self.kind(), self.origin()),
-        }
+        self.with_shape(match &self.0.shape {
+            Shape::Line(a, b) => Shape::Line(*b, *a),
+            Shape::Arc(arc) => Shape::Arc(arc.reversed()),
+            Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.reversed())),
+            Shape::Helix(helix) => Shape::Helix(Box::new(helix.reversed())),
+            Shape::Offset(offset) => Shape::Offset(Box::new(offset.reversed())),
+            Shape::Composite(c) => Shape::Composite(Arc::new(Composite::new(c.pieces.iter().rev().map(Self::reversed)))),
+        })
     }
 
-    /// The exact piece between two parameters, `t0 < t1`.
+    /// The exact piece between two parameters of the domain, `t0 < t1`; a whole circle's part is an arc.
     pub fn part(&self, t0: f64, t1: f64) -> Self {
-        let _ = (t0, t1);
-        self.clone()
+        let (a, b) = self.domain();
+        let (t0, t1) = (t0.max(a), t1.min(b));
+        if (t0, t1) == (a, b) {
+            return self.clone();
+        }
+        let kind = if self.kind() == Kind::Circle { Kind::Arc } else { self.kind() };
+        let shape = match &self.0.shape {
+            Shape::Line(a, b) => {
+                let at = |t: f64| if t == 1.0 { *b } else { line_jet(*a, *b, t).p };
+                Shape::Line(at(t0), at(t1))
+            }
+            Shape::Arc(arc) => Shape::Arc(arc.part(t0, t1)),
+            Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.part(t0, t1))),
+            Shape::Helix(helix) => Shape::Helix(Box::new(helix.part(t0, t1))),
+            Shape::Offset(offset) => Shape::Offset(Box::new(offset.part(t0, t1))),
+            Shape::Composite(c) => {
+                let mut pieces = c.part(t0, t1);
+                if pieces.len() == 1 {
+                    return pieces.remove(0).with_origin(self.origin());
+                }
+                Shape::Composite(Arc::new(Composite::new(pieces)))
+            }
+        };
+        Self::new(shape, kind, self.origin())
     }
 
     /// The curve carried by a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
-        match &self.0.shape {
-            Shape::Line(a, b) => Self::new(Shape::Line(motion.point(*a), motion.point(*b)), self.kind(), self.origin()),
-            Shape::Nurbs(c) => Self::new(Shape::Nurbs(Arc::new(c.moved(motion))), self.kind(), self.origin()),
-        }
-    }
-
-    /// Parameters inside the domain where the direction jumps by more than the tolerance's angle, ascending;
-    /// for a closed curve with a corner at its start the domain's first parameter is among them.
-    pub fn kinks(&self, tolerance: &Tolerance) -> Vec<f64> {
-        let _ = tolerance;
-        Vec::new()
+        self.with_shape(match &self.0.shape {
+            Shape::Line(a, b) => Shape::Line(motion.point(*a), motion.point(*b)),
+            Shape::Arc(arc) => Shape::Arc(arc.moved(motion)),
+            Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.moved(motion))),
+            Shape::Helix(helix) => Shape::Helix(Box::new(helix.moved(motion))),
+            Shape::Offset(offset) => Shape::Offset(Box::new(offset.moved(motion))),
+            Shape::Composite(c) => Shape::Composite(Arc::new(Composite::new(c.pieces.iter().map(|p| p.moved(motion))))),
+        })
     }
 
     /// A box that holds the curve (of control points where the exact one costs more).
     pub fn bbox(&self) -> Box3 {
-        Box3::of([self.start(), self.end()])
+        match &self.0.shape {
+            Shape::Line(a, b) => Box3::of([*a, *b]),
+            Shape::Arc(arc) => arc.bbox(),
+            Shape::Nurbs(c) => c.bbox(),
+            Shape::Helix(helix) => helix.bbox(),
+            Shape::Offset(offset) => {
+                let (inner, reach) = (offset.base.bbox(), DVec3::splat(offset.distance.abs()));
+                Box3 { min: inner.min - reach, max: inner.max + reach }
+            }
+            Shape::Composite(c) => c.pieces.iter().map(Self::bbox).fold(Box3::EMPTY, Box3::union),
+        }
     }
+}
 
-    /// The rational B-spline form; exact where there is one, else within `tolerance.point`.
-    pub fn to_nurbs(&self, tolerance: &Tolerance) -> Result<Nurbs> {
-        let _ = tolerance;
-        Ok(match &self.0.shape {
-            Shape::Line(a, b) => Nurbs::line(*a, *b),
-            Shape::Nurbs(c) => c.as_ref().clone(),
-        })
-    }
+#[inline]
+fn line_jet(a: DVec3, b: DVec3, t: f64) -> Jet {
+    Jet { p: if t == 1.0 { b } else { a + (b - a) * t }, d1: b - a, d2: DVec3::ZERO }
+}
 
-    /// Checks that need a tolerance: length, points that are one, ends.
-    pub fn check(&self, tolerance: &Tolerance) -> Result<()> {
-        let _ = tolerance;
-        Ok(())
-    }
+fn even_param(s: f64, speed: f64, last: f64) -> f64 {
+    if speed > 0.0 { (s / speed).clamp(0.0, last) } else { 0.0 }
 }

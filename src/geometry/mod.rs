@@ -2,12 +2,23 @@
 //!
 //! A [`Curve`] is one of a closed set of shapes, each evaluated exactly, plus the word the user made it with.
 
+pub mod arc;
+mod arclength;
 pub mod build;
 pub mod closest;
+pub mod composite;
+mod convert;
 pub mod curve;
+pub mod helix;
 pub mod intersect;
+mod kinks;
 pub mod motion;
 pub mod nurbs;
+pub mod nurbs_edit;
+pub mod offset;
+mod offset_build;
+mod pieces;
+pub mod spline;
 
 pub use build::{Ends, Spline};
 pub use closest::{Closest, closest, closest_pair};

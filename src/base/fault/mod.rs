@@ -17,7 +17,7 @@ use std::fmt;
 
 use glam::DVec3;
 
-pub use curves::CurveFault;
+pub use curves::{CurveFault, KnotFault};
 pub use files::FileFault;
 pub use mesh::MeshFault;
 pub use network::NetworkFault;
