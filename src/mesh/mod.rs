@@ -1,7 +1,9 @@
 //! Floor 5: meshes. Faces are asked for points and normals only; nothing here knows what kind a surface is.
 
+pub mod build;
 pub mod data;
 pub mod plan;
 
+pub use build::{Explanation, Input, build};
 pub use data::{FaceRange, Group, Mesh};
-pub use plan::{Elements, Method, Plan, Rule, Target};
+pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};

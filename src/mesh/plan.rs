@@ -1,9 +1,10 @@
 //! What is asked of a mesh: settings and rules, resolved to entities by the language.
 
+use glam::DVec3;
+
 use crate::base::origin::Origin;
 use crate::model::SurfaceId;
 use crate::network::Chain;
-use glam::DVec3;
 
 /// Which elements a face gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,17 +24,19 @@ pub enum Method {
     Auto,
     /// Mapped, or an error.
     Mapped,
-    /// A method of a later version.
+    /// A method of a later version, by its word.
     Later(&'static str),
 }
 
-/// What a rule speaks of.
+/// What a rule or a group speaks of.
 #[derive(Clone, Debug)]
 pub enum Target {
     /// A curve, chain or link.
     Chain(Chain),
     /// All faces of a surface.
     Surface(SurfaceId),
+    /// A point (groups only).
+    Point(DVec3),
 }
 
 /// `on ENTITY { … }`: settings for a part of the mesh.
@@ -41,7 +44,7 @@ pub enum Target {
 pub struct Rule {
     /// What it speaks of.
     pub target: Target,
-    /// Steps over the whole length, with the expression that says so.
+    /// Steps over the whole length, with the expression that says so; on a surface, over each of its sides.
     pub count: Option<(u32, Origin)>,
     /// Target edge length, model units.
     pub size: Option<(f64, Origin)>,
@@ -53,6 +56,22 @@ pub struct Rule {
     pub method: Option<(Method, Origin)>,
     /// The clause.
     pub origin: Origin,
+}
+
+impl Rule {
+    /// A rule that says nothing yet.
+    pub fn on(target: Target, origin: Origin) -> Self {
+        Self { target, count: None, size: None, bias: None, elements: None, method: None, origin }
+    }
+}
+
+/// A `group`: its members become node and element sets.
+#[derive(Clone, Debug)]
+pub struct GroupRequest {
+    /// Name as declared.
+    pub name: String,
+    /// What it holds.
+    pub members: Vec<Target>,
 }
 
 /// All that is asked of one mesh.
@@ -68,12 +87,12 @@ pub struct Plan {
     pub curves: Vec<(String, Chain)>,
     /// Points that become nodes.
     pub points: Vec<DVec3>,
-    /// Target edge length, model units; `None`: a 20th of the diagonal.
-    pub size: Option<f64>,
+    /// Target edge length, model units, with its expression; `None`: a 20th of the diagonal.
+    pub size: Option<(f64, Origin)>,
     /// Largest distance mesh–surface, model units.
-    pub chord_error: Option<f64>,
+    pub chord_error: Option<(f64, Origin)>,
     /// Largest turn of the normal across an element, radians.
-    pub angle_error: Option<f64>,
+    pub angle_error: Option<(f64, Origin)>,
     /// Kind of elements.
     pub elements: Elements,
     /// 1 or 2.
@@ -84,4 +103,28 @@ pub struct Plan {
     pub conforming: bool,
     /// Rules in order of writing.
     pub rules: Vec<Rule>,
+    /// Named sets beside those that every surface gets.
+    pub groups: Vec<GroupRequest>,
+}
+
+impl Plan {
+    /// A mesh of surfaces with every setting at its default.
+    pub fn of(name: &str, surfaces: Vec<(SurfaceId, bool)>) -> Self {
+        Self {
+            name: name.to_owned(),
+            origin: Origin::NONE,
+            surfaces,
+            curves: Vec::new(),
+            points: Vec::new(),
+            size: None,
+            chord_error: None,
+            angle_error: None,
+            elements: Elements::Triangles,
+            order: 1,
+            method: Method::Auto,
+            conforming: true,
+            rules: Vec::new(),
+            groups: Vec::new(),
+        }
+    }
 }

@@ -1,24 +1,265 @@
-//! Family 7.
+//! Family 7: meshes.
+
+use glam::DVec3;
 
 use super::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
-/// What can go wrong or deserves a word here.
+/// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshFault {
-    ///  meshes:E705: placeholder until the family's owner writes the table out.
-    Other {
-        /// The entity it speaks of.
-        of: Origin,
-        /// What happened.
-        what: String,
+    /// W701: a rule that decides nothing.
+    RuleUnused {
+        /// The clause.
+        rule: Origin,
+        /// Why, in words: "`south` is on no face of this mesh".
+        why: String,
     },
+    /// E702: two written counts on opposite sides differ, or no counts make the sides equal.
+    CountsDiffer {
+        /// Elements along one side and what says so.
+        a: (u32, Origin),
+        /// Elements along the other one.
+        b: (u32, Origin),
+        /// The surface between them.
+        surface: Origin,
+        /// A point of the face.
+        at: DVec3,
+    },
+    /// E702: the three sides of a face for quads.
+    SidesDoNotClose {
+        /// Elements along the three sides.
+        counts: [u32; 3],
+        /// Written counts among them.
+        written: Vec<(u32, Origin)>,
+        /// The surface.
+        surface: Origin,
+    },
+    /// E703: a written count is too coarse for a limit.
+    CountTooCoarse {
+        /// The count and its expression.
+        count: (u32, Origin),
+        /// The setting it breaks.
+        limit: &'static str,
+        /// The expression of that setting.
+        says: Origin,
+        /// The least count that keeps it.
+        needed: u32,
+        /// Where it is broken.
+        at: DVec3,
+    },
+    /// E703: counts of chains that are fewer than their links.
+    CountBelowLinks {
+        /// The count and its expression.
+        count: (u32, Origin),
+        /// How many links (stretches between corners) there are.
+        links: u32,
+    },
+    /// E704: triangles that cannot be avoided.
+    QuadsImpossible {
+        /// The mesh.
+        mesh: Origin,
+        /// Surface, number of triangles, place.
+        places: Vec<(Origin, u64, DVec3)>,
+    },
+    /// E705: a face that the mapped method cannot do.
+    CannotMap {
+        /// The surface.
+        surface: Origin,
+        /// Why, in words.
+        why: String,
+        /// A point of the face.
+        at: DVec3,
+    },
+    /// E230: what only a method of a later version can do.
+    NeedsLater {
+        /// The expression that asks for it.
+        of: Origin,
+        /// What it is, in words: "a point inside a face".
+        what: String,
+        /// The method, as scripts write it.
+        method: &'static str,
+        /// Where.
+        at: DVec3,
+    },
+    /// W706: of two equal rules the later one holds.
+    RuleOverridden {
+        /// The setting.
+        key: &'static str,
+        /// The clause that loses.
+        earlier: Origin,
+        /// The clause that holds.
+        later: Origin,
+    },
+    /// E711: two sides that should be one lie too far apart.
+    EdgeMismatch {
+        /// One surface.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Their largest distance.
+        gap: f64,
+        /// Where that is.
+        at: DVec3,
+    },
+    /// N712: a stretch between two corners shorter than the tolerance was merged.
+    EdgeTooShort {
+        /// The surface or curve it is on.
+        of: Origin,
+        /// Its length.
+        length: f64,
+        /// Where.
+        at: DVec3,
+    },
+    /// E715: elements that are turned over or have no area.
+    Inverted {
+        /// The surface.
+        surface: Origin,
+        /// How many.
+        count: u64,
+        /// The first one's middle, u and v.
+        uv: (f64, f64),
+        /// Where in space.
+        at: DVec3,
+    },
+    /// E703 without a count: a limit that is still broken after the last refinement.
+    NotReached {
+        /// The setting.
+        limit: &'static str,
+        /// Its expression.
+        says: Origin,
+        /// The surface.
+        surface: Origin,
+        /// What was reached.
+        reached: f64,
+        /// Where it is broken.
+        at: DVec3,
+    },
+}
+
+fn steps(n: u32) -> String {
+    if n == 1 { "1 element".to_owned() } else { format!("{n} elements") }
 }
 
 impl Describe for MeshFault {
     fn describe(&self, say: &dyn Say) -> Report {
-        match self {
-            Self::Other { of, what } => Report::new(" meshes:E705", format!("{}: {what}", say.quoted(*of, "this"))).at(*of, "here"),
+        describe_rules(self, say).unwrap_or_else(|| describe_faces(self, say))
+    }
+}
+
+/// Counts and rules.
+fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
+    use MeshFault as F;
+    Some(match fault {
+        F::RuleUnused { rule, why } => {
+            Report::new("W701", format!("this rule decides nothing: {why}")).at(*rule, "has no effect").help("remove it")
         }
+        F::CountsDiffer { a, b, surface, at } => {
+            let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
+            for (count, origin) in [a, b] {
+                if origin.is_some() {
+                    report = report.at(*origin, steps(*count));
+                }
+            }
+            report
+                .at(*surface, "the face between them")
+                .note(format!("{} on one side, {} on the other, of the face at {}", steps(a.0), steps(b.0), say.point(*at)))
+                .help("drop one of the two")
+        }
+        F::SidesDoNotClose { counts, written, surface } => {
+            let [a, b, c] = counts;
+            let mut report =
+                Report::new("E702", format!("no quads fill a face with {a}, {b} and {c} elements on its three sides")).at(*surface, "this face");
+            for (count, origin) in written {
+                report = report.at(*origin, steps(*count));
+            }
+            report
+                .note("the sum must be even, and each side must have fewer elements than the other two together")
+                .help("drop one of the counts, or say `elements: triangles` with equal counts")
+        }
+        F::CountTooCoarse { count, limit, says, needed, at } => {
+            Report::new("E703", format!("{} are too coarse for `{limit}` at {}", steps(count.0), say.point(*at)))
+                .at(count.1, steps(count.0))
+                .at(*says, format!("asks for at least {needed}"))
+                .help(format!("count: {needed}"))
+        }
+        F::CountBelowLinks { count, links } => {
+            Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
+                .at(count.1, steps(count.0))
+                .help(format!("count: {links}"))
+        }
+        F::RuleOverridden { key, earlier, later } => {
+            Report::new("W706", format!("`{key}` is set twice for the same part of the mesh; the later rule holds"))
+                .at(*earlier, "has no effect")
+                .at(*later, "holds")
+                .help("remove the first of the two")
+        }
+        F::NotReached { limit, says, surface, reached, at } => {
+            let reached = if *limit == "angle_error" { say.angle(*reached) } else { say.length(*reached) };
+            Report::new("E703", format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
+                .at(*says, "not kept")
+                .at(*surface, "this face")
+                .help(format!("raise `{limit}`"))
+        }
+        _ => return None,
+    })
+}
+
+/// Faces and elements.
+fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
+    use MeshFault as F;
+    match fault {
+        F::QuadsImpossible { mesh, places } => {
+            let total: u64 = places.iter().map(|p| p.1).sum();
+            let one = if total == 1 { "one element has" } else { "elements have" };
+            let mut report =
+                Report::new("E704", format!("only quads is impossible here: {total} {one} to be triangles")).at(*mesh, "`elements: quads`");
+            for (surface, count, at) in places.iter().take(8) {
+                let plural = if *count == 1 { "" } else { "s" };
+                report = report.at(*surface, format!("{count} triangle{plural} at {}", say.point(*at)));
+            }
+            report.help("elements: mixed")
+        }
+        F::CannotMap { surface, why, at } => {
+            Report::new("E705", format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
+                .at(*surface, "this face")
+        }
+        F::NeedsLater { of, what, method, at } => {
+            Report::new("E230", format!("{what} at {} needs `method: {method}`, which is not in this version", say.point(*at)))
+                .at(*of, "asked for here")
+        }
+        F::EdgeMismatch { a, b, gap, at } => Report::new(
+            "E711",
+            format!(
+                "the borders of {} and {} are {} apart at {}",
+                say.quoted(*a, "one face"),
+                say.quoted(*b, "its neighbour"),
+                say.length(*gap),
+                say.point(*at)
+            ),
+        )
+        .at(*a, "this border")
+        .at(*b, "and this one")
+        .help("build both on the same curve"),
+        F::EdgeTooShort { of, length, at } => Report::new(
+            "N712",
+            format!("a stretch of {} only {} long at {} was merged", say.quoted(*of, "an edge"), say.length(*length), say.point(*at)),
+        )
+        .at(*of, "has two corners that are almost one"),
+        F::Inverted { surface, count, uv, at } => Report::new(
+            "E715",
+            format!(
+                "{count} element{} of {} turned over or without area, the first at {} (u {:.3}, v {:.3})",
+                if *count == 1 { "" } else { "s" },
+                say.quoted(*surface, "a face"),
+                say.point(*at),
+                uv.0,
+                uv.1
+            ),
+        )
+        .at(*surface, "folds there")
+        .help("add a curve across the fold, or divide the surface in two"),
+        // The function above answered for all others.
+        other => Report::new("E999", format!("a fault without words: {other:?}")),
     }
 }
