@@ -1,5 +1,14 @@
 //! Floor 4: patches, edges, vertices, loops and shells cut and glued from surfaces.
 
+pub mod atoms;
+pub mod glue;
+pub mod loops;
+mod patches;
+pub mod shells;
 pub mod topology;
+pub mod trace;
 
+pub use loops::Loop;
+pub use shells::ShellRequest;
 pub use topology::{Edge, EdgeCurve, EdgeId, Model, Patch, PatchId, Shell, SurfaceId, Vertex, VertexId};
+pub use trace::{Trace, Track};

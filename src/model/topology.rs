@@ -2,8 +2,12 @@
 
 use glam::DVec3;
 
+use super::trace::Track;
+use super::{glue, patches};
 use crate::base::fault::{Fault, Result};
+use crate::base::job::Job;
 use crate::base::origin::Origin;
+use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::network::{LinkId, Network, NodeId};
 use crate::surface::Surface;
@@ -123,19 +127,99 @@ pub struct Model {
 
 impl Model {
     /// Splits surfaces into patches at their kinks and glues edges and vertices.
-    pub fn build(surfaces: Vec<Named>, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Self> {
-        let _ = (network, tolerance, sink);
-        Ok(Self { surfaces, ..Self::default() })
+    pub fn build(surfaces: Vec<Named>, network: &Network, tolerance: &Tolerance, job: &Job) -> Result<Self> {
+        let pieces = par::try_map(surfaces.len(), |n| {
+            job.go_on()?;
+            Ok::<_, Fault>(patches::cut(SurfaceId::at(n), &surfaces, network, tolerance))
+        })?;
+        Ok(glue::glue(surfaces, &pieces, network, tolerance))
     }
 
-    /// A shell of surfaces: connected, oriented; free edges are a note.
-    pub fn shell(&self, name: &str, surfaces: &[SurfaceId], origin: Origin, sink: &mut Vec<Fault>) -> Result<Shell> {
-        let _ = sink;
-        Ok(Shell { name: name.to_owned(), origin, surfaces: surfaces.iter().map(|s| (*s, false)).collect(), closed: false })
+    /// Patches of a surface.
+    pub fn patches_of(&self, surface: SurfaceId) -> impl Iterator<Item = PatchId> + '_ {
+        (0..self.patches.len()).map(PatchId::at).filter(move |p| self.patches[p.index()].surface == surface)
+    }
+
+    /// Edges of some patches, ascending, each once.
+    pub fn edges_of(&self, patches: &[PatchId]) -> Vec<EdgeId> {
+        let sides = patches.iter().flat_map(|p| &self.patches[p.index()].sides);
+        let mut edges: Vec<EdgeId> = sides.flat_map(|s| s.edges.iter().map(|(e, _)| *e)).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Vertices of some patches, ascending, each once.
+    pub fn vertices_of(&self, patches: &[PatchId]) -> Vec<VertexId> {
+        let mut vertices: Vec<VertexId> = self
+            .edges_of(patches)
+            .into_iter()
+            .flat_map(|e| <[VertexId; 2]>::from(self.edges[e.index()].vertices))
+            .chain(patches.iter().flat_map(|p| &self.patches[p.index()].sides).filter_map(|s| s.pole))
+            .collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+
+    /// The geometry of an edge under its arc length.
+    pub fn track(&self, edge: EdgeId, network: &Network) -> Track {
+        Track::of(&self.edges[edge.index()].curve, &self.surfaces, network)
     }
 
     /// Invariants of math.md 3.1; the sentence says what is broken.
     pub fn check(&self) -> std::result::Result<(), String> {
-        Ok(())
+        let mut at_vertex = vec![0_usize; self.vertices.len()];
+        for (n, edge) in self.edges.iter().enumerate() {
+            if edge.users.is_empty() {
+                return Err(format!("edge {n} is on no patch"));
+            }
+            if edge.length.is_nan() || edge.length <= 0.0 {
+                return Err(format!("edge {n} has length {}", edge.length));
+            }
+            for vertex in [edge.vertices.0, edge.vertices.1] {
+                *at_vertex.get_mut(vertex.index()).ok_or(format!("edge {n} ends at no vertex"))? += 1;
+            }
+        }
+        for (n, patch) in self.patches.iter().enumerate() {
+            self.check_patch(PatchId::at(n), patch)?;
+            patch.sides.iter().filter_map(|s| s.pole).for_each(|v| at_vertex[v.index()] += 1);
+        }
+        match at_vertex.iter().position(|n| *n == 0) {
+            Some(vertex) => Err(format!("vertex {vertex} has no edge")),
+            None => Ok(()),
+        }
+    }
+
+    /// Each side is a run of edges that know their patch; each side ends where the next one starts.
+    fn check_patch(&self, id: PatchId, patch: &Patch) -> std::result::Result<(), String> {
+        let name = id.index();
+        if patch.surface.index() >= self.surfaces.len() {
+            return Err(format!("patch {name} is on no surface"));
+        }
+        let mut corners = Vec::new();
+        for (k, side) in patch.sides.iter().enumerate() {
+            let backwards = k >= 2;
+            let mut run = Vec::new();
+            for (edge, against) in &side.edges {
+                let record = &self.edges[edge.index()];
+                if !record.users.contains(&(id, *against != backwards)) {
+                    return Err(format!("edge {} does not know patch {name}", edge.index()));
+                }
+                let (a, b) = record.vertices;
+                run.push(if *against { (b, a) } else { (a, b) });
+            }
+            if run.windows(2).any(|w| w[0].1 != w[1].0) {
+                return Err(format!("side {k} of patch {name} is broken"));
+            }
+            let ends = match (side.pole, run.first(), run.last()) {
+                (Some(pole), None, None) => (pole, pole),
+                (None, Some(first), Some(last)) => (first.0, last.1),
+                _ => return Err(format!("side {k} of patch {name} is neither a run of edges nor a pole")),
+            };
+            corners.push(if backwards { (ends.1, ends.0) } else { ends });
+        }
+        let joined = (0..corners.len()).all(|k| corners[k].1 == corners[(k + 1) % corners.len()].0);
+        if joined { Ok(()) } else { Err(format!("the loop of patch {name} does not close")) }
     }
 }

@@ -1,0 +1,260 @@
+//! Cuts a surface into patches at its kink lines: a grid of raw vertices, edges and patches before gluing.
+
+use glam::DVec3;
+
+use super::topology::{EdgeCurve, Named, SurfaceId};
+use super::trace::Track;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::closest;
+use crate::network::{Chain, LinkId, Network};
+use crate::surface::{Domain, Side, Surface};
+
+/// An edge between two corners of its own surface.
+pub(super) struct RawEdge {
+    pub ends: (usize, usize),
+    pub curve: EdgeCurve,
+    pub length: f64,
+    pub probes: [DVec3; 3],
+}
+
+/// One side of a raw patch: edges in ascending direction, or the corner that is its pole.
+#[derive(Clone, Default)]
+pub(super) struct RawSide {
+    pub edges: Vec<usize>,
+    pub pole: Option<usize>,
+}
+
+/// A patch before gluing.
+pub(super) struct RawPatch {
+    pub u: (f64, f64),
+    pub v: (f64, f64),
+    pub sides: Vec<RawSide>,
+}
+
+/// A surface in pieces; indices are into its own lists.
+#[derive(Default)]
+pub(super) struct Pieces {
+    pub vertices: Vec<DVec3>,
+    pub edges: Vec<RawEdge>,
+    pub patches: Vec<RawPatch>,
+}
+
+/// A line of the surface that lies on a chain of the network: the chain's links and its fraction at each corner of the line.
+struct OnChain {
+    links: Vec<(LinkId, bool)>,
+    length: f64,
+    fractions: Vec<f64>,
+}
+
+/// Where a line runs: side number, or a line inside.
+#[derive(Clone, Copy)]
+enum Place {
+    Side(usize),
+    Inside,
+}
+
+/// Everything that cutting one surface needs.
+struct Cutter<'a> {
+    id: SurfaceId,
+    surfaces: &'a [Named],
+    surface: &'a Surface,
+    network: &'a Network,
+    tolerance: &'a Tolerance,
+    pieces: Pieces,
+}
+
+/// The pieces of one surface: patches row by row (u fastest), corners likewise.
+pub(super) fn cut(id: SurfaceId, surfaces: &[Named], network: &Network, tolerance: &Tolerance) -> Pieces {
+    let surface = &surfaces[id.index()].surface;
+    let cutter = Cutter { id, surfaces, surface, network, tolerance, pieces: Pieces::default() };
+    match surface.domain() {
+        Domain::Square => cutter.square(),
+        Domain::Triangle => cutter.triangle(),
+    }
+}
+
+impl Cutter<'_> {
+    fn square(mut self) -> Pieces {
+        let (kinks_u, kinks_v) = self.surface.kinks();
+        let with_ends = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
+        let (us, vs) = (with_ends(kinks_u), with_ends(kinks_v));
+        let (nu, nv) = (us.len() - 1, vs.len() - 1);
+        for &v in &vs {
+            for &u in &us {
+                self.pieces.vertices.push(self.surface.point(u, v));
+            }
+        }
+        let corner = |i: usize, j: usize| j * (nu + 1) + i;
+        let mut along_u = Vec::new();
+        for (j, &v) in vs.iter().enumerate() {
+            let place = if j == 0 { Place::Side(0) } else if j == nv { Place::Side(2) } else { Place::Inside };
+            let corners: Vec<_> = us.iter().enumerate().map(|(i, &u)| ((u, v), corner(i, j))).collect();
+            along_u.push(self.line(place, &corners));
+        }
+        let mut along_v = Vec::new();
+        for (i, &u) in us.iter().enumerate() {
+            let place = if i == 0 { Place::Side(3) } else if i == nu { Place::Side(1) } else { Place::Inside };
+            let corners: Vec<_> = vs.iter().enumerate().map(|(j, &v)| ((u, v), corner(i, j))).collect();
+            along_v.push(self.line(place, &corners));
+        }
+        for j in 0..nv {
+            for i in 0..nu {
+                let sides = vec![along_u[j][i].clone(), along_v[i + 1][j].clone(), along_u[j + 1][i].clone(), along_v[i][j].clone()];
+                self.pieces.patches.push(RawPatch { u: (us[i], us[i + 1]), v: (vs[j], vs[j + 1]), sides });
+            }
+        }
+        self.pieces
+    }
+
+    /// One patch; kinks of a side become corners on it.
+    fn triangle(mut self) -> Pieces {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
+        for (u, v) in corners {
+            self.pieces.vertices.push(self.surface.point(u, v));
+        }
+        let mut sides = Vec::new();
+        for (k, (first, last)) in [(0, 1), (1, 2), (0, 2)].into_iter().enumerate() {
+            let at = |t: f64| match k {
+                0 => (t, 0.0),
+                1 => (1.0 - t, t),
+                _ => (0.0, t),
+            };
+            let mut line = vec![(corners[first], first)];
+            for t in self.side_kinks(k) {
+                let (u, v) = at(t);
+                line.push(((u, v), self.pieces.vertices.len()));
+                self.pieces.vertices.push(self.surface.point(u, v));
+            }
+            line.push((corners[last], last));
+            let edges = self.line(Place::Side(k), &line).into_iter().flat_map(|side| side.edges).collect();
+            sides.push(RawSide { edges, pole: None });
+        }
+        self.pieces.patches.push(RawPatch { u: (0.0, 1.0), v: (0.0, 1.0), sides });
+        self.pieces
+    }
+
+    /// Side parameters of the kinks of the chain along a side, ascending, ends left out.
+    fn side_kinks(&self, k: usize) -> Vec<f64> {
+        let Side::Chain { chain, from, to } = self.surface.side(k) else {
+            return Vec::new();
+        };
+        let mut found: Vec<f64> = chain
+            .kinks(self.tolerance)
+            .into_iter()
+            .filter(|f| (f - from) * (f - to) < 0.0)
+            .map(|f| self.surface.side_parameter(k, f))
+            .filter(|t| *t > self.tolerance.parameter && *t < 1.0 - self.tolerance.parameter)
+            .collect();
+        found.sort_by(f64::total_cmp);
+        found.dedup_by(|a, b| *a - *b <= self.tolerance.parameter);
+        found
+    }
+
+    /// The edges between neighbouring corners of a line, as one side each; poles have none.
+    fn line(&mut self, place: Place, corners: &[((f64, f64), usize)]) -> Vec<RawSide> {
+        if let Place::Side(k) = place
+            && let Side::Pole(_) = self.surface.side(k)
+        {
+            return corners.windows(2).map(|w| RawSide { edges: Vec::new(), pole: Some(w[0].1) }).collect();
+        }
+        let support = self.support(place, corners);
+        let mut sides = Vec::new();
+        for (n, w) in corners.windows(2).enumerate() {
+            let curve = support
+                .as_ref()
+                .and_then(|on| self.links_between(on, n))
+                .unwrap_or(EdgeCurve::Iso { surface: self.id, from: w[0].0, to: w[1].0 });
+            let track = Track::of(&curve, self.surfaces, self.network);
+            let length = track.length();
+            if length <= self.tolerance.point {
+                sides.push(RawSide { edges: Vec::new(), pole: Some(w[0].1) });
+                continue;
+            }
+            sides.push(RawSide { edges: vec![self.pieces.edges.len()], pole: None });
+            self.pieces.edges.push(RawEdge { ends: (w[0].1, w[1].1), curve, length, probes: track.probes() });
+        }
+        sides
+    }
+
+    /// The chain a line lies on, when its links are known to the network.
+    fn support(&self, place: Place, corners: &[((f64, f64), usize)]) -> Option<OnChain> {
+        if let Place::Side(k) = place {
+            let along_u = k % 2 == 0 && self.surface.domain() == Domain::Square || k == 0;
+            let parameter = |uv: (f64, f64)| if along_u { uv.0 } else { uv.1 };
+            // A seam lies on the chain of the opposite side.
+            for side in [k, (k + 2) % 4] {
+                match self.surface.side(side) {
+                    Side::Chain { chain, .. } => {
+                        let links = self.network.links_of(&chain, self.tolerance)?;
+                        let fractions = corners.iter().map(|(uv, _)| self.surface.side_fraction(side, parameter(*uv))).collect();
+                        return Some(OnChain { links, length: chain.length(), fractions });
+                    }
+                    Side::Seam => {}
+                    Side::Pole(_) | Side::Free => break,
+                }
+            }
+        }
+        self.surface.chains().iter().find_map(|chain| self.lies_on(chain, corners))
+    }
+
+    /// Whether a line inside lies on a chain: its corners and the quarters between them do.
+    fn lies_on(&self, chain: &Chain, corners: &[((f64, f64), usize)]) -> Option<OnChain> {
+        let curve = chain.to_curve().ok()?;
+        let mut fractions = Vec::new();
+        for w in corners.windows(2) {
+            for step in 0..4 {
+                let t = f64::from(step) / 4.0;
+                let (a, b) = (w[0].0, w[1].0);
+                let p = self.surface.point(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
+                let foot = closest(&curve, p);
+                if foot.distance > self.tolerance.point {
+                    return None;
+                }
+                if step == 0 {
+                    fractions.push(curve.length_at(foot.t) / curve.length());
+                }
+            }
+        }
+        let (u, v) = corners.last()?.0;
+        let foot = closest(&curve, self.surface.point(u, v));
+        if foot.distance > self.tolerance.point {
+            return None;
+        }
+        fractions.push(curve.length_at(foot.t) / curve.length());
+        let ascending = fractions.windows(2).all(|w| w[0] < w[1]);
+        let descending = fractions.windows(2).all(|w| w[0] > w[1]);
+        let links = self.network.links_of(chain, self.tolerance)?;
+        (ascending || descending).then(|| OnChain { links, length: chain.length(), fractions })
+    }
+
+    /// The links between corners `n` and `n + 1` of a line.
+    fn links_between(&self, on: &OnChain, n: usize) -> Option<EdgeCurve> {
+        let mut links: Vec<_> = on.links.clone();
+        let (mut a, mut b) = (on.fractions[n] * on.length, on.fractions[n + 1] * on.length);
+        if a > b {
+            links.reverse();
+            links.iter_mut().for_each(|(_, against)| *against = !*against);
+            (a, b) = (on.length - a, on.length - b);
+        }
+        let (mut used, mut before, mut start) = (Vec::new(), 0.0, 0.0);
+        let near = self.tolerance.point;
+        for (link, against) in links {
+            let s = self.network.links[link.index()].s;
+            let after = before + (s.1 - s.0);
+            if after.min(b) - before.max(a) > near {
+                if used.is_empty() {
+                    start = before;
+                }
+                used.push((link, against));
+            }
+            before = after;
+        }
+        if used.is_empty() {
+            return None;
+        }
+        let total: f64 = used.iter().map(|(l, _)| self.network.links[l.index()].s).map(|s| s.1 - s.0).sum();
+        let from = if a - start <= near { 0.0 } else { a - start };
+        let to = if total - (b - start) <= near { total } else { b - start };
+        Some(EdgeCurve::Links { links: used, span: (from, to) })
+    }
+}

@@ -1,0 +1,172 @@
+//! Shells: surfaces as one skin, connected and oriented [Koh & Park 1990, §4.3].
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+
+use super::atoms::{Atoms, Part, atoms};
+use super::glue::root;
+use super::topology::{EdgeCurve, EdgeId, Model, Shell, SurfaceId};
+use super::trace::Track;
+use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::network::Network;
+
+/// Edges of a shell as tracks, and their atoms.
+struct Joins {
+    parts: Vec<Part>,
+    pieces: Atoms,
+}
+
+impl Joins {
+    /// The point in the middle of an atom.
+    fn middle(&self, atom: usize) -> DVec3 {
+        let atom = &self.pieces.atoms[atom];
+        self.parts[atom.track].track.point(0.5 * (atom.s.0 + atom.s.1))
+    }
+}
+
+/// One use of an atom by a surface: `true` where the surface's loop runs against the atom.
+type Usage = (SurfaceId, bool);
+
+impl Model {
+    /// A shell of surfaces: connected, oriented so that neighbours use an edge in opposite senses; free edges are a note.
+    ///
+    /// Stretches that a long side shares with several shorter ones count as joined. The first surface of the list keeps
+    /// its side. Fails with E616 (one-sided), E617 (three faces at an edge) or E618 (not connected).
+    pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
+        let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
+        let (edges, joins) = self.joins(&members, network, tolerance);
+        let pieces = &joins.pieces;
+        let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.atoms.len()];
+        for (edge, uses) in edges.iter().zip(&pieces.of_track) {
+            for (patch, against) in &self.edges[edge.index()].users {
+                let surface = self.patches[patch.index()].surface;
+                if members.contains(&surface) {
+                    uses.iter().for_each(|u| usages[u.atom].push((surface, *against != u.against)));
+                }
+            }
+        }
+        self.manifold(request, &joins, &usages)?;
+        let sides = self.orient(request, &joins, &usages)?;
+        let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
+        if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.atoms[*a].length().total_cmp(&pieces.atoms[*b].length())) {
+            let length = free.iter().map(|a| pieces.atoms[*a].length()).sum();
+            let at = joins.middle(longest);
+            sink.push(SurfaceFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
+        }
+        let surfaces = request.surfaces.iter().map(|s| (*s, sides[s.index()].unwrap_or(false))).collect();
+        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces, closed: free.is_empty() })
+    }
+
+    /// Edges of some surfaces, cut into atoms.
+    fn joins(&self, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
+        let edges: Vec<EdgeId> = (0..self.edges.len())
+            .map(EdgeId::at)
+            .filter(|e| self.edges[e.index()].users.iter().any(|(p, _)| members.contains(&self.patches[p.index()].surface)))
+            .collect();
+        let parts: Vec<Part> = edges
+            .iter()
+            .map(|e| {
+                let curve = &self.edges[e.index()].curve;
+                let rank = u8::from(matches!(curve, EdgeCurve::Iso { .. }));
+                Part { track: Track::of(curve, &self.surfaces, network), cuts: Vec::new(), rank }
+            })
+            .collect();
+        let anchors: Vec<_> = edges
+            .iter()
+            .flat_map(|e| {
+                let ends = self.edges[e.index()].vertices;
+                [self.vertices[ends.0.index()].point, self.vertices[ends.1.index()].point]
+            })
+            .collect();
+        let pieces = atoms(&parts, &anchors, tolerance);
+        (edges, Joins { parts, pieces })
+    }
+
+    fn origin_of(&self, surface: SurfaceId) -> Origin {
+        self.surfaces[surface.index()].surface.origin()
+    }
+
+    /// E617 where more than two faces share a stretch.
+    fn manifold(&self, request: &ShellRequest, joins: &Joins, usages: &[Vec<Usage>]) -> Result<()> {
+        for (atom, users) in usages.iter().enumerate() {
+            if users.len() > 2 {
+                let at = joins.middle(atom);
+                let users = users.iter().map(|(s, _)| self.origin_of(*s)).collect();
+                return Err(SurfaceFault::ShellNonManifold { shell: request.origin, users, at }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Side of each surface of the model: `true` for the other one, `None` for surfaces outside the shell.
+    fn orient(&self, request: &ShellRequest, joins: &Joins, usages: &[Vec<Usage>]) -> Result<Vec<Option<bool>>> {
+        let mut sides: Vec<Option<bool>> = vec![None; self.surfaces.len()];
+        let mut neighbours: Vec<Vec<(SurfaceId, bool, usize)>> = vec![Vec::new(); self.surfaces.len()];
+        let mut parent: Vec<usize> = (0..self.surfaces.len()).collect();
+        for (atom, users) in usages.iter().enumerate() {
+            if let [a, b] = users.as_slice() {
+                // Used in the same sense, one of the two must be turned.
+                let turned = a.1 == b.1;
+                neighbours[a.0.index()].push((b.0, turned, atom));
+                neighbours[b.0.index()].push((a.0, turned, atom));
+                let (ra, rb) = (root(&mut parent, a.0.index()), root(&mut parent, b.0.index()));
+                parent[ra.max(rb)] = ra.min(rb);
+            }
+        }
+        let Some(&first) = request.surfaces.first() else {
+            return Ok(sides);
+        };
+        sides[first.index()] = Some(false);
+        let mut open = vec![first];
+        while let Some(surface) = open.pop() {
+            let own = sides[surface.index()].unwrap_or(false);
+            for &(other, turned, atom) in &neighbours[surface.index()] {
+                match sides[other.index()] {
+                    None => {
+                        sides[other.index()] = Some(own != turned);
+                        open.push(other);
+                    }
+                    Some(side) if side != (own != turned) => {
+                        let at = joins.middle(atom);
+                        let (a, b) = (self.origin_of(surface), self.origin_of(other));
+                        return Err(SurfaceFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+        match request.surfaces.iter().find(|s| sides[s.index()].is_none()) {
+            None => Ok(sides),
+            Some(apart) => Err(self.not_connected(request, &sides, *apart)),
+        }
+    }
+
+    /// E618 with the nearest vertices of the joined part and of a surface apart from it.
+    fn not_connected(&self, request: &ShellRequest, sides: &[Option<bool>], apart: SurfaceId) -> Fault {
+        let corners = |wanted: &dyn Fn(SurfaceId) -> bool| -> Vec<(DVec3, SurfaceId)> {
+            let users = |e: &super::topology::Edge| e.users.iter().map(|(p, _)| self.patches[p.index()].surface).find(|s| wanted(*s));
+            let of_edge = |e: &super::topology::Edge| users(e).map(|s| [e.vertices.0, e.vertices.1].map(|v| (self.vertices[v.index()].point, s)));
+            self.edges.iter().filter_map(of_edge).flatten().collect()
+        };
+        let joined = corners(&|s| request.surfaces.contains(&s) && sides[s.index()].is_some());
+        let others = corners(&|s| s == apart);
+        let pairs = joined.iter().flat_map(|a| others.iter().map(move |b| (a, b)));
+        let nearest = pairs.min_by(|x, y| x.0.0.distance(x.1.0).total_cmp(&y.0.0.distance(y.1.0)));
+        let (a, gap, at) = nearest.map_or((apart, 0.0, DVec3::ZERO), |(a, b)| (a.1, a.0.distance(b.0), b.0));
+        SurfaceFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(apart), gap, at }.into()
+    }
+}
+
+/// What a shell is made of.
+#[derive(Clone, Debug)]
+pub struct ShellRequest {
+    /// Name as declared.
+    pub name: String,
+    /// Its surfaces, each once.
+    pub surfaces: Vec<SurfaceId>,
+    /// The declaration.
+    pub origin: Origin,
+}

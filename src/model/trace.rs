@@ -1,0 +1,185 @@
+//! Arc length along lines of a surface and along runs of links: every edge as one curve from 0 to its length.
+
+use glam::DVec3;
+
+use super::topology::EdgeCurve;
+use crate::base::quadrature::{self, RUNNING};
+use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::network::{Chain, Network};
+use crate::surface::Surface;
+
+/// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
+const DEPTH: u32 = 24;
+/// Newton steps of the inverse; bisection takes over before that.
+const STEPS: usize = 60;
+
+/// A straight line in (u, v) on a surface under its arc length.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    surface: Surface,
+    from: (f64, f64),
+    to: (f64, f64),
+    panels: Vec<Panel>,
+    length: f64,
+}
+
+/// One stretch whose length is a known polynomial of the place.
+#[derive(Clone, Debug)]
+struct Panel {
+    t: (f64, f64),
+    s: f64,
+    running: [f64; RUNNING],
+}
+
+impl Trace {
+    /// The line between two (u, v); the surface must be smooth along it but for jumps of higher derivatives.
+    pub fn new(surface: &Surface, from: (f64, f64), to: (f64, f64)) -> Self {
+        let mut trace = Self { surface: surface.clone(), from, to, panels: Vec::new(), length: 0.0 };
+        let scale = trace.surface.point(from.0, from.1).distance(trace.surface.point(to.0, to.1)).max(trace.speed(0.5));
+        let mut open = vec![(0.0, 1.0, DEPTH)];
+        while let Some((a, b, left)) = open.pop() {
+            let panel = quadrature::kronrod(a, b, |t| trace.speed(t));
+            if left > 0 && panel.error > MEASURE_ACCURACY * scale.max(trace.length) {
+                let middle = 0.5 * (a + b);
+                open.push((middle, b, left - 1));
+                open.push((a, middle, left - 1));
+                continue;
+            }
+            let running = quadrature::running_integral(&panel.values);
+            trace.panels.push(Panel { t: (a, b), s: trace.length, running });
+            trace.length += panel.integral;
+        }
+        trace
+    }
+
+    /// Arc length, model units.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// (u, v) at the share `t` of the way in the parameter plane.
+    pub fn uv(&self, t: f64) -> (f64, f64) {
+        let mix = |a: f64, b: f64| if t == 1.0 { b } else { a + (b - a) * t };
+        (mix(self.from.0, self.to.0), mix(self.from.1, self.to.1))
+    }
+
+    /// Point and derivative by `t`.
+    pub fn jet(&self, t: f64) -> (DVec3, DVec3) {
+        let (u, v) = self.uv(t);
+        let jet = self.surface.jet(u, v);
+        (jet.p, jet.du * (self.to.0 - self.from.0) + jet.dv * (self.to.1 - self.from.1))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        self.jet(t).1.length()
+    }
+
+    /// Arc length from the start to `t`.
+    pub fn length_at(&self, t: f64) -> f64 {
+        let k = self.panels.partition_point(|p| p.t.1 < t).min(self.panels.len() - 1);
+        let (panel, half) = (&self.panels[k], 0.5 * (self.panels[k].t.1 - self.panels[k].t.0));
+        let x = ((t - panel.t.0) / half - 1.0).clamp(-1.0, 1.0);
+        panel.s + half * quadrature::chebyshev(&panel.running, x).0
+    }
+
+    /// The `t` at arc length `s`; outside 0…length the nearer end.
+    pub fn at_length(&self, s: f64) -> f64 {
+        if s <= 0.0 {
+            return 0.0;
+        }
+        if s >= self.length {
+            return 1.0;
+        }
+        let k = self.panels.partition_point(|p| p.s <= s).saturating_sub(1);
+        let (panel, half) = (&self.panels[k], 0.5 * (self.panels[k].t.1 - self.panels[k].t.0));
+        let wanted = (s - panel.s) / half;
+        let (mut low, mut high, mut x) = (-1.0, 1.0, 0.0);
+        for _ in 0..STEPS {
+            let (value, slope) = quadrature::chebyshev(&panel.running, x);
+            let miss = value - wanted;
+            if miss > 0.0 {
+                high = x;
+            } else {
+                low = x;
+            }
+            let newton = x - miss / slope;
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if next == x || high - low < f64::EPSILON {
+                break;
+            }
+            x = next;
+        }
+        panel.t.0 + half * (x + 1.0)
+    }
+}
+
+/// An edge as one curve: arc length `s` from 0 to [`Track::length`].
+#[derive(Clone, Debug)]
+pub enum Track {
+    /// A run of links: their chains with `true` where the run goes against one, the length before each, and where on them the edge lies.
+    Links {
+        /// Chain of each link, along the link's own direction.
+        chains: Vec<(Chain, bool)>,
+        /// Arc length before each of them, and of all.
+        starts: Vec<f64>,
+        /// The part of the run that is used.
+        span: (f64, f64),
+    },
+    /// A line on a surface.
+    Iso(Trace),
+}
+
+impl Track {
+    /// The geometry of an edge.
+    pub fn of(curve: &EdgeCurve, surfaces: &[super::topology::Named], network: &Network) -> Self {
+        match curve {
+            EdgeCurve::Iso { surface, from, to } => Self::Iso(Trace::new(&surfaces[surface.index()].surface, *from, *to)),
+            EdgeCurve::Links { links, span } => {
+                let chains: Vec<_> = links.iter().map(|(link, against)| (network.link_chain(*link), *against)).collect();
+                let mut starts = vec![0.0];
+                for (link, _) in links {
+                    let s = network.links[link.index()].s;
+                    starts.push(starts[starts.len() - 1] + (s.1 - s.0));
+                }
+                Self::Links { chains, starts, span: *span }
+            }
+        }
+    }
+
+    /// Arc length, model units.
+    pub fn length(&self) -> f64 {
+        match self {
+            Self::Links { span, .. } => span.1 - span.0,
+            Self::Iso(trace) => trace.length(),
+        }
+    }
+
+    /// Point at arc length `s`; outside 0…length the nearer end.
+    pub fn point(&self, s: f64) -> DVec3 {
+        self.jet(s).0
+    }
+
+    /// Point and unit tangent at arc length `s` (zero where the track has none).
+    pub fn jet(&self, s: f64) -> (DVec3, DVec3) {
+        match self {
+            Self::Iso(trace) => {
+                let (p, d1) = trace.jet(trace.at_length(s));
+                (p, d1.normalize_or_zero())
+            }
+            Self::Links { chains, starts, span } => {
+                let s = (span.0 + s).clamp(span.0, span.1).clamp(0.0, starts[starts.len() - 1]);
+                let k = starts.partition_point(|x| *x <= s).clamp(1, chains.len()) - 1;
+                let (chain, against) = &chains[k];
+                let f = ((s - starts[k]) / (starts[k + 1] - starts[k])).clamp(0.0, 1.0);
+                let jet = chain.jet(if *against { 1.0 - f } else { f });
+                let tangent = jet.d1.normalize_or_zero();
+                (jet.p, if *against { -tangent } else { tangent })
+            }
+        }
+    }
+
+    /// Points at a quarter, a half and three quarters of the length; what tells two edges with the same ends apart.
+    pub fn probes(&self) -> [DVec3; 3] {
+        [0.25, 0.5, 0.75].map(|f| self.point(f * self.length()))
+    }
+}
