@@ -1,13 +1,20 @@
 //! Modeling curves: runs of curves one after the other under one arc-length parameter [Koh & Park 1990, §3.2].
+//!
+//! ```text
+//!   Φ(f):  0 ───run 0─── t₁ ──run 1── t₂ ────run 2──── 1      tᵢ = length before run i / whole length
+//! ```
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::base::fault::Result;
+use super::slice;
+use crate::base::bbox::Box3;
+use crate::base::fault::{NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::{Curve, Jet, Motion};
+use crate::geometry::curve::Shape;
+use crate::geometry::{Curve, Jet, Motion, build};
 
 /// A run along one curve between two arc lengths; backwards when `s1 < s0`.
 ///
@@ -22,6 +29,35 @@ pub struct Run {
     pub s1: f64,
 }
 
+impl Run {
+    /// Arc length of the run.
+    pub fn length(&self) -> f64 {
+        (self.s1 - self.s0).abs()
+    }
+
+    /// Whether it runs against its curve.
+    pub fn is_backward(&self) -> bool {
+        self.s1 < self.s0
+    }
+
+    /// Point at an arc length between `s0` and `s1`.
+    pub fn point_at(&self, s: f64) -> DVec3 {
+        self.curve.point(self.curve.param_at_length(self.wrapped(s, false)))
+    }
+
+    /// An arc length of the run as one inside 0…length; at the curve's start the one before it or after it.
+    fn wrapped(&self, s: f64, before: bool) -> f64 {
+        let length = self.curve.length();
+        // The end of an ordinary run stays; a run that goes on past the start continues at zero.
+        if s > length || (s == length && !before && self.s0.max(self.s1) > length) { s - length } else { s }
+    }
+
+    /// The run backwards.
+    pub fn reversed(&self) -> Self {
+        Self { curve: self.curve.clone(), s0: self.s1, s1: self.s0 }
+    }
+}
+
 /// A chain of runs: what the language calls a modeling curve, and also any curve value there. Cheap to clone.
 ///
 /// Fractions `f` in 0…1 are of its arc length.
@@ -32,6 +68,10 @@ pub struct Chain(Arc<Inner>);
 struct Inner {
     runs: Vec<Run>,
     joints: Vec<f64>,
+    /// Per run: signed arc length on its curve per unit of fraction.
+    rates: Vec<f64>,
+    /// Per straight run: first point and derivative by the fraction, so that rows of points cost a multiplication each.
+    straight: Vec<Option<(DVec3, DVec3)>>,
     length: f64,
     origin: Origin,
 }
@@ -39,13 +79,32 @@ struct Inner {
 impl Chain {
     /// The whole of one curve.
     pub fn of_curve(curve: &Curve) -> Self {
-        let length = curve.length();
-        Self(Arc::new(Inner {
-            runs: vec![Run { curve: curve.clone(), s0: 0.0, s1: length }],
-            joints: vec![0.0, 1.0],
-            length,
-            origin: curve.origin(),
-        }))
+        Self::of_runs(vec![Run { curve: curve.clone(), s0: 0.0, s1: curve.length() }], curve.origin())
+    }
+
+    /// Runs in a row; the caller knows that each starts where the one before ends. There must be at least one.
+    pub fn of_runs(runs: Vec<Run>, origin: Origin) -> Self {
+        let length: f64 = runs.iter().map(Run::length).sum();
+        let mut joints = Vec::with_capacity(runs.len() + 1);
+        let mut before = 0.0;
+        for run in &runs {
+            joints.push(before / length);
+            before += run.length();
+        }
+        joints.push(1.0);
+        let rates = (0..runs.len()).map(|k| (runs[k].s1 - runs[k].s0) / (joints[k + 1] - joints[k])).collect();
+        let straight = runs
+            .iter()
+            .map(|run| match run.curve.shape() {
+                Shape::Line(a, b) => {
+                    let (whole, direction) = (run.curve.length(), *b - *a);
+                    let sign = if run.is_backward() { -1.0 } else { 1.0 };
+                    Some((*a + direction * (run.s0 / whole), direction * (sign * length / whole)))
+                }
+                _ => None,
+            })
+            .collect();
+        Self(Arc::new(Inner { runs, joints, rates, straight, length, origin }))
     }
 
     /// The curve when this is one whole curve run forwards.
@@ -76,73 +135,223 @@ impl Chain {
         self.0.origin
     }
 
-    /// The same chain made by another expression.
+    /// The same chain made by another expression; a whole curve carries it on.
     pub fn with_origin(&self, origin: Origin) -> Self {
-        Self(Arc::new(Inner { runs: self.0.runs.clone(), joints: self.0.joints.clone(), length: self.0.length, origin }))
+        if let Some(curve) = self.whole_curve() {
+            return Self::of_curve(&curve.with_origin(origin));
+        }
+        Self::of_runs(self.0.runs.clone(), origin)
+    }
+
+    /// The run that holds a fraction; at a joint the run that follows, or the one before.
+    fn run_at(&self, f: f64, before: bool) -> usize {
+        let inner = &self.0.joints[1..self.0.runs.len()];
+        if inner.is_empty() {
+            0
+        } else if before {
+            inner.partition_point(|&joint| joint < f)
+        } else {
+            inner.partition_point(|&joint| joint <= f)
+        }
+    }
+
+    /// Arc length on the curve of run `k` at a fraction, exact at the ends of the run.
+    fn station(&self, k: usize, f: f64) -> f64 {
+        let run = &self.0.runs[k];
+        if f >= self.0.joints[k + 1] {
+            run.s1
+        } else if f <= self.0.joints[k] {
+            run.s0
+        } else {
+            run.s0 + self.0.rates[k] * (f - self.0.joints[k])
+        }
+    }
+
+    /// Run and arc length on its curve at a fraction; at a joint those of the run that follows.
+    pub fn locate(&self, f: f64) -> (usize, f64) {
+        let k = self.run_at(f, false);
+        (k, self.station(k, f))
+    }
+
+    /// Fraction of an arc length between the ends of run `k`.
+    pub fn fraction(&self, k: usize, s: f64) -> f64 {
+        let (run, joints) = (&self.0.runs[k], &self.0.joints);
+        if s == run.s1 {
+            joints[k + 1]
+        } else if s == run.s0 {
+            joints[k]
+        } else {
+            (joints[k] + (s - run.s0) / self.0.rates[k]).clamp(joints[k], joints[k + 1])
+        }
     }
 
     /// Point and derivatives with respect to the fraction; at a joint those of the run that follows (the last at 1).
     pub fn jet(&self, f: f64) -> Jet {
-        let run = &self.0.runs[0];
-        run.curve.jet(run.curve.param_at_length(f * self.0.length))
+        self.jet_of_run(self.run_at(f, false), f, f >= 1.0)
     }
 
-    /// Like [`Chain::jet`], at a joint with the derivatives of the run before it.
+    /// Like [`Chain::jet`], at a joint or kink with the derivatives of what lies before it.
     pub fn jet_before(&self, f: f64) -> Jet {
-        self.jet(f)
+        self.jet_of_run(self.run_at(f, true), f, f > 0.0)
+    }
+
+    fn jet_of_run(&self, k: usize, f: f64, before: bool) -> Jet {
+        if let Some((p, d1)) = self.0.straight[k] {
+            return Jet { p: p + d1 * (f - self.0.joints[k]), d1, d2: DVec3::ZERO };
+        }
+        let run = &self.0.runs[k];
+        // What lies before a place of the chain lies after it on a curve run backwards.
+        let before_on_curve = before != run.is_backward();
+        let s = run.wrapped(self.station(k, f), before_on_curve);
+        let t = run.curve.param_at_length(s);
+        let jet = if before_on_curve { run.curve.jet_before(t) } else { run.curve.jet(t) };
+        let rate = if run.is_backward() { -self.0.length } else { self.0.length };
+        by_length(&jet, rate, before_on_curve)
     }
 
     /// Point at a fraction.
     pub fn point(&self, f: f64) -> DVec3 {
-        self.jet(f).p
+        self.point_of_run(self.run_at(f, false), f)
+    }
+
+    fn point_of_run(&self, k: usize, f: f64) -> DVec3 {
+        if let Some((p, d1)) = self.0.straight[k] {
+            return p + d1 * (f.clamp(0.0, 1.0) - self.0.joints[k]);
+        }
+        self.0.runs[k].point_at(self.station(k, f))
+    }
+
+    /// Points at ascending fractions; `out` is as long as `fs`. Does not allocate.
+    pub fn points(&self, fs: &[f64], out: &mut [DVec3]) {
+        let (mut k, last) = (0, self.0.runs.len() - 1);
+        for (&f, p) in fs.iter().zip(out) {
+            while k < last && f >= self.0.joints[k + 1] {
+                k += 1;
+            }
+            *p = self.point_of_run(k, f);
+        }
+    }
+
+    /// Points and derivatives at ascending fractions, as [`Chain::jet`] gives them. Does not allocate.
+    pub fn jets(&self, fs: &[f64], out: &mut [Jet]) {
+        let (mut k, last) = (0, self.0.runs.len() - 1);
+        for (&f, jet) in fs.iter().zip(out) {
+            while k < last && f >= self.0.joints[k + 1] {
+                k += 1;
+            }
+            *jet = self.jet_of_run(k, f, f >= 1.0);
+        }
     }
 
     /// First point.
     pub fn start(&self) -> DVec3 {
-        self.point(0.0)
+        let run = &self.0.runs[0];
+        run.point_at(run.s0)
     }
 
     /// Last point.
     pub fn end(&self) -> DVec3 {
-        self.point(1.0)
+        let run = &self.0.runs[self.0.runs.len() - 1];
+        run.point_at(run.s1)
     }
 
     /// Whether it ends where it starts.
     pub fn is_closed(&self, tolerance: &Tolerance) -> bool {
-        tolerance.same_point(self.start(), self.end())
+        self.0.length > tolerance.point && tolerance.same_point(self.start(), self.end())
     }
 
     /// The run backwards.
     pub fn reversed(&self) -> Self {
-        self.clone()
+        Self::of_runs(self.0.runs.iter().rev().map(Run::reversed).collect(), self.0.origin)
     }
 
-    /// The run between two fractions; `f1 < f0` runs backwards, on a closed chain it walks forward past the start.
+    /// The run between two fractions; `f1 < f0` runs backwards, on a closed chain it walks forward past the start
+    /// (and once around when the two are one place). E401 when nothing is left.
     pub fn slice(&self, f0: f64, f1: f64, tolerance: &Tolerance) -> Result<Self> {
-        let _ = (f0, f1, tolerance);
-        Ok(self.clone())
+        slice::slice(self, (f0, f1), tolerance)
     }
 
     /// Chains in a row; each must start where the one before ends, else E503 with both ends and the gap.
+    ///
+    /// A stretch that is run over twice is E504. There must be at least one part.
     pub fn join(parts: &[Self], origin: Origin, tolerance: &Tolerance) -> Result<Self> {
-        let _ = (origin, tolerance);
-        Ok(parts[0].clone())
+        slice::join(parts, origin, tolerance)
     }
 
     /// Fractions of slope discontinuities inside it, ascending (0 too for a closed chain with a corner there).
     pub fn kinks(&self, tolerance: &Tolerance) -> Vec<f64> {
-        let _ = tolerance;
-        Vec::new()
+        slice::kinks(self, tolerance)
     }
 
     /// Carried by a motion.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let _ = motion;
-        self.clone()
+        let mut runs: Vec<Run> = Vec::with_capacity(self.0.runs.len());
+        for (k, run) in self.0.runs.iter().enumerate() {
+            // Runs on one curve stay runs on one curve.
+            let earlier = (0..k).find(|&j| same_curve(&self.0.runs[j].curve, &run.curve));
+            let curve = earlier.map_or_else(|| run.curve.moved(motion), |j| runs[j].curve.clone());
+            let (old, new) = (run.curve.length(), curve.length());
+            let carried = |s: f64| if s == old { new } else { s * (new / old) };
+            runs.push(Run { s0: carried(run.s0), s1: carried(run.s1), curve });
+        }
+        Self::of_runs(runs, self.0.origin)
     }
 
     /// One curve with the same points: the curve itself, a part of it, or a composite.
     pub fn to_curve(&self) -> Result<Curve> {
-        Ok(self.0.runs[0].curve.clone())
+        if let Some(curve) = self.whole_curve() {
+            return Ok(curve.clone());
+        }
+        let mut pieces = Vec::with_capacity(self.0.runs.len());
+        for run in &self.0.runs {
+            pieces.extend(slice::pieces(run));
+        }
+        match pieces.as_slice() {
+            [one] => Ok(one.with_origin(self.0.origin)),
+            _ => build::composite(&pieces, self.0.origin),
+        }
     }
+
+    /// A box that holds the chain (of the whole curves it runs on where they are cut).
+    pub fn bbox(&self) -> Box3 {
+        self.0.runs.iter().fold(Box3::EMPTY, |bbox, run| bbox.union(run.curve.bbox()))
+    }
+
+    /// Nearest point of the chain: fraction, point, distance. Ties go to the smaller fraction.
+    pub fn closest(&self, p: DVec3) -> (f64, DVec3, f64) {
+        slice::closest(self, p)
+    }
+
+    /// Fraction of a point that lies on the chain within the tolerance, else E507 with the nearest point.
+    pub fn fraction_at(&self, p: DVec3, tolerance: &Tolerance) -> Result<f64> {
+        let (f, nearest, distance) = self.closest(p);
+        if distance <= tolerance.point {
+            return Ok(f);
+        }
+        Err(NetworkFault::PointOff { of: self.0.origin, point: p, nearest, tolerance: tolerance.point }.into())
+    }
+}
+
+/// Whether two values are one curve: the same shape over the same domain, whoever made it.
+pub fn same_curve(a: &Curve, b: &Curve) -> bool {
+    match (a.shape(), b.shape()) {
+        (Shape::Line(a0, a1), Shape::Line(b0, b1)) => a0 == b0 && a1 == b1,
+        (Shape::Nurbs(a), Shape::Nurbs(b)) => Arc::ptr_eq(a, b) || a == b,
+        _ => false,
+    }
+}
+
+/// Derivatives by arc length times `rate` from derivatives by the curve's own parameter.
+///
+/// With T = C′/|C′|: dC/ds = T, d²C/ds² = (C″ − T (T·C″)) / |C′|².
+fn by_length(jet: &Jet, rate: f64, before: bool) -> Jet {
+    let speed = jet.d1.length();
+    if speed > 0.0 {
+        let tangent = jet.d1 / speed;
+        let bend = (jet.d2 - tangent * tangent.dot(jet.d2)) / (speed * speed);
+        return Jet { p: jet.p, d1: tangent * rate, d2: bend * (rate * rate) };
+    }
+    // At a cusp the curve leaves along C″ and arrives against it.
+    let leaving = jet.d2.normalize_or_zero();
+    Jet { p: jet.p, d1: if before { -leaving } else { leaving } * rate, d2: DVec3::ZERO }
 }

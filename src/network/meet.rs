@@ -30,5 +30,6 @@ pub fn meet(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Vec<Meeting>>
 /// The one meeting that `a & b` stands for; none, several or a shared run are E507, E508, E509 with candidates and the closest miss.
 pub fn meet_once(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Meeting> {
     let _ = tolerance;
-    Err(crate::base::fault::NetworkFault::Other { of: a.origin(), what: format!("does not meet {:?}", b.origin()) }.into())
+    let at = (a.start(), b.start());
+    Err(crate::base::fault::NetworkFault::NoMeeting { a: (a.origin(), at.0), b: (b.origin(), at.1), tolerance: tolerance.point }.into())
 }

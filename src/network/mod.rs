@@ -4,6 +4,7 @@ pub mod chain;
 pub mod flow;
 pub mod graph;
 pub mod meet;
+mod slice;
 
 pub use chain::{Chain, Run};
 pub use flow::{Flow, FlowKind};

@@ -20,7 +20,7 @@ use glam::DVec3;
 pub use curves::{CurveFault, KnotFault};
 pub use files::FileFault;
 pub use mesh::MeshFault;
-pub use network::NetworkFault;
+pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use surface::{NoFlow, SurfaceFault};
 pub use values::ValueFault;
 

@@ -1,26 +1,520 @@
-//! Family 5.
+//! Family 5: ends that miss, chains that break, meetings that are not one.
 
-use super::{Describe, Report, Say};
+use glam::DVec3;
+
+use super::{Describe, Report, Say, Subject};
+use crate::base::math;
 use crate::base::origin::Origin;
 
-/// What can go wrong or deserves a word here.
+/// What can go wrong with networks and chains, or deserves a word. Lengths and points are in model units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NetworkFault {
-    ///  network and chains:E507: placeholder until the family's owner writes the table out.
-    Other {
-        /// The entity it speaks of.
-        of: Origin,
-        /// What happened.
-        what: String,
+    /// E501: two ends that should be one point are not.
+    EndsMiss {
+        /// First curve and its end.
+        a: CurveEnd,
+        /// Second curve and its end.
+        b: CurveEnd,
+        /// The tolerance applied.
+        tolerance: f64,
     },
+    /// E502: curves in a row do not come back to where they began.
+    BoundaryOpen {
+        /// The curve that ends where nothing starts, with that end.
+        a: CurveEnd,
+        /// The curve that starts where nothing ends, with that end.
+        b: CurveEnd,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E503: two neighbours of a chain share no node.
+    ChainBroken {
+        /// The part before the gap, with its end.
+        a: CurveEnd,
+        /// The part after the gap, with its start.
+        b: CurveEnd,
+        /// Whether the second part reversed would fit.
+        reversed_fits: bool,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E504: a chain runs twice over the same stretch.
+    ChainRepeats {
+        /// The part that runs over it first.
+        a: Origin,
+        /// The part that runs over it again.
+        b: Origin,
+        /// Ends of the stretch.
+        stretch: (DVec3, DVec3),
+    },
+    /// E505: more than one run fits.
+    ChainAmbiguous {
+        /// The curve where the ways part.
+        of: Origin,
+        /// The point there.
+        at: DVec3,
+        /// The curves that could follow.
+        candidates: Vec<Origin>,
+    },
+    /// E506: points that are pairwise close form a cluster wider than two tolerances.
+    ClusterAmbiguous {
+        /// Some of the points, farthest pair first, with their curves.
+        points: Vec<(DVec3, Origin)>,
+        /// How many points there are.
+        count: usize,
+        /// Largest distance between two of them.
+        diameter: f64,
+        /// The tolerance applied.
+        tolerance: f64,
+        /// A tolerance that keeps them apart.
+        smaller: f64,
+    },
+    /// E507: two curves do not meet.
+    NoMeeting {
+        /// First curve and its nearest point.
+        a: (Origin, DVec3),
+        /// Second curve and its nearest point.
+        b: (Origin, DVec3),
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E507: a point is not on a curve.
+    PointOff {
+        /// The curve.
+        of: Origin,
+        /// The point.
+        point: DVec3,
+        /// The nearest point of the curve.
+        nearest: DVec3,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E508: two curves meet more than once where one meeting is wanted.
+    SeveralMeetings {
+        /// First curve.
+        a: Origin,
+        /// Second curve.
+        b: Origin,
+        /// Points and arc-length fractions on the first curve.
+        candidates: Vec<(DVec3, f64)>,
+    },
+    /// E509: two curves share a run where a point is wanted.
+    SharesRun {
+        /// First curve.
+        a: Origin,
+        /// Second curve.
+        b: Origin,
+        /// Ends of the runs.
+        runs: Vec<(DVec3, DVec3)>,
+    },
+    /// E510: something higher stands on it.
+    InUse {
+        /// What was to be removed.
+        of: Origin,
+        /// Who uses it, upper-most first.
+        users: Vec<Origin>,
+    },
+    /// E511: two ends closer than the snap distance, and neither can move.
+    SnapFixed {
+        /// First curve and its end.
+        a: CurveEnd,
+        /// Second curve and its end.
+        b: CurveEnd,
+        /// The snap distance.
+        snap: f64,
+    },
+    /// N512: two curves run over the same links.
+    SharedRun {
+        /// The curve that owns the links.
+        owner: Origin,
+        /// The curve that runs over them.
+        other: Origin,
+        /// Ends of the run.
+        run: (DVec3, DVec3),
+        /// Its length.
+        length: f64,
+    },
+    /// N513: an end was moved by `snap`.
+    Snapped {
+        /// The curve and the end before the move.
+        end: CurveEnd,
+        /// Where it went.
+        to: DVec3,
+    },
+    /// W514: an end misses a curve by little more than the tolerance.
+    NearMiss {
+        /// The curve and its end.
+        end: CurveEnd,
+        /// The curve it misses.
+        other: Origin,
+        /// The nearest point of that curve.
+        nearest: DVec3,
+        /// Whether that point is an end as well.
+        other_end: bool,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E401: a run of no length.
+    NoLength {
+        /// The curve.
+        of: Origin,
+        /// Where it is.
+        at: DVec3,
+        /// Its length.
+        length: f64,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+}
+
+/// One end of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveEnd {
+    /// The curve.
+    pub of: Origin,
+    /// The last point, else the first one.
+    pub last: bool,
+    /// Where it is.
+    pub at: DVec3,
+}
+
+impl CurveEnd {
+    fn verb(&self) -> &'static str {
+        if self.last { "ends here" } else { "starts here" }
+    }
+}
+
+/// The next number of the row 1, 2, 5, 10, … at or above a positive length.
+pub fn round_up(length: f64) -> f64 {
+    let decade = math::pow(10.0, math::log10(length).floor());
+    let share = length / decade;
+    // A whole multiple of a decade may come out a hair above itself.
+    let step = [1.0, 2.0, 5.0].into_iter().find(|step| share <= step * (1.0 + crate::base::tolerance::EPSILON)).unwrap_or(10.0);
+    step * decade
+}
+
+/// The next number of the row 1, 2, 5, 10, … below a positive length.
+pub fn round_down(length: f64) -> f64 {
+    let decade = math::pow(10.0, math::log10(length).floor());
+    let share = length / decade;
+    let step = [5.0, 2.0].into_iter().find(|step| share > *step).unwrap_or(if share > 1.0 { 1.0 } else { 0.5 });
+    step * decade
+}
+
+/// A length as it is typed: the unit sticks to the number, without trailing zeros.
+fn typed(say: &dyn Say, length: f64) -> String {
+    let said = say.length(length);
+    let (number, unit) = said.split_once(' ').unwrap_or((&said, ""));
+    let number = if number.contains('.') && !number.contains('e') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
+    // A unit that shows too few digits must not turn the advice into a zero.
+    if number.parse::<f64>().is_ok_and(|shown| shown == 0.0) { format!("{length:?}") } else { format!("{number}{unit}") }
 }
 
 impl Describe for NetworkFault {
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::Other { of, what } => {
-                Report::new(" network and chains:E507", format!("{}: {what}", say.quoted(*of, "this"))).at(*of, "here")
+            Self::EndsMiss { a, b, tolerance } => ends_miss(a, b, *tolerance, say),
+            Self::BoundaryOpen { a, b, tolerance } => boundary_open(a, b, *tolerance, say),
+            Self::ChainBroken { a, b, reversed_fits, tolerance } => chain_broken(a, b, *reversed_fits, *tolerance, say),
+            Self::ChainRepeats { a, b, stretch } => chain_repeats(*a, *b, *stretch, say),
+            Self::ChainAmbiguous { of, at, candidates } => chain_ambiguous(*of, *at, candidates, say),
+            Self::ClusterAmbiguous { points, count, diameter, tolerance, smaller } => {
+                let mut report = Report::new(
+                    "E506",
+                    format!(
+                        "{count} points near {} are pairwise closer than {} but spread over {}: it is not clear which are one node",
+                        say.point(points.first().map_or(DVec3::ZERO, |p| p.0)),
+                        say.length(*tolerance),
+                        say.length(*diameter)
+                    ),
+                );
+                for (point, of) in points {
+                    report = report.at(*of, format!("through {}", say.point(*point)));
+                }
+                report.help(format!("`tolerance {}` keeps them apart", typed(say, *smaller)))
             }
+            Self::NoMeeting { a, b, tolerance } => no_meeting(*a, *b, *tolerance, say),
+            Self::PointOff { of, point, nearest, tolerance } => Report::new(
+                "E507",
+                format!(
+                    "the point {} is not on {}: the nearest point of the curve, {}, is {} away",
+                    say.point(*point),
+                    say.quoted(*of, "the curve"),
+                    say.point(*nearest),
+                    say.length(point.distance(*nearest))
+                ),
+            )
+            .at(*of, "this curve")
+            .note(tolerance_note(*tolerance, say)),
+            Self::SeveralMeetings { a, b, candidates } => several_meetings(*a, *b, candidates, say),
+            Self::SharesRun { a, b, runs } => shares_run(*a, *b, runs, say),
+            Self::InUse { of, users } => in_use(*of, users, say),
+            Self::SnapFixed { a, b, snap } => Report::new(
+                "E511",
+                format!(
+                    "{} and {} end {} apart at {}, closer than `snap {}`, and neither end can be moved",
+                    say.quoted(a.of, "one curve"),
+                    say.quoted(b.of, "another"),
+                    say.length(a.at.distance(b.at)),
+                    say.point(a.at),
+                    typed(say, *snap)
+                ),
+            )
+            .at(a.of, a.verb())
+            .at(b.of, b.verb())
+            .help(format!(
+                "write one of them through points, end both at one point, or declare a `snap` below {}",
+                typed(say, a.at.distance(b.at))
+            )),
+            Self::SharedRun { owner, other, run, length } => Report::new(
+                "N512",
+                format!(
+                    "{} and {} share a run of {} from {} to {}; it belongs to {}",
+                    say.quoted(*owner, "one curve"),
+                    say.quoted(*other, "another"),
+                    say.length(*length),
+                    say.point(run.0),
+                    say.point(run.1),
+                    say.quoted(*owner, "the first")
+                ),
+            )
+            .at(*other, "runs over it")
+            .at(*owner, "owns it"),
+            Self::Snapped { end, to } => Report::new(
+                "N513",
+                format!(
+                    "the {} of {} moved by {} from {} to {}",
+                    if end.last { "end" } else { "start" },
+                    say.quoted(end.of, "a curve"),
+                    say.length(end.at.distance(*to)),
+                    say.point(end.at),
+                    say.point(*to)
+                ),
+            )
+            .at(end.of, end.verb()),
+            Self::NearMiss { end, other, nearest, other_end, tolerance } => near_miss(end, (*other, *nearest, *other_end), *tolerance, say),
+            Self::NoLength { of, at, length, tolerance } => Report::new(
+                "E401",
+                format!(
+                    "{} is a run of length {} at {}, which is a point within the tolerance of {}",
+                    say.quoted(*of, "this"),
+                    say.length(*length),
+                    say.point(*at),
+                    say.length(*tolerance)
+                ),
+            )
+            .at(*of, "has no length"),
         }
+    }
+}
+
+fn tolerance_note(tolerance: f64, say: &dyn Say) -> String {
+    format!("the model's tolerance is {}", say.length(tolerance))
+}
+
+fn ends_miss(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
+    let gap = a.at.distance(b.at);
+    let wanted = typed(say, round_up(gap));
+    Report::new(
+        "E501",
+        format!(
+            "{} and {} miss each other by {} at {}",
+            say.quoted(a.of, "one curve"),
+            say.quoted(b.of, "another"),
+            say.length(gap),
+            say.point(a.at)
+        ),
+    )
+    .at(a.of, a.verb())
+    .at(b.of, b.verb())
+    .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
+    .help(format!("end both at one point, or declare `snap {wanted}`"))
+    .note(format!("the other curve {} at {}", if b.last { "ends" } else { "starts" }, say.point(b.at)))
+    .note(format!("a tolerance of {wanted} would take them as one point"))
+}
+
+fn boundary_open(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
+    let side = |end: &CurveEnd| if end.last { "ends" } else { "starts" };
+    let gap = a.at.distance(b.at);
+    Report::new(
+        "E502",
+        format!(
+            "the boundary does not close: {} {} at {}, {} {} at {}",
+            say.quoted(a.of, "one curve"),
+            side(a),
+            say.point(a.at),
+            say.quoted(b.of, "another"),
+            side(b),
+            say.point(b.at)
+        ),
+    )
+    .at(a.of, a.verb())
+    .at(b.of, b.verb())
+    .help("add a curve that joins these two points")
+    .note(format!("the gap is {}; the model's tolerance is {}", say.length(gap), say.length(tolerance)))
+}
+
+fn chain_broken(a: &CurveEnd, b: &CurveEnd, reversed_fits: bool, tolerance: f64, say: &dyn Say) -> Report {
+    let gap = a.at.distance(b.at);
+    let report = Report::new(
+        "E503",
+        format!(
+            "the chain breaks: {} ends at {}, {} starts at {}, {} apart",
+            say.quoted(a.of, "one part"),
+            say.point(a.at),
+            say.quoted(b.of, "the next"),
+            say.point(b.at),
+            say.length(gap)
+        ),
+    )
+    .at(a.of, "ends here")
+    .at(b.of, "starts elsewhere")
+    .note(tolerance_note(tolerance, say));
+    let name = say.name(b.of);
+    if reversed_fits {
+        report.help(if name.is_empty() {
+            "run the second part backwards, with `-` before it".to_owned()
+        } else {
+            format!("run it backwards: `-{name}`")
+        })
+    } else {
+        report.help(format!("end both at one node, or declare `snap {}`", typed(say, round_up(gap))))
+    }
+}
+
+fn chain_repeats(a: Origin, b: Origin, stretch: (DVec3, DVec3), say: &dyn Say) -> Report {
+    Report::new("E504", format!("the chain runs twice over the stretch from {} to {}", say.point(stretch.0), say.point(stretch.1)))
+        .at(a, "runs over it first")
+        .at(b, "runs over it again")
+        .help("end the first part where the second one begins")
+}
+
+fn chain_ambiguous(of: Origin, at: DVec3, candidates: &[Origin], say: &dyn Say) -> Report {
+    let names: Vec<String> = candidates.iter().map(|&c| say.quoted(c, "a curve")).collect();
+    let mut report = Report::new(
+        "E505",
+        format!("after {} at {} more than one curve fits: {}", say.quoted(of, "a curve"), say.point(at), names.join(", ")),
+    )
+    .at(of, "the ways part at its end");
+    for &candidate in candidates {
+        report = report.at(candidate, "could follow");
+    }
+    report.help("write the boundary as one modeling curve, for example `a + b + c`")
+}
+
+fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), tolerance: f64, say: &dyn Say) -> Report {
+    let gap = a.1.distance(b.1);
+    Report::new(
+        "E507",
+        format!(
+            "{} and {} do not meet: they come closest at {} and {}, {} apart",
+            say.quoted(a.0, "one curve"),
+            say.quoted(b.0, "the other"),
+            say.point(a.1),
+            say.point(b.1),
+            say.length(gap)
+        ),
+    )
+    .at(a.0, "this curve")
+    .at(b.0, "and this one")
+    .note(format!("the model's tolerance is {}; {} would let them meet", say.length(tolerance), typed(say, round_up(gap))))
+}
+
+fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn Say) -> Report {
+    const SHOWN: usize = 6;
+    let list: Vec<String> = candidates.iter().take(SHOWN).map(|(p, f)| format!("{} ({:.1}%)", say.point(*p), 100.0 * f)).collect();
+    let more = if candidates.len() > SHOWN { format!(" and {} more", candidates.len() - SHOWN) } else { String::new() };
+    let (name_a, name_b) = (say.name(a), say.name(b));
+    let report = Report::new(
+        "E508",
+        format!(
+            "{} and {} meet {} times: at {}{more}",
+            say.quoted(a, "one curve"),
+            say.quoted(b, "the other"),
+            candidates.len(),
+            list.join(", ")
+        ),
+    )
+    .at(a, "this curve")
+    .at(b, "and this one");
+    if name_a.is_empty() || name_b.is_empty() {
+        report.help("pick one: `meet(a, b)[0]`, or `nearest(meet(a, b), P)`")
+    } else {
+        report.help(format!("pick one: `meet({name_a}, {name_b})[0]`, or `nearest(meet({name_a}, {name_b}), P)`"))
+    }
+}
+
+fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> Report {
+    let list: Vec<String> = runs.iter().map(|(p, q)| format!("from {} to {}", say.point(*p), say.point(*q))).collect();
+    Report::new(
+        "E509",
+        format!("{} and {} share a run {}, not a point", say.quoted(a, "one curve"), say.quoted(b, "the other"), list.join(" and ")),
+    )
+    .at(a, "this curve")
+    .at(b, "and this one")
+    .help("`meet(a, b)` lists the ends of the run")
+}
+
+fn in_use(of: Origin, users: &[Origin], say: &dyn Say) -> Report {
+    let names: Vec<String> = users.iter().map(|&u| say.quoted(u, "an unnamed entity")).collect();
+    let name = say.name(of);
+    let mut report = Report::new("E510", format!("{} carries {}", say.quoted(of, "this"), names.join(", "))).at(of, "to be removed");
+    for &user in users {
+        report = report.at(user, "stands on it");
+    }
+    report.help(format!("remove {} first, or `:remove! {name}` to take all", names.join(", then ")))
+}
+
+fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: &dyn Say) -> Report {
+    let (of, nearest, is_end) = other;
+    let gap = end.at.distance(nearest);
+    Report::new(
+        "W514",
+        format!(
+            "the {} of {} at {} misses {}{} by {}",
+            if end.last { "end" } else { "start" },
+            say.quoted(end.of, "a curve"),
+            say.point(end.at),
+            if is_end { "the end of " } else { "" },
+            say.quoted(of, "another"),
+            say.length(gap)
+        ),
+    )
+    .at(end.of, end.verb())
+    .at(of, format!("passes {}", say.point(nearest)))
+    .help(format!("if they should meet, declare `snap {0}` or `tolerance {0}`", typed(say, round_up(gap))))
+    .note(tolerance_note(tolerance, say))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::fault::{Fault, Plain};
+
+    #[test]
+    fn round_numbers_bracket_their_length() {
+        for (length, up, down) in [(0.3, 0.5, 0.2), (0.5, 0.5, 0.2), (1.0, 1.0, 0.5), (7.0, 10.0, 5.0), (1.5e-4, 2e-4, 1e-4)] {
+            assert!((round_up(length) / up - 1.0).abs() < 1e-12, "{length} up to {}", round_up(length));
+            assert!((round_down(length) / down - 1.0).abs() < 1e-12, "{length} down to {}", round_down(length));
+        }
+    }
+
+    #[test]
+    fn a_miss_names_gap_place_tolerance_and_a_snap_that_passes() {
+        let end = |last, x| CurveEnd { of: Origin::NONE, last, at: DVec3::new(x, 0.0, 0.0) };
+        let report = NetworkFault::EndsMiss { a: end(true, 0.0), b: end(false, 0.3), tolerance: 0.001 }.describe(&Plain);
+        assert_eq!(report.code.0, "E501");
+        assert_eq!(report.message, "one curve and another miss each other by 0.300000 at (0.000000, 0.000000, 0.000000)");
+        assert_eq!(report.help.as_deref(), Some("end both at one point, or declare `snap 0.5`"));
+        assert!(report.labels.iter().any(|(_, text)| text.contains("tolerance is 0.001")));
+    }
+
+    #[test]
+    fn codes_are_those_of_the_table() {
+        let fault: Fault =
+            NetworkFault::SeveralMeetings { a: Origin::NONE, b: Origin::NONE, candidates: vec![(DVec3::ZERO, 0.25); 9] }.into();
+        assert_eq!(fault.code().0, "E508");
+        assert!(fault.to_string().contains("meet 9 times"), "{fault}");
+        assert!(fault.to_string().ends_with("and 3 more"), "{fault}");
     }
 }
