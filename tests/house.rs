@@ -204,7 +204,14 @@ fn nothing_of_one_machine_and_nothing_unfinished() {
     for name in ["README.md", "CHANGELOG.md", "Cargo.toml"] {
         files.push(PathBuf::from(name));
     }
-    let marks = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X"), concat!("/wo", "rk/"), concat!("../sha", "red"), concat!("to", "do!(")];
+    let marks = [
+        concat!("TO", "DO"),
+        concat!("FIX", "ME"),
+        concat!("XX", "X"),
+        concat!("/wo", "rk/"),
+        concat!("../sha", "red"),
+        concat!("to", "do!("),
+    ];
     let mut found = Vec::new();
     for file in files {
         let Ok(text) = fs::read_to_string(&file) else { continue };

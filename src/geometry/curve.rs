@@ -203,13 +203,6 @@ impl Curve {
         }
     }
 
-    /// Like [`Curve::jet`], at a kink or knot with the derivatives of what lies before it.
-    pub fn jet_before(&self, t: f64) -> Jet {
-        let (a, b) = self.domain();
-        let jet = self.reversed().jet(a + b - t);
-        Jet { d1: -jet.d1, ..jet }
-    }
-
     /// Point at a parameter of the domain.
     pub fn point(&self, t: f64) -> DVec3 {
         self.jet(t).p
