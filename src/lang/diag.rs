@@ -1,6 +1,8 @@
 //! Diagnostics: what is said about a script, with places in it.
 
-use crate::base::fault::{Code, Severity};
+use std::sync::OnceLock;
+
+use crate::base::fault::{Code, Describe, Fault, Report, Say, Severity, Subject};
 use crate::lang::syntax::ast::Span;
 
 crate::ids! {
@@ -22,7 +24,7 @@ pub struct Label {
 /// One report: an error, a warning or a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Code of `diagnostics.md`; its letter is the severity.
+    /// Code of the table in [`crate::lang::codes`]; its letter is the severity.
     pub code: Code,
     /// One sentence without final dot.
     pub message: String,
@@ -46,6 +48,35 @@ impl Diagnostic {
         }
     }
 
+    /// A report that no place in a script belongs to.
+    pub fn without_place(code: &'static str, message: impl Into<String>) -> Self {
+        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new() }
+    }
+
+    /// The one bridge from the kernel: `find` turns subjects into places, `say` speaks of entities and quantities as
+    /// the user does. With no subject found, the label falls back to the call.
+    pub fn from_fault(fault: &Fault, find: impl Fn(Subject) -> Option<(FileId, Span)>, say: &dyn Say) -> Self {
+        Self::from_report(fault.describe(say), find)
+    }
+
+    /// A described fault with its subjects found. Labels on one place are joined.
+    pub fn from_report(report: Report, find: impl Fn(Subject) -> Option<(FileId, Span)>) -> Self {
+        let Report { code, message, labels: subjects, help, notes } = report;
+        let mut labels: Vec<Label> = Vec::with_capacity(subjects.len());
+        for (subject, text) in subjects {
+            let Some((file, span)) = find(subject) else { continue };
+            match labels.iter_mut().find(|l| l.file == file && l.span == span) {
+                Some(label) if label.text == text => {}
+                Some(label) => label.text = format!("{}; {text}", label.text),
+                None => labels.push(Label { file, span, text }),
+            }
+        }
+        if labels.is_empty() {
+            labels.extend(find(Subject::Call).map(|(file, span)| Label { file, span, text: "here".to_owned() }));
+        }
+        Self { code, message, labels, help, notes }
+    }
+
     /// With one more label.
     pub fn label(mut self, file: FileId, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { file, span, text: text.into() });
@@ -67,5 +98,123 @@ impl Diagnostic {
     /// How bad it is.
     pub fn severity(&self) -> Severity {
         self.code.severity()
+    }
+
+    /// Where it belongs among others: file, then byte; reports without a place come last.
+    pub fn place(&self) -> (FileId, u32) {
+        self.labels.first().map_or((FileId(u32::MAX), 0), |l| (l.file, l.span.start))
+    }
+}
+
+/// Sorts reports by place; of two at one place the earlier found stays first.
+pub fn sort(found: &mut [Diagnostic]) {
+    found.sort_by_key(Diagnostic::place);
+}
+
+/// The source files of a run, by [`FileId`].
+#[derive(Debug, Default)]
+pub struct Sources {
+    files: Vec<SourceFile>,
+}
+
+/// One source file.
+#[derive(Debug)]
+pub struct SourceFile {
+    /// As the user knows it: `hall.loft`, `parts/ribs.loft`, `<stdin>`.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    lines: OnceLock<Vec<u32>>,
+}
+
+/// A place as editors count: lines and characters from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Line.
+    pub line: usize,
+    /// Column in characters.
+    pub column: usize,
+}
+
+impl Sources {
+    /// Adds a file; the first one is the main script.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
+        self.files.push(SourceFile { name: name.into(), text: text.into(), lines: OnceLock::new() });
+        FileId::at(self.files.len() - 1)
+    }
+
+    /// The file; none when it was never added.
+    pub fn get(&self, file: FileId) -> Option<&SourceFile> {
+        self.files.get(file.index())
+    }
+
+    /// The text of a stretch; empty when there is none.
+    pub fn text(&self, file: FileId, span: Span) -> &str {
+        self.get(file).and_then(|f| f.text.get(span.start as usize..span.end as usize)).unwrap_or("")
+    }
+
+    /// Line and column of a byte.
+    pub fn place(&self, file: FileId, byte: u32) -> Option<Place> {
+        self.get(file).map(|f| f.place(byte))
+    }
+}
+
+impl SourceFile {
+    /// First byte of each line.
+    fn lines(&self) -> &[u32] {
+        self.lines.get_or_init(|| {
+            let ends = self.text.bytes().enumerate().filter(|&(_, b)| b == b'\n');
+            std::iter::once(0).chain(ends.map(|(at, _)| at as u32 + 1)).collect()
+        })
+    }
+
+    /// Line and column of a byte; bytes beyond the end stand at the end.
+    pub fn place(&self, byte: u32) -> Place {
+        let byte = self.boundary(byte);
+        let line = self.lines().partition_point(|&start| start <= byte).saturating_sub(1);
+        let start = self.lines()[line] as usize;
+        Place { line: line + 1, column: self.text[start..byte as usize].chars().count() + 1 }
+    }
+
+    /// First and last byte of a line counted from 0, without its end.
+    pub(super) fn line(&self, index: usize) -> (usize, &str) {
+        let start = self.lines().get(index).copied().unwrap_or(self.text.len() as u32) as usize;
+        let end = self.lines().get(index + 1).map_or(self.text.len(), |&next| next as usize - 1);
+        (start, self.text[start..end.max(start)].trim_end_matches('\r'))
+    }
+
+    /// The byte, or the last character start before it.
+    pub(super) fn boundary(&self, byte: u32) -> u32 {
+        let mut at = (byte as usize).min(self.text.len());
+        while !self.text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::fault::{Plain, ValueFault};
+
+    #[test]
+    fn columns_count_characters() {
+        let mut sources = Sources::default();
+        let file = sources.add("a.loft", "let 지붕 = x\r\n\nlet b = y");
+        let place = |byte| sources.place(file, byte).map(|p| (p.line, p.column));
+        assert_eq!((place(0), place(13), place(14)), (Some((1, 1)), Some((1, 10)), Some((1, 11))));
+        assert_eq!((place(16), place(17), place(18), place(999)), (Some((2, 1)), Some((3, 1)), Some((3, 2)), Some((3, 10))));
+        assert_eq!(sources.place(FileId(1), 0), None);
+    }
+
+    #[test]
+    fn a_fault_finds_its_places() {
+        let fault: Fault = ValueFault::OutsideRange { argument: "rho", found: "2".into(), range: "between 0 and 1".into() }.into();
+        let argument = |subject| (subject == Subject::Argument("rho")).then_some((FileId(0), Span { start: 3, end: 4 }));
+        let found = Diagnostic::from_fault(&fault, argument, &Plain);
+        assert_eq!((found.code.0, found.labels[0].span.start, found.message.as_str()), ("E306", 3, "`rho` must be between 0 and 1, got 2"));
+        let call = |subject| (subject == Subject::Call).then_some((FileId(0), Span { start: 7, end: 9 }));
+        assert_eq!(Diagnostic::from_fault(&fault, call, &Plain).labels[0].span.start, 7);
     }
 }

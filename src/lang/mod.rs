@@ -2,6 +2,7 @@
 
 pub mod cx;
 pub mod diag;
+pub mod diag_render;
 pub mod eval;
 mod faults;
 pub mod names;
