@@ -87,13 +87,25 @@ impl Cutter<'_> {
         let corner = |i: usize, j: usize| j * (nu + 1) + i;
         let mut along_u = Vec::new();
         for (j, &v) in vs.iter().enumerate() {
-            let place = if j == 0 { Place::Side(0) } else if j == nv { Place::Side(2) } else { Place::Inside };
+            let place = if j == 0 {
+                Place::Side(0)
+            } else if j == nv {
+                Place::Side(2)
+            } else {
+                Place::Inside
+            };
             let corners: Vec<_> = us.iter().enumerate().map(|(i, &u)| ((u, v), corner(i, j))).collect();
             along_u.push(self.line(place, &corners));
         }
         let mut along_v = Vec::new();
         for (i, &u) in us.iter().enumerate() {
-            let place = if i == 0 { Place::Side(3) } else if i == nu { Place::Side(1) } else { Place::Inside };
+            let place = if i == 0 {
+                Place::Side(3)
+            } else if i == nu {
+                Place::Side(1)
+            } else {
+                Place::Inside
+            };
             let corners: Vec<_> = vs.iter().enumerate().map(|(j, &v)| ((u, v), corner(i, j))).collect();
             along_v.push(self.line(place, &corners));
         }
@@ -160,10 +172,11 @@ impl Cutter<'_> {
         let support = self.support(place, corners);
         let mut sides = Vec::new();
         for (n, w) in corners.windows(2).enumerate() {
-            let curve = support
-                .as_ref()
-                .and_then(|on| self.links_between(on, n))
-                .unwrap_or(EdgeCurve::Iso { surface: self.id, from: w[0].0, to: w[1].0 });
+            let curve = support.as_ref().and_then(|on| self.links_between(on, n)).unwrap_or(EdgeCurve::Iso {
+                surface: self.id,
+                from: w[0].0,
+                to: w[1].0,
+            });
             let track = Track::of(&curve, self.surfaces, self.network);
             let length = track.length();
             if length <= self.tolerance.point {

@@ -148,7 +148,8 @@ impl Model {
     fn not_connected(&self, request: &ShellRequest, sides: &[Option<bool>], apart: SurfaceId) -> Fault {
         let corners = |wanted: &dyn Fn(SurfaceId) -> bool| -> Vec<(DVec3, SurfaceId)> {
             let users = |e: &super::topology::Edge| e.users.iter().map(|(p, _)| self.patches[p.index()].surface).find(|s| wanted(*s));
-            let of_edge = |e: &super::topology::Edge| users(e).map(|s| [e.vertices.0, e.vertices.1].map(|v| (self.vertices[v.index()].point, s)));
+            let of_edge =
+                |e: &super::topology::Edge| users(e).map(|s| [e.vertices.0, e.vertices.1].map(|v| (self.vertices[v.index()].point, s)));
             self.edges.iter().filter_map(of_edge).flatten().collect()
         };
         let joined = corners(&|s| request.surfaces.contains(&s) && sides[s.index()].is_some());

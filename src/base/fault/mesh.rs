@@ -168,8 +168,8 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         }
         F::SidesDoNotClose { counts, written, surface } => {
             let [a, b, c] = counts;
-            let mut report =
-                Report::new("E702", format!("no quads fill a face with {a}, {b} and {c} elements on its three sides")).at(*surface, "this face");
+            let mut report = Report::new("E702", format!("no quads fill a face with {a}, {b} and {c} elements on its three sides"))
+                .at(*surface, "this face");
             for (count, origin) in written {
                 report = report.at(*origin, steps(*count));
             }
@@ -183,11 +183,9 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .at(*says, format!("asks for at least {needed}"))
                 .help(format!("count: {needed}"))
         }
-        F::CountBelowLinks { count, links } => {
-            Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
-                .at(count.1, steps(count.0))
-                .help(format!("count: {links}"))
-        }
+        F::CountBelowLinks { count, links } => Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
+            .at(count.1, steps(count.0))
+            .help(format!("count: {links}")),
         F::RuleOverridden { key, earlier, later } => {
             Report::new("W706", format!("`{key}` is set twice for the same part of the mesh; the later rule holds"))
                 .at(*earlier, "has no effect")
