@@ -1,8 +1,104 @@
 //! Floor 9: the commands; the only place with stdout, exit codes, arguments, clock and threads count.
 
+mod check;
+mod completions;
+mod doc;
+mod explain;
+mod interrupt;
+mod later;
+mod model;
+mod new;
+mod options;
+mod progress;
+mod run;
+mod summary;
+mod terminal;
+
 use std::process::ExitCode;
+
+use clap::ArgMatches;
+
+use terminal::Terminal;
+
+/// One subcommand.
+pub struct Command {
+    /// The word on the command line.
+    name: &'static str,
+    /// One line for the list of commands.
+    about: &'static str,
+    /// Adds its arguments.
+    arguments: fn(clap::Command) -> clap::Command,
+    /// Does it; gives the exit status.
+    run: fn(&ArgMatches, &Terminal) -> Exit,
+}
+
+/// All subcommands, in the order of the help.
+const COMMANDS: &[&[Command]] =
+    &[&[run::COMMAND, check::COMMAND, new::COMMAND, explain::COMMAND, doc::COMMAND, completions::COMMAND], later::COMMANDS];
+
+/// How the program ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// All is well.
+    Fine = 0,
+    /// The model has errors or failed checks.
+    Errors = 1,
+    /// The command line is wrong.
+    Usage = 2,
+    /// A bug in loft, caught.
+    Bug = 3,
+    /// Stopped by Ctrl-C.
+    Interrupted = 130,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// The command line as clap knows it: options for all, then the subcommands.
+fn command_line() -> clap::Command {
+    let color = clap::Arg::new("color")
+        .long("color")
+        .global(true)
+        .value_name("WHEN")
+        .value_parser(["auto", "always", "never"])
+        .default_value("auto")
+        .help("Colours in what is printed");
+    let root = clap::Command::new("loft")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Curves, networks, surfaces and meshes from a short text file")
+        .after_help("Exit status: 0 fine, 1 errors or failed checks, 2 wrong usage, 3 a bug in loft, 130 interrupted.")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .arg(color);
+    COMMANDS.iter().copied().flatten().fold(root, |root, c| root.subcommand((c.arguments)(clap::Command::new(c.name).about(c.about))))
+}
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    ExitCode::SUCCESS
+    let matches = match command_line().try_get_matches() {
+        Ok(matches) => matches,
+        Err(error) => {
+            // Help and version come this way as well. Where the terminal is gone there is nobody to tell.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Usage.into() } else { Exit::Fine.into() };
+        }
+    };
+    let terminal = Terminal::new(matches.get_one::<String>("color").map_or("auto", String::as_str));
+    interrupt::keep_panics_quiet();
+    let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
+    match COMMANDS.iter().copied().flatten().find(|c| c.name == name) {
+        Some(command) => (command.run)(arguments, &terminal).into(),
+        None => Exit::Usage.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_is_sound() {
+        super::command_line().debug_assert();
+    }
 }

@@ -1,1 +1,13 @@
-//! Floor 8: a loaded model.
+//! Floor 8: a model from script to files, as commands and other programs use it.
+
+pub mod disk;
+pub mod guard;
+pub mod json;
+pub mod memory;
+pub mod reference;
+pub mod report;
+pub mod run;
+mod similar;
+pub mod staging;
+pub mod starter;
+pub mod variants;

@@ -1,6 +1,7 @@
 //! Families 2 and 3: values that do not fit, found below the language.
 
 use super::{Describe, Report, Say, Subject};
+use crate::base::origin::Origin;
 
 /// A plain value that an entity cannot be made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +14,40 @@ pub enum ValueFault {
         found: String,
         /// What is allowed, in words.
         range: String,
+    },
+    /// E301: one of several forms is incomplete.
+    Missing {
+        /// The function.
+        function: &'static str,
+        /// What is missing, in words: "a third point or a centre".
+        what: &'static str,
+        /// A call that works.
+        example: &'static str,
+    },
+    /// E305: arguments of two forms that exclude each other.
+    Exclusive {
+        /// The function.
+        function: &'static str,
+        /// What it takes: "a third point or a centre, not both".
+        what: &'static str,
+        /// The arguments of which one side must go.
+        arguments: Vec<&'static str>,
+        /// Calls that work.
+        example: &'static str,
+    },
+    /// E211: links are asked of a curve that is not in the network.
+    NoLinks {
+        /// The curve.
+        of: Origin,
+    },
+    /// E211: a value of the wrong kind inside a list that may hold several kinds.
+    WrongKind {
+        /// Parameter name.
+        argument: &'static str,
+        /// What may be there, in words: "a point, curve, surface, shell or mesh".
+        wanted: &'static str,
+        /// What is there, in words: "an angle".
+        found: String,
     },
     /// E230: known but not in this version.
     NotInThisVersion {
@@ -29,10 +64,26 @@ pub enum ValueFault {
 }
 
 impl Describe for ValueFault {
-    fn describe(&self, _: &dyn Say) -> Report {
+    fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::OutsideRange { argument, found, range } => {
                 Report::new("E306", format!("`{argument}` must be {range}, got {found}")).label(Subject::Argument(argument), found.clone())
+            }
+            Self::Missing { function, what, example } => {
+                Report::new("E301", format!("`{function}` needs {what}")).label(Subject::Call, "missing here").help(*example)
+            }
+            Self::Exclusive { function, what, arguments, example } => {
+                let report = Report::new("E305", format!("`{function}` takes {what}")).help(*example);
+                let labels = arguments.iter().enumerate();
+                labels.fold(report, |r, (i, a)| r.label(Subject::Argument(a), if i == 0 { "remove one of these" } else { "or this" }))
+            }
+            Self::NoLinks { of } => {
+                let message = format!("{} is construction geometry and has no links", say.quoted(*of, "this curve"));
+                let report = Report::new("E211", message).label(Subject::Call, "links are asked for here").at(*of, "made here");
+                report.help("bind it with `curve`: then it joins the network")
+            }
+            Self::WrongKind { argument, wanted, found } => {
+                Report::new("E211", format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())
             }
             Self::NotInThisVersion { what } => {
                 Report::new("E230", format!("{what} is not in this version")).label(Subject::Call, "asked for here")

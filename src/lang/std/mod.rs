@@ -7,8 +7,12 @@ use super::cx::{Cx, Stop};
 use super::types::Ty;
 use super::value::Value;
 
+mod curves;
+pub mod kinds;
 mod lists;
+mod network;
 mod numbers;
+mod surfaces;
 mod text;
 mod vectors;
 
@@ -72,10 +76,11 @@ impl Builtin {
 }
 
 /// All tables of functions.
-pub const BUILTINS: &[&[Builtin]] = &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS];
+pub const BUILTINS: &[&[Builtin]] =
+    &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS, curves::BUILTINS, network::BUILTINS];
 
 /// All tables of fields.
-pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS];
+pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, network::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

@@ -1,0 +1,58 @@
+//! Ctrl-C, and what becomes of a panic.
+
+use std::panic;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use super::Exit;
+use crate::base::job::Job;
+use crate::session::staging::Staging;
+
+/// How long work may take to notice that it should stop.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// What Ctrl-C ends: the work and the outputs on their way.
+#[derive(Default)]
+struct Watched {
+    job: Arc<Job>,
+    outputs: Vec<Staging>,
+}
+
+static WATCHED: OnceLock<Mutex<Watched>> = OnceLock::new();
+
+fn watched() -> std::sync::MutexGuard<'static, Watched> {
+    WATCHED.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The job that Ctrl-C stops. Work that does not notice in time is ended without leaving a half file.
+pub fn job() -> Arc<Job> {
+    // Without a handler the system ends the program at Ctrl-C; only temporary files stay then.
+    let _ = ctrlc::set_handler(|| {
+        watched().job.cancel();
+        thread::sleep(PATIENCE);
+        watched().outputs.iter().for_each(Staging::discard);
+        std::process::exit(Exit::Interrupted as i32);
+    });
+    watched().job.clone()
+}
+
+/// Registers outputs that must not stay half written.
+pub fn protect(outputs: &Staging) {
+    watched().outputs.push(outputs.clone());
+}
+
+/// A panic is told by whoever catches it, in one message; the standard hook would print before.
+pub fn keep_panics_quiet() {
+    panic::set_hook(Box::new(|info| {
+        let place = info.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
+        *LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner) = place;
+    }));
+}
+
+static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
+
+/// Where in the program the last panic happened.
+pub fn last_panic_place() -> String {
+    LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}

@@ -1,0 +1,191 @@
+//! What `run` and `check` share: from the options to a report and an exit status.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::options::{Options, script_path};
+use super::progress::with_progress;
+use super::{Exit, Terminal, interrupt, summary};
+use crate::base::job::Job;
+use crate::base::limits;
+use crate::io::FileError;
+use crate::session::disk::{Disk, Outputs, read_limited, read_stream};
+use crate::session::guard::{Bug, guarded};
+use crate::session::json::{cases_text, report_text};
+use crate::session::report::{Case, Cases, VERSION};
+use crate::session::run::{self, Outcome, Task};
+
+/// One script with all its rows.
+struct Model<'a> {
+    name: &'a str,
+    text: Vec<u8>,
+    disk: Disk,
+}
+
+/// Runs all models of the command line; the worst exit status wins.
+pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
+    let job = interrupt::job();
+    let mut models = Vec::new();
+    for name in &options.models {
+        match open(name, options, outputs) {
+            Ok(model) => models.push(model),
+            Err(text) => return terminal.wrong_usage(&text),
+        }
+    }
+    let several = models.len() > 1;
+    let mut cases = Cases { loft: VERSION, cases: Vec::new() };
+    let mut worst = Exit::Fine;
+    for model in &models {
+        let (exit, rows) = match &options.table {
+            Some(table) => variants(model, table, options, &job, terminal),
+            None => one(model, &options.sets, several, options, &job, terminal),
+        };
+        worst = worst.max(exit);
+        cases.cases.extend(rows);
+        if exit >= Exit::Usage {
+            return exit;
+        }
+    }
+    if options.table.is_some() && !options.json {
+        terminal.print(&format!("\n{}", summary::cases(&cases, terminal.color_out)));
+    }
+    if options.json && (several || options.table.is_some()) {
+        terminal.print(&cases_text(&cases));
+    }
+    worst
+}
+
+fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Model<'a>, String> {
+    let path = script_path(name);
+    let cannot = |error: FileError| format!("cannot read {}", said(name, &error));
+    let text = match path {
+        Some(path) => read_limited(path, limits::SOURCE_BYTES + 1),
+        None => read_stream(std::io::stdin().lock(), limits::SOURCE_BYTES + 1),
+    };
+    let text = text.map_err(cannot)?;
+    let disk = Disk::new(path, options.out.as_deref(), &options.allow, outputs).map_err(|error| error.to_string())?;
+    Ok(Model { name, text, disk })
+}
+
+fn said(name: &str, error: &FileError) -> String {
+    match error {
+        FileError::Missing { similar } if similar.is_empty() => format!("{name:?}: there is no such file"),
+        FileError::Missing { similar } => format!("{name:?}: there is no such file; there is a {:?}", similar[0]),
+        FileError::Outside => format!("{name:?}: it lies outside the allowed folders"),
+        FileError::TooLarge(bytes) => format!("{name:?}: it has {bytes} bytes, the limit is {}", limits::SOURCE_BYTES),
+        FileError::Other(text) => format!("{name:?}: {text}"),
+    }
+}
+
+/// Runs one case behind the wall and shows what it said; `None` after a bug.
+fn case(model: &Model, disk: &Disk, sets: &[(String, String)], options: &Options, job: &Arc<Job>) -> Result<Outcome, Bug> {
+    interrupt::protect(disk.staging());
+    let started = Instant::now();
+    let clock = move || started.elapsed().as_secs_f64();
+    let task = Task {
+        name: model.name,
+        text: &model.text,
+        sets,
+        strict: options.strict,
+        keep_going: options.keep_going,
+        verbose: options.verbose,
+        clock: &clock,
+    };
+    guarded(|| run::run(&task, disk, job))
+}
+
+fn bug(bug: &Bug, model: &Model, terminal: &Terminal) -> Exit {
+    let place = interrupt::last_panic_place();
+    terminal.tell(&format!(
+        "E999 × a bug in loft: {} ({place})\n  help: nothing was written; please report it with the script ({}), the command line and this text\n",
+        bug.what, model.name
+    ));
+    Exit::Bug
+}
+
+fn exit_of(outcome: &Outcome) -> Exit {
+    if outcome.interrupted {
+        Exit::Interrupted
+    } else if outcome.report.ok {
+        Exit::Fine
+    } else {
+        Exit::Errors
+    }
+}
+
+fn one(
+    model: &Model,
+    sets: &[(String, String)],
+    several: bool,
+    options: &Options,
+    job: &Arc<Job>,
+    terminal: &Terminal,
+) -> (Exit, Vec<Case>) {
+    let watched = terminal.watched && !options.json;
+    let outcome = match with_progress(job, watched, || case(model, &model.disk, sets, options, job)) {
+        Ok(outcome) => outcome,
+        Err(caught) => return (bug(&caught, model, terminal), Vec::new()),
+    };
+    show(&outcome, options, terminal);
+    if !options.json {
+        terminal.print(&summary::text(&outcome.report, terminal.color_out));
+    } else if !several {
+        terminal.print(&report_text(&outcome.report));
+    }
+    (exit_of(&outcome), vec![Case { case: model.name.to_owned(), report: outcome.report }])
+}
+
+/// Diagnostics, how things were found, and timings: all on standard error.
+fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
+    terminal.tell(&outcome.drawn(terminal.color_err, options.verbose));
+    if options.verbose {
+        outcome.notes.iter().for_each(|line| terminal.tell(&format!("{line}\n")));
+    }
+    if options.timings {
+        let t = &outcome.report.timings;
+        let line = format!("parse {:.3} s, evaluate {:.3} s, mesh {:.3} s, write {:.3} s\n", t.parse, t.evaluate, t.mesh, t.write);
+        terminal.tell(&line);
+    }
+    if outcome.interrupted {
+        terminal.tell("interrupted: nothing was written\n");
+    }
+}
+
+fn variants(model: &Model, table: &Path, options: &Options, job: &Arc<Job>, terminal: &Terminal) -> (Exit, Vec<Case>) {
+    let rows = match read_limited(table, limits::DATA_BYTES) {
+        Ok(bytes) => crate::session::variants::rows(&bytes, &options.sets),
+        Err(error) => return (terminal.wrong_usage(&format!("cannot read {}", said(&table.to_string_lossy(), &error))), Vec::new()),
+    };
+    let rows = match rows {
+        Ok(rows) => rows,
+        Err(text) => return (terminal.wrong_usage(&format!("{}: {text}", table.display())), Vec::new()),
+    };
+    let mut worst = Exit::Fine;
+    let mut cases = Vec::new();
+    for row in rows {
+        let disk = model.disk.with_subfolder(&row.name);
+        let watched = terminal.watched && !options.json;
+        let outcome = match with_progress(job, watched, || case(model, &disk, &row.sets, options, job)) {
+            Ok(outcome) => outcome,
+            // One row that fails does not stop the others, even by a bug.
+            Err(caught) => {
+                worst = worst.max(bug(&caught, model, terminal));
+                continue;
+            }
+        };
+        if !options.json {
+            terminal.print(&format!("case {}\n", row.name));
+        }
+        show(&outcome, options, terminal);
+        if !options.json {
+            terminal.print(&summary::text(&outcome.report, terminal.color_out));
+        }
+        worst = worst.max(exit_of(&outcome));
+        cases.push(Case { case: row.name, report: outcome.report });
+        if worst == Exit::Interrupted {
+            break;
+        }
+    }
+    (worst, cases)
+}

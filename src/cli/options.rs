@@ -1,0 +1,105 @@
+//! Options that `run` and `check` share.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+
+/// What was asked for on the command line of a model.
+pub struct Options {
+    /// Scripts; `-` is standard input.
+    pub models: Vec<String>,
+    /// Folder for outputs; the script's by default.
+    pub out: Option<PathBuf>,
+    /// `--set name=value`, in order.
+    pub sets: Vec<(String, String)>,
+    /// Table of variants.
+    pub table: Option<PathBuf>,
+    /// Warnings are errors.
+    pub strict: bool,
+    /// Seconds of each phase are shown.
+    pub timings: bool,
+    /// The report as JSON on standard output.
+    pub json: bool,
+    /// How things were found: flows, methods, counts, notes.
+    pub verbose: bool,
+    /// Further places that may be read.
+    pub allow: Vec<PathBuf>,
+    /// What is sound is written although something failed.
+    pub keep_going: bool,
+}
+
+/// Adds the options of a model to a subcommand.
+pub fn add(command: clap::Command, several: bool) -> clap::Command {
+    let model = Arg::new("model").value_name("MODEL").required(true).help("A script, `-` for standard input");
+    let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
+    let path = |name: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
+    };
+    command
+        .arg(if several { model.num_args(1..) } else { model })
+        .arg(path("out", "DIR", "Folder for outputs [default: the script's]").short('o'))
+        .arg(
+            Arg::new("set")
+                .long("set")
+                .value_name("NAME=VALUE")
+                .action(ArgAction::Append)
+                .value_parser(assignment)
+                .help("Gives a param another value"),
+        )
+        .arg(path("table", "FILE.csv", "One run for each row; the header names params"))
+        .arg(
+            Arg::new("threads")
+                .long("threads")
+                .value_name("N")
+                .value_parser(value_parser!(u16).range(1..))
+                .help("How many threads may work [default: one per core]; results do not depend on it"),
+        )
+        .arg(path("cache", "DIR", "Not in this version").hide(true))
+        .arg(flag("strict", "Warnings count as errors"))
+        .arg(flag("timings", "Shows the seconds of each phase"))
+        .arg(flag("json", "Prints the report as JSON"))
+        .arg(flag("verbose", "Shows how things were found: flows, methods, counts, notes").short('v'))
+        .arg(path("allow", "PATH", "A further place that imports and modules may be read from").action(ArgAction::Append))
+        .arg(flag("keep-going", "Writes what is sound although something failed"))
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("expected NAME=VALUE, for example span=50m".to_owned()),
+    }
+}
+
+impl Options {
+    /// Reads them; the error is a sentence about the command line.
+    pub fn read(matches: &ArgMatches) -> Result<Self, String> {
+        if matches.contains_id("cache") && matches.get_one::<PathBuf>("cache").is_some() {
+            return Err("`--cache` is not in this version".to_owned());
+        }
+        let many = |name: &str| matches.get_many::<PathBuf>(name).into_iter().flatten().cloned().collect();
+        let options = Self {
+            models: matches.get_many::<String>("model").into_iter().flatten().cloned().collect(),
+            out: matches.get_one::<PathBuf>("out").cloned(),
+            sets: matches.get_many::<(String, String)>("set").into_iter().flatten().cloned().collect(),
+            table: matches.get_one::<PathBuf>("table").cloned(),
+            strict: matches.get_flag("strict"),
+            timings: matches.get_flag("timings"),
+            json: matches.get_flag("json"),
+            verbose: matches.get_flag("verbose"),
+            allow: many("allow"),
+            keep_going: matches.get_flag("keep-going"),
+        };
+        if let Some((name, _)) =
+            options.sets.iter().enumerate().find(|(i, s)| options.sets[..*i].iter().any(|o| o.0 == s.0)).map(|(_, s)| s)
+        {
+            return Err(format!("`--set {name}` is given twice"));
+        }
+        crate::base::par::set_threads(matches.get_one::<u16>("threads").map_or(0, |n| usize::from(*n)));
+        Ok(options)
+    }
+}
+
+/// The script on disk, or `None` for standard input.
+pub fn script_path(model: &str) -> Option<&Path> {
+    (model != "-").then(|| Path::new(model))
+}

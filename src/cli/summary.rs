@@ -1,0 +1,243 @@
+//! The report of a run for people: aligned tables on standard output.
+
+use crate::session::report::{Cases, Cell, Report, Table};
+
+/// Significant digits of a number in a summary; the JSON report has all.
+const DIGITS: usize = 6;
+
+/// A table as text: the first column and texts to the left, numbers to the right.
+struct Grid {
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+    right: Vec<bool>,
+}
+
+impl Grid {
+    /// Column names; those that begin with `>` hold numbers.
+    fn new(head: &[&str]) -> Self {
+        let right = head.iter().map(|h| h.starts_with('>')).collect();
+        Self { head: head.iter().map(|h| h.trim_start_matches('>').to_owned()).collect(), rows: Vec::new(), right }
+    }
+
+    fn print(&self, out: &mut String, color: bool) {
+        let columns = self.head.len();
+        let lines = || std::iter::once(&self.head).chain(&self.rows);
+        // A column without any value says nothing.
+        let shown: Vec<usize> = (0..columns).filter(|&c| self.rows.iter().any(|r| !r[c].is_empty())).collect();
+        let widths: Vec<usize> = (0..columns).map(|c| lines().map(|r| width(&r[c])).max().unwrap_or(0)).collect();
+        for (number, row) in lines().enumerate() {
+            let mut line = String::new();
+            for (k, &c) in shown.iter().enumerate() {
+                let pad = " ".repeat(widths[c] - width(&row[c]));
+                let gap = if k == 0 { "" } else { "  " };
+                line += &if self.right[c] { format!("{gap}{pad}{}", row[c]) } else { format!("{gap}{}{pad}", row[c]) };
+            }
+            let line = line.trim_end();
+            out.push_str(&if number == 0 { dim(line, color) } else { line.to_owned() });
+            out.push('\n');
+        }
+    }
+}
+
+fn width(text: &str) -> usize {
+    text.chars().count()
+}
+
+fn dim(text: &str, color: bool) -> String {
+    if color { format!("\u{1b}[2m{text}\u{1b}[0m") } else { text.to_owned() }
+}
+
+fn paint(text: &str, code: u8, color: bool) -> String {
+    if color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_owned() }
+}
+
+/// A number in few digits.
+pub fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let rounded: f64 = format!("{x:.*e}", DIGITS - 1).parse().unwrap_or(x);
+    let text = format!("{rounded:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+fn maybe(x: Option<f64>, unit: &str) -> String {
+    x.map_or_else(String::new, |x| with_unit(x, unit))
+}
+
+fn with_unit(x: f64, unit: &str) -> String {
+    if unit.is_empty() || unit.starts_with('°') { format!("{}{unit}", short(x)) } else { format!("{} {unit}", short(x)) }
+}
+
+fn yes(b: bool) -> String {
+    if b { "yes" } else { "no" }.to_owned()
+}
+
+/// The whole summary of one run.
+pub fn text(report: &Report, color: bool) -> String {
+    let mut out = String::new();
+    out.push_str(&counts(report));
+    for block in [surfaces(report), shells(report), meshes(report)].into_iter().flatten() {
+        out.push('\n');
+        block.print(&mut out, color);
+    }
+    for table in &report.reports {
+        out.push('\n');
+        print_table(table, &mut out, color);
+    }
+    if !report.checks.is_empty() {
+        out.push('\n');
+        checks(report, &mut out, color);
+    }
+    if !report.outputs.is_empty() {
+        out.push('\n');
+        report.outputs.iter().for_each(|o| out.push_str(&format!("wrote {}  {}\n", o.path, bytes(o.bytes))));
+    }
+    out
+}
+
+fn counts(report: &Report) -> String {
+    let (n, t) = (&report.network, &report.topology);
+    let plural = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+    let mut line = vec![
+        plural(n.curves, "curve", "curves"),
+        plural(n.links, "link", "links"),
+        plural(n.nodes, "node", "nodes"),
+        plural(report.modeling.len(), "modeling curve", "modeling curves"),
+    ];
+    if !report.surfaces.is_empty() {
+        line.push(plural(t.patches, "patch", "patches"));
+        line.push(plural(t.edges, "edge", "edges"));
+        line.push(plural(t.vertices, "vertex", "vertices"));
+    }
+    format!("{}: {}\n", report.model, line.join(", "))
+}
+
+fn surfaces(report: &Report) -> Option<Grid> {
+    let mut grid = Grid::new(&["surface", "kind", "flow", ">patches", ">edges", ">vertices", ">area"]);
+    let unit = format!("{}2", report.units);
+    for s in &report.surfaces {
+        let counts = [s.patches, s.edges, s.vertices].map(|n| n.to_string());
+        let [patches, edges, vertices] = counts;
+        let flow = s.flow.clone().unwrap_or_default();
+        grid.rows.push(vec![s.name.clone(), s.kind.to_owned(), flow, patches, edges, vertices, maybe(s.area, &unit)]);
+    }
+    (!grid.rows.is_empty()).then_some(grid)
+}
+
+fn shells(report: &Report) -> Option<Grid> {
+    let mut grid = Grid::new(&["shell", ">faces", "closed", ">area", ">volume", ">gap", ">angle"]);
+    let unit = |power: &str| format!("{}{power}", report.units);
+    for s in &report.shells {
+        let (area, volume, gap) = (maybe(s.area, &unit("2")), maybe(s.volume, &unit("3")), maybe(s.gap, &unit("")));
+        grid.rows.push(vec![s.name.clone(), s.faces.to_string(), yes(s.closed), area, volume, gap, maybe(s.angle, "°")]);
+    }
+    (!grid.rows.is_empty()).then_some(grid)
+}
+
+fn meshes(report: &Report) -> Option<Grid> {
+    let head = ["mesh", ">nodes", ">triangles", ">quads", ">min angle", ">max angle", ">quality", ">worst", ">area", ">chord error"];
+    let mut grid = Grid::new(&[&head[..], &["watertight", "groups"]].concat());
+    for m in &report.meshes {
+        let count = |n: usize| if n == 0 { String::new() } else { n.to_string() };
+        let mut row = vec![m.name.clone(), m.nodes.to_string(), count(m.triangles), count(m.quads)];
+        row.extend([maybe(m.min_angle, "°"), maybe(m.max_angle, "°"), maybe(m.mean_quality, ""), maybe(m.min_quality, "")]);
+        row.extend([maybe(m.area, &format!("{}2", report.units)), maybe(m.chord_error, &report.units)]);
+        row.push(m.watertight.map(yes).unwrap_or_default());
+        row.push(m.groups.len().to_string());
+        grid.rows.push(row);
+    }
+    (!grid.rows.is_empty()).then_some(grid)
+}
+
+fn checks(report: &Report, out: &mut String, color: bool) {
+    for check in &report.checks {
+        let sides = match (cell(&check.left), cell(&check.right)) {
+            (left, right) if left.is_empty() || right.is_empty() || check.pass => String::new(),
+            (left, right) => format!("  ({left} against {right})"),
+        };
+        let word = if check.pass { paint("pass", 32, color) } else { paint("FAIL", 31, color) };
+        out.push_str(&format!("{word}  {}{sides}\n", check.label));
+    }
+}
+
+fn print_table(table: &Table, out: &mut String, color: bool) {
+    out.push_str(&format!("{}\n", table.title));
+    let number = |c: usize| table.rows.iter().any(|r| matches!(r.get(c), Some(Cell::Number(_))));
+    let head: Vec<String> = table
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(c, column)| {
+            let unit = column.unit.as_ref().map(|u| format!(" [{u}]")).unwrap_or_default();
+            format!("{}{}{unit}", if number(c) { ">" } else { "" }, column.name)
+        })
+        .collect();
+    let mut grid = Grid::new(&head.iter().map(String::as_str).collect::<Vec<_>>());
+    for row in &table.rows {
+        grid.rows.push((0..head.len()).map(|c| row.get(c).map(cell).unwrap_or_default()).collect());
+    }
+    grid.print(out, color);
+}
+
+fn cell(cell: &Cell) -> String {
+    match cell {
+        Cell::Missing => String::new(),
+        Cell::Bool(b) => b.to_string(),
+        Cell::Number(x) => short(*x),
+        Cell::Text(t) => t.clone(),
+        Cell::List(items) => format!("({})", items.iter().map(self::cell).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+fn bytes(n: u64) -> String {
+    const STEPS: [&str; 4] = ["B", "kB", "MB", "GB"];
+    let mut size = n as f64;
+    let mut step = 0;
+    while size >= 1000.0 && step + 1 < STEPS.len() {
+        size /= 1000.0;
+        step += 1;
+    }
+    if step == 0 { format!("{n} B") } else { format!("{size:.1} {}", STEPS[step]) }
+}
+
+/// The last table of a run over variants: one line a case.
+pub fn cases(cases: &Cases, color: bool) -> String {
+    let mut grid = Grid::new(&["case", "result", ">checks", ">failed", ">errors", ">warnings", ">nodes", ">elements", ">area", ">outputs"]);
+    for case in &cases.cases {
+        let report = &case.report;
+        let said = |severity: &str| report.diagnostics.iter().filter(|d| d.severity == severity).count();
+        let nonzero = |n: usize| if n == 0 { String::new() } else { n.to_string() };
+        let areas: Vec<f64> = report.surfaces.iter().filter_map(|s| s.area).collect();
+        let area = (!areas.is_empty()).then(|| areas.iter().sum());
+        grid.rows.push(vec![
+            case.case.clone(),
+            if report.ok { "fine" } else { "FAILED" }.to_owned(),
+            nonzero(report.checks.len()),
+            nonzero(report.checks.iter().filter(|c| !c.pass).count()),
+            nonzero(said("error")),
+            nonzero(said("warning")),
+            nonzero(report.meshes.iter().map(|m| m.nodes).sum()),
+            nonzero(report.meshes.iter().map(|m| m.triangles + m.quads).sum()),
+            maybe(area, &format!("{}2", report.units)),
+            nonzero(report.outputs.len()),
+        ]);
+    }
+    let mut out = String::new();
+    grid.print(&mut out, color);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, expected) in [(0.1 + 0.2, "0.3"), (1234.56789, "1234.57"), (-0.0, "0"), (1e300, "1e300"), (12345678.0, "12345700")] {
+            assert_eq!(short(x), expected);
+        }
+        assert_eq!(bytes(999), "999 B");
+        assert_eq!(bytes(84_000_084), "84.0 MB");
+    }
+}

@@ -1,0 +1,332 @@
+//! Constructors of curves.
+
+use glam::DVec3;
+
+use crate::base::fault::ValueFault;
+use crate::base::math;
+use crate::base::tolerance::PARALLEL;
+use crate::builtins;
+use crate::geometry::{Curve, Ends, Kind, Spline, build};
+use crate::lang::cx::Stop;
+use crate::lang::types::{Angle, Direction, Length, Point};
+use crate::lang::value::Value;
+use crate::network::Chain;
+
+/// A constructed curve as a value.
+fn whole(curve: Curve) -> Chain {
+    Chain::of_curve(&curve)
+}
+
+/// The direction at length one; the zero vector has none.
+pub(super) fn unit(direction: DVec3, argument: &'static str) -> Result<DVec3, Stop> {
+    // Scaling by the largest coordinate keeps tiny and huge directions apart from zero.
+    let largest = direction.abs().max_element();
+    match (largest > 0.0).then(|| math::unit(direction / largest, PARALLEL)).flatten() {
+        Some(unit) => Ok(unit),
+        None => {
+            let found = format!("({}, {}, {})", direction.x, direction.y, direction.z);
+            Err(ValueFault::OutsideRange { argument, found, range: "a direction of some length".to_owned() }.into())
+        }
+    }
+}
+
+fn places(points: Vec<Point>) -> Vec<DVec3> {
+    points.into_iter().map(|p| p.0).collect()
+}
+
+const ARC_EXAMPLE: &str = "arc(A, B, through: P), or arc(center: C, start: A, angle: 90deg, normal: (0, 0, 1))";
+const CIRCLE_EXAMPLE: &str = "circle(center: C, radius: 2m), or circle(center: C, start: A)";
+
+/// The two ways to say an arc.
+struct ArcSaid {
+    from: Option<Point>,
+    to: Option<Point>,
+    through: Option<Point>,
+    center: Option<Point>,
+    start: Option<Point>,
+    angle: Option<Angle>,
+}
+
+impl ArcSaid {
+    fn exclusive(arguments: Vec<&'static str>) -> Stop {
+        let what = "a third point or a centre, not both";
+        ValueFault::Exclusive { function: "arc", what, arguments, example: ARC_EXAMPLE }.into()
+    }
+
+    fn missing(what: &'static str) -> Stop {
+        ValueFault::Missing { function: "arc", what, example: ARC_EXAMPLE }.into()
+    }
+
+    fn build(self, normal: DVec3, origin: crate::base::origin::Origin) -> Result<Curve, Stop> {
+        let given = |name, there: bool| there.then_some(name);
+        let by_points = [given("from", self.from.is_some()), given("to", self.to.is_some()), given("through", self.through.is_some())];
+        let by_center =
+            [given("center", self.center.is_some()), given("start", self.start.is_some()), given("angle", self.angle.is_some())];
+        let (by_points, by_center): (Vec<_>, Vec<_>) =
+            (by_points.into_iter().flatten().collect(), by_center.into_iter().flatten().collect());
+        if let (Some(last), Some(first)) = (by_points.last(), by_center.first()) {
+            return Err(Self::exclusive(vec![*last, *first]));
+        }
+        match self {
+            Self { from: Some(a), to: Some(b), through: Some(p), .. } => Ok(build::arc_through(a.0, b.0, p.0, origin)?),
+            Self { center: Some(c), start: Some(s), angle: Some(a), .. } => Ok(build::arc_center(c.0, s.0, a.0, normal, origin)?),
+            Self { from: Some(_), to: Some(_), .. } => Err(Self::missing("a third point or a centre")),
+            _ if by_center.is_empty() => Err(Self::missing("two ends and a point between them, or a centre, a start and an angle")),
+            _ => Err(Self::missing("`center:`, `start:` and `angle:` together")),
+        }
+    }
+}
+
+fn ends(tangent: Option<Direction>, argument: &'static str) -> Result<Ends, Stop> {
+    tangent.map_or(Ok(Ends::Natural), |t| unit(t.0, argument).map(Ends::Clamped))
+}
+
+builtins! {
+    /// Straight segment between two points.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// ```
+    fn line(
+        /// Where it starts.
+        from: Point,
+        /// Where it ends.
+        to: Point,
+    ) -> Chain = |cx, from, to| Ok(whole(build::line(from.0, to.0, cx.origin())?));
+
+    /// Straight segments through points.
+    ///
+    /// ```loft
+    /// curve border = polyline([(0, 0), (4m, 0), (4m, 3m)], closed: true)
+    /// ```
+    fn polyline(
+        /// Corners in order.
+        points: Vec<Point>,
+        /// Whether it returns to the first point.
+        closed: bool = "false",
+    ) -> Chain = |cx, list, closed| Ok(whole(build::polyline(&places(list), closed, cx.origin())?));
+
+    /// Circular arc, through three points or about a centre.
+    ///
+    /// `arc(A, B, through: P)` runs from A over P to B; `arc(center:, start:, angle:, normal:)` turns counter-clockwise
+    /// seen against the normal, clockwise when the angle is negative.
+    /// ```loft
+    /// curve a = arc((-2m, 0, 0), (2m, 0, 0), through: (0, 0, 1m))
+    /// curve b = arc(center: (0, 0, 5m), start: (2m, 0, 5m), angle: 90deg)
+    /// ```
+    fn arc(
+        /// Where it starts.
+        from: Option<Point>,
+        /// Where it ends.
+        to: Option<Point>,
+        /// A point between the ends.
+        through: Option<Point>,
+        /// Centre.
+        center: Option<Point>,
+        /// Where an arc about a centre starts.
+        start: Option<Point>,
+        /// How far it turns, at most 360deg.
+        angle: Option<Angle>,
+        /// Axis of the turn.
+        normal: Direction = "(0, 0, 1)",
+    ) -> Chain = |cx, from, to, through, center, start, angle, normal| {
+        let normal = unit(normal.0, "normal")?;
+        Ok(whole(ArcSaid { from, to, through, center, start, angle }.build(normal, cx.origin())?))
+    };
+
+    /// Whole circle about a centre.
+    ///
+    /// Without `start:` it begins on the model's x axis seen from the centre (on y where the normal is x).
+    /// ```loft
+    /// curve rim = circle(center: (0, 0, 1m), radius: 500mm)
+    /// ```
+    fn circle(
+        /// Centre.
+        center: Point,
+        /// Radius.
+        radius: Option<Length>,
+        /// Where it begins, instead of a radius.
+        start: Option<Point>,
+        /// Axis of the circle.
+        normal: Direction = "(0, 0, 1)",
+    ) -> Chain = |cx, center, radius, start, normal| {
+        let (normal, origin) = (unit(normal.0, "normal")?, cx.origin());
+        Ok(whole(match (radius, start) {
+            (Some(r), None) => build::circle(center.0, r.0, normal, origin)?,
+            (None, Some(p)) => build::circle_start(center.0, p.0, normal, origin)?,
+            (Some(_), Some(_)) => {
+                let (what, arguments) = ("a radius or a start, not both", vec!["radius", "start"]);
+                return Err(ValueFault::Exclusive { function: "circle", what, arguments, example: CIRCLE_EXAMPLE }.into());
+            }
+            (None, None) => {
+                return Err(ValueFault::Missing { function: "circle", what: "a radius or a start", example: CIRCLE_EXAMPLE }.into());
+            }
+        }))
+    };
+
+    /// Ellipse, whole or a part of it.
+    ///
+    /// The angles are those of the parameter: a point lies at centre + major · cos + minor · sin.
+    /// ```loft
+    /// curve rim = ellipse(center: (0, 0, 0), major: (3m, 0, 0), minor: (0, 2m, 0))
+    /// curve vault = ellipse(center: (0, 0, 0), major: (3m, 0, 0), minor: (0, 0, 1m), angle: 180deg)
+    /// ```
+    fn ellipse(
+        /// Centre.
+        center: Point,
+        /// One half axis, from the centre.
+        major: Point,
+        /// The other half axis, at right angles to the first.
+        minor: Point,
+        /// Where it begins, 0 at the end of `major`.
+        from: Angle = "0deg",
+        /// How far it runs, at most 360deg; negative the other way.
+        angle: Angle = "360deg",
+    ) -> Chain = |cx, center, major, minor, from, angle| {
+        Ok(whole(build::ellipse(center.0, major.0, minor.0, from.0, angle.0, cx.origin())?))
+    };
+
+    /// Conic section between two points with tangents towards an apex.
+    ///
+    /// `rho` below 0.5 gives an ellipse, 0.5 a parabola, above it a hyperbola.
+    /// ```loft
+    /// curve nose = conic((0, 0, 0), (1m, 2m, 0), (2m, 0, 0), rho: 0.6)
+    /// ```
+    fn conic(
+        /// Where it starts.
+        from: Point,
+        /// Where the end tangents meet.
+        apex: Point,
+        /// Where it ends.
+        to: Point,
+        /// How far it is drawn to the apex, between 0 and 1.
+        rho: f64,
+    ) -> Chain = |cx, from, apex, to, rho| Ok(whole(build::conic(from.0, apex.0, to.0, rho, Kind::Conic, cx.origin())?));
+
+    /// Parabola between two points with tangents towards an apex.
+    ///
+    /// ```loft
+    /// curve cable = parabola((0, 0, 10m), (25m, 0, -2m), (50m, 0, 10m))
+    /// ```
+    fn parabola(
+        /// Where it starts.
+        from: Point,
+        /// Where the end tangents meet.
+        apex: Point,
+        /// Where it ends.
+        to: Point,
+    ) -> Chain = |cx, from, apex, to| Ok(whole(build::conic(from.0, apex.0, to.0, 0.5, Kind::Parabola, cx.origin())?));
+
+    /// Smooth cubic spline through points.
+    ///
+    /// Twice continuously differentiable, chord-length knots, natural ends unless tangents are given.
+    /// ```loft
+    /// curve edge = spline([(0, 0), (1m, 0.2m), (2m, 0)], start: (1, 0, 0))
+    /// ```
+    fn spline(
+        /// Points in order.
+        points: Vec<Point>,
+        /// Direction at the first point.
+        start: Option<Direction>,
+        /// Direction at the last point.
+        end: Option<Direction>,
+        /// Whether it returns smoothly to the first point.
+        closed: bool = "false",
+    ) -> Chain = |cx, list, start, end, closed| {
+        if let (true, Some(argument)) = (closed, start.map(|_| "start").or(end.map(|_| "end"))) {
+            let (what, arguments) = ("end tangents or `closed: true`, not both", vec![argument, "closed"]);
+            let example = "spline([A, B, C], start: (1, 0, 0)), or spline([A, B, C], closed: true)";
+            return Err(ValueFault::Exclusive { function: "spline", what, arguments, example }.into());
+        }
+        let settings = Spline { start: ends(start, "start")?, end: ends(end, "end")?, closed };
+        Ok(whole(build::spline(&places(list), &settings, cx.origin())?))
+    };
+
+    /// Bézier curve of its control points.
+    ///
+    /// ```loft
+    /// curve lip = bezier([(0, 0), (1m, 1m), (2m, 0)])
+    /// ```
+    fn bezier(
+        /// Control points; the degree is one less than their number.
+        points: Vec<Point>,
+        /// A weight for each point, above 0.
+        weights: Option<Vec<f64>>,
+    ) -> Chain = |cx, list, weights| Ok(whole(build::bezier(&places(list), weights.as_deref(), cx.origin())?));
+
+    /// B-spline of its control points.
+    ///
+    /// ```loft
+    /// curve wave = bspline([(0, 0), (1m, 1m), (2m, -1m), (3m, 0)])
+    /// ```
+    fn bspline(
+        /// Control points.
+        points: Vec<Point>,
+        /// Degree.
+        degree: usize = "3",
+        /// Knots, not decreasing, one more than points and degree together; clamped and uniform when left out.
+        knots: Option<Vec<f64>>,
+        /// Whether it returns smoothly to its start.
+        closed: bool = "false",
+    ) -> Chain = |cx, list, degree, knots, closed| {
+        Ok(whole(build::bspline(&places(list), degree, knots.as_deref(), closed, cx.origin())?))
+    };
+
+    /// Rational B-spline of control points, weights and knots.
+    ///
+    /// ```loft
+    /// curve quarter = nurbs([(1m, 0), (1m, 1m), (0, 1m)], weights: [1, sqrt(0.5), 1], knots: [0, 0, 0, 1, 1, 1], degree: 2)
+    /// ```
+    fn nurbs(
+        /// Control points.
+        points: Vec<Point>,
+        /// A weight for each point, above 0.
+        weights: Vec<f64>,
+        /// Knots, not decreasing, one more than points and degree together.
+        knots: Vec<f64>,
+        /// Degree.
+        degree: usize = "3",
+    ) -> Chain = |cx, list, weights, knots, degree| Ok(whole(build::nurbs(&places(list), &weights, &knots, degree, cx.origin())?));
+
+    /// Helix about an axis.
+    ///
+    /// ```loft
+    /// curve stair = helix(center: (0, 0, 0), start: (1m, 0, 0), pitch: 3m, turns: 1.5)
+    /// ```
+    fn helix(
+        /// A point of the axis.
+        center: Point,
+        /// Where it starts.
+        start: Point,
+        /// Rise of one turn.
+        pitch: Length,
+        /// How many turns; negative runs clockwise.
+        turns: f64,
+        /// Direction of the axis.
+        axis: Direction = "(0, 0, 1)",
+    ) -> Chain = |cx, center, start, pitch, turns, axis| {
+        let axis = unit(axis.0, "axis")?;
+        Ok(whole(build::helix(center.0, axis, start.0, pitch.0, turns, cx.origin())?))
+    };
+
+    /// Curve at a distance from a plane curve, to its left seen against the normal.
+    ///
+    /// ```loft
+    /// curve inner = line((0, 0), (4m, 0))
+    /// curve outer = offset(inner, -300mm)
+    /// ```
+    fn offset(
+        /// A curve in a plane.
+        of: Value,
+        /// How far; negative to the right.
+        distance: Length,
+        /// Normal of the plane.
+        normal: Direction = "(0, 0, 1)",
+    ) -> Chain = |cx, of, distance, normal| {
+        let Value::Curve(chain) = of else {
+            return Err(ValueFault::NotInThisVersion { what: "`offset` of anything but a curve".to_owned() }.into());
+        };
+        let (normal, origin) = (unit(normal.0, "normal")?, cx.origin());
+        Ok(whole(build::offset(&chain.to_curve()?, distance.0, normal, origin)?))
+    };
+}

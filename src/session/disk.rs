@@ -1,0 +1,204 @@
+//! Files on the disk: where scripts and data may be read from and outputs may go.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::path::{Component, Path, PathBuf};
+
+use super::similar::similar_names;
+use super::staging::{Counted, Staging};
+use crate::io::{FileError, Files};
+
+/// What a run does with its outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outputs {
+    /// They are written.
+    Written,
+    /// They are only counted: `loft check`.
+    Counted,
+}
+
+/// The folders one run may use.
+///
+/// Reading is confined to the script's folder and below and to what `--allow` names, writing to the output folder;
+/// links are resolved before the question is asked.
+#[derive(Debug)]
+pub struct Disk {
+    home: PathBuf,
+    shown_home: PathBuf,
+    roots: Vec<PathBuf>,
+    out: PathBuf,
+    outputs: Outputs,
+    staging: Staging,
+}
+
+impl Disk {
+    /// For the script at `script` (`None`: standard input, whose folder is the current one).
+    ///
+    /// `out` defaults to the script's folder; `allow` lists further folders or files that may be read.
+    pub fn new(script: Option<&Path>, out: Option<&Path>, allow: &[PathBuf], outputs: Outputs) -> io::Result<Self> {
+        let shown_home =
+            script.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_owned).unwrap_or_default();
+        let near = if shown_home.as_os_str().is_empty() { Path::new(".") } else { &shown_home };
+        // A script that is itself a link belongs to the folder it is named in.
+        let home = near.canonicalize()?;
+        let mut roots = vec![home.clone()];
+        for path in allow {
+            roots.push(path.canonicalize().map_err(|error| io::Error::new(error.kind(), format!("--allow {}: {error}", path.display())))?);
+        }
+        let out = std::path::absolute(out.unwrap_or(&home))?;
+        Ok(Self { home, shown_home, roots, out, outputs, staging: Staging::default() })
+    }
+
+    /// The same folders for one row of a table, whose outputs go to a folder of their own.
+    pub fn with_subfolder(&self, name: &str) -> Self {
+        Self {
+            home: self.home.clone(),
+            shown_home: self.shown_home.clone(),
+            roots: self.roots.clone(),
+            out: self.out.join(name),
+            outputs: self.outputs,
+            staging: Staging::default(),
+        }
+    }
+
+    /// The outputs that are staged; a clone can discard them from another thread.
+    pub fn staging(&self) -> &Staging {
+        &self.staging
+    }
+
+    /// A resolved name as the user would write it on the command line.
+    pub fn shown(&self, resolved: &str) -> String {
+        match Path::new(resolved).strip_prefix(&self.home) {
+            Ok(inside) => self.shown_home.join(inside).to_string_lossy().into_owned(),
+            Err(_) => resolved.to_owned(),
+        }
+    }
+
+    /// Where an output may stand: inside the output folder, links resolved.
+    fn place(&self, path: &str) -> Result<PathBuf, FileError> {
+        let wanted = normal_form(&self.out.join(path)).ok_or(FileError::Outside)?;
+        let out = normal_form(&self.out).ok_or(FileError::Outside)?;
+        let inside = wanted.strip_prefix(&out).map_err(|_| FileError::Outside)?;
+        if inside.as_os_str().is_empty() {
+            return Err(FileError::Other("it names the output folder itself".to_owned()));
+        }
+        let (real_out, folder) = (existing_part(&out), existing_part(wanted.parent().unwrap_or(&out)));
+        // While the output folder does not exist yet, nothing below it can be a link.
+        if out.exists() && !folder.starts_with(real_out) {
+            return Err(FileError::Outside);
+        }
+        Ok(wanted)
+    }
+}
+
+impl Files for Disk {
+    fn resolve(&self, from: &str, path: &str) -> Result<String, FileError> {
+        let beside = Path::new(from).parent().filter(|folder| folder.is_absolute()).unwrap_or(&self.home);
+        let wanted = beside.join(path);
+        let real = match wanted.canonicalize() {
+            Ok(real) => real,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                // A path that leads outside is not searched for names.
+                let folder = normal_form(&wanted).and_then(|p| p.parent().map(existing_part));
+                if !folder.is_some_and(|folder| self.allows(&folder)) {
+                    return Err(FileError::Outside);
+                }
+                return Err(FileError::Missing { similar: similar_names(&wanted) });
+            }
+            Err(error) => return Err(FileError::Other(plain(&error))),
+        };
+        if !self.allows(&real) {
+            return Err(FileError::Outside);
+        }
+        match real.to_str() {
+            Some(text) => Ok(text.to_owned()),
+            None => Err(FileError::Other("its path is not UTF-8".to_owned())),
+        }
+    }
+
+    fn read(&self, resolved: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+        read_limited(Path::new(resolved), limit)
+    }
+
+    fn write(&self, path: &str, fill: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<u64, FileError> {
+        let place = self.place(path)?;
+        let written = match self.outputs {
+            Outputs::Written => self.staging.write(&place, fill),
+            Outputs::Counted => {
+                let mut sink = Counted { inner: io::sink(), bytes: 0 };
+                fill(&mut sink).map(|()| sink.bytes)
+            }
+        };
+        written.map_err(|error| FileError::Other(plain(&error)))
+    }
+}
+
+impl Disk {
+    fn allows(&self, real: &Path) -> bool {
+        self.roots.iter().any(|root| real.starts_with(root))
+    }
+}
+
+/// The whole of a regular file of at most `limit` bytes.
+pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+    let failed = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => FileError::Missing { similar: similar_names(path) },
+        _ => FileError::Other(plain(&error)),
+    };
+    let about = fs::metadata(path).map_err(failed)?;
+    if about.is_dir() {
+        return Err(FileError::Other("it is a folder".to_owned()));
+    }
+    if !about.is_file() {
+        return Err(FileError::Other("it is not a regular file".to_owned()));
+    }
+    if about.len() > limit {
+        return Err(FileError::TooLarge(about.len()));
+    }
+    read_stream(File::open(path).map_err(failed)?, limit)
+}
+
+/// All bytes of a stream, at most `limit` of them.
+pub fn read_stream(stream: impl Read, limit: u64) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    stream.take(limit + 1).read_to_end(&mut bytes).map_err(|error| FileError::Other(plain(&error)))?;
+    if bytes.len() as u64 > limit { Err(FileError::TooLarge(bytes.len() as u64)) } else { Ok(bytes) }
+}
+
+/// The system's words without its number, in lower case.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    let text = text.split(" (os error").next().unwrap_or_default();
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// The path without `.` and `..`; `None` when it climbs above the root.
+fn normal_form(path: &Path) -> Option<PathBuf> {
+    let mut result = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                if !result.pop() {
+                    return None;
+                }
+            }
+            other => result.push(other),
+        }
+    }
+    Some(result)
+}
+
+/// The real path of the longest leading part that exists, with the rest appended.
+fn existing_part(path: &Path) -> PathBuf {
+    for ancestor in path.ancestors() {
+        if let Ok(real) = ancestor.canonicalize() {
+            return match path.strip_prefix(ancestor) {
+                Ok(rest) if !rest.as_os_str().is_empty() => real.join(rest),
+                _ => real,
+            };
+        }
+    }
+    path.to_owned()
+}

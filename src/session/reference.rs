@@ -1,0 +1,45 @@
+//! The reference of the language, made from the tables that the interpreter uses.
+
+use crate::lang::std::{Builtin, builtins, fields};
+
+/// Every word in a line each.
+pub fn overview() -> String {
+    let mut out = String::new();
+    let mut section = |title: &str, words: &mut dyn Iterator<Item = &'static Builtin>| {
+        out.push_str(&format!("{title}\n"));
+        let mut words: Vec<(String, &str)> = words.map(|b| (b.name.to_owned(), b.summary())).collect();
+        words.sort();
+        words.dedup_by(|a, b| a.0 == b.0);
+        let width = words.iter().map(|w| w.0.len()).max().unwrap_or(0);
+        words.iter().for_each(|(name, summary)| out.push_str(&format!("  {name:width$}  {summary}\n")));
+    };
+    section("functions", &mut builtins());
+    section("fields, written x.name or name(x)", &mut fields());
+    out.push_str("\n`loft doc NAME` tells more about one of them.\n");
+    out
+}
+
+/// All that is known of a word, or words that look like it.
+pub fn entry(name: &str) -> Result<String, Vec<&'static str>> {
+    let found: Vec<&Builtin> = builtins().chain(fields()).filter(|b| b.name == name).collect();
+    if found.is_empty() {
+        let mut near: Vec<(usize, &'static str)> =
+            builtins().chain(fields()).filter_map(|b| super::similar::word_distance(name, b.name).map(|d| (d, b.name))).collect();
+        near.sort_unstable();
+        near.dedup();
+        return Err(near.into_iter().take(3).map(|(_, name)| name).collect());
+    }
+    Ok(found.into_iter().map(text_of).collect::<Vec<_>>().join("\n"))
+}
+
+/// A word for a terminal.
+fn text_of(builtin: &Builtin) -> String {
+    let mut out = format!("{}\n\n", builtin.signature());
+    let indented = builtin.docs.trim().lines().filter(|line| !line.trim_start().starts_with("```"));
+    indented.for_each(|line| out.push_str(&format!("  {}\n", line.trim_end()).replace("  \n", "\n")));
+    for param in builtin.params.iter().filter(|p| !p.docs.trim().is_empty()) {
+        let default = param.default.map(|d| format!(" [default: {d}]")).unwrap_or_default();
+        out.push_str(&format!("\n  {}: {}\n      {}{default}\n", param.name, param.ty.signature(), param.docs.trim()));
+    }
+    out
+}

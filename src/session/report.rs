@@ -1,0 +1,265 @@
+//! What a run found out, as plain data: the JSON report is this structure, and the summary table reads it too.
+//!
+//! The order of fields is the order of keys. Lengths are in model units, angles in degrees.
+
+use serde::Serialize;
+
+/// Version of the report's shape.
+pub const VERSION: u32 = 1;
+
+/// All that `loft run --json` tells about one run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// [`VERSION`].
+    pub loft: u32,
+    /// The script as named on the command line; `-` is standard input.
+    pub model: String,
+    /// Model unit.
+    pub units: String,
+    /// No errors, no failed checks.
+    pub ok: bool,
+    /// Counts of the curve network.
+    pub network: NetworkCounts,
+    /// Declared chains and the unnamed ones that surfaces stand on.
+    pub modeling: Vec<ModelingRow>,
+    /// Curves of the network.
+    pub curves: Vec<CurveRow>,
+    /// Declared surfaces.
+    pub surfaces: Vec<SurfaceRow>,
+    /// Counts of the surface model.
+    pub topology: TopologyCounts,
+    /// Shells.
+    pub shells: Vec<ShellRow>,
+    /// Meshes.
+    pub meshes: Vec<MeshRow>,
+    /// Checks.
+    pub checks: Vec<CheckRow>,
+    /// Report tables.
+    pub reports: Vec<Table>,
+    /// Files written, by path inside the output folder.
+    pub outputs: Vec<OutputRow>,
+    /// Everything said about the script.
+    pub diagnostics: Vec<DiagnosticRow>,
+    /// Seconds; the only part that may differ between two runs.
+    pub timings: Timings,
+}
+
+/// Counts of the curve network.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[allow(missing_docs)]
+pub struct NetworkCounts {
+    pub curves: usize,
+    pub links: usize,
+    pub nodes: usize,
+}
+
+/// A modeling curve.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ModelingRow {
+    /// Its name, or its source text when it has none.
+    pub name: String,
+    /// How many links it runs over.
+    pub links: usize,
+    /// Arc length.
+    pub length: f64,
+    /// Slope discontinuities inside it.
+    pub kinks: usize,
+}
+
+/// A curve of the network.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CurveRow {
+    /// Its name, or its source text when it has none.
+    pub name: String,
+    /// The word it was made with.
+    pub kind: &'static str,
+    /// Arc length.
+    pub length: f64,
+    /// How many links it runs over.
+    pub links: usize,
+}
+
+/// A declared surface.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct SurfaceRow {
+    pub name: String,
+    /// The word it was made with.
+    pub kind: &'static str,
+    /// Phrase of its flow, where a flow was looked for.
+    pub flow: Option<String>,
+    pub patches: usize,
+    pub edges: usize,
+    pub vertices: usize,
+    pub area: Option<f64>,
+}
+
+/// Counts of the surface model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[allow(missing_docs)]
+pub struct TopologyCounts {
+    pub patches: usize,
+    pub edges: usize,
+    pub vertices: usize,
+    pub shells: usize,
+}
+
+/// A shell.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct ShellRow {
+    pub name: String,
+    /// Patches.
+    pub faces: usize,
+    pub closed: bool,
+    pub area: Option<f64>,
+    /// Only of a closed shell.
+    pub volume: Option<f64>,
+    /// Largest distance between the faces of an inner edge; `None` without inner edges.
+    pub gap: Option<f64>,
+    /// Largest angle between the normals of the faces of an inner edge, degrees; `None` without inner edges.
+    pub angle: Option<f64>,
+}
+
+/// A mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct MeshRow {
+    pub name: String,
+    pub nodes: usize,
+    pub triangles: usize,
+    pub quads: usize,
+    pub order: u8,
+    /// Smallest corner angle, degrees; `None` without faces, as all that follow.
+    pub min_angle: Option<f64>,
+    pub max_angle: Option<f64>,
+    pub mean_quality: Option<f64>,
+    pub min_quality: Option<f64>,
+    pub max_aspect: Option<f64>,
+    pub area: Option<f64>,
+    pub chord_error: Option<f64>,
+    pub watertight: Option<bool>,
+    /// Of the connectivity with its groups, not of numbers or positions.
+    pub hash: Option<String>,
+    pub groups: Vec<GroupRow>,
+}
+
+/// A set of a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct GroupRow {
+    pub name: String,
+    pub nodes: usize,
+    pub elements: usize,
+}
+
+/// A check.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CheckRow {
+    /// Its label, or its source text.
+    pub label: String,
+    /// Whether it holds.
+    pub pass: bool,
+    /// Line of the script, from 1.
+    pub line: usize,
+    /// Left side of its comparison.
+    pub left: Cell,
+    /// Right side of its comparison.
+    pub right: Cell,
+}
+
+/// A table that a `report` makes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Table {
+    pub title: String,
+    pub columns: Vec<Column>,
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// Head of a column.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Unit of its numbers, `None` for plain numbers and words.
+    pub unit: Option<String>,
+}
+
+/// A value of a table.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(untagged)]
+#[allow(missing_docs)]
+pub enum Cell {
+    #[default]
+    Missing,
+    Bool(bool),
+    Number(f64),
+    Text(String),
+    /// Points and other short lists of numbers.
+    List(Vec<Cell>),
+}
+
+/// A file that was written.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct OutputRow {
+    /// Path inside the output folder.
+    pub path: String,
+    /// Its size.
+    pub bytes: u64,
+}
+
+/// A diagnostic.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct DiagnosticRow {
+    /// Code, for example `E501`.
+    pub code: &'static str,
+    /// `error`, `warning` or `note`.
+    pub severity: &'static str,
+    /// One sentence.
+    pub message: String,
+    /// Something that can be typed.
+    pub help: Option<String>,
+    /// Places, the foremost first.
+    pub labels: Vec<LabelRow>,
+}
+
+/// A place that a diagnostic speaks of; counts characters from 1.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[allow(missing_docs)]
+pub struct LabelRow {
+    pub file: String,
+    pub line: usize,
+    pub column: usize,
+    pub length: usize,
+    pub text: String,
+}
+
+/// Seconds of each phase.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Timings {
+    pub parse: f64,
+    pub evaluate: f64,
+    pub mesh: f64,
+    pub write: f64,
+}
+
+/// One run of a table of variants.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Case {
+    /// Name of the row, also of its output folder.
+    pub case: String,
+    /// Its report.
+    #[serde(flatten)]
+    pub report: Report,
+}
+
+/// What `loft run --table --json` prints.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Cases {
+    /// [`VERSION`].
+    pub loft: u32,
+    /// In order of the rows.
+    pub cases: Vec<Case>,
+}
