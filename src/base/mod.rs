@@ -11,4 +11,5 @@ pub mod par;
 pub mod predicates;
 pub mod quadrature;
 pub mod solve;
+pub mod text;
 pub mod tolerance;

@@ -1,6 +1,8 @@
 //! How files come and go: one small trait, so that nothing below the session touches the disk.
 
+use std::collections::BTreeMap;
 use std::io::Write;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What a file cannot be read for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,4 +28,124 @@ pub trait Files {
     fn read(&self, resolved: &str, limit: u64) -> Result<Vec<u8>, FileError>;
     /// Writes a whole output or nothing: `fill` writes into a sink that becomes the file when all is well.
     fn write(&self, path: &str, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>) -> Result<u64, FileError>;
+}
+
+/// Files in memory: what tests and editors use. Paths are taken as they are, `/` separated, relative to nothing.
+#[derive(Debug, Default)]
+pub struct Memory {
+    files: Mutex<BTreeMap<String, Vec<u8>>>,
+}
+
+impl Memory {
+    /// No files.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// With one more file.
+    pub fn with(self, path: &str, bytes: impl Into<Vec<u8>>) -> Self {
+        self.lock().insert(path.to_owned(), bytes.into());
+        self
+    }
+
+    /// The bytes of a file, read or written.
+    pub fn get(&self, path: &str) -> Option<Vec<u8>> {
+        self.lock().get(path).cloned()
+    }
+
+    /// All paths in order.
+    pub fn paths(&self) -> Vec<String> {
+        self.lock().keys().cloned().collect()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<String, Vec<u8>>> {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Files for Memory {
+    fn resolve(&self, from: &str, path: &str) -> Result<String, FileError> {
+        let mut parts: Vec<&str> = match from.rsplit_once('/') {
+            Some((folder, _)) if !path.starts_with('/') => folder.split('/').collect(),
+            _ => Vec::new(),
+        };
+        for part in path.split('/') {
+            match part {
+                "" | "." => {}
+                ".." => {
+                    parts.pop().ok_or(FileError::Outside)?;
+                }
+                part => parts.push(part),
+            }
+        }
+        let name = parts.join("/");
+        if self.lock().contains_key(&name) {
+            return Ok(name);
+        }
+        Err(FileError::Missing { similar: similar(&name, self.lock().keys().map(String::as_str)) })
+    }
+
+    fn read(&self, resolved: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+        let bytes = self.get(resolved).ok_or(FileError::Missing { similar: Vec::new() })?;
+        if bytes.len() as u64 > limit { Err(FileError::TooLarge(bytes.len() as u64)) } else { Ok(bytes) }
+    }
+
+    fn write(&self, path: &str, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>) -> Result<u64, FileError> {
+        let mut bytes = Vec::new();
+        fill(&mut bytes).map_err(|e| FileError::Other(e.to_string()))?;
+        let size = bytes.len() as u64;
+        self.lock().insert(path.to_owned(), bytes);
+        Ok(size)
+    }
+}
+
+/// Up to three of `names` that look like `name`, best first: few letters differ, or the words of the name in another order.
+pub fn similar<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let words = |name: &str| {
+        let mut words: Vec<String> = name.to_lowercase().split(['_', '-', '.', ' ', '/']).map(str::to_owned).collect();
+        words.sort();
+        words
+    };
+    let wanted = words(name);
+    let mut found: Vec<(usize, &str)> = names
+        .filter_map(|other| {
+            let distance = if words(other) == wanted { 1 } else { letters_apart(&name.to_lowercase(), &other.to_lowercase()) };
+            (distance <= 1 + name.chars().count() / 4).then_some((distance, other))
+        })
+        .collect();
+    found.sort();
+    found.into_iter().take(3).map(|(_, name)| name.to_owned()).collect()
+}
+
+/// Letters to insert, drop or change (Levenshtein).
+fn letters_apart(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let change = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = change.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_resolves_reads_and_suggests() {
+        let files = Memory::new().with("a/main.loft", "x").with("a/data/offsets_bow.csv", "1,2");
+        assert_eq!(files.resolve("a/main.loft", "data/../data/offsets_bow.csv").as_deref(), Ok("a/data/offsets_bow.csv"));
+        assert_eq!(files.resolve("a/main.loft", "../../x"), Err(FileError::Outside));
+        let missing = FileError::Missing { similar: vec!["a/data/offsets_bow.csv".to_owned()] };
+        assert_eq!(files.resolve("a/main.loft", "data/bow_offsets.csv"), Err(missing));
+        assert_eq!(files.read("a/main.loft", 0), Err(FileError::TooLarge(1)));
+        assert_eq!(files.write("out", &mut |out| out.write_all(b"123")), Ok(3));
+        assert_eq!(files.get("out").as_deref(), Some(b"123".as_slice()));
+    }
 }

@@ -1,24 +1,269 @@
-//! Family 8.
+//! Family 8: files that cannot be read or written, and what a format could not hold.
 
 use super::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
-/// What can go wrong or deserves a word here.
+/// A place in a data file where it stops making sense.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Malformed {
+    /// Line of the file, from 1; 0 in a binary file.
+    pub line: u64,
+    /// Character of the line or cell of the row, from 1, where one is to blame.
+    pub column: Option<u64>,
+    /// What is wrong, in words.
+    pub what: String,
+}
+
+impl Malformed {
+    /// A whole line is wrong.
+    pub fn line(line: u64, what: impl Into<String>) -> Self {
+        Self { line, column: None, what: what.into() }
+    }
+
+    /// One place of a line is wrong.
+    pub fn at(line: u64, column: u64, what: impl Into<String>) -> Self {
+        Self { line, column: Some(column), what: what.into() }
+    }
+
+    /// The place in words.
+    fn place(&self) -> String {
+        match (self.line, self.column) {
+            (0, None) => String::new(),
+            (0, Some(byte)) => format!(", byte {byte}"),
+            (line, None) => format!(", line {line}"),
+            (line, Some(column)) => format!(", line {line}, column {column}"),
+        }
+    }
+}
+
+/// What can go wrong or deserves a word about files. `of` is the import or export; paths are as written in the script.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileFault {
-    ///  files:E801: placeholder until the family's owner writes the table out.
-    Other {
-        /// The entity it speaks of.
+    /// E801: not there, or the system says no.
+    CannotRead {
+        /// The import.
         of: Origin,
-        /// What happened.
+        /// As written.
+        path: String,
+        /// Names beside it that look alike, best first.
+        similar: Vec<String>,
+        /// The system's words, empty when the file is just not there.
+        why: String,
+    },
+    /// E802: outside the folders that may be read or written.
+    Outside {
+        /// The import or export.
+        of: Origin,
+        /// As written.
+        path: String,
+    },
+    /// E803: the text stops making sense.
+    Malformed {
+        /// The import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// Where and why.
+        at: Malformed,
+    },
+    /// E804: an ending that chooses no format.
+    NoSuchFormat {
+        /// The export or import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// Endings that would do.
+        known: Vec<&'static str>,
+    },
+    /// E230: a format of a later version.
+    LaterFormat {
+        /// The export or import.
+        of: Origin,
+        /// The format's name.
+        format: &'static str,
+    },
+    /// E805: the format exists but not for this.
+    Unsupported {
+        /// The export.
+        of: Origin,
+        /// What cannot be, as a sentence.
         what: String,
+        /// What can be typed instead.
+        help: Option<String>,
+    },
+    /// W806: the format has no place for something.
+    LeftOut {
+        /// The export.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// What is missing from the file.
+        what: String,
+    },
+    /// W807: a set has another name in the file.
+    Renamed {
+        /// The export.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// Name in the model.
+        from: String,
+        /// Name in the file.
+        to: String,
+    },
+    /// E808: the system does not let us write.
+    CannotWrite {
+        /// The export.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// The system's words.
+        why: String,
+    },
+    /// E809: modules import each other.
+    ImportCycle {
+        /// The `use` that closes the ring.
+        of: Origin,
+        /// The files of the ring, the first one again at the end.
+        ring: Vec<String>,
+    },
+    /// W810: something in a file was skipped or repaired.
+    Repaired {
+        /// The import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// Where and what.
+        at: Malformed,
+    },
+    /// E811: larger than what is read.
+    TooLarge {
+        /// The import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// Size, bytes.
+        bytes: u64,
+        /// Limit, bytes.
+        limit: u64,
     },
 }
 
 impl Describe for FileFault {
-    fn describe(&self, say: &dyn Say) -> Report {
+    fn describe(&self, _: &dyn Say) -> Report {
         match self {
-            Self::Other { of, what } => Report::new(" files:E801", format!("{}: {what}", say.quoted(*of, "this"))).at(*of, "here"),
+            Self::CannotRead { .. } | Self::Outside { .. } | Self::Malformed { .. } | Self::Repaired { .. } | Self::TooLarge { .. } => {
+                self.describe_reading()
+            }
+            Self::ImportCycle { of, ring } => {
+                Report::new("E809", format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the ring")
+            }
+            _ => self.describe_writing(),
         }
+    }
+}
+
+impl FileFault {
+    fn describe_reading(&self) -> Report {
+        match self {
+            Self::CannotRead { of, path, similar, why } => {
+                let (message, label) = match why.as_str() {
+                    "" => (format!("cannot read \"{path}\""), "looked in the folder of this script"),
+                    why => (format!("cannot read \"{path}\": {why}"), "named here"),
+                };
+                let report = Report::new("E801", message).at(*of, label);
+                match similar.as_slice() {
+                    [] => report,
+                    [one] => report.help(format!("there is {} \"{one}\"", article(one))),
+                    [first, rest @ ..] => report.help(format!("there are \"{first}\"{}", quoted_tail(rest))),
+                }
+            }
+            Self::Outside { of, path } => Report::new("E802", format!("\"{path}\" lies outside the allowed folders"))
+                .at(*of, "only the script's folder and what is below it are open, links followed")
+                .help("move the file there, or run with `--allow PATH`"),
+            Self::Malformed { of, path, at } => {
+                Report::new("E803", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
+            }
+            Self::Repaired { of, path, at } => {
+                Report::new("W810", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
+            }
+            Self::TooLarge { of, path, bytes, limit } => {
+                Report::new("E811", format!("\"{path}\" has {}, more than the {} that are read", mebibytes(*bytes), mebibytes(*limit)))
+                    .at(*of, "named here")
+            }
+            _ => self.describe_writing(),
+        }
+    }
+
+    fn describe_writing(&self) -> Report {
+        match self {
+            Self::NoSuchFormat { of, path, known } => {
+                let ending = path.rsplit_once('.').filter(|(_, e)| !e.contains(['/', '\\'])).map(|(_, ending)| ending);
+                let message = match ending {
+                    Some(ending) => format!("no format has the ending `.{ending}`"),
+                    None => format!("\"{path}\" has no ending to choose a format by"),
+                };
+                Report::new("E804", message).at(*of, "named here").help(format!("use one of .{}", known.join(" .")))
+            }
+            Self::LaterFormat { of, format } => {
+                Report::new("E230", format!("the format {format} is not in this version")).at(*of, "asked for here")
+            }
+            Self::Unsupported { of, what, help } => {
+                let report = Report::new("E805", what.clone()).at(*of, "asked for here");
+                match help {
+                    Some(help) => report.help(help.clone()),
+                    None => report,
+                }
+            }
+            Self::LeftOut { of, path, what } => {
+                Report::new("W806", format!("\"{path}\" cannot hold {what}")).at(*of, "left out of this file")
+            }
+            Self::Renamed { of, path, from, to } => {
+                Report::new("W807", format!("set `{from}` is called `{to}` in \"{path}\"")).at(*of, "written here")
+            }
+            Self::CannotWrite { of, path, why } => {
+                Report::new("E808", format!("cannot write \"{path}\": {why}")).at(*of, "to be written here")
+            }
+            _ => Report::new("E801", "cannot read a file"),
+        }
+    }
+}
+
+fn article(name: &str) -> &'static str {
+    if name.starts_with(['a', 'e', 'i', 'o', 'u', 'A', 'E', 'I', 'O', 'U']) { "an" } else { "a" }
+}
+
+fn quoted_tail(rest: &[String]) -> String {
+    rest.iter().enumerate().map(|(k, name)| format!("{} \"{name}\"", if k + 1 == rest.len() { " and" } else { "," })).collect()
+}
+
+fn mebibytes(bytes: u64) -> String {
+    if bytes < 10 << 20 { format!("{bytes} bytes") } else { format!("{} MiB", bytes >> 20) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::fault::Plain;
+
+    #[test]
+    fn a_missing_file_names_its_neighbour() {
+        let fault = FileFault::CannotRead {
+            of: Origin(1),
+            path: "bow_offsets.csv".into(),
+            similar: vec!["offsets_bow.csv".into()],
+            why: String::new(),
+        };
+        let report = fault.describe(&Plain);
+        assert_eq!(report.message, "cannot read \"bow_offsets.csv\"");
+        assert_eq!(report.labels[0].1, "looked in the folder of this script");
+        assert_eq!(report.help.as_deref(), Some("there is an \"offsets_bow.csv\""));
+    }
+
+    #[test]
+    fn a_malformed_table_has_line_and_column() {
+        let at = Malformed::at(7, 3, "`1.2.3` is no number");
+        let report = FileFault::Malformed { of: Origin(1), path: "a.csv".into(), at }.describe(&Plain);
+        assert_eq!((report.code.0, report.message.as_str()), ("E803", "\"a.csv\", line 7, column 3: `1.2.3` is no number"));
     }
 }

@@ -18,7 +18,7 @@ use std::fmt;
 use glam::DVec3;
 
 pub use curves::{CurveFault, KnotFault};
-pub use files::FileFault;
+pub use files::{FileFault, Malformed};
 pub use mesh::MeshFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use surface::{NoFlow, SurfaceFault};

@@ -1,0 +1,79 @@
+//! Wavefront OBJ: 1-based indices, quads kept, line elements as `l`, one `g` per surface with the groups it lies in.
+
+use std::io::{self, Write};
+
+use super::blocks::write_records;
+use super::deck::{Deck, Encoding, Format, Loss};
+use super::sets::{KINDS, Kind, Naming, Part, left_out, listed, parts, sets};
+use crate::base::text::{push_count, push_real};
+use crate::mesh::Mesh;
+
+/// Text only.
+pub const FORMAT: Format =
+    Format { name: "obj", extensions: &["obj"], encoding: Encoding::Text, encodings: &[Encoding::Text], elements: &[], write };
+
+fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
+    let mesh = deck.mesh;
+    let (sets, mut losses) = sets(mesh, Naming::Free);
+    writeln!(out, "# made by loft, lengths in {}\no {}", deck.unit, mesh.name)?;
+    // Mid nodes come after all corner nodes, so leaving them out changes no number.
+    let corners = corner_count(mesh);
+    write_records(out, corners, |i, text| {
+        text.push(b'v');
+        for x in deck.node(i) {
+            text.push(b' ');
+            push_real(text, x);
+        }
+        text.push(b'\n');
+    })?;
+    let all: Vec<Part> = KINDS.iter().flat_map(|kind| parts(mesh, *kind)).collect();
+    for part in &all {
+        let mut names: Vec<&str> = part.sets.iter().map(|s| sets[*s].name.as_str()).collect();
+        let face = part.face.map(|f| mesh.faces[f].name.as_str());
+        if let Some(own) = face
+            && !part.sets.iter().any(|s| sets[*s].group.name == own)
+        {
+            names.insert(0, own);
+        }
+        if names.is_empty() {
+            names.push("default");
+        }
+        writeln!(out, "g {}", names.join(" "))?;
+        write_records(out, part.elements.len(), |i, text| element(mesh, part.kind, part.elements[i] as usize, text))?;
+    }
+    if !mesh.points.is_empty() {
+        writeln!(out, "g points")?;
+        write_records(out, mesh.points.len(), |i, text| {
+            text.extend_from_slice(b"p ");
+            push_count(text, u64::from(mesh.points[i]) + 1);
+            text.push(b'\n');
+        })?;
+    }
+    losses.extend(left_out(mesh, false, false));
+    let nodes_only = sets.iter().filter(|set| set.group.dimension() == 0).map(|set| set.group.name.as_str());
+    let nodes_only: Vec<&str> = nodes_only.collect();
+    if !nodes_only.is_empty() {
+        losses.push(Loss::LeftOut(format!("the node sets {}", listed(nodes_only))));
+    }
+    Ok(losses)
+}
+
+/// Nodes that are not mid nodes of order 2.
+pub(super) fn corner_count(mesh: &Mesh) -> usize {
+    let mids = mesh.line_mids.iter().chain(mesh.triangle_mids.as_flattened()).chain(mesh.quad_mids.as_flattened());
+    mids.min().map_or(mesh.nodes.len(), |first| *first as usize)
+}
+
+fn element(mesh: &Mesh, kind: Kind, index: usize, text: &mut Vec<u8>) {
+    text.push(if kind == Kind::Line { b'l' } else { b'f' });
+    let corners: &[u32] = match kind {
+        Kind::Line => &mesh.lines[index],
+        Kind::Triangle => &mesh.triangles[index],
+        Kind::Quad => &mesh.quads[index],
+    };
+    for node in corners {
+        text.push(b' ');
+        push_count(text, u64::from(*node) + 1);
+    }
+    text.push(b'\n');
+}
