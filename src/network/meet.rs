@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::chain::Chain;
-use crate::base::fault::Result;
+use super::chain::{Chain, Run, same_curve};
+use crate::base::fault::{NetworkFault, Result};
 use crate::base::tolerance::Tolerance;
+use crate::geometry::{Hit, closest_pair, intersect};
 
 /// One meeting of two chains: a node of the two, or the ends of a shared run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,13 +24,189 @@ pub struct Meeting {
 
 /// All meetings, ordered along `a`, each node once.
 pub fn meet(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Vec<Meeting>> {
-    let _ = (a, b, tolerance);
-    Ok(Vec::new())
+    let mut found = Vec::new();
+    if !a.bbox().touches(&b.bbox(), tolerance.point) {
+        return Ok(found);
+    }
+    for (ka, run_a) in a.runs().iter().enumerate() {
+        for (kb, run_b) in b.runs().iter().enumerate() {
+            if same_curve(&run_a.curve, &run_b.curve) {
+                on_one_curve((a, ka), (b, kb), tolerance, &mut found);
+            } else if run_a.curve.bbox().touches(&run_b.curve.bbox(), tolerance.point) {
+                for hit in intersect(&run_a.curve, &run_b.curve, tolerance)? {
+                    collect(hit, (a, ka), (b, kb), tolerance, &mut found);
+                }
+            }
+        }
+    }
+    Ok(tidy(a, b, found, tolerance))
 }
 
 /// The one meeting that `a & b` stands for; none, several or a shared run are E507, E508, E509 with candidates and the closest miss.
 pub fn meet_once(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Meeting> {
-    let _ = tolerance;
-    let at = (a.start(), b.start());
-    Err(crate::base::fault::NetworkFault::NoMeeting { a: (a.origin(), at.0), b: (b.origin(), at.1), tolerance: tolerance.point }.into())
+    let meetings = meet(a, b, tolerance)?;
+    if meetings.iter().any(|m| m.shared_to.is_some()) {
+        let runs = meetings.iter().filter_map(|m| m.shared_to.map(|(fa, _)| (m.point, a.point(fa)))).collect();
+        return Err(NetworkFault::SharesRun { a: a.origin(), b: b.origin(), runs }.into());
+    }
+    match meetings.as_slice() {
+        [one] => Ok(*one),
+        [] => {
+            let (pa, pb) = closest_points(a, b);
+            Err(NetworkFault::NoMeeting { a: (a.origin(), pa), b: (b.origin(), pb), tolerance: tolerance.point }.into())
+        }
+        several => {
+            let candidates = several.iter().map(|m| (m.point, m.fa)).collect();
+            Err(NetworkFault::SeveralMeetings { a: a.origin(), b: b.origin(), candidates }.into())
+        }
+    }
+}
+
+/// The nearest points of two chains.
+pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
+    let mut best = (a.start(), b.start());
+    let mut offer = |pair: (DVec3, DVec3)| {
+        if pair.0.distance_squared(pair.1) < best.0.distance_squared(best.1) {
+            best = pair;
+        }
+    };
+    for end in [a.start(), a.end()] {
+        offer((end, b.closest(end).1));
+    }
+    for end in [b.start(), b.end()] {
+        offer((a.closest(end).1, end));
+    }
+    for piece_a in a.runs().iter().flat_map(super::slice::pieces) {
+        for piece_b in b.runs().iter().flat_map(super::slice::pieces) {
+            let (ta, tb, _) = closest_pair(&piece_a, &piece_b);
+            offer((piece_a.point(ta), piece_b.point(tb)));
+        }
+    }
+    best
+}
+
+/// The arc length of a run that stands for a place of its curve: inside within the tolerance, on any turn.
+fn on_run(run: &Run, s: f64, tolerance: &Tolerance) -> Option<f64> {
+    let (lo, hi, length) = (run.s0.min(run.s1), run.s0.max(run.s1), run.curve.length());
+    let turns: &[f64] = if run.curve.is_closed(tolerance) { &[0.0, length, -length] } else { &[0.0] };
+    turns.iter().map(|turn| s + turn).find(|s| *s >= lo - tolerance.point && *s <= hi + tolerance.point).map(|s| s.clamp(lo, hi))
+}
+
+/// Turns a hit of two curves into a meeting of two chains, when it lies on both runs.
+fn collect(hit: Hit, (a, ka): (&Chain, usize), (b, kb): (&Chain, usize), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
+    let (run_a, run_b) = (&a.runs()[ka], &b.runs()[kb]);
+    match hit {
+        Hit::Point { ta, tb, at, tangent, .. } => {
+            let sa = on_run(run_a, run_a.curve.length_at(ta), tolerance);
+            let sb = on_run(run_b, run_b.curve.length_at(tb), tolerance);
+            if let (Some(sa), Some(sb)) = (sa, sb) {
+                found.push(Meeting { point: at, fa: a.fraction(ka, sa), fb: b.fraction(kb, sb), tangent, shared_to: None });
+            }
+        }
+        Hit::Overlap { a: (ta0, ta1), b: (tb0, tb1) } => {
+            let along_a = (run_a.curve.length_at(ta0), run_a.curve.length_at(ta1));
+            let along_b = (run_b.curve.length_at(tb0), run_b.curve.length_at(tb1));
+            // Both runs may hold only a part of the shared stretch: share of it from 0 to 1 that each holds.
+            let held = |run: &Run, (s0, s1): (f64, f64)| {
+                let (lo, hi) = (run.s0.min(run.s1), run.s0.max(run.s1));
+                let share = |s: f64| (s - s0) / (s1 - s0);
+                (share(lo).min(share(hi)).max(0.0), share(lo).max(share(hi)).min(1.0))
+            };
+            let (held_a, held_b) = (held(run_a, along_a), held(run_b, along_b));
+            let (from, to) = (held_a.0.max(held_b.0), held_a.1.min(held_b.1));
+            let at = |share: f64| (along_a.0 + (along_a.1 - along_a.0) * share, along_b.0 + (along_b.1 - along_b.0) * share);
+            push_stretch((a, ka), (b, kb), (at(from), at(to)), tolerance, found);
+        }
+    }
+}
+
+/// A shared stretch given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
+fn push_stretch(
+    (a, ka): (&Chain, usize),
+    (b, kb): (&Chain, usize),
+    (from, to): ((f64, f64), (f64, f64)),
+    tolerance: &Tolerance,
+    found: &mut Vec<Meeting>,
+) {
+    let length = to.0 - from.0;
+    if length < -tolerance.point {
+        return;
+    }
+    let meeting = |(sa, sb): (f64, f64)| (a.fraction(ka, sa), b.fraction(kb, sb));
+    let (mut first, mut last) = (meeting(from), meeting(to));
+    if last.0 < first.0 {
+        std::mem::swap(&mut first, &mut last);
+    }
+    let shared_to = (length > tolerance.point).then_some(last);
+    found.push(Meeting { point: a.point(first.0), fa: first.0, fb: first.1, tangent: true, shared_to });
+}
+
+/// Two runs on one curve share what both run over.
+fn on_one_curve((a, ka): (&Chain, usize), (b, kb): (&Chain, usize), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
+    let (run_a, run_b) = (&a.runs()[ka], &b.runs()[kb]);
+    let length = run_a.curve.length();
+    let turns: &[f64] = if run_a.curve.is_closed(tolerance) { &[-length, 0.0, length] } else { &[0.0] };
+    for turn in turns {
+        let lo = run_a.s0.min(run_a.s1).max(run_b.s0.min(run_b.s1) + turn);
+        let hi = run_a.s0.max(run_a.s1).min(run_b.s0.max(run_b.s1) + turn);
+        push_stretch((a, ka), (b, kb), ((lo, lo - turn), (hi, hi - turn)), tolerance, found);
+    }
+}
+
+/// Sorted along `a`, stretches joined over joints, each node once.
+fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) -> Vec<Meeting> {
+    let (near_a, near_b) = (tolerance.point / a.length(), tolerance.point / b.length());
+    let (closed_a, closed_b) = (a.is_closed(tolerance), b.is_closed(tolerance));
+    for m in &mut found {
+        // The start of a closed chain stands for its end.
+        if m.shared_to.is_none() {
+            m.fa = if closed_a && m.fa >= 1.0 - near_a { 0.0 } else { m.fa };
+            m.fb = if closed_b && m.fb >= 1.0 - near_b { 0.0 } else { m.fb };
+        }
+        let (pa, pb) = (corner(a, m.fa, near_a), corner(b, m.fb, near_b));
+        m.point = pa.or(pb).unwrap_or(m.point);
+    }
+    found.sort_by(|x, y| x.fa.total_cmp(&y.fa).then(x.fb.total_cmp(&y.fb)));
+    let mut out: Vec<Meeting> = Vec::with_capacity(found.len());
+    for m in found {
+        if let Some(last) = out.last_mut()
+            && last.shared_to.is_some_and(|(fa, fb)| m.fa <= fa + near_a && (m.shared_to.is_none() || (m.fb - fb).abs() <= near_b))
+        {
+            // A point on a stretch adds nothing, a stretch that goes on lengthens it.
+            if let (Some(end), Some(more)) = (&mut last.shared_to, m.shared_to)
+                && more.0 > end.0
+            {
+                *end = more;
+            }
+            continue;
+        }
+        let near = |k: &Meeting| {
+            k.shared_to.is_none() && tolerance.same_point(k.point, m.point) && (k.fa - m.fa).abs() * a.length() <= REACH * tolerance.point
+        };
+        if m.shared_to.is_none() && out.iter().rev().take_while(|k| m.fa - k.fa <= REACH * near_a).any(near) {
+            continue;
+        }
+        // A point where a stretch begins is a part of it.
+        if m.shared_to.is_some() {
+            while out.last().is_some_and(near) {
+                out.pop();
+            }
+        }
+        out.push(m);
+    }
+    out
+}
+
+/// Hits of one node are at most this many tolerances apart along a chain.
+const REACH: f64 = 4.0;
+
+/// The end or joint of a chain within reach of a fraction, for an end that is really an end.
+fn corner(chain: &Chain, f: f64, near: f64) -> Option<DVec3> {
+    let joints = chain.joints();
+    let k = joints.partition_point(|&j| j < f);
+    [k.wrapping_sub(1), k]
+        .into_iter()
+        .filter_map(|k| joints.get(k))
+        .find(|&&j| (j - f).abs() <= near)
+        .map(|&j| if j >= 1.0 { chain.end() } else { chain.point(j) })
 }

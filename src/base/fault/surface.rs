@@ -53,6 +53,18 @@ pub enum NoFlow {
         /// What would decide, as it is typed: "`pole:` or `u:`".
         decide: &'static str,
     },
+    /// Of curves that run the same way one is closed, another one open.
+    HalfClosed {
+        /// The closed one.
+        closed: Origin,
+        /// The open one.
+        open: Origin,
+    },
+    /// Closure was asked for, but a curve is open.
+    NotClosed {
+        /// The open curve.
+        open: Origin,
+    },
     /// The named pole is not an end that curves share.
     NoPole {
         /// The named point.
@@ -435,6 +447,18 @@ fn describe_no_flow(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report {
             }
             report.help(format!("decide with {decide}"))
         }
+        NoFlow::HalfClosed { closed, open } => report(format!(
+            "{} is closed and {} is open, but the two run the same way",
+            say.quoted(*closed, "one curve"),
+            say.quoted(*open, "another one")
+        ))
+        .at(*closed, "closed")
+        .at(*open, "open")
+        .help("close both, or cut the closed one: `c[A..B]`"),
+        NoFlow::NotClosed { open } => report(format!("the surface cannot close: {} is open", say.quoted(*open, "a curve along u")))
+            .label(Subject::Argument("closed"), "asked for here")
+            .at(*open, "open")
+            .help("leave out `closed: true`, or take a closed curve"),
         NoFlow::NoPole { pole, nearest } => report(format!(
             "no curves end together at the pole {}; the nearest end is {} away at {}",
             say.point(*pole),
