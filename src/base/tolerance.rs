@@ -31,6 +31,12 @@ pub const CUSP: f64 = 1e-10;
 pub const NUDGE: f64 = 1e-6;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
+/// Below this barycentric distance from a corner a quotient 0/0 is replaced by its expansion.
+pub const POLE_REACH: f64 = 1e-6;
+/// Parameter distance from a pole at which its normal is averaged when the tangents there are parallel (math notes §7).
+pub const POLE_STEP: f64 = 1e-3;
+/// |U_u × U_v| below this share of the largest |U_u|·|U_v| is singular.
+pub const SINGULAR: f64 = 1e-9;
 
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;

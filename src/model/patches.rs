@@ -70,6 +70,8 @@ pub(super) fn cut(id: SurfaceId, surfaces: &[Named], network: &Network, toleranc
     match surface.domain() {
         Domain::Square => cutter.square(),
         Domain::Triangle => cutter.triangle(),
+        // A plane without a map has borders but nothing to cut along.
+        Domain::Loop | Domain::Unbounded => cutter.pieces,
     }
 }
 

@@ -4,8 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::rail::Lean;
+use super::reparam::Map;
+use super::shape::Shape;
+use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{POLE_STEP, SINGULAR, Tolerance};
 use crate::geometry::Motion;
 use crate::network::Chain;
 
@@ -65,6 +69,10 @@ pub enum Domain {
     Square,
     /// u, v ≥ 0 and u + v ≤ 1; barycentric (1 − u − v, u, v) over the vertices.
     Triangle,
+    /// The part of 0 ≤ u, v ≤ 1 inside a loop of sides: a plane face that no map fits (not mapped in this version).
+    Loop,
+    /// All of the plane.
+    Unbounded,
 }
 
 /// What lies along one side of the domain.
@@ -81,22 +89,84 @@ pub enum Side {
     },
     /// The side is one point.
     Pole(DVec3),
-    /// The side is joined to the opposite one (closed surface).
+    /// The side is joined to the opposite one and no chain carries it (closed surface).
     Seam,
     /// A free border that no chain carries.
     Free,
 }
 
-/// A surface over its domain. Cheap to clone.
+/// A side with the map from its parameter to the chain's fraction (`None`: straight from `from` to `to`).
 #[derive(Clone, Debug)]
-pub struct Surface(Arc<Inner>);
+pub(super) struct Border {
+    pub side: Side,
+    pub map: Option<Map>,
+    /// The side runs against the map's parameter.
+    pub turned: bool,
+}
 
-#[derive(Debug)]
-struct Inner {
-    origin: Origin,
+impl Border {
+    /// A side whose chain is run from one fraction to another in proportion.
+    pub fn straight(side: Side) -> Self {
+        Self { side, map: None, turned: false }
+    }
+
+    /// The whole chain along the side, forwards or backwards.
+    pub fn chain(chain: Chain, reversed: bool) -> Self {
+        let (from, to) = if reversed { (1.0, 0.0) } else { (0.0, 1.0) };
+        Self::straight(Side::Chain { chain, from, to })
+    }
+
+    fn turned(&self) -> Self {
+        let side = match &self.side {
+            Side::Chain { chain, from, to } => Side::Chain { chain: chain.clone(), from: *to, to: *from },
+            other => other.clone(),
+        };
+        Self { side, map: self.map.clone(), turned: !self.turned }
+    }
+
+    fn moved(&self, motion: &Motion) -> Self {
+        let side = match &self.side {
+            Side::Chain { chain, from, to } => Side::Chain { chain: chain.moved(motion), from: *from, to: *to },
+            Side::Pole(p) => Side::Pole(motion.point(*p)),
+            other => other.clone(),
+        };
+        Self { side, map: self.map.clone(), turned: self.turned }
+    }
+}
+
+/// A surface over its domain. Cheap to clone.
+///
+/// Where derivatives jump (kink lines), [`Surface::jet`] takes those of the piece that follows in u and v;
+/// [`Surface::jet_lean`] chooses.
+#[derive(Clone, Debug)]
+pub struct Surface(Arc<Parts>);
+
+/// Everything a surface is made of; what builders fill in.
+#[derive(Clone, Debug)]
+pub(super) struct Parts {
+    pub origin: Origin,
+    pub kind: SurfaceKind,
+    pub flow: String,
+    pub domain: Domain,
+    pub closed: (bool, bool),
+    pub shape: Shape,
+    pub borders: Vec<Border>,
+    pub kinks: (Vec<f64>, Vec<f64>),
+    pub chains: Vec<Chain>,
+    pub generated: Vec<Chain>,
+    /// The shape is read with v backwards (a triangle: with u and v exchanged).
+    pub flipped: bool,
 }
 
 impl Surface {
+    pub(super) fn new(parts: Parts) -> Self {
+        Self(Arc::new(parts))
+    }
+
+    pub(super) fn parts(&self) -> &Parts {
+        &self.0
+    }
+
     /// The expression that made it.
     pub fn origin(&self) -> Origin {
         self.0.origin
@@ -104,33 +174,57 @@ impl Surface {
 
     /// The same made by another expression.
     pub fn with_origin(&self, origin: Origin) -> Self {
-        Self(Arc::new(Inner { origin }))
+        Self::new(Parts { origin, ..(*self.0).clone() })
     }
 
     /// The word it was made with.
     pub fn kind(&self) -> SurfaceKind {
-        SurfaceKind::Plane
+        self.0.kind
     }
 
-    /// Phrase of its flow (math.md section 7), for example "quadrilateral".
+    /// Phrase of its flow (math notes §7), for example "quadrilateral"; empty where there is none.
     pub fn flow(&self) -> String {
-        String::new()
+        self.0.flow.clone()
     }
 
-    /// Square, or triangle for a uniform trilateral.
+    /// Square, triangle for a uniform trilateral, or a plane without a map.
     pub fn domain(&self) -> Domain {
-        Domain::Square
+        self.0.domain
     }
 
     /// Whether u (first) and v (second) are periodic.
     pub fn closed(&self) -> (bool, bool) {
-        (false, false)
+        self.0.closed
     }
 
     /// Point and derivatives.
     pub fn jet(&self, u: f64, v: f64) -> Jet2 {
-        let _ = (u, v);
-        Jet2::default()
+        self.jet_lean(u, v, (Lean::After, Lean::After))
+    }
+
+    /// Point and derivatives of the smooth piece on the given side in u (first) and v (second): on the border of a
+    /// patch the side where the patch lies.
+    pub fn jet_lean(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        let (u, v, lean) = self.inner(u, v, lean);
+        self.outer(self.0.shape.jet(u, v, lean))
+    }
+
+    /// From this surface's parameters to the shape's.
+    fn inner(&self, u: f64, v: f64, lean: (Lean, Lean)) -> (f64, f64, (Lean, Lean)) {
+        match (self.0.flipped, self.0.domain) {
+            (false, _) => (u, v, lean),
+            (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
+            (true, _) => (u, 1.0 - v, (lean.0, lean.1.turned())),
+        }
+    }
+
+    /// From the shape's derivatives to this surface's.
+    fn outer(&self, jet: Jet2) -> Jet2 {
+        match (self.0.flipped, self.0.domain) {
+            (false, _) => jet,
+            (true, Domain::Triangle) => Jet2 { du: jet.dv, dv: jet.du, duu: jet.dvv, dvv: jet.duu, ..jet },
+            (true, _) => Jet2 { dv: -jet.dv, duv: -jet.duv, ..jet },
+        }
     }
 
     /// Point.
@@ -140,63 +234,206 @@ impl Surface {
 
     /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
     pub fn normal(&self, u: f64, v: f64) -> DVec3 {
-        let jet = self.jet(u, v);
-        jet.du.cross(jet.dv).normalize_or_zero()
+        self.normal_lean(u, v, (Lean::After, Lean::After))
+    }
+
+    /// Unit normal of the smooth piece on the given side, see [`Surface::jet_lean`].
+    pub fn normal_lean(&self, u: f64, v: f64, lean: (Lean, Lean)) -> DVec3 {
+        let jet = self.jet_lean(u, v, lean);
+        if let Some(normal) = unit_normal(&jet) {
+            return normal;
+        }
+        let at_end = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];
+        let pole = (0..4).find(|&k| at_end[k] && self.0.domain == Domain::Square && matches!(self.0.borders[k].side, Side::Pole(_)));
+        pole.map_or(DVec3::ZERO, |k| self.pole_normal(k))
+    }
+
+    /// The normal of the pole on side `k`: the cross product of the tangents of the two borders that end there, or the
+    /// mean of the normals a step away where these are parallel (math notes §7).
+    fn pole_normal(&self, k: usize) -> DVec3 {
+        let place = |along: f64, inward: f64| match k {
+            0 => (along, inward),
+            1 => (1.0 - inward, along),
+            2 => (along, 1.0 - inward),
+            _ => (inward, along),
+        };
+        let inward = |along: f64| {
+            let (u, v) = place(along, 0.0);
+            let lean = (if u == 1.0 { Lean::Before } else { Lean::After }, if v == 1.0 { Lean::Before } else { Lean::After });
+            let jet = self.jet_lean(u, v, lean);
+            [jet.dv, -jet.du, -jet.dv, jet.du][k]
+        };
+        const SAMPLES: u32 = 16;
+        let mean = (0..SAMPLES).fold(DVec3::ZERO, |sum, i| {
+            let (u, v) = place((f64::from(i) + 0.5) / f64::from(SAMPLES), POLE_STEP);
+            sum + unit_normal(&self.jet(u, v)).unwrap_or(DVec3::ZERO)
+        });
+        let (first, last) = (inward(0.0), inward(1.0));
+        let cross = first.cross(last);
+        if cross.length() > Tolerance::new(0.0, 0.0).angle * first.length() * last.length() {
+            // Borders say the plane, the neighbourhood says which side is up.
+            let normal = cross.normalize_or_zero();
+            return if normal.dot(mean) < 0.0 { -normal } else { normal };
+        }
+        mean.normalize_or_zero()
     }
 
     /// Points of the tensor grid `us × vs`, row by row (u fastest), curves evaluated once per row.
+    ///
+    /// `out` holds `us.len() * vs.len()` points.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        for (row, &v) in out.chunks_mut(us.len()).zip(vs) {
-            for (p, &u) in row.iter_mut().zip(us) {
-                *p = self.point(u, v);
+        match (self.0.flipped, self.0.domain) {
+            (false, _) => self.0.shape.grid(us, vs, out),
+            (true, Domain::Triangle) => {
+                for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
+                    for (p, &u) in row.iter_mut().zip(us) {
+                        *p = self.point(u, v);
+                    }
+                }
+            }
+            (true, _) => {
+                let turned: Vec<f64> = vs.iter().map(|v| 1.0 - v).collect();
+                self.0.shape.grid(us, &turned, out);
             }
         }
     }
 
-    /// Interior values of u (first) and v (second) where the surface has a kink line, ascending.
-    pub fn kinks(&self) -> (&[f64], &[f64]) {
-        (&[], &[])
+    /// Jets of the tensor grid `us × vs`, each parameter with its side, u fastest; curves evaluated once per row.
+    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)]) -> Vec<Jet2> {
+        let mut out = Vec::with_capacity(us.len() * vs.len());
+        if self.0.flipped && self.0.domain == Domain::Triangle {
+            for &(v, lean_v) in vs {
+                out.extend(us.iter().map(|&(u, lean_u)| self.jet_lean(u, v, (lean_u, lean_v))));
+            }
+        } else if self.0.flipped {
+            let turned: Vec<(f64, Lean)> = vs.iter().map(|(v, lean)| (1.0 - v, lean.turned())).collect();
+            self.0.shape.jets(us, &turned, &mut out);
+            out.iter_mut().for_each(|jet| *jet = self.outer(*jet));
+        } else {
+            self.0.shape.jets(us, vs, &mut out);
+        }
+        out
     }
 
-    /// Sides in the order v = 0, u = 1, v = 1, u = 0 (a triangle: v = 0, the slant from (1, 0) to (0, 1), u = 0).
+    /// Interior values of u (first) and v (second) where the surface has a kink line, ascending.
+    pub fn kinks(&self) -> (&[f64], &[f64]) {
+        (&self.0.kinks.0, &self.0.kinks.1)
+    }
+
+    /// Interior values of u (first) and v (second) where the surface is less than analytic: kinks, network lines, joints
+    /// and knots of the curves, ascending. Between them quadrature and bounds behave.
+    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
+        let (us, vs) = self.0.shape.breaks();
+        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
+        match (self.0.flipped, self.0.domain) {
+            (false, _) => (us, vs),
+            (true, Domain::Triangle) => (vs, us),
+            (true, _) => (us, turned(&vs)),
+        }
+    }
+
+    /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.
+    pub(super) fn cells(&self) -> (Vec<f64>, Vec<f64>) {
+        let (us, vs) = self.0.shape.cells();
+        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
+        match (self.0.flipped, self.0.domain) {
+            (false, _) => (us, vs),
+            (true, Domain::Triangle) => (vs, us),
+            (true, _) => (us, turned(&vs)),
+        }
+    }
+
+    /// How many sides: 4, 3 for a triangle, any number for a plane without a map, 0 when unbounded.
+    pub fn n_sides(&self) -> usize {
+        self.0.borders.len()
+    }
+
+    /// Sides in the order v = 0, u = 1, v = 1, u = 0 (a triangle: v = 0, the slant from (1, 0) to (0, 1), u = 0;
+    /// a plane without a map: counter-clockwise, each in the loop's direction).
     ///
     /// Each runs with ascending u or v (the slant: ascending v).
     pub fn side(&self, k: usize) -> Side {
-        let _ = k;
-        Side::Free
+        self.0.borders.get(k).map_or(Side::Free, |border| border.side.clone())
     }
 
     /// Side parameter (u or v) at a fraction of the chain that lies along side `k`.
     pub fn side_parameter(&self, k: usize, fraction: f64) -> f64 {
-        let _ = k;
-        fraction
+        let Some(border) = self.0.borders.get(k) else { return fraction };
+        let Side::Chain { from, to, .. } = &border.side else { return fraction };
+        match &border.map {
+            Some(map) if border.turned => 1.0 - map.inverse(fraction),
+            Some(map) => map.inverse(fraction),
+            None => ((fraction - from) / (to - from)).clamp(0.0, 1.0),
+        }
     }
 
     /// Inverse of [`Surface::side_parameter`]: fraction of the chain at a side parameter.
     pub fn side_fraction(&self, k: usize, parameter: f64) -> f64 {
-        let _ = k;
-        parameter
+        let Some(border) = self.0.borders.get(k) else { return parameter };
+        let Side::Chain { from, to, .. } = &border.side else { return parameter };
+        match &border.map {
+            Some(map) => map.value(if border.turned { 1.0 - parameter } else { parameter }),
+            None if parameter == 1.0 => *to,
+            None => from + (to - from) * parameter,
+        }
     }
 
     /// The modeling curves it stands on.
     pub fn chains(&self) -> &[Chain] {
-        &[]
+        &self.0.chains
     }
 
-    /// The same surface with its other side up: v runs backwards, so the normal turns.
+    /// Curves the surface makes itself: copies of a swept profile and the paths of its ends. They join the network as
+    /// links and nodes, not as modeling curves (math notes §9).
+    pub fn generated(&self) -> &[Chain] {
+        &self.0.generated
+    }
+
+    /// The same surface with its other side up: v runs backwards (a triangle: u and v exchanged), so the normal turns.
     pub fn flipped(&self) -> Self {
-        self.clone()
+        let parts = &*self.0;
+        let old = &parts.borders;
+        let borders = match parts.domain {
+            Domain::Square => vec![old[2].clone(), old[1].turned(), old[0].clone(), old[3].turned()],
+            Domain::Triangle => vec![old[2].clone(), old[1].turned(), old[0].clone()],
+            Domain::Loop | Domain::Unbounded => old.iter().rev().map(Border::turned).collect(),
+        };
+        let (us, vs) = &parts.kinks;
+        let kinks = if parts.domain == Domain::Triangle {
+            (vs.clone(), us.clone())
+        } else {
+            (us.clone(), vs.iter().rev().map(|v| 1.0 - v).collect())
+        };
+        Self::new(Parts { borders, kinks, flipped: !parts.flipped, ..parts.clone() })
     }
 
     /// Carried by a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let _ = motion;
-        self.clone()
+        let parts = &*self.0;
+        Self::new(Parts {
+            shape: parts.shape.moved(motion),
+            borders: parts.borders.iter().map(|b| b.moved(motion)).collect(),
+            chains: parts.chains.iter().map(|c| c.moved(motion)).collect(),
+            generated: parts.generated.iter().map(|c| c.moved(motion)).collect(),
+            ..parts.clone()
+        })
+    }
+
+    /// A box that holds the surface, of control points and curve boxes: larger than the exact one.
+    pub fn hull(&self) -> Box3 {
+        self.0.shape.hull()
     }
 
     /// Warnings found while building (singular or folded patches, oscillation), by sampling 9×9 a cell.
     pub fn review(&self, tolerance: &Tolerance) -> Vec<crate::base::fault::Fault> {
-        let _ = tolerance;
-        Vec::new()
+        super::review::review(self, tolerance)
     }
+}
+
+/// `du × dv` as a unit vector, or `None` where the two (nearly) vanish or fall together.
+pub(super) fn unit_normal(jet: &Jet2) -> Option<DVec3> {
+    let cross = jet.du.cross(jet.dv);
+    let scale = jet.du.length_squared().max(jet.dv.length_squared());
+    let length = cross.length();
+    (length > SINGULAR * scale && length.is_finite()).then(|| cross / length)
 }

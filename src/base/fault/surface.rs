@@ -311,17 +311,6 @@ pub enum SurfaceFault {
         /// Free edges: surface, middle, length; the longest first.
         free: Vec<(Origin, DVec3, f64)>,
     },
-    /// E502 `boundary-open`: the curves of a bounded plane do not close.
-    BoundaryOpen {
-        /// The curve after which the gap comes.
-        a: Origin,
-        /// The curve before which it ends.
-        b: Origin,
-        /// End of `a`.
-        end: DVec3,
-        /// Start of `b`.
-        start: DVec3,
-    },
 }
 
 impl Describe for SurfaceFault {
@@ -585,19 +574,6 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*curve, "leaves the plane of the others")
         .help("`coons` takes borders that are not flat"),
-        F::BoundaryOpen { a, b, end, start } => Report::new(
-            "E502",
-            format!(
-                "the boundary does not close: {} ends at {}, {} starts at {}",
-                say.quoted(*a, "one curve"),
-                say.point(*end),
-                say.quoted(*b, "the next"),
-                say.point(*start)
-            ),
-        )
-        .at(*a, "ends here")
-        .at(*b, "starts elsewhere")
-        .help(format!("the gap is {}; add the curve that joins these two points", say.length(end.distance(*start)))),
         _ => return None,
     })
 }

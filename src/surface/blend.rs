@@ -1,0 +1,297 @@
+//! The blending algebra of curve grids [Koh & Park 1990, §4.1; math notes §6.2, §6.3].
+//!
+//! ```text
+//! U(u,v) = Σ_i a_i(u) F_i(v) + Σ_j b_j(v) G_j(u) − ΣΣ a_i(u) b_j(v) P_ij
+//! ```
+//!
+//! `F_i` run along v at `u_i`, `G_j` along u at `v_j`, `P_ij` are their nodes. Composite Coons and Lagrange surfaces
+//! differ in the functions a and b alone. Without curves along v the sum is a ruled surface.
+
+use glam::DVec3;
+
+use super::Jet2;
+use super::breaks::tidy;
+use super::rail::{Lean, Rail};
+use super::weights::{Axis, Weights};
+use crate::base::bbox::Box3;
+use crate::base::tolerance::EPSILON;
+use crate::geometry::{Jet, Motion};
+
+/// A surface blended from a grid of curves.
+#[derive(Clone, Debug)]
+pub struct Blend {
+    u: Axis,
+    v: Axis,
+    /// F_i, one per node of `u`, or none (ruled).
+    along_v: Vec<Rail>,
+    /// G_j, one per node of `v`.
+    along_u: Vec<Rail>,
+    /// P_ij, `i` fastest.
+    corners: Vec<DVec3>,
+}
+
+impl Blend {
+    /// A surface from its rails: `along_v` one per node of `u` (or none: ruled), `along_u` one per node of `v`.
+    ///
+    /// The node of two curves is taken in the middle of what the two say, a pole's where it is.
+    pub fn new(u: Axis, v: Axis, along_v: Vec<Rail>, along_u: Vec<Rail>) -> Self {
+        let mut corners = Vec::with_capacity(along_v.len() * along_u.len());
+        for (g, &y) in along_u.iter().zip(&v.nodes) {
+            for (f, &x) in along_v.iter().zip(&u.nodes) {
+                corners.push(match (f, g) {
+                    (Rail::Point(p), _) | (_, Rail::Point(p)) => *p,
+                    _ => 0.5 * (f.point(y) + g.point(x)),
+                });
+            }
+        }
+        Self { u, v, along_v, along_u, corners }
+    }
+
+    /// Parameters and rule across u (first) and v (second).
+    pub fn axes(&self) -> (&Axis, &Axis) {
+        (&self.u, &self.v)
+    }
+
+    /// Curves along v, at ascending u.
+    pub fn along_v(&self) -> &[Rail] {
+        &self.along_v
+    }
+
+    /// Curves along u, at ascending v.
+    pub fn along_u(&self) -> &[Rail] {
+        &self.along_u
+    }
+
+    /// Both families, curves along u first.
+    pub fn rails_mut(&mut self) -> (&mut [Rail], &mut [Rail]) {
+        (&mut self.along_u, &mut self.along_v)
+    }
+
+    fn corner(&self, i: usize, j: usize) -> DVec3 {
+        self.corners[j * self.along_v.len() + i]
+    }
+
+    /// Point and derivatives, from the given sides where they jump.
+    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        let (a, b) = (self.u.weights(u, lean.0), self.v.weights(v, lean.1));
+        let mut row = Row::default();
+        let along_v = |i: usize| self.along_v[i].jet(v, lean.1);
+        self.row(&a, &b, along_v, &mut row);
+        for (k, w) in b.values().iter().enumerate() {
+            row.add_along_u(&self.along_u[b.first + k].jet(u, lean.0), w);
+        }
+        row.0
+    }
+
+    /// Adds the sums over the curves along v and the nodes.
+    fn row(&self, a: &Weights, b: &Weights, along_v: impl Fn(usize) -> Jet, row: &mut Row) {
+        if self.along_v.is_empty() {
+            return;
+        }
+        for (k, w) in a.values().iter().enumerate() {
+            let i = a.first + k;
+            let mut f = along_v(i);
+            for (l, z) in b.values().iter().enumerate() {
+                let p = self.corner(i, b.first + l);
+                f.p -= p * z[0];
+                f.d1 -= p * z[1];
+                f.d2 -= p * z[2];
+            }
+            row.add_along_v(&f, w);
+        }
+    }
+
+    /// Points of the tensor grid `us × vs`, u fastest. Every curve is evaluated once per row or column.
+    pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
+        let columns = Columns::new(self, us);
+        let rows = RowPoints::new(self, vs);
+        for (k, line) in out.chunks_exact_mut(us.len().max(1)).take(vs.len()).enumerate() {
+            self.grid_row(&columns, &rows, k, line);
+        }
+    }
+
+    fn grid_row(&self, columns: &Columns, rows: &RowPoints, k: usize, line: &mut [DVec3]) {
+        let b = &rows.weights[k];
+        let curves: Vec<(&[DVec3], f64)> =
+            b.values().iter().enumerate().map(|(l, w)| (columns.along_u[b.first + l].as_slice(), w[0])).collect();
+        // F_i(v) less the nodes: what each curve along v adds at weight 1.
+        let own: Vec<DVec3> = (0..self.along_v.len())
+            .map(|i| {
+                b.values().iter().enumerate().fold(rows.along_v[i][k], |f, (l, w)| f - self.corner(i, b.first + l) * w[0])
+            })
+            .collect();
+        match (curves.as_slice(), own.is_empty()) {
+            ([(g0, w0), (g1, w1)], false) if columns.active == 2 => {
+                for run in &columns.runs {
+                    let (f0, step) = (own[run.first], own[run.first + 1] - own[run.first]);
+                    let range = run.from..run.to;
+                    let second = &columns.second[range.clone()];
+                    let (g0, g1) = (&g0[range.clone()], &g1[range.clone()]);
+                    for (((p, s), a), b) in line[range].iter_mut().zip(second).zip(g0).zip(g1) {
+                        *p = f0 + step * *s + *a * *w0 + *b * *w1;
+                    }
+                }
+            }
+            _ => {
+                for (c, p) in line.iter_mut().enumerate() {
+                    let along = curves.iter().fold(DVec3::ZERO, |sum, (g, w)| sum + g[c] * *w);
+                    *p = if own.is_empty() {
+                        along
+                    } else {
+                        let a = &columns.weights[c];
+                        a.values().iter().enumerate().fold(along, |sum, (i, w)| sum + own[a.first + i] * w[0])
+                    };
+                }
+            }
+        }
+    }
+
+    /// Jets of the tensor grid `us × vs`, u fastest, each with its own lean (see [`Blend::jet`]).
+    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+        let a: Vec<Weights> = us.iter().map(|&(u, lean)| self.u.weights(u, lean)).collect();
+        let along_u: Vec<Vec<Jet>> = self.along_u.iter().map(|g| us.iter().map(|&(u, lean)| g.jet(u, lean)).collect()).collect();
+        for &(v, lean) in vs {
+            let b = self.v.weights(v, lean);
+            let along_v: Vec<Jet> = self.along_v.iter().map(|f| f.jet(v, lean)).collect();
+            for (c, a) in a.iter().enumerate() {
+                let mut row = Row::default();
+                self.row(a, &b, |i| along_v[i], &mut row);
+                for (k, w) in b.values().iter().enumerate() {
+                    row.add_along_u(&along_u[b.first + k][c], w);
+                }
+                out.push(row.0);
+            }
+        }
+    }
+
+    /// Interior parameters where the surface is less than smooth, in u (first) and v (second).
+    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
+        let inner = |axis: &Axis, rails: &[Rail]| {
+            let mut all = if axis.active() < axis.nodes.len() { axis.nodes.clone() } else { Vec::new() };
+            rails.iter().for_each(|rail| rail.breaks(&mut all));
+            tidy(all, EPSILON)
+        };
+        (inner(&self.u, &self.along_u), inner(&self.v, &self.along_v))
+    }
+
+    /// Interior network lines and kinks.
+    pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
+        let inner = |axis: &Axis, rails: &[Rail]| {
+            let kinks = rails.iter().filter_map(|rail| match rail {
+                Rail::Chain { kinks, .. } => Some(kinks.iter().map(|k| k.0)),
+                Rail::Point(_) => None,
+            });
+            tidy(axis.nodes.iter().copied().chain(kinks.flatten()).collect(), EPSILON)
+        };
+        (inner(&self.u, &self.along_u), inner(&self.v, &self.along_v))
+    }
+
+    /// A box of the curves, grown by the blending's reach; holds the surface.
+    ///
+    /// |U| is at most Λ_u max|F| + Λ_v max|G| + Λ_u Λ_v max|P| about any centre, Λ the sums of absolute blending values.
+    pub fn hull(&self) -> Box3 {
+        let chains = self.along_u.iter().chain(&self.along_v).filter_map(Rail::chain);
+        let mut box3 = Box3::of(self.corners.iter().copied());
+        for rail in &self.along_u {
+            if let Rail::Point(p) = rail {
+                box3 = box3.with(*p);
+            }
+        }
+        for run in chains.flat_map(|chain| chain.runs()) {
+            box3 = box3.union(run.curve.bbox());
+        }
+        let (a, b) = (self.u.lebesgue(), self.v.lebesgue());
+        let reach = if self.along_v.is_empty() { b } else { a + b + a * b };
+        let (center, half) = (box3.center(), (box3.max - box3.min) * (0.5 * reach));
+        Box3 { min: center - half, max: center + half }
+    }
+
+    /// Carried by a motion.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        Self {
+            u: self.u.clone(),
+            v: self.v.clone(),
+            along_v: self.along_v.iter().map(|r| r.moved(motion)).collect(),
+            along_u: self.along_u.iter().map(|r| r.moved(motion)).collect(),
+            corners: self.corners.iter().map(|p| motion.point(*p)).collect(),
+        }
+    }
+}
+
+/// The sum under construction.
+#[derive(Default)]
+struct Row(Jet2);
+
+impl Row {
+    fn add_along_v(&mut self, f: &Jet, a: &[f64; 3]) {
+        let jet = &mut self.0;
+        jet.p += f.p * a[0];
+        jet.du += f.p * a[1];
+        jet.duu += f.p * a[2];
+        jet.dv += f.d1 * a[0];
+        jet.duv += f.d1 * a[1];
+        jet.dvv += f.d2 * a[0];
+    }
+
+    fn add_along_u(&mut self, g: &Jet, b: &[f64; 3]) {
+        let jet = &mut self.0;
+        jet.p += g.p * b[0];
+        jet.dv += g.p * b[1];
+        jet.dvv += g.p * b[2];
+        jet.du += g.d1 * b[0];
+        jet.duv += g.d1 * b[1];
+        jet.duu += g.d2 * b[0];
+    }
+}
+
+/// Everything of a grid that depends on u alone.
+struct Columns {
+    active: usize,
+    weights: Vec<Weights>,
+    /// With two active curves: the weight of the second one, and runs of columns between the same two curves.
+    second: Vec<f64>,
+    runs: Vec<ColumnRun>,
+    along_u: Vec<Vec<DVec3>>,
+}
+
+struct ColumnRun {
+    from: usize,
+    to: usize,
+    first: usize,
+}
+
+impl Columns {
+    fn new(blend: &Blend, us: &[f64]) -> Self {
+        let active = blend.u.active();
+        let (mut weights, mut second, mut runs) = (Vec::new(), Vec::new(), Vec::<ColumnRun>::new());
+        for (c, &u) in us.iter().enumerate() {
+            let a = blend.u.weights(u, Lean::After);
+            if active == 2 {
+                second.push(a.values()[1][0]);
+                match runs.last_mut() {
+                    Some(run) if run.first == a.first => run.to = c + 1,
+                    _ => runs.push(ColumnRun { from: c, to: c + 1, first: a.first }),
+                }
+            } else {
+                weights.push(a);
+            }
+        }
+        let along_u = blend.along_u.iter().map(|g| g.points(us)).collect();
+        Self { active, weights, second, runs, along_u }
+    }
+}
+
+/// Everything of a grid that depends on v alone.
+struct RowPoints {
+    weights: Vec<Weights>,
+    along_v: Vec<Vec<DVec3>>,
+}
+
+impl RowPoints {
+    fn new(blend: &Blend, vs: &[f64]) -> Self {
+        Self {
+            weights: vs.iter().map(|&v| blend.v.weights(v, Lean::After)).collect(),
+            along_v: blend.along_v.iter().map(|f| f.points(vs)).collect(),
+        }
+    }
+}

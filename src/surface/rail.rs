@@ -1,0 +1,135 @@
+//! A network curve as the surface sees it: a chain under a surface parameter, or a point where a side is a pole.
+
+use glam::DVec3;
+
+use super::reparam::Map;
+use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::geometry::{Jet, Motion};
+use crate::network::Chain;
+
+/// From which side a value is approached where derivatives jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lean {
+    /// The piece that follows (at the last parameter the one before).
+    After,
+    /// The piece before (at the first parameter the one that follows).
+    Before,
+}
+
+impl Lean {
+    /// The other side.
+    pub fn turned(self) -> Self {
+        if self == Self::After { Self::Before } else { Self::After }
+    }
+}
+
+/// F(u_i, ·) or F(·, v_j).
+#[derive(Clone, Debug)]
+pub enum Rail {
+    /// A modeling curve; the map gives its fraction.
+    Chain {
+        /// The modeling curve.
+        chain: Chain,
+        /// Surface parameter ↦ fraction.
+        map: Map,
+        /// Kink lines of the surface and the fraction of the kink that made them.
+        kinks: Vec<(f64, f64)>,
+    },
+    /// A degenerate curve.
+    Point(DVec3),
+}
+
+impl Rail {
+    /// A chain under a map.
+    pub fn new(chain: Chain, map: Map) -> Self {
+        Self::Chain { chain, map, kinks: Vec::new() }
+    }
+
+    /// Point and derivatives with respect to the surface parameter.
+    pub fn jet(&self, x: f64, lean: Lean) -> Jet {
+        match self {
+            Self::Point(p) => Jet { p: *p, ..Jet::default() },
+            Self::Chain { chain, map, kinks } => {
+                let [mut f, d1, d2] = map.at(x, lean == Lean::Before);
+                // A kink line is the image of the kink up to rounding: hit the kink itself, or the side would be chance.
+                if let Some((_, at)) = kinks.iter().find(|(line, _)| (*line - x).abs() <= EPSILON) {
+                    f = *at;
+                }
+                let before = (lean == Lean::Before) != map.falls();
+                let jet = if before { chain.jet_before(f) } else { chain.jet(f) };
+                Jet { p: jet.p, d1: jet.d1 * d1, d2: jet.d2 * (d1 * d1) + jet.d1 * d2 }
+            }
+        }
+    }
+
+    /// Point.
+    pub fn point(&self, x: f64) -> DVec3 {
+        match self {
+            Self::Point(p) => *p,
+            Self::Chain { chain, map, .. } => chain.point(map.value(x)),
+        }
+    }
+
+    /// Points at many parameters in ascending or descending order.
+    pub fn points(&self, xs: &[f64]) -> Vec<DVec3> {
+        let Self::Chain { chain, map, .. } = self else { return vec![self.point(0.0); xs.len()] };
+        let mut fractions: Vec<f64> = xs.iter().map(|&x| map.value(x)).collect();
+        let mut points = vec![DVec3::ZERO; xs.len()];
+        let falls = fractions.first() > fractions.last();
+        if falls {
+            fractions.reverse();
+        }
+        chain.points(&fractions, &mut points);
+        if falls {
+            points.reverse();
+        }
+        points
+    }
+
+    /// Arc length, model units; 0 for a pole.
+    pub fn length(&self) -> f64 {
+        match self {
+            Self::Point(_) => 0.0,
+            Self::Chain { chain, .. } => chain.length(),
+        }
+    }
+
+    /// The chain, unless this is a pole.
+    pub fn chain(&self) -> Option<&Chain> {
+        match self {
+            Self::Point(_) => None,
+            Self::Chain { chain, .. } => Some(chain),
+        }
+    }
+
+    /// Surface parameters of the chain's kinks with their fractions, ends left out.
+    pub fn kink_lines(&self, tolerance: &Tolerance) -> Vec<(f64, f64)> {
+        let Self::Chain { chain, map, .. } = self else { return Vec::new() };
+        let end = 1.0 - tolerance.parameter;
+        chain.kinks(tolerance).iter().map(|&f| (map.inverse(f), f)).filter(|(x, _)| *x > tolerance.parameter && *x < end).collect()
+    }
+
+    /// Tells the rail which kink lines of the surface its own kinks became.
+    pub fn set_kinks(&mut self, lines: Vec<(f64, f64)>) {
+        if let Self::Chain { kinks, .. } = self {
+            *kinks = lines;
+        }
+    }
+
+    /// Surface parameters where this rail is less than smooth: joints, knots, nodes of the map.
+    pub fn breaks(&self, out: &mut Vec<f64>) {
+        if let Self::Chain { chain, map, kinks } = self {
+            out.extend_from_slice(map.breaks());
+            out.extend(kinks.iter().map(|k| k.0));
+            out.extend(super::breaks::chain_breaks(chain).iter().map(|&f| map.inverse(f)));
+        }
+    }
+
+    /// Carried by a motion.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        match self {
+            Self::Point(p) => Self::Point(motion.point(*p)),
+            Self::Chain { chain, map, kinks } => Self::Chain { chain: chain.moved(motion), map: map.clone(), kinks: kinks.clone() },
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! A look over a finished surface: places without a normal and places where it folds over.
+
+use glam::DVec3;
+
+use super::core::{Domain, Jet2, Surface, unit_normal};
+use super::rail::Lean;
+use crate::base::fault::{Fault, SurfaceFault};
+use crate::base::math;
+use crate::base::tolerance::{SINGULAR, Tolerance};
+
+/// Samples a direction and cell.
+const SAMPLES: usize = 9;
+
+/// W606 and W607, each at its worst place, from 9×9 samples inside every cell between network lines and kinks.
+pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
+    if !matches!(surface.domain(), Domain::Square | Domain::Triangle) {
+        return Vec::new();
+    }
+    let (us, vs) = surface.cells();
+    let (us, vs) = (inside(&us, tolerance), inside(&vs, tolerance));
+    let triangle = surface.domain() == Domain::Triangle;
+    let jets: Vec<Jet2> = if triangle {
+        // The square (x, y) ↦ (x (1 − y), y) covers the triangle and its inside stays inside.
+        vs.iter().flat_map(|&y| us.iter().map(move |&x| (x * (1.0 - y), y))).map(|(u, v)| surface.jet(u, v)).collect()
+    } else {
+        let leaning = |list: &[f64]| list.iter().map(|&x| (x, Lean::After)).collect::<Vec<_>>();
+        surface.jets(&leaning(&us), &leaning(&vs))
+    };
+    let place = |k: usize| {
+        let (x, y) = (us[k % us.len()], vs[k / us.len()]);
+        if triangle { (x * (1.0 - y), y) } else { (x, y) }
+    };
+    let normals: Vec<Option<DVec3>> = jets.iter().map(unit_normal).collect();
+    let scale = jets.iter().map(|j| j.du.length()).fold(0.0, f64::max) * jets.iter().map(|j| j.dv.length()).fold(0.0, f64::max);
+    let mut found = Vec::new();
+    let singular = |k: usize| normals[k].is_none() || jets[k].du.cross(jets[k].dv).length() < SINGULAR * scale;
+    if let Some(k) = (0..jets.len()).find(|&k| singular(k)) {
+        found.push(SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p }.into());
+    }
+    // A fold turns the normal by more than a right angle between neighbours of one smooth piece.
+    let (kink_u, kink_v) = surface.kinks();
+    let parted = |a: f64, b: f64, lines: &[f64]| lines.iter().any(|&x| a < x && x < b);
+    let turn = |a: usize, b: usize| match (normals[a], normals[b]) {
+        (Some(a), Some(b)) if a.dot(b) < 0.0 => Some(math::angle_between(a, b)),
+        _ => None,
+    };
+    let mut worst: Option<(f64, usize)> = None;
+    for k in 0..jets.len() {
+        let (i, j) = (k % us.len(), k / us.len());
+        let right = (i + 1 < us.len() && !parted(us[i], us[i + 1], kink_u)).then_some(k + 1);
+        let up = (j + 1 < vs.len() && !parted(vs[j], vs[j + 1], kink_v)).then_some(k + us.len());
+        for other in [right, up].into_iter().flatten() {
+            if let Some(angle) = turn(k, other)
+                && worst.is_none_or(|(largest, _)| angle > largest)
+            {
+                worst = Some((angle, other));
+            }
+        }
+    }
+    if let Some((turn, k)) = worst {
+        found.push(SurfaceFault::PatchFolded { surface: surface.origin(), uv: place(k), at: jets[k].p, turn }.into());
+    }
+    found
+}
+
+/// Sample parameters inside every cell, cells narrower than a point of the parameter left out.
+fn inside(breaks: &[f64], tolerance: &Tolerance) -> Vec<f64> {
+    let mut stops = vec![0.0];
+    stops.extend_from_slice(breaks);
+    stops.push(1.0);
+    stops
+        .windows(2)
+        .filter(|w| w[1] - w[0] > tolerance.parameter)
+        .flat_map(|w| (0..SAMPLES).map(|k| w[0] + (w[1] - w[0]) * (k as f64 + 0.5) / SAMPLES as f64).collect::<Vec<_>>())
+        .collect()
+}

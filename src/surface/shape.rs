@@ -1,0 +1,94 @@
+//! The closed set of shapes a surface may have, each evaluated exactly.
+
+use glam::DVec3;
+
+use super::Jet2;
+use super::blend::Blend;
+use super::breaks::tidy;
+use super::rail::Lean;
+use super::trilateral::Trilateral;
+use crate::base::bbox::Box3;
+use crate::base::tolerance::EPSILON;
+use crate::geometry::Motion;
+
+/// The exact shape of a surface over its own u and v.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// Blended from a grid of curves.
+    Blend(Blend),
+    /// Blended from three borders.
+    Trilateral(Trilateral),
+}
+
+impl Shape {
+    /// Point and derivatives, from the given sides where they jump.
+    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        match self {
+            Self::Blend(s) => s.jet(u, v, lean),
+            Self::Trilateral(s) => s.jet(u, v),
+        }
+    }
+
+    /// Points of the tensor grid, u fastest.
+    pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
+        match self {
+            Self::Blend(s) => s.grid(us, vs, out),
+            _ => {
+                for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
+                    for (p, &u) in row.iter_mut().zip(us) {
+                        *p = self.jet(u, v, (Lean::After, Lean::After)).p;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Jets of the tensor grid, u fastest.
+    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+        match self {
+            Self::Blend(s) => s.jets(us, vs, out),
+            _ => {
+                for &(v, lean_v) in vs {
+                    out.extend(us.iter().map(|&(u, lean_u)| self.jet(u, v, (lean_u, lean_v))));
+                }
+            }
+        }
+    }
+
+    /// Interior parameters where the shape is less than analytic.
+    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
+        match self {
+            Self::Blend(s) => s.breaks(),
+            Self::Trilateral(s) => {
+                let (mut us, mut vs) = (Vec::new(), Vec::new());
+                s.sides()[0].breaks(&mut us);
+                s.sides()[2].breaks(&mut vs);
+                (tidy(us, EPSILON), tidy(vs, EPSILON))
+            }
+        }
+    }
+
+    /// Interior ends of the cells in which a review samples.
+    pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
+        match self {
+            Self::Blend(s) => s.cells(),
+            Self::Trilateral(_) => (Vec::new(), Vec::new()),
+        }
+    }
+
+    /// A box that holds the shape.
+    pub fn hull(&self) -> Box3 {
+        match self {
+            Self::Blend(s) => s.hull(),
+            Self::Trilateral(s) => s.hull(),
+        }
+    }
+
+    /// Carried by a motion.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        match self {
+            Self::Blend(s) => Self::Blend(s.moved(motion)),
+            Self::Trilateral(s) => Self::Trilateral(s.moved(motion)),
+        }
+    }
+}

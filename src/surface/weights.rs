@@ -1,0 +1,185 @@
+//! Blending functions of one direction: cubic between neighbours (composite Coons) or Lagrange through all.
+
+use super::rail::Lean;
+
+/// How curves are blended across one direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// 3ξ² − 2ξ³ between the two neighbours [Koh & Park 1990, eq. 4.3–4.5]: C1, local.
+    Cubic,
+    /// The Lagrange polynomial through all of them [Koh & Park 1990, eq. 4.1]; with two curves linear.
+    Lagrange,
+}
+
+/// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// u_0 = 0 … u_M = 1.
+    pub nodes: Vec<f64>,
+    /// The rule.
+    pub rule: Rule,
+}
+
+/// Curves that take part at one parameter: those from `first` on, each with value, first and second derivative.
+#[derive(Clone, Debug)]
+pub struct Weights {
+    /// Place of the first one.
+    pub first: usize,
+    few: [[f64; 3]; FEW],
+    n: usize,
+    many: Vec<[f64; 3]>,
+}
+
+/// Up to so many blending values live without an allocation.
+const FEW: usize = 6;
+
+impl Weights {
+    /// The blending values.
+    pub fn values(&self) -> &[[f64; 3]] {
+        if self.n <= FEW { &self.few[..self.n] } else { &self.many }
+    }
+
+    fn room(first: usize, n: usize) -> Self {
+        Self { first, few: [[0.0; 3]; FEW], n, many: if n > FEW { vec![[0.0; 3]; n] } else { Vec::new() } }
+    }
+
+    fn set(&mut self, k: usize, value: [f64; 3]) {
+        if self.n <= FEW {
+            self.few[k] = value;
+        } else {
+            self.many[k] = value;
+        }
+    }
+}
+
+impl Axis {
+    /// How many curves take part at any one parameter.
+    pub fn active(&self) -> usize {
+        if self.rule == Rule::Cubic { 2 } else { self.nodes.len() }
+    }
+
+    /// The cell that holds a parameter.
+    pub fn cell(&self, x: f64, lean: Lean) -> usize {
+        let inner = &self.nodes[1..self.nodes.len() - 1];
+        inner.partition_point(|&node| if lean == Lean::Before { node < x } else { node <= x })
+    }
+
+    /// Blending values at a parameter.
+    pub fn weights(&self, x: f64, lean: Lean) -> Weights {
+        match self.rule {
+            Rule::Cubic => {
+                let k = self.cell(x, lean);
+                let h = self.nodes[k + 1] - self.nodes[k];
+                let mut weights = Weights::room(k, 2);
+                // From the nearer node: at a node the weights are 0 and 1 without rounding.
+                let (near, far, t, sign) = if x - self.nodes[k] <= self.nodes[k + 1] - x {
+                    (0, 1, (x - self.nodes[k]) / h, 1.0)
+                } else {
+                    (1, 0, (self.nodes[k + 1] - x) / h, -1.0)
+                };
+                let value = t * t * (3.0 - 2.0 * t);
+                let (d1, d2) = (sign * 6.0 * t * (1.0 - t) / h, (6.0 - 12.0 * t) / (h * h));
+                weights.set(far, [value, d1, d2]);
+                weights.set(near, [1.0 - value, -d1, -d2]);
+                weights
+            }
+            Rule::Lagrange => {
+                let n = self.nodes.len();
+                let mut weights = Weights::room(0, n);
+                for i in 0..n {
+                    weights.set(i, self.lagrange(i, x));
+                }
+                weights
+            }
+        }
+    }
+
+    /// L_i and two derivatives, factor by factor: each factor is exactly 1 or 0 at a node, so the nodes are met exactly.
+    fn lagrange(&self, i: usize, x: f64) -> [f64; 3] {
+        let own = self.nodes[i];
+        let mut p = [1.0, 0.0, 0.0];
+        for (k, &node) in self.nodes.iter().enumerate() {
+            if k != i {
+                let (f, d) = ((x - node) / (own - node), 1.0 / (own - node));
+                p = [p[0] * f, p[1] * f + p[0] * d, p[2] * f + 2.0 * p[1] * d];
+            }
+        }
+        p
+    }
+
+    /// Largest Σ|L_i| over the direction, by sampling each cell and climbing from its best sample.
+    ///
+    /// Between two nodes the sum is one polynomial with a single maximum, so golden sections find it.
+    pub fn lebesgue(&self) -> f64 {
+        if self.rule == Rule::Cubic {
+            return 1.0;
+        }
+        let sum = |x: f64| (0..self.nodes.len()).map(|i| self.lagrange(i, x)[0].abs()).sum::<f64>();
+        let golden = 0.5 * (5f64.sqrt() - 1.0);
+        let mut largest = 1.0f64;
+        for cell in self.nodes.windows(2) {
+            let (mut a, mut b) = (cell[0], cell[1]);
+            for _ in 0..40 {
+                let (c, d) = (b - golden * (b - a), a + golden * (b - a));
+                if sum(c) > sum(d) {
+                    b = d;
+                } else {
+                    a = c;
+                }
+            }
+            largest = largest.max(sum(0.5 * (a + b)));
+        }
+        largest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_sum_to_one_and_are_exact_at_nodes() {
+        for rule in [Rule::Cubic, Rule::Lagrange] {
+            let axis = Axis { nodes: vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule };
+            for i in 0..=100 {
+                for lean in [Lean::After, Lean::Before] {
+                    let x = f64::from(i) / 100.0;
+                    let w = axis.weights(x, lean);
+                    let sums = w.values().iter().fold([0.0; 3], |s, v| [s[0] + v[0], s[1] + v[1], s[2] + v[2]]);
+                    assert!((sums[0] - 1.0).abs() < 1e-13 && sums[1].abs() < 1e-9 && sums[2].abs() < 1e-6, "{x} {sums:?}");
+                }
+            }
+            for (i, &node) in axis.nodes.iter().enumerate() {
+                let w = axis.weights(node, Lean::After);
+                for (k, v) in w.values().iter().enumerate() {
+                    assert_eq!(v[0], if w.first + k == i { 1.0 } else { 0.0 });
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_difference_quotients() {
+        for rule in [Rule::Cubic, Rule::Lagrange] {
+            let axis = Axis { nodes: vec![0.0, 0.2, 0.5, 1.0], rule };
+            let h = 1e-5;
+            for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {
+                let (a, b, c) = (axis.weights(x - h, Lean::After), axis.weights(x, Lean::After), axis.weights(x + h, Lean::After));
+                for k in 0..b.values().len() {
+                    let (p, q, r) = (a.values()[k], b.values()[k], c.values()[k]);
+                    assert!(((r[0] - p[0]) / (2.0 * h) - q[1]).abs() < 1e-7);
+                    assert!(((r[1] - p[1]) / (2.0 * h) - q[2]).abs() < 1e-6);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lebesgue_constants_of_equal_nodes() {
+        // Closed values for equally spaced nodes: degree 2 gives 1.25, degree 6 gives 4.549 (Brutman 1997, table 1).
+        let equal = |n: usize| Axis { nodes: (0..=n).map(|k| k as f64 / n as f64).collect(), rule: Rule::Lagrange }.lebesgue();
+        assert!((equal(1) - 1.0).abs() < 1e-12);
+        assert!((equal(2) - 1.25).abs() < 1e-9);
+        assert!((equal(6) - 4.549).abs() < 1e-3);
+    }
+}
