@@ -8,6 +8,7 @@ mod faults;
 pub mod names;
 pub mod origins;
 pub mod plans;
+pub mod scene;
 mod stages;
 pub mod std;
 pub mod syntax;

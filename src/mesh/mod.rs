@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod data;
+mod moved;
 pub mod plan;
 
 pub use build::{Explanation, Input, build};

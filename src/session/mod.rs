@@ -3,7 +3,6 @@
 pub mod disk;
 pub mod guard;
 pub mod json;
-pub mod memory;
 pub mod reference;
 pub mod report;
 pub mod run;

@@ -14,6 +14,7 @@ mod network;
 mod numbers;
 mod surfaces;
 mod text;
+mod transforms;
 mod vectors;
 
 /// A parameter of a function.
@@ -77,7 +78,7 @@ impl Builtin {
 
 /// All tables of functions.
 pub const BUILTINS: &[&[Builtin]] =
-    &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS, curves::BUILTINS, network::BUILTINS];
+    &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS, curves::BUILTINS, network::BUILTINS, surfaces::BUILTINS, transforms::BUILTINS];
 
 /// All tables of fields.
 pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, network::FIELDS];

@@ -1,0 +1,98 @@
+//! Surfaces as values found again in a surface model: the script's own, or one extended by what it does not declare.
+
+use std::sync::Arc;
+
+use super::cx::{Cx, Stop};
+use super::value::{ModuleId, ShellValue};
+use crate::base::fault::{Fault, Say};
+use crate::base::tolerance::Tolerance;
+use crate::model::topology::Named;
+use crate::model::{Edge, EdgeCurve, Model, Shell, ShellRequest, SurfaceId};
+use crate::network::{Chain, Network};
+use crate::surface::Surface;
+
+/// A surface model with the network it stands on.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Patches, edges and vertices.
+    pub model: Arc<Model>,
+    /// The script's network.
+    pub network: Arc<Network>,
+}
+
+impl Scene {
+    /// The script's model, extended by those of `surfaces` that it does not declare (moved ones, `let`s).
+    pub fn of<'s>(cx: &mut Cx, module: ModuleId, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
+        let (model, network) = (cx.model(module)?, cx.network(module)?);
+        let scene = Self { model, network };
+        let mut extra: Vec<Named> = Vec::new();
+        for surface in surfaces {
+            let known = extra.iter().any(|named| side_of(&named.surface, surface).is_some());
+            if !known && scene.find(surface).is_none() {
+                let name = cx.name(surface.origin());
+                extra.push(Named { name, surface: surface.clone() });
+            }
+        }
+        if extra.is_empty() {
+            return Ok(scene);
+        }
+        let tolerance = cx.tolerance()?;
+        let all = scene.model.surfaces.iter().cloned().chain(extra).collect();
+        let model = Model::build(all, &scene.network, &tolerance, cx.job)?;
+        Ok(Self { model: Arc::new(model), network: scene.network })
+    }
+
+    /// A surface's place in the model, with `true` where the value is its other side.
+    pub fn find(&self, surface: &Surface) -> Option<(SurfaceId, bool)> {
+        let mut named = self.model.surfaces.iter().enumerate();
+        named.find_map(|(n, named)| side_of(&named.surface, surface).map(|flipped| (SurfaceId::at(n), flipped)))
+    }
+
+    /// Places of several surfaces; all are in the scene they were asked with.
+    pub fn find_all<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<(SurfaceId, bool)>, Stop> {
+        let place = |surface| self.find(surface).ok_or(Stop::Bug("a surface is not in its scene"));
+        surfaces.into_iter().map(place).collect()
+    }
+
+    /// A shell as the model sees it. Its sides follow the first surface as listed; notes go to `sink`.
+    pub fn shell(&self, shell: &ShellValue, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell, Stop> {
+        let places = self.find_all(&shell.surfaces)?;
+        let mut surfaces: Vec<SurfaceId> = Vec::with_capacity(places.len());
+        places.iter().for_each(|(id, _)| {
+            if !surfaces.contains(id) {
+                surfaces.push(*id)
+            }
+        });
+        let request = ShellRequest { name: shell.name.to_string(), surfaces, origin: shell.origin };
+        let mut built = self.model.shell(&request, &self.network, tolerance, sink)?;
+        if places.first().is_some_and(|(_, flipped)| *flipped) {
+            built.surfaces.iter_mut().for_each(|(_, other)| *other = !*other);
+        }
+        Ok(built)
+    }
+
+    /// The modeling curve an edge runs along; `None` for an edge that no link carries.
+    pub fn edge_chain(&self, edge: &Edge, tolerance: &Tolerance) -> Result<Option<Chain>, Stop> {
+        let EdgeCurve::Links { links, span } = &edge.curve else { return Ok(None) };
+        let chains = links.iter().map(|(link, against)| {
+            let chain = self.network.link_chain(*link);
+            if *against { chain.reversed() } else { chain }
+        });
+        let chains: Vec<Chain> = chains.collect();
+        let Some(first) = chains.first() else { return Ok(None) };
+        let run = if chains.len() == 1 { first.clone() } else { Chain::join(&chains, first.origin(), tolerance)? };
+        let length = run.length();
+        let whole = span.0 <= tolerance.point && span.1 >= length - tolerance.point;
+        Ok(Some(if whole { run } else { run.slice(span.0 / length, span.1 / length, tolerance)? }))
+    }
+}
+
+/// Whether two surfaces are one: `Some(false)`, or `Some(true)` when `other` is the other side of it.
+fn side_of(surface: &Surface, other: &Surface) -> Option<bool> {
+    if surface.origin() != other.origin() {
+        return None;
+    }
+    // Away from every line of symmetry, so that the turned surface shows another point there.
+    const PROBE: (f64, f64) = (0.31, 0.23);
+    Some(surface.point(PROBE.0, PROBE.1) != other.point(PROBE.0, PROBE.1))
+}

@@ -1,0 +1,19 @@
+//! Meshes carried by motions.
+
+use super::data::Mesh;
+use crate::geometry::Motion;
+
+impl Mesh {
+    /// The mesh carried by a motion; a mirror turns the elements over, so that their normals are carried too.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        let mut moved = self.clone();
+        moved.nodes.iter_mut().for_each(|p| *p = motion.point(*p));
+        if motion.mirrors() {
+            moved.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+            moved.triangle_mids.iter_mut().for_each(|m| m.swap(0, 2));
+            moved.quads.iter_mut().for_each(|q| q.swap(1, 3));
+            moved.quad_mids.iter_mut().for_each(|m| m.reverse());
+        }
+        moved
+    }
+}
