@@ -144,3 +144,171 @@ fn a_link_of_the_helix() {
     close(arc.length(), lengths[1], 1e-14, "arc");
     assert!(arc.end().distance(DVec3::new(3.0, 0.0, 0.0)) < 1e-15);
 }
+
+mod meetings {
+    use super::*;
+    use lofting::base::tolerance::Tolerance;
+    use lofting::geometry::{Hit, intersect, self_intersect};
+
+    const TOLERANCE: f64 = 1e-6;
+
+    fn tolerance() -> Tolerance {
+        Tolerance::new(TOLERANCE, 10.0)
+    }
+
+    fn at(x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, 0.0)
+    }
+
+    fn line(a: (f64, f64), b: (f64, f64)) -> Curve {
+        build::line(at(a.0, a.1), at(b.0, b.1), Origin::NONE).unwrap()
+    }
+
+    fn circle(x: f64, y: f64, r: f64) -> Curve {
+        build::circle(at(x, y), r, DVec3::Z, Origin::NONE).unwrap()
+    }
+
+    fn arc(center: (f64, f64), start: (f64, f64), degrees: f64) -> Curve {
+        build::arc_center(at(center.0, center.1), at(start.0, start.1), degrees.to_radians(), DVec3::Z, Origin::NONE).unwrap()
+    }
+
+    fn polyline(points: &[(f64, f64)], closed: bool) -> Curve {
+        let points: Vec<DVec3> = points.iter().map(|p| at(p.0, p.1)).collect();
+        build::polyline(&points, closed, Origin::NONE).unwrap()
+    }
+
+    fn spline(points: &[(f64, f64)]) -> Curve {
+        let points: Vec<DVec3> = points.iter().map(|p| at(p.0, p.1)).collect();
+        build::spline(&points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: false }, Origin::NONE).unwrap()
+    }
+
+    /// Points (t = tangent) and stretches in short, each checked against the curves.
+    fn describe(a: &Curve, b: &Curve, hits: &[Hit]) -> String {
+        let mut out = Vec::new();
+        for hit in hits {
+            match *hit {
+                Hit::Point { ta, tb, at, gap, tangent } => {
+                    assert!(gap <= TOLERANCE && a.point(ta).distance(b.point(tb)) <= TOLERANCE * 1.001, "{hit:?}");
+                    assert!(at.distance(a.point(ta)) <= TOLERANCE && at.distance(b.point(tb)) <= TOLERANCE);
+                    out.push(if tangent { "touch" } else { "cross" });
+                }
+                Hit::Overlap { a: (a0, a1), b: (b0, b1) } => {
+                    assert!(a0 < a1);
+                    assert!(a.point(a0).distance(b.point(b0)) <= TOLERANCE && a.point(a1).distance(b.point(b1)) <= TOLERANCE, "{hit:?}");
+                    out.push(if b0 < b1 { "along" } else { "against" });
+                }
+            }
+        }
+        out.join(" ")
+    }
+
+    fn check(a: &Curve, b: &Curve, expected: &str) {
+        let hits = intersect(a, b, &tolerance()).unwrap();
+        assert_eq!(describe(a, b, &hits), expected, "{hits:?}");
+        let back = intersect(b, a, &tolerance()).unwrap();
+        assert_eq!(back.len(), hits.len(), "the other way round: {back:?}");
+        let _ = describe(b, a, &back);
+    }
+
+    #[test]
+    fn lines() {
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.5), (0.5, -1.5)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.5), (0.5, 1e-5)), "");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.5), (0.5, 9e-7)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((2.0, 0.0), (3.0, 1.0)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((2.0, 0.0), (3.0, 0.0)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((1.0, 0.0), (3.0, 0.0)), "along");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((3.0, 0.0), (1.0, 0.0)), "against");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.0), (1.0, 0.0)), "along");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.0, 0.0), (2.0, 0.0)), "along");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.0, 1e-5), (2.0, 1e-5)), "");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.0, -1e-3), (2.0, 1e-3)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.0, -1e-5), (2.0, 1e-5)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.0, -1e-7), (2.0, 1e-7)), "along");
+    }
+
+    #[test]
+    fn overlap_ends_are_exact() {
+        let (a, b) = (line((0.0, 0.0), (2.0, 0.0)), line((3.0, 0.0), (0.5, 0.0)));
+        let hits = intersect(&a, &b, &tolerance()).unwrap();
+        let [Hit::Overlap { a: (a0, a1), b: (b0, b1) }] = hits[..] else { panic!("{hits:?}") };
+        assert!((a0 - 0.25).abs() < 1e-14 && a1 == 1.0 && b0 == 1.0 && (b1 - 0.4).abs() < 1e-14, "{hits:?}");
+    }
+
+    #[test]
+    fn circles_and_tangents() {
+        let c = circle(0.0, 0.0, 1.0);
+        check(&c, &line((-2.0, 0.5), (2.0, 0.5)), "cross cross");
+        check(&c, &line((-2.0, 1.0), (2.0, 1.0)), "touch");
+        check(&c, &line((-2.0, 1.0 - 1e-9), (2.0, 1.0 - 1e-9)), "cross cross");
+        check(&c, &line((-2.0, 1.0 + 1e-5), (2.0, 1.0 + 1e-5)), "");
+        check(&c, &line((-2.0, 1.0 + 5e-7), (2.0, 1.0 + 5e-7)), "touch");
+        check(&c, &line((1.0, -2.0), (1.0, 2.0)), "touch");
+        check(&c, &circle(2.0, 0.0, 1.0), "touch");
+        check(&c, &circle(0.5, 0.0, 0.5), "touch");
+        check(&c, &circle(1.0, 0.0, 1.0), "cross cross");
+        check(&c, &circle(0.0, 0.0, 0.9), "");
+        check(&c, &circle(0.0, 0.0, 1.0), "along");
+        check(&c, &c.reversed(), "against");
+        check(&c, &arc((0.0, 0.0), (0.0, 1.0), 90.0), "along");
+        check(&arc((0.0, 0.0), (1.0, 0.0), 120.0), &arc((0.0, 0.0), (0.0, 1.0), 120.0), "along");
+        check(&arc((0.0, 0.0), (1.0, 0.0), 90.0), &arc((0.0, 0.0), (0.0, 1.0), 90.0), "cross");
+        // A fillet that leaves its line smoothly, and one that comes back over it.
+        check(&line((0.0, 0.0), (1.0, 0.0)), &arc((1.0, 1.0), (1.0, 0.0), 90.0), "cross");
+        check(&line((0.0, 0.0), (3.0, 0.0)), &arc((1.0, 1.0), (1.0, 0.0), 90.0), "cross");
+    }
+
+    #[test]
+    fn splines_share_pieces() {
+        let whole = spline(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0), (4.0, 0.5)]);
+        let (a, b) = whole.domain();
+        let at = |f: f64| a + (b - a) * f;
+        check(&whole, &whole.part(at(0.2), at(0.7)), "along");
+        check(&whole.part(a, at(0.6)), &whole.part(at(0.3), b).reversed(), "against");
+        check(&whole.part(a, at(0.5)), &whole.part(at(0.5), b), "cross");
+        check(&whole, &line((-1.0, 0.5), (5.0, 0.5)), "cross cross cross cross");
+        let other = spline(&[(0.0, 1.0), (1.0, 0.0), (2.0, 1.0), (3.0, 0.0), (4.0, 0.5)]);
+        check(&whole, &other, "cross cross cross cross");
+    }
+
+    #[test]
+    fn corners_meet_once() {
+        let path = polyline(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 0.0), (4.0, 1.0)], false);
+        check(&path, &line((1.0, -1.0), (1.0, 3.0)), "cross");
+        check(&path, &line((0.0, 1.0), (2.0, 1.0)), "cross");
+        check(&path, &line((-1.0, 0.0), (5.0, 0.0)), "cross along");
+        let square = polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], true);
+        check(&square, &line((0.0, -1.0), (0.0, 2.0)), "against");
+        check(&square, &line((-1.0, -1.0), (2.0, 2.0)), "cross cross");
+        check(&square, &square.reversed(), "against");
+    }
+
+    #[test]
+    fn curves_meet_themselves() {
+        let check = |curve: &Curve, expected: &str| {
+            let hits = self_intersect(curve, &tolerance()).unwrap();
+            assert_eq!(describe(curve, curve, &hits), expected, "{hits:?}");
+        };
+        check(&line((0.0, 0.0), (1.0, 0.0)), "");
+        check(&circle(0.0, 0.0, 1.0), "");
+        check(&polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], true), "");
+        check(&polyline(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)], false), "cross");
+        let loop_ = build::bezier(&[at(0.0, 0.0), at(3.0, 2.0), at(-2.0, 2.0), at(1.0, 0.0)], None, Origin::NONE).unwrap();
+        check(&loop_, "cross");
+        check(&spline(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0), (4.0, 0.5)]), "");
+        check(&polyline(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)], false), "against");
+        let helix = build::helix(DVec3::ZERO, DVec3::Z, DVec3::X, 0.5, 4.0, Origin::NONE).unwrap();
+        check(&helix, "");
+    }
+
+    #[test]
+    fn space_curves() {
+        let helix = build::helix(DVec3::ZERO, DVec3::Z, DVec3::X, 1.0, 3.0, Origin::NONE).unwrap();
+        let upright = build::line(DVec3::new(0.0, 1.0, -1.0), DVec3::new(0.0, 1.0, 5.0), Origin::NONE).unwrap();
+        check(&helix, &upright, "cross cross cross");
+        let aside = build::line(DVec3::new(1e-5, 1.0, -1.0), DVec3::new(1e-5, 1.0, 5.0), Origin::NONE).unwrap();
+        check(&helix, &aside, "cross cross cross");
+        let outside = build::line(DVec3::new(0.0, 1.00001, -1.0), DVec3::new(0.0, 1.00001, 5.0), Origin::NONE).unwrap();
+        check(&helix, &outside, "");
+    }
+}

@@ -65,8 +65,8 @@ mod tests {
         let tiny = f64::EPSILON;
         let (a, b) = (DVec2::new(12.0, 12.0), DVec2::new(24.0, 24.0));
         assert_eq!(orient(DVec2::splat(0.5), a, b), 0.0);
-        assert!(orient(DVec2::new(0.5, 0.5 + tiny), a, b) < 0.0);
-        assert!(orient(DVec2::new(0.5 + tiny, 0.5), a, b) > 0.0);
+        assert!(orient(DVec2::new(0.5, 0.5 + tiny), a, b) > 0.0);
+        assert!(orient(DVec2::new(0.5 + tiny, 0.5), a, b) < 0.0);
         assert!(in_circle(DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::new(0.0, -1.0 + tiny)) > 0.0);
     }
 

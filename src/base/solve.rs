@@ -106,6 +106,29 @@ pub fn bracketed(mut low: f64, mut high: f64, accuracy: f64, mut f: impl FnMut(f
     x
 }
 
+/// Where a function with one minimum between `low` and `high` is least, by golden sections, to `accuracy` of the interval.
+pub fn lowest(mut low: f64, mut high: f64, accuracy: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let enough = accuracy * (high - low);
+    let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut fx, mut fy) = (f(x), f(y));
+    for _ in 0..100 {
+        if high - low <= enough {
+            break;
+        }
+        if fx <= fy {
+            (high, y, fy) = (y, x, fx);
+            x = high - GOLDEN * (high - low);
+            fx = f(x);
+        } else {
+            (low, x, fx) = (x, y, fy);
+            y = low + GOLDEN * (high - low);
+            fy = f(y);
+        }
+    }
+    0.5 * (low + high)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -29,6 +29,8 @@ pub const EPSILON: f64 = 1e-14;
 pub const CUSP: f64 = 1e-10;
 /// Least interval, as a share of the domain, over which a direction is taken where derivatives vanish.
 pub const NUDGE: f64 = 1e-6;
+/// Step of a Newton iteration, as a share of the piece, after which one more would change nothing.
+pub const NEWTON_STEP: f64 = 1e-8;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
 /// Below this barycentric distance from a corner a quotient 0/0 is replaced by its expansion.

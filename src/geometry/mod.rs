@@ -4,6 +4,7 @@
 
 pub mod arc;
 mod arclength;
+mod bounds;
 pub mod build;
 pub mod closest;
 pub mod composite;

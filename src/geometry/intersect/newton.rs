@@ -1,0 +1,107 @@
+//! Local search: the nearest points of two sections, and of a point and a section.
+
+use glam::DVec3;
+
+use crate::base::tolerance::{EPSILON, NEWTON_STEP};
+use crate::geometry::pieces::View;
+
+/// Corrections at most.
+const ROUNDS: usize = 24;
+
+/// Two parameters with the points there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near {
+    pub(crate) ta: f64,
+    pub(crate) tb: f64,
+    pub(crate) pa: DVec3,
+    pub(crate) pb: DVec3,
+}
+
+impl Near {
+    pub(crate) fn gap(&self) -> f64 {
+        self.pa.distance(self.pb)
+    }
+}
+
+/// Newton's method for the least |A(s) − B(t)|² from a starting pair, kept inside both sections.
+pub(crate) fn approach(a: &View, b: &View, (mut s, mut t): (f64, f64)) -> Near {
+    let (ra, rb) = (a.section.range, b.section.range);
+    let (slack_a, slack_b) = (NEWTON_STEP * (ra.1 - ra.0), NEWTON_STEP * (rb.1 - rb.0));
+    let mut found = Near { ta: s, tb: t, pa: DVec3::ZERO, pb: DVec3::ZERO };
+    for _ in 0..ROUNDS {
+        let (ja, jb) = (a.jet(s), b.jet(t));
+        let d = ja.p - jb.p;
+        let (gs, gt) = (d.dot(ja.d1), -d.dot(jb.d1));
+        let (aa, bb, ab) = (ja.d1.length_squared(), jb.d1.length_squared(), ja.d1.dot(jb.d1));
+        // The whole Hessian where it is positive definite, else its Gauss-Newton part.
+        let (mut hs, mut ht) = (aa + d.dot(ja.d2), bb - d.dot(jb.d2));
+        let mut det = hs * ht - ab * ab;
+        if !(hs > 0.0 && det > EPSILON * aa * bb) {
+            (hs, ht) = (aa, bb);
+            det = hs * ht - ab * ab;
+        }
+        // At an end that the descent would leave, the other parameter moves alone.
+        let held = |x: f64, range: (f64, f64), slope: f64| (x <= range.0 && slope > 0.0) || (x >= range.1 && slope < 0.0);
+        let (hold_s, hold_t) = (held(s, ra, gs), held(t, rb, gt));
+        let (ds, dt) = match (hold_s, hold_t) {
+            (true, true) => (0.0, 0.0),
+            (true, false) => (0.0, -gt / ht),
+            (false, true) => (-gs / hs, 0.0),
+            (false, false) if det > EPSILON * aa * bb => ((-gs * ht - gt * ab) / det, (-gt * hs - gs * ab) / det),
+            (false, false) => (-gs / (2.0 * hs), -gt / (2.0 * ht)),
+        };
+        let (next_s, next_t) = ((s + ds).clamp(ra.0, ra.1), (t + dt).clamp(rb.0, rb.1));
+        let (ds, dt) = (next_s - s, next_t - t);
+        if !(ds.is_finite() && dt.is_finite()) {
+            return Near { ta: s, tb: t, pa: ja.p, pb: jb.p };
+        }
+        (s, t) = (next_s, next_t);
+        found = Near { ta: s, tb: t, pa: ja.p + ja.d1 * ds, pb: jb.p + jb.d1 * dt };
+        if ds.abs() <= slack_a && dt.abs() <= slack_b {
+            // What the step leaves is its square.
+            return found;
+        }
+    }
+    found
+}
+
+/// Newton's method for the point of a section nearest to `p`, from the parameter `t`.
+pub(crate) fn foot(view: &View, p: DVec3, mut t: f64) -> (f64, DVec3) {
+    let range = view.section.range;
+    let slack = NEWTON_STEP * (range.1 - range.0);
+    let mut at = p;
+    for _ in 0..ROUNDS {
+        let j = view.jet(t);
+        let d = j.p - p;
+        let speed2 = j.d1.length_squared();
+        let whole = speed2 + d.dot(j.d2);
+        let slope = if whole > 0.25 * speed2 { whole } else { speed2 };
+        let next = (t - d.dot(j.d1) / slope).clamp(range.0, range.1);
+        if !next.is_finite() {
+            return (t, j.p);
+        }
+        at = j.p + j.d1 * (next - t) + j.d2 * (0.5 * (next - t) * (next - t));
+        let step = (next - t).abs();
+        t = next;
+        if step <= slack {
+            break;
+        }
+    }
+    (t, at)
+}
+
+/// Squared distance of two segments and the shares along both where it is taken.
+#[inline]
+pub(crate) fn segments((p0, p1): (DVec3, DVec3), (q0, q1): (DVec3, DVec3)) -> (f64, f64, f64) {
+    let (u, v, w) = (p1 - p0, q1 - q0, p0 - q0);
+    let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
+    let (uw, vw) = (u.dot(w), v.dot(w));
+    let det = uu * vv - uv * uv;
+    let mut s = if det > EPSILON * uu * vv { ((uv * vw - vv * uw) / det).clamp(0.0, 1.0) } else { 0.0 };
+    let mut t = if vv > 0.0 { (uv * s + vw) / vv } else { 0.0 };
+    if !(0.0..=1.0).contains(&t) {
+        t = t.clamp(0.0, 1.0);
+        s = if uu > 0.0 { ((uv * t - uw) / uu).clamp(0.0, 1.0) } else { 0.0 };
+    }
+    ((w + u * s - v * t).length_squared(), s, t)
+}
