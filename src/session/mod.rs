@@ -3,10 +3,12 @@
 pub mod disk;
 pub mod guard;
 pub mod json;
+mod plan;
 pub mod reference;
 pub mod report;
 pub mod run;
 mod similar;
+pub mod stages;
 pub mod staging;
 pub mod starter;
 pub mod variants;

@@ -1,5 +1,7 @@
 //! Families 2 and 3: values that do not fit, found below the language.
 
+use glam::DVec3;
+
 use super::{Describe, Report, Say, Subject};
 use crate::base::origin::Origin;
 
@@ -39,6 +41,18 @@ pub enum ValueFault {
     NoLinks {
         /// The curve.
         of: Origin,
+    },
+    /// E211: patches are asked of a surface that is not in the model.
+    NoPatches {
+        /// The surface.
+        of: Origin,
+    },
+    /// E215: none or several edges lie where one is asked for.
+    NotOneEdge {
+        /// The surface.
+        of: Origin,
+        /// Middles of the edges that lie there.
+        places: Vec<DVec3>,
     },
     /// E211: a value of the wrong kind inside a list that may hold several kinds.
     WrongKind {
@@ -81,6 +95,20 @@ impl Describe for ValueFault {
                 let message = format!("{} is construction geometry and has no links", say.quoted(*of, "this curve"));
                 let report = Report::new("E211", message).label(Subject::Call, "links are asked for here").at(*of, "made here");
                 report.help("bind it with `curve`: then it joins the network")
+            }
+            Self::NoPatches { of } => {
+                let message = format!("{} is construction geometry and has no patches", say.quoted(*of, "this surface"));
+                let report = Report::new("E211", message).label(Subject::Call, "asked for here").at(*of, "made here");
+                report.help("bind it with `surface`: then it joins the model")
+            }
+            Self::NotOneEdge { of, places } => {
+                let surface = say.quoted(*of, "this surface");
+                let message = match places.len() {
+                    0 => format!("no edge of {surface} lies there"),
+                    n => format!("{n} edges of {surface} lie there"),
+                };
+                let report = Report::new("E215", message).label(Subject::Call, "asked for here");
+                places.iter().take(4).fold(report, |r, p| r.note(format!("one has its middle at {}", say.point(*p))))
             }
             Self::WrongKind { argument, wanted, found } => {
                 Report::new("E211", format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::lang::types::{FromValue, Ty};
+use crate::lang::types::{FromValue, IntoValue, Ty};
 use crate::lang::value::{MeshValue, ModuleId, ShellValue, Value};
-use crate::model::{EdgeId, PatchId};
+use crate::model::{EdgeId, PatchId, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
 
@@ -60,34 +60,6 @@ one_of! {
 }
 
 one_of! {
-    /// Anything with a length.
-    Lengthy {
-        /// A curve.
-        Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
-        /// A link.
-        Link(ModuleId, LinkId) = Ty::Link, Value::Link(m, l) => Self::Link(m, l);
-        /// An edge.
-        Edge(ModuleId, EdgeId) = Ty::Edge, Value::Edge(m, e) => Self::Edge(m, e);
-    }
-}
-
-one_of! {
-    /// Anything with an area, a box and a centroid.
-    Region {
-        /// A curve (box, centroid).
-        Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
-        /// A surface.
-        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
-        /// A patch.
-        Patch(ModuleId, PatchId) = Ty::Patch, Value::Patch(m, p) => Self::Patch(m, p);
-        /// A shell.
-        Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
-        /// A mesh.
-        Mesh(Arc<MeshValue>) = Ty::Mesh, Value::Mesh(m) => Self::Mesh(m);
-    }
-}
-
-one_of! {
     /// What an edge of a surface is asked for by.
     EdgeKey {
         /// A curve it lies on.
@@ -95,4 +67,54 @@ one_of! {
         /// A point on it.
         Point(DVec3) = Ty::Point, Value::Vector(p, _) | Value::Node(p) => Self::Point(p);
     }
+}
+
+/// Declares a struct for entities that live in the network or model of a script.
+macro_rules! entity {
+    ($($(#[$doc:meta])* $name:ident = $kind:ident($($id:ty)?);)+) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name(pub ModuleId, $(pub $id)?);
+        impl FromValue for $name {
+            const TY: Ty = Ty::$kind;
+            entity! { @from $kind $($id)? }
+        }
+        impl IntoValue for $name {
+            const TY: Ty = Ty::$kind;
+            entity! { @into $kind $($id)? }
+        }
+    )+ };
+    (@from $kind:ident $id:ty) => {
+        fn from_value(value: Value) -> Option<Self> {
+            match value { Value::$kind(module, id) => Some(Self(module, id)), _ => None }
+        }
+    };
+    (@from $kind:ident) => {
+        fn from_value(value: Value) -> Option<Self> {
+            match value { Value::$kind(module) => Some(Self(module)), _ => None }
+        }
+    };
+    (@into $kind:ident $id:ty) => {
+        fn into_value(self) -> Value {
+            Value::$kind(self.0, self.1)
+        }
+    };
+    (@into $kind:ident) => {
+        fn into_value(self) -> Value {
+            Value::$kind(self.0)
+        }
+    };
+}
+
+entity! {
+    /// A link of a script's network.
+    LinkOf = Link(LinkId);
+    /// An edge of a script's surface model.
+    EdgeOf = Edge(EdgeId);
+    /// A vertex of a script's surface model.
+    VertexOf = Vertex(VertexId);
+    /// A patch of a script's surface model.
+    PatchOf = Patch(PatchId);
+    /// The network of a script.
+    NetworkOf = Network();
 }

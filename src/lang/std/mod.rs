@@ -14,6 +14,7 @@ mod network;
 mod numbers;
 mod surfaces;
 mod text;
+mod topology;
 mod transforms;
 mod vectors;
 
@@ -78,10 +79,10 @@ impl Builtin {
 
 /// All tables of functions.
 pub const BUILTINS: &[&[Builtin]] =
-    &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS, curves::BUILTINS, network::BUILTINS, surfaces::BUILTINS, transforms::BUILTINS];
+    &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS, curves::BUILTINS, network::BUILTINS, surfaces::BUILTINS, transforms::BUILTINS, topology::BUILTINS];
 
 /// All tables of fields.
-pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, network::FIELDS];
+pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, network::FIELDS, topology::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

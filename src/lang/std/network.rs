@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::kinds::{CurveOrSurface, Meeting, PointsOrCurve};
+use super::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, PointsOrCurve};
 use crate::base::fault::ValueFault;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Length, Node, Point, Station};
-use crate::lang::value::{ModuleId, Value};
+use crate::lang::value::Value;
 use crate::network::{self, Chain, LinkId};
 use crate::{builtins, fields};
 
@@ -179,31 +179,18 @@ fields! {
         Ok(of.kinks(&cx.tolerance()?).into_iter().map(|f| Point(of.point(f))).collect())
     };
     /// The links of the network that a curve runs over, in its direction.
-    fn links(of: Chain) -> Vec<Value> = |cx, of| {
+    fn links(of: Chain) -> Vec<LinkOf> = |cx, of| {
         let module = cx.module();
-        Ok(links(cx, &of)?.into_iter().map(|(link, _)| Value::Link(module, link)).collect())
+        Ok(links(cx, &of)?.into_iter().map(|(link, _)| LinkOf(module, link)).collect())
     };
     /// The nodes of the network along a curve.
     fn nodes(of: Chain) -> Vec<Node> = |cx, of| Ok(nodes(cx, &of)?.into_iter().map(Node).collect());
     /// All nodes of the network.
     fn nodes(of: NetworkOf) -> Vec<Node> = |cx, of| Ok(cx.network(of.0)?.nodes.iter().map(|n| Node(n.point)).collect());
     /// All links of the network.
-    fn links(of: NetworkOf) -> Vec<Value> = |cx, of| {
-        Ok((0..cx.network(of.0)?.links.len()).map(|i| Value::Link(of.0, LinkId::at(i))).collect())
+    fn links(of: NetworkOf) -> Vec<LinkOf> = |cx, of| {
+        Ok((0..cx.network(of.0)?.links.len()).map(|i| LinkOf(of.0, LinkId::at(i))).collect())
     };
     /// All curves of the network.
     fn curves(of: NetworkOf) -> Vec<Chain> = |cx, of| Ok(cx.network(of.0)?.curves.iter().map(|c| Chain::of_curve(&c.curve)).collect());
-}
-
-/// The network of a script.
-pub struct NetworkOf(pub ModuleId);
-
-impl crate::lang::types::FromValue for NetworkOf {
-    const TY: crate::lang::types::Ty = crate::lang::types::Ty::Network;
-    fn from_value(value: Value) -> Option<Self> {
-        match value {
-            Value::Network(module) => Some(Self(module)),
-            _ => None,
-        }
-    }
 }

@@ -1,0 +1,130 @@
+//! From what a `mesh` declaration says to a plan for the mesher: values become surfaces, chains and points.
+
+use crate::base::fault::{Fault, Say, ValueFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::plans::{MeshSpec, RuleSpec};
+use crate::lang::scene::Scene;
+use crate::lang::value::{ModuleId, Value};
+use crate::mesh::plan::{GroupRequest, Target};
+use crate::mesh::{Elements, Method, Plan, Rule};
+use crate::surface::Surface;
+
+/// Finds what the values of a mesh stand for.
+struct Finder<'s> {
+    scene: &'s Scene,
+    tolerance: Tolerance,
+}
+
+/// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
+pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(Plan, Scene), Stop> {
+    let tolerance = cx.tolerance()?;
+    let parts = cx.parts(module)?;
+    let rules = spec.rules.iter().flat_map(|rule| &rule.things);
+    let values = spec.things.iter().chain(rules).map(|(value, _)| value);
+    let surfaces: Vec<&Surface> = values.flat_map(surfaces_of).collect();
+    let scene = Scene::of(cx, module, surfaces)?;
+    let finder = Finder { scene: &scene, tolerance };
+    let mut plan = Plan::of(&spec.name, Vec::new());
+    plan.origin = spec.origin;
+    for (value, origin) in &spec.things {
+        finder.add(cx, &mut plan, value, *origin, sink)?;
+    }
+    settings(&mut plan, spec);
+    for rule in &spec.rules {
+        for (value, origin) in &rule.things {
+            for target in finder.targets(value, *origin)? {
+                plan.rules.push(rule_on(rule, target));
+            }
+        }
+    }
+    for group in &parts.groups {
+        let mut members = Vec::new();
+        for value in &group.value {
+            // What the mesh does not hold is no part of its groups.
+            if surfaces_of(value).iter().all(|s| scene.find(s).is_some()) {
+                members.extend(finder.targets(value, group.origin)?);
+            }
+        }
+        plan.groups.push(GroupRequest { name: group.name.to_string(), members });
+    }
+    Ok((plan, scene))
+}
+
+fn settings(plan: &mut Plan, spec: &MeshSpec) {
+    plan.size = spec.size;
+    plan.chord_error = spec.chord_error;
+    plan.angle_error = spec.angle_error;
+    plan.elements = spec.elements.map_or(Elements::Triangles, |said| said.0);
+    plan.order = spec.order.map_or(1, |said| said.0);
+    plan.method = spec.method.map_or(Method::Auto, |said| said.0);
+    plan.conforming = spec.conforming.is_none_or(|said| said.0);
+}
+
+fn rule_on(spec: &RuleSpec, target: Target) -> Rule {
+    let RuleSpec { count, size, bias, elements, method, origin, .. } = spec;
+    Rule { target, count: *count, size: *size, bias: *bias, elements: *elements, method: *method, origin: *origin }
+}
+
+/// The surfaces that a value is or holds.
+fn surfaces_of(value: &Value) -> Vec<&Surface> {
+    match value {
+        Value::Surface(surface) => vec![surface],
+        Value::Shell(shell) => shell.surfaces.iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+impl Finder<'_> {
+    /// Adds a thing of the `of` list.
+    fn add(&self, cx: &Cx, plan: &mut Plan, value: &Value, origin: Origin, sink: &mut Vec<Fault>) -> Result<(), Stop> {
+        match value {
+            Value::Surface(surface) => plan.surfaces.extend(self.scene.find_all([surface])?),
+            Value::Shell(shell) => {
+                // Whether it is open was said where the shell is declared.
+                let mut said = Vec::new();
+                plan.surfaces.extend(self.scene.shell(shell, &self.tolerance, &mut said)?.surfaces);
+                sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N')));
+            }
+            Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),
+            Value::Node(p) | Value::Vector(p, _) => plan.points.push(*p),
+            Value::Link(..) | Value::Edge(..) | Value::Vertex(..) => {
+                for target in self.targets(value, origin)? {
+                    match target {
+                        Target::Chain(chain) => plan.curves.push((cx.name(chain.origin()), chain)),
+                        Target::Point(p) => plan.points.push(p),
+                        Target::Surface(_) => {}
+                    }
+                }
+            }
+            other => return Err(wrong(other)),
+        }
+        Ok(())
+    }
+
+    /// What a rule or a group speaks of.
+    fn targets(&self, value: &Value, origin: Origin) -> Result<Vec<Target>, Stop> {
+        let _ = origin;
+        Ok(match value {
+            Value::Surface(surface) => self.scene.find_all([surface])?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
+            Value::Shell(shell) => self.scene.find_all(&shell.surfaces)?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
+            Value::Curve(chain) => vec![Target::Chain(chain.clone())],
+            Value::Link(_, link) => vec![Target::Chain(self.scene.network.link_chain(*link))],
+            Value::Edge(_, edge) => {
+                let edge = &self.scene.model.edges[edge.index()];
+                let chain = self.scene.edge_chain(edge, &self.tolerance)?;
+                let later = || ValueFault::NotInThisVersion { what: "a rule or group on an edge inside a surface".to_owned() };
+                vec![Target::Chain(chain.ok_or_else(later)?)]
+            }
+            Value::Vertex(_, vertex) => vec![Target::Point(self.scene.model.vertices[vertex.index()].point)],
+            Value::Node(p) | Value::Vector(p, _) => vec![Target::Point(*p)],
+            other => return Err(wrong(other)),
+        })
+    }
+}
+
+fn wrong(value: &Value) -> Stop {
+    let wanted = "surfaces, shells, curves and points";
+    ValueFault::WrongKind { argument: "of", wanted, found: value.ty().words() }.into()
+}

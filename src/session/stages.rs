@@ -1,0 +1,144 @@
+//! The stages of the pipeline over the kernel floors: curves to network, surfaces to model, plans to meshes.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+
+use crate::base::fault::{Fault, Say};
+use crate::base::origin::Origin;
+use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
+use crate::lang::plans::MeshSpec;
+use crate::lang::value::ModuleId;
+use crate::mesh::{self, Mesh};
+use crate::model::Model;
+use crate::model::topology::Named;
+use crate::network::chain::same_curve;
+use crate::network::graph::Input;
+use crate::network::{Chain, Network};
+
+use super::plan;
+
+/// The pipeline of a session; remembers how things were found.
+#[derive(Debug, Default)]
+pub struct Stages {
+    notes: Mutex<Vec<String>>,
+}
+
+impl Stages {
+    /// How things were found, a line each.
+    pub fn into_notes(self) -> Vec<String> {
+        self.notes.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn note(&self, lines: impl IntoIterator<Item = String>) {
+        self.notes.lock().unwrap_or_else(PoisonError::into_inner).extend(lines);
+    }
+}
+
+impl Pipeline for Stages {
+    fn snap(&self, _cx: &mut Cx, _parts: &mut Parts, _distance: f64, _origin: Origin) -> Result<(), Stop> {
+        Err(Stop::Bug("snap"))
+    }
+
+    fn network(&self, cx: &mut Cx, _module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop> {
+        let tolerance = cx.tolerance()?;
+        let inputs = inputs(cx, parts);
+        let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
+        let mut sink = Vec::new();
+        let network = Network::build(inputs, &points, &tolerance, cx.job, &mut sink)?;
+        say_all(cx, &sink);
+        Ok(Arc::new(network))
+    }
+
+    fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop> {
+        let (tolerance, network) = (cx.tolerance()?, cx.network(module)?);
+        let named = |s: &crate::lang::cx::Declared<crate::surface::Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
+        let surfaces = parts.surfaces.iter().map(named).collect();
+        Ok(Arc::new(Model::build(surfaces, &network, &tolerance, cx.job)?))
+    }
+
+    fn mesh(&self, cx: &mut Cx, module: ModuleId, spec: &MeshSpec) -> Result<Arc<Mesh>, Stop> {
+        let tolerance = cx.tolerance()?;
+        let mut sink = Vec::new();
+        let (plan, scene) = plan::of(cx, module, spec, &mut sink)?;
+        let input = mesh::build::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
+        let built = mesh::build::build(&input, cx.job, &mut sink);
+        say_all(cx, &sink);
+        let (mesh, explanation) = built?;
+        self.note(explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)));
+        Ok(Arc::new(mesh))
+    }
+}
+
+fn say_all(cx: &mut Cx, sink: &[Fault]) {
+    sink.iter().for_each(|fault| cx.say(fault));
+}
+
+/// Curves found again by their shape: curves that are one share their ends.
+#[derive(Default)]
+struct Shapes {
+    by_ends: BTreeMap<[u64; 6], Vec<usize>>,
+}
+
+impl Shapes {
+    fn key(curve: &crate::geometry::Curve) -> [u64; 6] {
+        let (a, b) = (curve.start(), curve.end());
+        // Adding zero makes the two zeros one.
+        [a.x, a.y, a.z, b.x, b.y, b.z].map(|x| (x + 0.0).to_bits())
+    }
+
+    fn find(&self, curve: &crate::geometry::Curve, inputs: &[Input]) -> Option<usize> {
+        self.by_ends.get(&Self::key(curve))?.iter().copied().find(|&i| same_curve(&inputs[i].curve, curve))
+    }
+
+    fn add(&mut self, curve: &crate::geometry::Curve, index: usize) {
+        self.by_ends.entry(Self::key(curve)).or_default().push(index);
+    }
+}
+
+/// What goes into the network: declared curves, then nameless ones that declared surfaces stand on, with cuts where
+/// runs of modeling curves end.
+fn inputs(cx: &Cx, parts: &Parts) -> Vec<Input> {
+    let whole = |c: &crate::lang::cx::Declared<Chain>| {
+        let curve = c.value.whole_curve().cloned().or_else(|| c.value.runs().first().map(|run| run.curve.clone()))?;
+        Some(Input { name: c.name.to_string(), curve, cuts: Vec::new() })
+    };
+    let mut inputs: Vec<Input> = parts.curves.iter().filter_map(whole).collect();
+    let modeling = parts.modeling.iter().map(|m| (&m.value, false));
+    let below = parts.surfaces.iter().flat_map(|s| s.value.chains().iter().map(|c| (c, true)));
+    let mut chains = modeling.chain(below).peekable();
+    if chains.peek().is_none() {
+        return inputs;
+    }
+    let mut shapes = Shapes::default();
+    inputs.iter().enumerate().for_each(|(i, input)| shapes.add(&input.curve, i));
+    let mut names: BTreeMap<String, usize> = inputs.iter().map(|i| (i.name.clone(), 1)).collect();
+    for (chain, joins) in chains {
+        for run in chain.runs() {
+            let found = shapes.find(&run.curve, &inputs);
+            let index = match found {
+                Some(index) => index,
+                None if !joins || cx.is_construction(run.curve.origin()) => continue,
+                None => {
+                    let name = unique(&mut names, cx.name(run.curve.origin()));
+                    inputs.push(Input { name, curve: run.curve.clone(), cuts: Vec::new() });
+                    shapes.add(&run.curve, inputs.len() - 1);
+                    inputs.len() - 1
+                }
+            };
+            let length = run.curve.length();
+            let inside = [run.s0, run.s1].into_iter().map(|s| if s > length { s - length } else { s });
+            inputs[index].cuts.extend(inside.filter(|s| *s > 0.0 && *s < length));
+        }
+    }
+    inputs
+}
+
+/// The name, or with a number behind it where it is taken.
+fn unique(names: &mut BTreeMap<String, usize>, name: String) -> String {
+    let name = if name.is_empty() { "curve".to_owned() } else { name };
+    let taken = names.entry(name.clone()).or_insert(0);
+    *taken += 1;
+    if *taken == 1 { name } else { format!("{name} ({taken})") }
+}
