@@ -127,6 +127,20 @@ struct Row {
     labels: Vec<(usize, usize, String)>,
 }
 
+impl Row {
+    /// A place between two characters is marked under the one behind it, at the end of the line under a blank.
+    fn widen(&mut self) {
+        for (from, to, _) in &mut self.labels {
+            if from == to {
+                if *from == self.text.len() {
+                    self.text.push(' ');
+                }
+                *to = *from + self.text[*from..].chars().next().map_or(0, char::len_utf8);
+            }
+        }
+    }
+}
+
 /// The labelled lines of one file in a frame.
 fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usize, paint: &Paint) {
     let rows = rows(source, labels);
@@ -141,7 +155,7 @@ fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usiz
             let (number, bar) = if n == 0 { ((row.index + 1).to_string(), '│') } else { (String::new(), '·') };
             let gutter = paint.frame(&format!("{number:>width$} {bar}"));
             let line = if n == 0 { line.clone() } else { paint.label(line) };
-            text.push_str(format!("{gutter} {line}").trim_end());
+            text.push_str(format!("{gutter} {line}").trim_end_matches(' '));
             text.push('\n');
         }
     }
@@ -170,6 +184,7 @@ fn rows(source: &SourceFile, labels: &[&Label]) -> Vec<Row> {
             labels.sort_by_key(|&(from, to, _)| (from, to));
             let (_, line) = source.line(index);
             let mut row = Row { index, text: line.to_owned(), labels };
+            row.widen();
             if line.len() > WHOLE_LINE {
                 cut(&mut row);
             }

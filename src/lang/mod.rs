@@ -1,5 +1,6 @@
 //! Floor 7: the language: text to tree, values, evaluation by dependency, diagnostics.
 
+pub mod codes;
 pub mod cx;
 pub mod diag;
 pub mod diag_render;

@@ -1,4 +1,7 @@
 //! What pest expected, in words for people.
+//!
+//! pest tells the furthest byte it reached and the rules it would have gone on with. The token there, its neighbours
+//! and these rules say what was meant more often than not; a repair is only offered when the repaired text parses.
 
 use pest::error::{Error, ErrorVariant, InputLocation};
 
@@ -19,6 +22,23 @@ pub(super) struct Failure<'a> {
     pub end: usize,
 }
 
+/// Where pest stopped and what it wanted there.
+struct Stop<'a> {
+    /// Token that it stopped at; `end` when the declaration ended.
+    at: usize,
+    wanted: &'a [Rule],
+}
+
+impl Stop<'_> {
+    fn wants(&self, rule: Rule) -> bool {
+        self.wanted.contains(&rule)
+    }
+
+    fn wants_value(&self) -> bool {
+        is_value(self.wanted) || self.wants(Rule::arg)
+    }
+}
+
 impl Failure<'_> {
     /// The report for an error of pest.
     pub fn diagnose(&self, error: &Error<Rule>) -> Diagnostic {
@@ -31,46 +51,272 @@ impl Failure<'_> {
             InputLocation::Pos(at) | InputLocation::Span((at, _)) => at as u32 + self.tokens.starts[self.base],
         };
         let at = self.base + self.tokens.starts[self.base..self.end].partition_point(|&start| start < byte);
-        let wanted = words(positives);
-        if at >= self.end {
-            let last = self.tokens.span(self.end - 1);
-            let place = Span { start: last.end, end: last.end };
-            return Diagnostic::new(
-                "E102",
-                format!("expected {wanted}, but the declaration ends here"),
-                self.file,
-                place,
-                format!("{wanted} is missing"),
-            );
-        }
-        let place = self.tokens.span(at);
-        let found = self.text(at);
-        Diagnostic::new("E102", format!("expected {wanted}, found `{found}`"), self.file, place, format!("expected {wanted}"))
+        let stop = Stop { at, wanted: positives };
+        let special = self.let_without_in(&stop).or_else(|| self.bracket_on_its_line(&stop)).or_else(|| self.reserved_word(&stop));
+        special.or_else(|| self.equals(&stop)).unwrap_or_else(|| self.general(&stop))
     }
 
     fn text(&self, token: usize) -> &str {
-        let span = self.tokens.span(token);
+        self.slice(self.tokens.span(token))
+    }
+
+    fn slice(&self, span: Span) -> &str {
         &self.source[span.start as usize..span.end as usize]
     }
 
-    #[allow(dead_code)]
     fn kind(&self, token: usize) -> Option<Kind> {
-        self.tokens.kinds.get(token).copied().filter(|_| token < self.end)
+        (self.base..self.end).contains(&token).then(|| self.tokens.kinds[token])
+    }
+
+    /// The kind of the token before.
+    fn before(&self, token: usize) -> Option<Kind> {
+        token.checked_sub(1).and_then(|t| self.kind(t))
+    }
+
+    fn e102(&self, message: String, token: usize, label: &str) -> Diagnostic {
+        Diagnostic::new("E102", message, self.file, self.place(token), label)
+    }
+
+    /// Place of a token, or the end of the declaration.
+    fn place(&self, token: usize) -> Span {
+        if token < self.end {
+            return self.tokens.span(token);
+        }
+        let last = self.tokens.span(self.end - 1);
+        Span { start: last.end, end: last.end }
+    }
+
+    /// Whether the declaration parses once `text` replaces the bytes of `span`.
+    fn parses_with(&self, span: Span, text: &str) -> bool {
+        let whole = self.tokens.stretch(self.base, self.end - 1);
+        let (before, behind) = (Span { start: whole.start, end: span.start }, Span { start: span.end, end: whole.end });
+        super::is_declaration(&format!("{}{text}{}", self.slice(before), self.slice(behind)))
+    }
+
+    /// Adds the first repair that makes the declaration parse.
+    fn repaired(&self, report: Diagnostic, repairs: &[(Span, &str, String)]) -> Diagnostic {
+        match repairs.iter().find(|(span, text, _)| self.parses_with(*span, text)) {
+            Some((_, _, help)) => report.help(help.clone()),
+            None => report,
+        }
+    }
+
+    fn let_without_in(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
+        if !stop.wants(Rule::let_in) {
+            return None;
+        }
+        // The innermost `let` whose `in` is not there yet.
+        let (mut open, mut depth) = (0usize, 0usize);
+        let token = (self.base + 1..stop.at).rev().find(|&t| match self.tokens.kinds[t] {
+            Kind::In if depth == 0 && !self.is_loop_in(t) => {
+                open += 1;
+                false
+            }
+            Kind::CloseRound | Kind::CloseSquare | Kind::CloseCurly => {
+                depth += 1;
+                false
+            }
+            Kind::OpenRound | Kind::OpenSquare | Kind::OpenCurly | Kind::LineRound | Kind::LineSquare => {
+                depth = depth.saturating_sub(1);
+                false
+            }
+            Kind::Let if depth == 0 && open == 0 => true,
+            Kind::Let if depth == 0 => {
+                open -= 1;
+                false
+            }
+            _ => false,
+        })?;
+        let name = self.text(token + 1);
+        let label = if stop.at < self.end {
+            format!("`in` is missing before `{}`", self.text(stop.at))
+        } else {
+            "`in` and the result are missing here".to_owned()
+        };
+        let report = Diagnostic::new("E108", "this `let` has no `in`", self.file, self.tokens.span(token), "a `let` inside an expression")
+            .label(self.file, self.place(stop.at), label);
+        Some(report.help(format!("let {name} = … in …")))
+    }
+
+    /// Whether an `in` belongs to `for name in`.
+    fn is_loop_in(&self, token: usize) -> bool {
+        token >= self.base + 2 && self.tokens.kinds[token - 2] == Kind::For
+    }
+
+    fn bracket_on_its_line(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
+        let what = match self.kind(stop.at)? {
+            Kind::LineRound => "(",
+            Kind::LineSquare => "[",
+            _ => return None,
+        };
+        let before = self.before(stop.at).filter(|k| k.ends_operand())?;
+        let owner = self.text(stop.at - 1);
+        let call = what == "(" && before == Kind::Name;
+        let message = if call {
+            "the `(` of a call stands on the line of its function".to_owned()
+        } else {
+            format!("the `{what}` of an index stands on the line of what it belongs to")
+        };
+        let message = if what == "(" && !call { "something is missing before this `(`".to_owned() } else { message };
+        Some(
+            self.e102(message, stop.at, "on a line of its own")
+                .help(format!("write `{owner}{what}` on one line, or an operator or `,` between them")),
+        )
+    }
+
+    fn reserved_word(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
+        let kind = self.kind(stop.at).filter(|k| k.is_reserved())?;
+        let word = self.text(stop.at);
+        let called = matches!(self.kind(stop.at + 1), Some(Kind::OpenRound));
+        if (stop.wants(Rule::name) || stop.wants(Rule::parameter)) && !stop.wants_value() {
+            return Some(
+                self.e102(format!("`{word}` is a reserved word and cannot be a name"), stop.at, "reserved")
+                    .help(format!("call it `{word}_1`, or anything else")),
+            );
+        }
+        if !stop.wants_value() || matches!(kind, Kind::Then | Kind::Else | Kind::In | Kind::To | Kind::As | Kind::Of | Kind::On) {
+            return None;
+        }
+        let report = self.e102(format!("`{word}` is a reserved word, not a value"), stop.at, "a value is wanted here");
+        Some(match kind {
+            Kind::Point if called => report.help("a point is written without a word: (x, y, z)"),
+            Kind::Curve if called => report.help("curves are made by `line`, `arc`, `spline` …"),
+            Kind::Surface if called => report.help("surfaces are made by `coons`, `ruled`, `revolve` …"),
+            Kind::For => report.help("a list is made by `[for i in 0..5: …]`; a family by `curve ribs for i in 0..5 = …`"),
+            kind if kind.keyword().is_some() => report.help(format!("declare it on a line of its own: {word} name …")),
+            _ => report,
+        })
+    }
+
+    /// `=` where `==` or `:` is meant.
+    fn equals(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
+        let found = self.kind(stop.at)?;
+        if found != Kind::Equals {
+            return None;
+        }
+        let place = self.tokens.span(stop.at);
+        let wanted = words(stop.wanted);
+        let report = self.e102(format!("expected {wanted}, found `=`"), stop.at, &format!("expected {wanted}"));
+        let key = self.text(stop.at - 1);
+        let colon = (place, ":", format!("arguments, fields and settings take a colon: `{key}: …`"));
+        let equal = (place, "==", "two values are compared by `==`".to_owned());
+        let loop_in = (place, " in ", "a loop says `in`: `for i in 0..5`".to_owned());
+        Some(self.repaired(report, &[colon, equal, loop_in])).filter(|r| r.help.is_some())
+    }
+
+    fn general(&self, stop: &Stop<'_>) -> Diagnostic {
+        let wanted = words(stop.wanted);
+        let place = self.place(stop.at);
+        let report = if stop.at < self.end {
+            let found = shortened(self.text(stop.at));
+            self.e102(format!("expected {wanted}, found `{found}`"), stop.at, &format!("expected {wanted}"))
+        } else {
+            self.e102(format!("expected {wanted}, but the declaration ends here"), stop.at, &format!("{wanted} is missing"))
+        };
+        if let Some(help) = self.usual(stop) {
+            return report.help(help);
+        }
+        let before = if stop.at > self.base { self.text(stop.at - 1) } else { "" };
+        let gap = Span { start: place.start, end: place.start };
+        let mut insertions = [
+            (Rule::comma, " , "),
+            (Rule::colon, " : "),
+            (Rule::eq, " = "),
+            (Rule::kw_of, " of "),
+            (Rule::kw_to, " to "),
+            (Rule::kw_in, " in "),
+            (Rule::kw_curve, " curve "),
+        ];
+        if matches!(self.tokens.kinds[self.base], Kind::Use | Kind::Import) {
+            insertions.swap(0, 1);
+        }
+        let wanted = insertions.iter().filter(|(rule, _)| stop.wants(*rule));
+        let repairs: Vec<(Span, &str, String)> =
+            wanted.map(|&(_, text)| (gap, text, format!("add `{}` after `{}`", text.trim(), shortened(before)))).collect();
+        self.repaired(report, &repairs)
+    }
+
+    /// Help for mistakes that come often.
+    fn usual(&self, stop: &Stop<'_>) -> Option<String> {
+        let keyword = self.tokens.kinds[self.base];
+        let name = |at: usize| self.kind(at).filter(|&k| k == Kind::Name).map_or("name", |_| self.text(at));
+        let own = name(self.base + 1);
+        let found = self.kind(stop.at);
+        match (keyword, found) {
+            _ if stop.wants(Rule::kw_else) => Some("if … then … else …".to_owned()),
+            (Kind::Use | Kind::Import, _) if stop.wants(Rule::kw_as) => {
+                Some(format!("{} {} as name", self.text(self.base), self.text(self.base + 1)))
+            }
+            (Kind::Param, _) if stop.wants(Rule::kw_to) => Some("what is allowed is written `in 1 to 10` or `in [a, b]`".to_owned()),
+            (Kind::Use | Kind::Import, _) if stop.wants(Rule::string) => Some(format!("{} \"file.loft\" as name", self.text(self.base))),
+            (Kind::Export | Kind::Picture, None) if stop.wants(Rule::kw_to) => {
+                let ending = if keyword == Kind::Export { "vtu" } else { "png" };
+                Some(format!("{} to \"{own}.{ending}\"", self.slice(self.tokens.stretch(self.base, self.end - 1))))
+            }
+            (Kind::Let | Kind::Curve | Kind::Surface | Kind::Point, Some(Kind::OpenRound))
+                if stop.wants(Rule::eq) && stop.at == self.base + 2 =>
+            {
+                let text = self.slice(self.tokens.stretch(self.base + 1, self.end - 1));
+                Some(if text.contains('=') && keyword == Kind::Let {
+                    format!("a function is declared by `fn {own}(…) = …`")
+                } else {
+                    format!("{} {own} = …", self.text(self.base))
+                })
+            }
+            (Kind::Fn, Some(Kind::OpenCurly)) if stop.wants(Rule::eq) => Some(format!("the body stands behind `=`: fn {own}(…) = …")),
+            (Kind::Fn, _) if stop.wants(Rule::parameters) || stop.wants(Rule::lpar) => Some(format!("fn {own}(x) = …")),
+            (Kind::Point, Some(Kind::Comma)) if stop.wants(Rule::EOI) => Some("a point has brackets around it: (x, y, z)".to_owned()),
+            (_, Some(Kind::For)) if stop.wants(Rule::EOI) => {
+                Some("the `for` of a family stands behind its name: curve ribs for i in 0..5 = …".to_owned())
+            }
+            (_, Some(Kind::In)) if keyword == Kind::Let && stop.wants(Rule::EOI) => {
+                Some("only a `let` inside an expression has an `in`; this one holds for the whole script".to_owned())
+            }
+            _ => None,
+        }
     }
 }
 
-/// Names of rules for people, each once, joined.
+/// Whether a value is wanted: a whole one, or an operand.
+fn is_value(rules: &[Rule]) -> bool {
+    rules.iter().any(|r| matches!(r, Rule::expr | Rule::things | Rule::slice | Rule::number))
+}
+
+/// A text of at most forty characters.
+fn shortened(text: &str) -> String {
+    if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(39).chain(['…']).collect() }
+}
+
+/// Names of rules for people, each once, joined. Where a list may go on or end, what could lengthen its last item goes
+/// without saying.
 fn words(rules: &[Rule]) -> String {
-    let mut words: Vec<&str> = Vec::new();
-    for word in rules.iter().filter_map(|&rule| word(rule)) {
-        if !words.contains(&word) {
-            words.push(word);
+    let closes = rules.iter().any(|r| {
+        matches!(r, Rule::comma | Rule::rpar | Rule::rbracket | Rule::rbrace | Rule::eq | Rule::colon)
+            || matches!(r, Rule::kw_of | Rule::kw_to | Rule::kw_then | Rule::kw_else | Rule::kw_in | Rule::kw_as)
+    });
+    let goes_on = closes || rules.contains(&Rule::infix);
+    let value = is_value(rules);
+    let silent = |rule: Rule| match rule {
+        Rule::name | Rule::word => rules.contains(&Rule::number),
+        Rule::infix => closes,
+        Rule::args => goes_on && !rules.contains(&Rule::kw_as),
+        Rule::colon => rules.contains(&Rule::comma),
+        Rule::string | Rule::label => value,
+        Rule::EOI => closes,
+        _ => false,
+    };
+    let mut words: Vec<(u8, &str)> = Vec::new();
+    for word in rules.iter().filter(|&&rule| !silent(rule)).filter_map(|&rule| word(rule)) {
+        let rank = if word.starts_with("the end") { 2 } else { u8::from(word != "an operator") };
+        if !words.iter().any(|&(_, w)| w == word) {
+            words.push((rank, word));
         }
     }
+    words.sort_by_key(|&(rank, _)| rank);
     match words.as_slice() {
         [] => "something else".to_owned(),
-        [one] => (*one).to_owned(),
-        [most @ .., last] => format!("{} or {last}", most.join(", ")),
+        [(_, one)] => (*one).to_owned(),
+        [most @ .., (_, last)] => format!("{} or {last}", most.iter().map(|(_, w)| *w).collect::<Vec<_>>().join(", ")),
     }
 }
 
@@ -78,21 +324,20 @@ fn words(rules: &[Rule]) -> String {
 fn word(rule: Rule) -> Option<&'static str> {
     Some(match rule {
         Rule::EOI => "the end of the declaration",
-        Rule::expr | Rule::things | Rule::slice | Rule::group | Rule::reference => "an expression",
+        Rule::expr | Rule::things | Rule::slice | Rule::arg | Rule::target | Rule::number => "a value",
         Rule::infix => "an operator",
-        Rule::name => "a name",
-        Rule::word => "a name",
+        Rule::name | Rule::word => "a name",
         Rule::type_ => "a type",
         Rule::string => "a string",
-        Rule::args => "`(`",
+        Rule::args | Rule::lpar | Rule::parameters => "`(`",
         Rule::comma => "`,`",
         Rule::colon => "`:`",
         Rule::eq => "`=`",
         Rule::rpar => "`)`",
         Rule::rbracket => "`]`",
         Rule::rbrace => "`}`",
-        Rule::lpar | Rule::parameters => "`(`",
         Rule::lbrace | Rule::settings | Rule::mesh_settings => "`{`",
+        Rule::interpolation_end => "`}`",
         Rule::kw_of => "`of`",
         Rule::kw_in | Rule::let_in => "`in`",
         Rule::kw_to => "`to`",
@@ -100,11 +345,11 @@ fn word(rule: Rule) -> Option<&'static str> {
         Rule::kw_then => "`then`",
         Rule::kw_else => "`else`",
         Rule::for_clause | Rule::kw_for => "`for`",
+        Rule::if_clause => "`if`",
         Rule::setting => "a setting",
         Rule::clause => "`on`, `near` or `in`",
         Rule::unit_name => "a unit",
         Rule::kw_curve => "`curve`",
-        Rule::arg => "an argument",
         Rule::pair => "a field",
         Rule::parameter => "a parameter",
         _ => return None,

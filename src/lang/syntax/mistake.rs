@@ -10,8 +10,8 @@ use crate::lang::names::nearest;
 /// One mistake of the text, found before parsing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Mistake {
-    /// E103: a string without end.
-    OpenString { span: Span },
+    /// E103: a string without end; `inside` tells that a `{` of it is open.
+    OpenString { span: Span, inside: bool },
     /// E104: a comment without end.
     OpenComment { span: Span },
     /// E109: comments nested too deep.
@@ -24,15 +24,17 @@ pub(crate) enum Mistake {
     BadNumber { span: Span, unit: u32, fault: Fault },
     /// E101: a bracket never closed; `ended` is what stands where it ought to have been closed and whether that is a
     /// new declaration; `closers` close it and what is open inside it; `last` is the item they go behind.
-    OpenBracket { span: Span, ended: Option<(Span, bool)>, closers: String, last: Span },
+    OpenBracket { span: Span, ended: Option<(Span, bool)>, closers: String, last: Span, piece: Span },
     /// E102: a closing bracket without an opening one; `inside` is what is open there.
-    StrayBracket { span: Span, inside: Option<Span> },
+    StrayBracket { span: Span, inside: Option<Span>, piece: Span },
     /// E109: nested too deep.
     TooDeep { span: Span, what: &'static str, limit: usize },
     /// E105: two declarations on a line.
     TwoOnLine { first: Span, second: Span },
     /// E106: a declaration without keyword; `next` is the word or sign behind the first one.
     NoKeyword { span: Span, next: Option<Span>, binds: bool },
+    /// W220: `2m^2`, which is the square of 2m; `power` is the exponent.
+    UnitPower { span: Span, power: Span },
     /// E110: the source is too large.
     TooLarge { bytes: usize },
 }
@@ -79,10 +81,34 @@ impl Refused {
 }
 
 impl Mistake {
+    /// Tells a mistake of brackets which declaration it stands in.
+    pub fn stands_in(&mut self, whole: Span) {
+        if let Self::OpenBracket { piece, .. } | Self::StrayBracket { piece, .. } = self {
+            *piece = whole;
+        }
+    }
+
+    /// Whether another mistake is the likely cause of this one: a string without end hides brackets.
+    pub fn follows_from(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::OpenBracket { piece, .. } | Self::StrayBracket { piece, .. }, Self::OpenString { span, .. }) => {
+                piece.start <= span.start && span.start <= piece.end
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether `2m^2` may be meant as `2m2`: a plain length with the exponent 2 or 3.
+    pub fn is_meant_otherwise(&self, source: &str) -> bool {
+        let Self::UnitPower { span, power } = self else { return false };
+        let text = |span: Span| &source[span.start as usize..span.end as usize];
+        number::LENGTHS.contains(&number::split_unit(text(*span)).1) && matches!(text(*power), "2" | "3")
+    }
+
     /// The foremost place.
     pub fn place(&self) -> Span {
         match *self {
-            Self::OpenString { span }
+            Self::OpenString { span, .. }
             | Self::OpenComment { span }
             | Self::DeepComment { span }
             | Self::StrangeSign { span }
@@ -91,6 +117,7 @@ impl Mistake {
             | Self::OpenBracket { span, .. }
             | Self::StrayBracket { span, .. }
             | Self::TooDeep { span, .. }
+            | Self::UnitPower { span, .. }
             | Self::NoKeyword { span, .. } => span,
             Self::TwoOnLine { second, .. } => second,
             Self::TooLarge { .. } => Span::default(),
@@ -102,11 +129,15 @@ impl Mistake {
         let text = |span: Span| &source[span.start as usize..span.end as usize];
         let at = self.place();
         match self {
-            Self::OpenString { .. } => {
+            Self::OpenString { inside, .. } => {
                 let label = Span { start: at.start, end: at.start + 1 };
                 Diagnostic::new("E103", "this string has no end", file, label, "opened here")
                     .label(file, Span { start: at.end, end: at.end }, "the line ends here, and a string ends on its line")
-                    .help(format!("add `\"`: {}\"", tail(text(at))))
+                    .help(if *inside {
+                        "add `}\"` where the value and the string end".to_owned()
+                    } else {
+                        format!("add `\"`: {}\"", tail(text(at)))
+                    })
             }
             Self::OpenComment { .. } => {
                 Diagnostic::new("E104", "this comment has no end", file, at, "opened here").help("add `*/` where it ends")
@@ -116,22 +147,27 @@ impl Mistake {
             Self::BadEscape { .. } => Diagnostic::new("E102", format!("`{}` is not an escape", text(at)), file, at, "not an escape")
                 .help("the escapes are \\\" \\\\ \\n \\{ and \\u{1F600}; a backslash itself is written \\\\"),
             Self::BadNumber { unit, fault, .. } => bad_number(text(at), (*unit - at.start) as usize, *fault, file, at),
-            Self::OpenBracket { ended, closers, last, .. } => {
+            Self::OpenBracket { ended, closers, last, piece, .. } => {
                 let report = Diagnostic::new("E101", format!("this `{}` is never closed", opener(text(at))), file, at, "opened here");
                 let report = match ended {
                     Some((span, true)) => report.label(file, *span, "a new declaration starts here, so the list ended before it"),
                     Some((span, false)) => report.label(file, *span, format!("`{}` closes what was opened before it", text(*span))),
                     None => report.label(file, Span { start: last.end, end: last.end }, "the script ends here"),
                 };
-                report.help(format!("add `{closers}` after `{}`", text(*last)))
+                let (before, behind) = (Span { start: piece.start, end: last.end }, Span { start: last.end, end: piece.end });
+                let works = super::is_declaration(&format!("{}{closers}{}", text(before), text(behind)));
+                report.help(if works { format!("add `{closers}` after `{}`", text(*last)) } else { format!("close it with `{closers}`") })
             }
             Self::StrayBracket { inside, .. } => {
-                let report = Diagnostic::new("E102", format!("this `{}` closes nothing", text(at)), file, at, "nothing to close");
-                match inside {
-                    Some(span) => {
-                        report.label(file, *span, "what is open here closes otherwise").help(format!("write `{}`", closing(text(*span))))
+                let found = &text(at)[..1];
+                match inside.map(|span| (span, opener(text(span)))) {
+                    Some((span, open)) => {
+                        Diagnostic::new("E102", format!("`{found}` cannot close `{open}`"), file, at, "closes something else")
+                            .label(file, span, "opened here")
+                            .help(format!("write `{}`", closing(open)))
                     }
-                    None => report.help(format!("delete the `{}`", text(at))),
+                    None => Diagnostic::new("E102", format!("this `{found}` closes nothing"), file, at, "nothing is open here")
+                        .help(format!("delete the `{found}`")),
                 }
             }
             Self::TooDeep { what, limit, .. } => Self::too_deep(file, at, what, *limit),
@@ -141,6 +177,18 @@ impl Mistake {
                     .help(format!("start a new line before `{}`", text(*second)))
             }
             Self::NoKeyword { next, binds, .. } => no_keyword(source, file, at, *next, *binds),
+            Self::UnitPower { power, .. } => {
+                let (digits, unit) = number::split_unit(text(at));
+                let (whole, power) = (text(Span { start: at.start, end: power.end }), text(*power));
+                Diagnostic::new(
+                    "W220",
+                    format!("`{whole}` is the square of {digits}{unit}").replace("square", if power == "2" { "square" } else { "cube" }),
+                    file,
+                    at,
+                    "the power takes the number along",
+                )
+                .help(format!("write `{digits}{unit}{power}`, or `({digits}{unit})^{power}` if this is meant"))
+            }
             Self::TooLarge { bytes } => Diagnostic::new("E110", format!("the script has {bytes} bytes"), file, at, "too large")
                 .help(format!("the limit is {} MiB; move data to a csv file and `import` it", SOURCE_BYTES >> 20)),
         }
@@ -220,7 +268,7 @@ fn bad_number(text: &str, unit: usize, fault: Fault, file: FileId, at: Span) -> 
         Fault::TrailingDot => {
             report(format!("`{text}` is not a number"), "a digit is missing behind the dot").help(text.replacen('.', ".0", 1))
         }
-        Fault::Underscore => report(format!("`{text}` is not a number"), "`_` stands between two digits").help(number::repaired(digits)),
+        Fault::Underscore => report(format!("`{text}` is not a number"), "`_` stands between two digits").help(number::repaired(text)),
         Fault::SecondDot => report(format!("`{text}` has two decimal points"), "one number, one dot"),
         Fault::TooLarge => {
             report(format!("`{text}` is too large for a number"), "not finite").help("the largest number is about 1.797e308")

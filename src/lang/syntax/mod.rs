@@ -18,12 +18,14 @@ mod split;
 mod token;
 mod tree;
 
+use std::rc::Rc;
+
 use pest::Parser as _;
 
 use crate::base::limits::SOURCE_BYTES;
 use crate::lang::diag::{Diagnostic, FileId};
 use crate::lang::names::Names;
-use ast::{Bound, Declaration, Script, Span};
+use ast::{Bound, Script, Span};
 use mistake::Mistake;
 use scan::Tokens;
 use shape::{Filler, Shape, Shapes};
@@ -66,6 +68,14 @@ pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diag
     parser.end()
 }
 
+/// Bytes of the longest declaration that is parsed again to check a repair.
+const CHECKED: usize = 4096;
+
+/// Whether a text is one declaration without a mistake; what is offered as a repair must be. Long texts never are.
+fn is_declaration(text: &str) -> bool {
+    text.len() <= CHECKED && Grammar::parse(Rule::single, text).is_ok()
+}
+
 struct Parser<'a> {
     source: &'a str,
     file: FileId,
@@ -77,19 +87,11 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    /// Reports the mistakes of scanner and splitter. A string without end hides brackets: those are not reported too.
+    /// Reports the mistakes of scanner and splitter; one cause, one report.
     fn mistakes(&mut self, split: Vec<Mistake>) {
         let own = &self.tokens.mistakes;
-        let hides = |span: Span| {
-            own.iter().any(|m| match m {
-                Mistake::OpenString { span: string } => {
-                    span.start <= string.end && !self.source[span.start as usize..string.start.max(span.start) as usize].contains("\n\n")
-                }
-                _ => false,
-            })
-        };
-        let split = split.iter().filter(|m| !(matches!(m, Mistake::OpenBracket { .. }) && hides(m.place())));
-        self.found.extend(own.iter().chain(split).map(|m| m.diagnose(self.source, self.file)));
+        let causes = split.iter().filter(|m| !own.iter().any(|other| m.follows_from(other)));
+        self.found.extend(own.iter().chain(causes).map(|m| m.diagnose(self.source, self.file)));
     }
 
     /// The `///` lines before a token.
@@ -120,21 +122,52 @@ impl Parser<'_> {
             return self.broken(base, end);
         }
         if let Some(shape) = self.shapes.get(kinds) {
-            let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
-            return self.script.declarations.push(declaration);
+            return self.declaration(base, &shape, doc);
         }
         match self.shape(base, end) {
             Ok(shape) => {
-                let declaration: Declaration =
-                    Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(&shape, doc);
-                self.script.declarations.push(declaration);
-                self.shapes.insert(kinds, shape);
+                let shape = Rc::new(shape);
+                self.shapes.insert(kinds, &shape);
+                self.declaration(base, &shape, doc);
             }
-            Err(diagnostic) => {
-                self.found.push(*diagnostic);
-                self.broken(base, end);
-            }
+            Err(diagnostic) => match self.second_let(base, end) {
+                Some(at) => {
+                    self.piece(&Piece { tokens: base..at, broken: false }, doc);
+                    self.piece(&Piece { tokens: at..end, broken: false }, None);
+                }
+                None => {
+                    self.found.push(*diagnostic);
+                    self.broken(base, end);
+                }
+            },
         }
+    }
+
+    /// Fills a shape with the tokens from `base` on.
+    fn declaration(&mut self, base: usize, shape: &Shape, doc: Option<Box<str>>) {
+        for &at in &shape.powers {
+            let span = self.tokens.span(base + at as usize);
+            let power = self.tokens.span(base + at as usize + 2);
+            let mistake = Mistake::UnitPower { span, power };
+            self.found.extend(mistake.is_meant_otherwise(self.source).then(|| mistake.diagnose(self.source, self.file)));
+        }
+        let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
+        self.script.declarations.push(declaration);
+    }
+
+    /// A `let` at the start of a line is the local form when a value is missing before it. In a broken declaration it
+    /// is rather the next one.
+    fn second_let(&self, base: usize, end: usize) -> Option<usize> {
+        let mut depth = 0usize;
+        (base + 1..end).find(|&at| {
+            match self.tokens.kinds[at] {
+                Kind::OpenRound | Kind::LineRound | Kind::OpenSquare | Kind::LineSquare | Kind::OpenCurly | Kind::TextHead => depth += 1,
+                Kind::CloseRound | Kind::CloseSquare | Kind::CloseCurly | Kind::TextTail => depth = depth.saturating_sub(1),
+                Kind::Let => return depth == 0 && self.tokens.first[at],
+                _ => {}
+            }
+            false
+        })
     }
 
     /// Asks pest.

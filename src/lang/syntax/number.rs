@@ -134,7 +134,11 @@ pub(crate) fn read(source: &str, start: usize) -> Read {
 /// Byte after the unit that begins at `at`. What follows `/` belongs to it only when it is a unit and is not used like a
 /// name: `5m/t` has the unit `m/t`, `5m/t.x` divides.
 fn unit(source: &str, at: usize, fault: &mut Option<Fault>) -> usize {
-    let end = word(source, at);
+    let mut end = word(source, at);
+    // `3m²`, `30°`
+    if let Some(sign) = source[end..].chars().next().filter(|c| matches!(c, '²' | '³' | '°')) {
+        end += sign.len_utf8();
+    }
     if end == at {
         return at;
     }
@@ -156,14 +160,22 @@ fn unit(source: &str, at: usize, fault: &mut Option<Fault>) -> usize {
     if is_plain_unit(&source[end + 1..below]) && !in_use { below } else { end }
 }
 
-/// Digits with single `_` between them, for help: `1__0_` → `1_0`.
-pub(crate) fn repaired(digits: &str) -> String {
-    digits.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
+/// A number with single `_` between digits only, for help: `1__0_` → `1_0`, `5_mm` → `5mm`.
+pub(crate) fn repaired(text: &str) -> String {
+    let mut parts = text.split('_').filter(|part| !part.is_empty());
+    let mut repaired = parts.next().unwrap_or("0").to_owned();
+    for part in parts {
+        if part.starts_with(|c: char| c.is_ascii_digit()) {
+            repaired.push('_');
+        }
+        repaired.push_str(part);
+    }
+    repaired
 }
 
 /// The unit that was meant by a word that is none.
 pub(crate) fn meant(unit: &str) -> Option<String> {
-    let lower = unit.to_lowercase();
+    let lower = unit.to_lowercase().replace('²', "2").replace('³', "3");
     let known = match lower.as_str() {
         "meter" | "metre" | "meters" | "metres" => "m",
         "millimeter" | "millimetre" | "millimeters" | "millimetres" => "mm",
@@ -172,10 +184,7 @@ pub(crate) fn meant(unit: &str) -> Option<String> {
         "foot" | "feet" => "ft",
         "degree" | "degrees" | "°" => "deg",
         "radian" | "radians" => "rad",
-        "m²" | "sqm" => "m2",
-        "m³" => "m3",
-        "mm²" => "mm2",
-        "mm³" => "mm3",
+        "sqm" => "m2",
         "ton" | "tonne" | "tons" | "tonnes" => "t",
         "kgs" => "kg",
         _ => "",

@@ -166,7 +166,7 @@ impl Scanner<'_> {
     fn close_interpolations(&mut self) {
         if let Some(outer) = self.open.first() {
             let span = Span { start: outer.quote, end: self.line_end() as u32 };
-            self.mistake(Mistake::OpenString { span });
+            self.mistake(Mistake::OpenString { span, inside: true });
             self.open.clear();
         }
     }
@@ -269,7 +269,7 @@ impl Scanner<'_> {
             self.at -= 1;
         }
         let span = Span { start: quote, end: self.at as u32 };
-        self.mistake(Mistake::OpenString { span });
+        self.mistake(Mistake::OpenString { span, inside: false });
         self.open.clear();
         ends
     }
@@ -381,7 +381,7 @@ impl Scanner<'_> {
             if let Some(outer) = self.open.first() {
                 let end = self.source[start..].find('\n').map_or(self.at, |n| start + n);
                 let span = Span { start: outer.quote, end: end as u32 };
-                self.mistake(Mistake::OpenString { span });
+                self.mistake(Mistake::OpenString { span, inside: true });
                 self.open.clear();
             }
             self.fresh = true;

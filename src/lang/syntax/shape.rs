@@ -5,6 +5,7 @@
 //! no second way: also the first declaration of a shape is made from it.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::ast::*;
 use super::number;
@@ -19,12 +20,14 @@ pub(crate) struct Shape {
     pub declaration: Declaration,
     /// Tokens of the stretches of the strings, in the order of nodes.
     pub stretches: Vec<u32>,
+    /// Quantities with `^` and a number behind them: `2m^2` may be meant as `2m2`.
+    pub powers: Vec<u32>,
 }
 
 /// Shapes met so far. Only short ones are kept: long ones hardly come twice.
 #[derive(Debug, Default)]
 pub(crate) struct Shapes {
-    known: BTreeMap<Box<[Kind]>, Shape>,
+    known: BTreeMap<Box<[Kind]>, Rc<Shape>>,
 }
 
 /// Most tokens of a shape that is kept.
@@ -34,14 +37,14 @@ const MOST: usize = 4096;
 
 impl Shapes {
     /// The shape of these kinds when it was met before.
-    pub fn get(&self, kinds: &[Kind]) -> Option<&Shape> {
-        if kinds.len() > LONGEST { None } else { self.known.get(kinds) }
+    pub fn get(&self, kinds: &[Kind]) -> Option<Rc<Shape>> {
+        if kinds.len() > LONGEST { None } else { self.known.get(kinds).cloned() }
     }
 
     /// Keeps a shape.
-    pub fn insert(&mut self, kinds: &[Kind], shape: Shape) {
+    pub fn insert(&mut self, kinds: &[Kind], shape: &Rc<Shape>) {
         if kinds.len() <= LONGEST && self.known.len() < MOST {
-            self.known.insert(kinds.into(), shape);
+            self.known.insert(kinds.into(), Rc::clone(shape));
         }
     }
 }

@@ -36,6 +36,8 @@ struct Splitter<'a> {
     too_deep: bool,
     pieces: Vec<Piece>,
     mistakes: Vec<Mistake>,
+    /// First mistake of the piece at hand.
+    first_mistake: usize,
 }
 
 /// Cuts the tokens of a file into pieces; the mistakes are those of brackets, nesting and lines.
@@ -49,6 +51,7 @@ pub(crate) fn split(tokens: &Tokens) -> (Vec<Piece>, Vec<Mistake>) {
         too_deep: false,
         pieces: Vec::new(),
         mistakes: Vec::new(),
+        first_mistake: 0,
     };
     for at in 0..tokens.len() {
         if at > splitter.start && splitter.cuts(at) {
@@ -195,7 +198,7 @@ impl Splitter<'_> {
         let Some(depth) = self.open.iter().skip(1).rposition(matches) else {
             if !self.broken {
                 let inside = (self.open.len() > 1).then(|| self.open.last().map(|o| self.tokens.span(o.token))).flatten();
-                self.mistakes.push(Mistake::StrayBracket { span: self.tokens.span(at), inside });
+                self.mistakes.push(Mistake::StrayBracket { span: self.tokens.span(at), inside, piece: Span::default() });
             }
             self.broken = true;
             return;
@@ -205,12 +208,9 @@ impl Splitter<'_> {
             if !self.broken {
                 let opener = self.open[depth + 2].token;
                 let closers = self.closers(depth + 2);
-                self.mistakes.push(Mistake::OpenBracket {
-                    span: self.tokens.span(opener),
-                    ended: Some((self.tokens.span(at), false)),
-                    closers,
-                    last: self.last_item(opener, at),
-                });
+                let (span, last) = (self.tokens.span(opener), self.last_item(opener, at));
+                let ended = Some((self.tokens.span(at), false));
+                self.mistakes.push(Mistake::OpenBracket { span, ended, closers, last, piece: Span::default() });
             }
             self.broken = true;
         }
@@ -253,9 +253,14 @@ impl Splitter<'_> {
             let closers = self.closers(1);
             let innermost = self.open.last().map_or(opener, |o| o.token);
             let last = self.last_item(innermost, end);
-            self.mistakes.push(Mistake::OpenBracket { span: self.tokens.span(opener), ended, closers, last });
+            self.mistakes.push(Mistake::OpenBracket { span: self.tokens.span(opener), ended, closers, last, piece: Span::default() });
             self.broken = true;
         }
+        let whole = self.tokens.stretch(self.start, end - 1);
+        for mistake in &mut self.mistakes[self.first_mistake..] {
+            mistake.stands_in(whole);
+        }
+        self.first_mistake = self.mistakes.len();
         self.pieces.push(Piece { tokens: self.start..end, broken: self.broken });
         self.start = end;
         self.broken = false;

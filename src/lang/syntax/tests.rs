@@ -1,4 +1,4 @@
-use super::ast::{DeclarationKind, Expr, ExprId, Keyword, TextPart};
+use super::ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword, TextPart};
 use super::*;
 
 fn parsed(source: &str) -> (Script, Vec<Diagnostic>, Names) {
@@ -140,4 +140,28 @@ fn the_whole_grammar_reads_what_the_pieces_read() {
     let pairs = Grammar::parse(Rule::script, TOUR).unwrap();
     let whole = pairs.flat_map(|p| p.into_inner()).filter(|p| p.as_rule() != Rule::EOI).count();
     assert_eq!(whole, parsed(TOUR).0.declarations.len());
+}
+
+#[test]
+fn the_square_of_a_length_is_no_area() {
+    let (_, found, _) = parsed("let a = 2m^2\nlet b = 2m2 ^ 2\nlet c = (2m)^2\nlet d = 3mm^3 + 4mm^n\n");
+    let said: Vec<(&str, u32)> = found.iter().map(|d| (d.message.as_str(), d.labels[0].span.start)).collect();
+    assert_eq!(said, [("`2m^2` is the square of 2m", 8), ("`3mm^3` is the cube of 3mm", 53)]);
+}
+
+/// Texts that parse alone parse the same behind another declaration of their shape.
+#[test]
+fn a_known_shape_gives_the_same_tree() {
+    let (first, _, _) = parsed(TOUR);
+    let (second, found, _) = parsed(&format!("{TOUR}\n{TOUR}"));
+    assert!(found.is_empty());
+    let (early, late) = second.declarations.split_at(first.declarations.len());
+    assert_eq!(early, first.declarations);
+    let shift = TOUR.len() as u32 + 1;
+    for (a, b) in early.iter().zip(late) {
+        assert_eq!((a.span.start + shift, a.span.end + shift, &a.doc, a.nodes.len()), (b.span.start, b.span.end, &b.doc, b.nodes.len()));
+        for (x, y) in a.nodes.iter().zip(&b.nodes) {
+            assert_eq!((x.span.start + shift, x.span.end + shift), (y.span.start, y.span.end));
+        }
+    }
 }

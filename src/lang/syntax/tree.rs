@@ -34,7 +34,9 @@ pub(super) fn build(pairs: Pairs<'_, Rule>, tokens: &Tokens, base: usize, end: u
     let span = Span { start: 0, end: (end - base - 1) as u32 };
     let keyword_span = Span { start: 0, end: keyword_end };
     let declaration = Declaration { keyword, span, keyword_span, doc: None, kind, nodes: builder.nodes };
-    Ok(Shape { declaration, stretches: builder.stretches.concat() })
+    let powers = tokens.kinds[base..end].windows(3).enumerate();
+    let powers = powers.filter(|(_, w)| **w == [Kind::Quantity, Kind::Caret, Kind::Number]).map(|(at, _)| at as u32).collect();
+    Ok(Shape { declaration, stretches: builder.stretches.concat(), powers })
 }
 
 impl Builder<'_> {

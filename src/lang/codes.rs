@@ -1,0 +1,208 @@
+//! The one table of all codes: what a report is called, in which version it came, and its page.
+//!
+//! The first digit is the family: 1 syntax, 2 names, values and units, 3 arguments, 4 curves, 5 network and chains,
+//! 6 surfaces and model, 7 mesh, 8 files, 9 checks and ourselves. The letter is the severity: E error, W warning, N
+//! note; a number is used once whatever its letter, and a code never changes its meaning.
+
+/// One code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CodeInfo {
+    /// For example `E501`.
+    pub code: &'static str,
+    /// Its name in words with hyphens.
+    pub slug: &'static str,
+    /// What it means, in one line.
+    pub title: &'static str,
+    /// The first version that reports it; none when a later one will.
+    pub since: Option<&'static str>,
+    /// Its page in Markdown: a small broken script, its message and its repair.
+    pub page: &'static str,
+}
+
+macro_rules! codes {
+    ($($when:ident $code:literal, $slug:literal, $title:literal;)+) => {
+        /// All codes, by family.
+        pub const CODES: &[CodeInfo] = &[$( codes!(@$when $code, $slug, $title) ),+];
+    };
+    (@now $code:literal, $slug:literal, $title:literal) => {
+        CodeInfo {
+            code: $code,
+            slug: $slug,
+            title: $title,
+            since: Some("0.1"),
+            page: include_str!(concat!("../../docs/codes/", $code, ".md")),
+        }
+    };
+    (@later $code:literal, $slug:literal, $title:literal) => {
+        CodeInfo {
+            code: $code,
+            slug: $slug,
+            title: $title,
+            since: None,
+            page: concat!("# ", $code, ": ", $title, "\n\nNot in this version.\n"),
+        }
+    };
+}
+
+codes! {
+    now "E101", "bracket-open", "a bracket is never closed";
+    now "E102", "unexpected", "something else is expected here";
+    now "E103", "string-open", "a string has no end";
+    now "E104", "comment-open", "a comment has no end";
+    now "E105", "two-on-a-line", "two declarations on one line";
+    now "E106", "no-such-keyword", "a declaration starts with no known keyword";
+    now "E107", "malformed-number", "a number or unit is malformed";
+    now "E108", "let-without-in", "a local `let` has no `in`";
+    now "E109", "nested-too-deep", "brackets or operators are nested too deep";
+    now "E110", "source-too-large", "the script is too large";
+    now "E201", "not-defined", "a name is not defined";
+    now "E202", "defined-twice", "a name is defined twice";
+    now "E203", "cycle", "declarations depend on each other in a circle";
+    now "E211", "wrong-kind", "a value of the wrong kind or dimension";
+    now "E212", "bare-number", "a bare number beside a quantity";
+    now "E213", "no-such-choice", "a word is not one of the choices";
+    now "E214", "no-such-field", "a value has no such field";
+    now "E215", "index-outside", "an index lies outside its list";
+    now "E216", "calls-too-deep", "functions call each other too deep";
+    now "E217", "limit", "a list or the work of a run grows beyond its limit";
+    now "E218", "param-outside", "a param lies outside what it allows";
+    now "E219", "no-such-param", "there is no such param";
+    now "W220", "unit-power", "`2m^2` is the square of 2m, not 2m2";
+    now "E221", "equality-without-within", "two quantities are compared by `==` without `within`";
+    now "E230", "not-in-this-version", "a word of a later version";
+    now "E301", "argument-missing", "an argument is missing";
+    now "E302", "too-many-arguments", "too many arguments";
+    now "E303", "no-such-argument", "a function has no such argument";
+    now "E304", "given-twice", "an argument is given twice";
+    now "E305", "exclusive-arguments", "arguments exclude each other";
+    now "E306", "value-outside", "a value lies outside its range";
+    now "E401", "curve-zero-length", "a curve would have no length";
+    now "E402", "too-few-points", "a curve has too few points";
+    now "E403", "curve-duplicate-points", "neighbouring points of a curve coincide";
+    now "E404", "arc-collinear", "three points of an arc lie on one line";
+    now "E405", "conic-rho", "the `rho` of a conic lies outside 0 … 1";
+    now "E406", "knot-decreasing", "knots decrease or do not fit the points";
+    now "E407", "weight-not-positive", "a weight is not positive";
+    now "E408", "non-finite", "a result is not a finite number";
+    now "E409", "tangent-zero", "a tangent has no direction";
+    now "E410", "arc-length-stalled", "an arc length cannot be found to the tolerance";
+    now "E411", "angle-zero", "an angle is zero";
+    now "E412", "angle-too-large", "an angle is more than a full turn";
+    now "E413", "did-not-converge", "an iteration did not converge";
+    now "E501", "ends-miss", "two ends miss each other";
+    now "E502", "boundary-open", "a boundary or loop does not close";
+    now "E503", "chain-broken", "links of a chain do not join";
+    now "E504", "chain-repeats-link", "a chain runs over a link twice";
+    now "E505", "chain-ambiguous", "a chain can run in more than one way";
+    now "E506", "node-cluster-ambiguous", "nearby meetings cannot be told apart";
+    now "E507", "no-meeting", "things do not meet";
+    now "E508", "several-meetings", "things meet more than once";
+    now "E509", "shared-run", "curves share a run where one meeting is wanted";
+    now "E510", "in-use", "something that is removed is still stood upon";
+    now "E511", "snap-cannot-move", "two ends that `snap` cannot move";
+    now "N512", "shared-run-noted", "two curves share a run";
+    now "N513", "moved-by-snap", "an end was moved by `snap`";
+    now "W514", "near-miss", "curves nearly meet";
+    now "E601", "flow-unknown", "the flow of a surface cannot be found";
+    now "E602", "grid-incomplete", "curves of a grid do not all cross";
+    now "E603", "grid-double", "curves of a grid cross twice";
+    now "E604", "grid-not-monotone", "curves of a grid cross in different orders";
+    now "E605", "family-crosses", "curves of one family cross each other";
+    now "W606", "patch-singular", "a patch has a point without a normal";
+    now "W607", "patch-folded", "a patch folds over";
+    now "N608", "transfinite-oscillation", "a transfinite surface swings beyond its curves";
+    now "N609", "end-trimmed", "the end of a curve was trimmed to the border";
+    now "E611", "loop-self-intersects", "a loop crosses itself";
+    now "E612", "loop-outside", "a hole lies outside its outer loop";
+    later "E613", "loop-outside-surface", "a loop leaves its surface";
+    now "W614", "sliver-patch", "a patch is a sliver";
+    now "N615", "shell-open", "a shell has free edges";
+    now "E616", "shell-not-orientable", "the faces of a shell cannot be turned to one side";
+    now "E617", "shell-nonmanifold", "more than two faces share an edge";
+    now "E618", "not-adjacent", "two things share no edge";
+    now "E621", "axis-not-straight", "an axis is not a straight curve";
+    now "E622", "generatrix-on-axis", "a generatrix lies on its axis";
+    now "E623", "generatrix-crosses-axis", "a generatrix crosses its axis";
+    now "E624", "sweep-degenerate", "a sweep or extrusion has no width";
+    later "E631", "sections-not-parallel", "sections are not parallel";
+    later "E632", "axis-off-section", "the axis misses a section";
+    later "E633", "section-not-normal", "a section is not normal to its guide";
+    later "E634", "guide-misses-station", "a guide misses a station";
+    later "E635", "guide-doubles-back", "a guide doubles back";
+    later "E636", "guide-cusp", "a guide has a cusp";
+    later "E637", "main-guide-on-axis", "the main guide touches the axis";
+    later "N638", "guide-extended", "a guide was extended";
+    later "W639", "sweep-self-intersects", "a sweep crosses itself";
+    later "E640", "sections-different-guides", "sections touch different guides";
+    later "E641", "net-incomplete", "a net of profiles and guides has holes";
+    later "E642", "sections-cross", "sections cross each other";
+    later "E643", "guide-order-differs", "guides meet sections in different orders";
+    later "W644", "section-scaled", "a section was scaled to its guides";
+    now "W651", "grid-uneven", "the points of a grid are unevenly spaced";
+    later "E652", "pole-tangent-parallel", "tangents at a pole are parallel";
+    later "E653", "corner-tangent-parallel", "tangents at a corner are parallel";
+    later "E654", "border-not-resolved", "a border cannot be resolved";
+    now "E655", "plane-not-flat", "the boundary of a plane is not flat";
+    now "E656", "shell-not-closed", "a measure needs a closed shell";
+    now "W701", "rule-decides-nothing", "a rule decides nothing";
+    now "E702", "counts-differ", "counts differ on opposite sides";
+    now "E703", "count-too-coarse", "a count is too coarse for a limit";
+    now "E704", "only-quads-impossible", "only quads is impossible here";
+    now "E705", "face-cannot-be-mapped", "a face cannot be mapped";
+    now "W706", "rule-overridden", "a rule is overridden by an equal one";
+    now "E711", "edge-mismatch", "neighbouring faces divide their edge differently";
+    now "N712", "edge-too-short", "an edge is shorter than the tolerance allows";
+    later "E713", "cdt-constraint-crosses", "constraints of a triangulation cross";
+    later "E714", "face-empty", "a face has nothing inside";
+    now "E715", "element-inverted", "an element is turned inside out";
+    later "E716", "quadtree-too-deep", "a quadtree grows too deep";
+    later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
+    later "E718", "trim-folded", "a trimmed face folds over";
+    now "E801", "cannot-read", "a file cannot be read";
+    now "E802", "outside-folders", "a path leaves the allowed folders";
+    now "E803", "malformed-data", "a table or entity is malformed";
+    now "E804", "no-such-format", "there is no such file format";
+    now "E805", "export-unsupported", "a format cannot hold this";
+    now "W806", "left-out", "a format leaves something out";
+    now "W807", "set-renamed", "a set was renamed for a format";
+    now "E808", "cannot-write", "a file cannot be written";
+    now "E809", "modules-cycle", "modules import each other";
+    now "W810", "entity-skipped", "an entity of a file was skipped or repaired";
+    now "E811", "file-too-large", "a file is too large";
+    now "E901", "check-failed", "a check failed";
+    later "E902", "golden-differs", "a golden differs";
+    now "E999", "bug", "a bug in loft";
+}
+
+/// The code with this text, whatever its case.
+pub fn find(code: &str) -> Option<&'static CodeInfo> {
+    CODES.iter().find(|c| c.code.eq_ignore_ascii_case(code))
+}
+
+/// The page of a code: what it means, a small broken script, its message and its repair.
+pub fn explain(code: &str) -> Option<&'static str> {
+    find(code).map(|c| c.page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_code_stands_once_and_in_order() {
+        assert!(CODES.windows(2).all(|w| w[0].code[1..] < w[1].code[1..]));
+        let mut slugs: Vec<&str> = CODES.iter().map(|c| c.slug).collect();
+        slugs.sort_unstable();
+        assert!(slugs.windows(2).all(|w| w[0] != w[1]));
+        assert_eq!(find("e501").map(|c| c.slug), Some("ends-miss"));
+        assert!(explain("E000").is_none());
+    }
+
+    #[test]
+    fn pages_begin_with_their_title() {
+        for info in CODES {
+            let first = info.page.lines().next().unwrap_or("");
+            assert_eq!(first, format!("# {}: {}", info.code, info.title));
+        }
+    }
+}

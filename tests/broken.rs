@@ -1,0 +1,172 @@
+//! Broken scripts: each reports what is wrong, at the right place, all in one run, and none panics.
+//!
+//! A line of `tests/broken/*.loft` that is wrong ends in `// error: E501 "some words"`: the foremost label of a report
+//! with this code begins on this line, and its message, labels or help hold these words. Several may stand on one line;
+//! `// error:` and `// warning:` and `// note:` mean the same, the letter of the code tells. A comment
+//! `// error below: …` speaks of the next line. Every error has to be announced; warnings and notes may stay unsaid.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lofting::base::fault::Severity;
+use lofting::lang::diag::{Diagnostic, Sources};
+use lofting::lang::diag_render::render_all;
+use lofting::lang::names::Names;
+use lofting::lang::syntax::parse;
+
+/// What a script reports.
+fn reports(path: &Path, text: &str) -> (Vec<Diagnostic>, Sources) {
+    let mut sources = Sources::default();
+    let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
+    let file = sources.add(name, text);
+    let (_, found) = parse(text, file, &mut Names::default());
+    (found, sources)
+}
+
+/// One announced report: line from 1, code, words.
+#[derive(Debug, Clone, PartialEq)]
+struct Announced {
+    line: usize,
+    code: String,
+    words: String,
+}
+
+fn announced(text: &str) -> Vec<Announced> {
+    let mut all = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let Some(at) = ["// error", "// warning", "// note"].iter().filter_map(|w| line.find(w)).min() else { continue };
+        let below = line[at..].split(':').next().unwrap_or("").contains("below");
+        let mut rest = &line[at..];
+        while let Some((code_at, quote)) = find_code(rest) {
+            let code = rest[code_at..code_at + 4].to_owned();
+            let words = rest[quote + 1..].split('"').next().unwrap_or("").to_owned();
+            rest = &rest[quote + 2 + words.len()..];
+            all.push(Announced { line: number + 1 + usize::from(below), code, words });
+        }
+    }
+    all
+}
+
+/// Where the next `E501 "` begins and where its quote stands.
+fn find_code(text: &str) -> Option<(usize, usize)> {
+    let bytes = text.as_bytes();
+    (0..bytes.len().saturating_sub(5)).find_map(|at| {
+        let code = matches!(bytes[at], b'E' | b'W' | b'N') && bytes[at + 1..at + 4].iter().all(u8::is_ascii_digit);
+        (code && &text[at + 4..at + 6] == " \"").then_some((at, at + 5))
+    })
+}
+
+/// Whether a report is the announced one.
+fn fits(announced: &Announced, found: &Diagnostic, sources: &Sources) -> bool {
+    let line = found.labels.first().and_then(|l| sources.place(l.file, l.span.start)).map_or(1, |p| p.line);
+    let says = found.message.contains(&announced.words)
+        || found.labels.iter().any(|l| l.text.contains(&announced.words))
+        || found.help.iter().chain(&found.notes).any(|h| h.contains(&announced.words));
+    found.code.0 == announced.code && line == announced.line && says
+}
+
+/// Everything that is wrong with the reports of one script.
+fn differences(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).expect("a broken script can be read");
+    let (found, sources) = reports(path, &text);
+    let mut wanted = announced(&text);
+    let mut said = Vec::new();
+    if wanted.is_empty() {
+        said.push("announces nothing".to_owned());
+    }
+    for report in &found {
+        for label in &report.labels {
+            let length = sources.get(label.file).map_or(0, |f| f.text.len());
+            if label.span.start > label.span.end || label.span.end as usize > length {
+                said.push(format!("{}: a label outside the text: {:?}", report.code.0, label.span));
+            }
+        }
+        match wanted.iter().position(|w| fits(w, report, &sources)) {
+            Some(at) => {
+                wanted.remove(at);
+            }
+            None if report.severity() == Severity::Error => {
+                said.push(format!("not announced:\n{}", lofting::lang::diag_render::render(report, &sources, false)));
+            }
+            None => {}
+        }
+    }
+    said.extend(wanted.iter().map(|w| format!("line {}: {} \"{}\" was not reported", w.line, w.code, w.words)));
+    said.into_iter().map(|s| format!("{}: {s}", path.display())).collect()
+}
+
+fn scripts(folder: &str, ending: &str) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder).expect("the folder can be listed").flatten().map(|e| e.path()).collect();
+    paths.retain(|p| p.extension().is_some_and(|e| e == ending));
+    paths.sort();
+    paths
+}
+
+#[test]
+fn broken_scripts_say_what_is_wrong() {
+    let paths = scripts("tests/broken", "loft");
+    let found: Vec<String> = paths.iter().flat_map(|p| differences(p)).collect();
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// The fenced block of a page that begins with this line.
+fn fences<'a>(page: &'a str, kind: &str) -> Vec<&'a str> {
+    let open = format!("```{kind}\n");
+    let mut rest = page;
+    let mut all = Vec::new();
+    while let Some(at) = rest.find(&open) {
+        let body = &rest[at + open.len()..];
+        let end = body.find("```").unwrap_or(body.len());
+        all.push(&body[..end]);
+        rest = &body[end..];
+    }
+    all
+}
+
+/// Every page shows a broken script, exactly what is said about it, and a repaired script without errors.
+/// `LOFT_ACCEPT=1` writes the messages into the pages.
+#[test]
+fn pages_of_codes_are_true() {
+    let accept = std::env::var_os("LOFT_ACCEPT").is_some();
+    let mut wrong = Vec::new();
+    for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some()) {
+        let path = PathBuf::from(format!("docs/codes/{}.md", info.code));
+        let page = fs::read_to_string(&path).expect("a page can be read");
+        if let Err(said) = check_page(info.code, &path, &page, accept) {
+            wrong.push(format!("{}: {said}", path.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+fn check_page(code: &str, path: &Path, page: &str, accept: bool) -> Result<(), String> {
+    let scripts = fences(page, "loft");
+    if code == "E110" || !(code.starts_with("E1") || code == "W220") {
+        return Ok(());
+    }
+    let [broken, repaired] = scripts[..] else { return Err(format!("{} scripts instead of a broken and a repaired one", scripts.len())) };
+    let (found, sources) = reports(Path::new("model.loft"), broken);
+    if !found.iter().any(|d| d.code.0 == code) {
+        return Err(format!("the broken script reports {:?}", found.iter().map(|d| d.code.0).collect::<Vec<_>>()));
+    }
+    let shown = render_all(&found, &sources, false);
+    let message = fences(page, "text");
+    if message.first().is_none_or(|m| *m != shown) {
+        if !accept {
+            return Err(format!("the message is\n{shown}"));
+        }
+        let old = message.first().map_or(String::new(), |m| format!("```text\n{m}```"));
+        fs::write(path, page.replacen(&old, &format!("```text\n{shown}```"), 1)).expect("a page can be written");
+    }
+    let (found, sources) = reports(Path::new("model.loft"), repaired);
+    let errors: Vec<Diagnostic> = found.into_iter().filter(|d| d.severity() == Severity::Error).collect();
+    if errors.is_empty() { Ok(()) } else { Err(format!("the repaired script reports\n{}", render_all(&errors, &sources, false))) }
+}
+
+#[test]
+fn announcements_are_read() {
+    let text = "let a = b // error: E201 \"b\" E202 \"c d\"\n// error below: E101 \"x\"\nlet y\nlet z // W220 \"no\"\n";
+    let read: Vec<(usize, String, String)> = announced(text).into_iter().map(|a| (a.line, a.code, a.words)).collect();
+    let wanted = [(1, "E201", "b"), (1, "E202", "c d"), (3, "E101", "x")];
+    assert_eq!(read, wanted.map(|(l, c, w)| (l, c.to_owned(), w.to_owned())));
+}
