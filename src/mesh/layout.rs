@@ -1,0 +1,276 @@
+//! What a mesh stands on: its faces, and all stretches of their borders and of its curves, each once.
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::plan::{Elements, Method};
+use crate::model::atoms::{Atoms, Part, Use, atoms};
+use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Track, Trace};
+use crate::network::LinkId;
+use crate::surface::{Domain, Surface};
+
+/// One side of a face, in the direction of ascending u or v.
+#[derive(Clone, Debug, Default)]
+pub struct Border {
+    /// Stretches in order: `against` where the side runs against the stretch; `s` on the side, from its start.
+    pub uses: Vec<Use>,
+    /// The junction of the pole.
+    pub pole: Option<usize>,
+    /// Length of the side, model units.
+    pub length: f64,
+}
+
+impl Border {
+    /// The stretches of the side.
+    pub fn stretches(&self) -> Vec<usize> {
+        self.uses.iter().map(|u| u.atom).collect()
+    }
+}
+
+/// A patch to mesh.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// The patch.
+    pub patch: PatchId,
+    /// Its surface.
+    pub surface: SurfaceId,
+    /// The other side is up.
+    pub flipped: bool,
+    /// Kind of elements.
+    pub elements: Elements,
+    /// Method.
+    pub method: Method,
+    /// Target size inside, model units, and the rule that says so.
+    pub size: (f64, Option<usize>),
+    /// Sides in the order of the patch: four, or three of a triangle.
+    pub sides: Vec<Border>,
+}
+
+impl Face {
+    /// Whether it is the triangle of a uniform trilateral.
+    pub fn is_triangle(&self) -> bool {
+        self.sides.len() == 3
+    }
+}
+
+/// Faces, stretches and where they meet.
+#[derive(Clone, Debug, Default)]
+pub struct Layout {
+    /// Faces, surface by surface as listed.
+    pub faces: Vec<Face>,
+    /// Tracks of edges, then of links of the mesh's curves.
+    pub parts: Vec<Part>,
+    /// Stretches; where a comment says "stretch" it is an index into `pieces.atoms`.
+    pub pieces: Atoms,
+    /// Stretches of each link that has some, ascending along the link: stretch, arc lengths on the link, runs against it.
+    pub of_link: Vec<(LinkId, Vec<Use>)>,
+    /// Stretches of each curve of the plan, along it.
+    pub curves: Vec<Vec<Use>>,
+    /// Junction of each point of the plan; `None`: a node of its own.
+    pub points: Vec<Option<usize>>,
+}
+
+impl Layout {
+    /// Lays out some patches with the curves and points of the plan (`with_lines`).
+    pub fn new(input: &Input, patches: &[(PatchId, bool)], with_lines: bool) -> Self {
+        let ids: Vec<PatchId> = patches.iter().map(|p| p.0).collect();
+        let edges = input.model.edges_of(&ids);
+        let mut parts: Vec<Part> = edges.iter().map(|e| edge_part(input, *e)).collect();
+        let links = if with_lines { link_parts(input, &mut parts) } else { Vec::new() };
+        let mut anchors: Vec<DVec3> = input.model.vertices_of(&ids).iter().map(|v| input.model.vertices[v.index()].point).collect();
+        for part in &links {
+            let ends = input.network.links[part.0.index()].nodes;
+            anchors.extend([ends.0, ends.1].map(|n| input.network.nodes[n.index()].point));
+        }
+        let nodes = anchors.len();
+        if with_lines {
+            anchors.extend(&input.plan.points);
+        }
+        let pieces = atoms(&parts, &anchors, input.tolerance);
+        let of_link = by_link(input, &edges, &links, &pieces);
+        let mut layout = Self { parts, pieces, of_link, ..Self::default() };
+        layout.points = layout.pieces.of_anchor[nodes..].to_vec();
+        let vertex_ids = input.model.vertices_of(&ids);
+        for (patch, flipped) in patches {
+            let junction = |v| vertex_ids.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
+            let face = layout.face(input, (*patch, *flipped), &edges, junction);
+            layout.faces.push(face);
+        }
+        if with_lines {
+            layout.curves = input.plan.curves.iter().map(|(_, chain)| layout.along(input, chain)).collect();
+        }
+        layout
+    }
+
+    fn face(
+        &self,
+        input: &Input,
+        (patch, flipped): (PatchId, bool),
+        edges: &[EdgeId],
+        junction: impl Fn(crate::model::VertexId) -> Option<usize>,
+    ) -> Face {
+        let record = &input.model.patches[patch.index()];
+        let mut sides = Vec::new();
+        for side in &record.sides {
+            let mut border = Border { pole: side.pole.and_then(&junction), ..Border::default() };
+            for (edge, against) in &side.edges {
+                let Ok(part) = edges.binary_search(edge) else { continue };
+                let length = self.parts[part].track.length();
+                border.uses.extend(oriented(&self.pieces.of_track[part], *against, length, border.length));
+                border.length += length;
+            }
+            sides.push(border);
+        }
+        let plan = input.plan;
+        Face { patch, surface: record.surface, flipped, elements: plan.elements, method: plan.method, size: (0.0, None), sides }
+    }
+
+    /// Stretches of a chain in its direction, `s` from its start; those of links that are in the mesh.
+    pub fn along(&self, input: &Input, chain: &crate::network::Chain) -> Vec<Use> {
+        let Some(links) = input.network.links_of(chain, input.tolerance) else {
+            return Vec::new();
+        };
+        let (mut uses, mut start) = (Vec::new(), 0.0);
+        for (link, against) in links {
+            let s = input.network.links[link.index()].s;
+            if let Ok(at) = self.of_link.binary_search_by_key(&link, |l| l.0) {
+                uses.extend(oriented(&self.of_link[at].1, against, s.1 - s.0, start));
+            }
+            start += s.1 - s.0;
+        }
+        uses
+    }
+
+    /// Length of a stretch, model units.
+    pub fn length(&self, stretch: usize) -> f64 {
+        self.pieces.atoms[stretch].length()
+    }
+
+    /// Point of a stretch at a fraction of its length.
+    pub fn point(&self, stretch: usize, fraction: f64) -> DVec3 {
+        let atom = &self.pieces.atoms[stretch];
+        self.parts[atom.track].track.point(atom.s.0 + (atom.s.1 - atom.s.0) * fraction)
+    }
+}
+
+/// Uses of a track as seen by something that runs along or against it and places it at `start`.
+fn oriented(uses: &[Use], against: bool, length: f64, start: f64) -> Vec<Use> {
+    let turn = |u: &Use| {
+        if against {
+            Use { atom: u.atom, against: !u.against, s: (start + length - u.s.1, start + length - u.s.0) }
+        } else {
+            Use { s: (start + u.s.0, start + u.s.1), ..*u }
+        }
+    };
+    if against { uses.iter().rev().map(turn).collect() } else { uses.iter().map(turn).collect() }
+}
+
+/// An edge as a track, cut where its links end.
+fn edge_part(input: &Input, edge: EdgeId) -> Part {
+    let track = input.model.track(edge, input.network);
+    let cuts = match &track {
+        Track::Links { starts, span, .. } => {
+            let inner = starts.iter().map(|s| s - span.0);
+            inner.filter(|s| *s > input.tolerance.point && *s < track.length() - input.tolerance.point).collect()
+        }
+        Track::Iso(_) => Vec::new(),
+    };
+    let rank = u8::from(matches!(track, Track::Iso(_)));
+    Part { track, cuts, rank }
+}
+
+/// Adds the links of the plan's curves as tracks of their own; gives link and part, ascending.
+fn link_parts(input: &Input, parts: &mut Vec<Part>) -> Vec<(LinkId, usize)> {
+    let chains = input.plan.curves.iter().map(|c| &c.1);
+    let mut links: Vec<LinkId> =
+        chains.filter_map(|c| input.network.links_of(c, input.tolerance)).flatten().map(|(link, _)| link).collect();
+    links.sort_unstable();
+    links.dedup();
+    links
+        .into_iter()
+        .map(|link| {
+            let s = input.network.links[link.index()].s;
+            let curve = EdgeCurve::Links { links: vec![(link, false)], span: (0.0, s.1 - s.0) };
+            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts: Vec::new(), rank: 0 });
+            (link, parts.len() - 1)
+        })
+        .collect()
+}
+
+/// Stretches of each link, along the link.
+fn by_link(input: &Input, edges: &[EdgeId], links: &[(LinkId, usize)], pieces: &Atoms) -> Vec<(LinkId, Vec<Use>)> {
+    let mut found: std::collections::BTreeMap<LinkId, Vec<Use>> = std::collections::BTreeMap::new();
+    for (link, part) in links {
+        found.entry(*link).or_default().extend(&pieces.of_track[*part]);
+    }
+    for (part, edge) in edges.iter().enumerate() {
+        let EdgeCurve::Links { links, span } = &input.model.edges[edge.index()].curve else {
+            continue;
+        };
+        let mut start = -span.0;
+        for (link, against) in links {
+            let s = input.network.links[link.index()].s;
+            let length = s.1 - s.0;
+            let inside = |u: &&Use| 0.5 * (u.s.0 + u.s.1) > start && 0.5 * (u.s.0 + u.s.1) < start + length;
+            let own: Vec<Use> = pieces.of_track[part].iter().filter(inside).map(|u| Use { s: (u.s.0 - start, u.s.1 - start), ..*u }).collect();
+            found.entry(*link).or_default().extend(oriented(&own, *against, length, 0.0));
+            start += length;
+        }
+    }
+    for uses in found.values_mut() {
+        uses.sort_by(|a, b| a.s.0.total_cmp(&b.s.0).then(a.atom.cmp(&b.atom)));
+        uses.dedup_by_key(|u| u.atom);
+    }
+    found.into_iter().collect()
+}
+
+/// Side parameters (u or v of the surface, ascending) at lengths along a side of a face.
+pub fn side_parameters(input: &Input, face: &Face, side: usize, lengths: &[f64]) -> Vec<f64> {
+    let record = &input.model.patches[face.patch.index()];
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    let triangle = face.is_triangle();
+    let ((u0, u1), (v0, v1)) = (record.u, record.v);
+    let along_u = side == 0 || side == 2 && !triangle;
+    let (low, high) = if along_u { (u0, u1) } else { (v0, v1) };
+    let total = face.sides[side].length;
+    let mut at: Vec<f64> = match chain_side(surface, side, record.u, record.v, triangle) {
+        Some(()) => {
+            let (from, to) = (surface.side_fraction(side, low), surface.side_fraction(side, high));
+            lengths.iter().map(|s| surface.side_parameter(side, from + (to - from) * (s / total))).collect()
+        }
+        None => {
+            let (from, to) = match (triangle, side) {
+                (true, 1) => ((1.0, 0.0), (0.0, 1.0)),
+                (true, 2) | (false, 3) => ((u0, v0), (u0, v1)),
+                (_, 0) => ((u0, v0), (u1, v0)),
+                (_, 1) => ((u1, v0), (u1, v1)),
+                _ => ((u0, v1), (u1, v1)),
+            };
+            let trace = Trace::new(surface, from, to);
+            lengths.iter().map(|s| low + (high - low) * trace.at_length(s / total * trace.length())).collect()
+        }
+    };
+    if let (Some(first), Some(s)) = (at.first_mut(), lengths.first())
+        && *s == 0.0
+    {
+        *first = low;
+    }
+    if let (Some(last), Some(s)) = (at.last_mut(), lengths.last())
+        && *s == total
+    {
+        *last = high;
+    }
+    at
+}
+
+/// Whether a side of a patch lies on a border of the surface that a chain carries.
+fn chain_side(surface: &Surface, side: usize, u: (f64, f64), v: (f64, f64), triangle: bool) -> Option<()> {
+    let on_border = triangle && surface.domain() == Domain::Triangle
+        || match side {
+            0 => v.0 == 0.0,
+            1 => u.1 == 1.0,
+            2 => v.1 == 1.0,
+            _ => u.0 == 0.0,
+        };
+    (on_border && matches!(surface.side(side), crate::surface::Side::Chain { .. })).then_some(())
+}

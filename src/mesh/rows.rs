@@ -1,0 +1,191 @@
+//! How many steps the rows inside a face want: sampled curvature first, the finished mesh decides (see `limits`).
+
+use glam::DVec3;
+
+use super::edges::Limits;
+use crate::base::math::angle_between;
+use crate::surface::{Domain, Surface};
+
+/// Cells of the sample grid in each direction.
+const CELLS: usize = 32;
+/// Room that a row has above the size (language reference, mesh settings).
+pub const SIZE_ROOM: f64 = 1.05;
+
+/// Wanted steps in one direction of a face: for the size, and the least for chord and angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// For the size.
+    pub size: f64,
+    /// For chord error and angle.
+    pub least: f64,
+    /// Longest row, model units.
+    pub length: f64,
+    /// Largest second difference along the rows, normal part, a step of the sample grid: what refinement goes by.
+    pub bend: f64,
+}
+
+/// Wishes along u and along v of a patch over the rectangle (a triangle: one for both).
+pub fn wishes(surface: &Surface, u: (f64, f64), v: (f64, f64), size: f64, limits: &Limits) -> [Wish; 2] {
+    let n = CELLS + 1;
+    let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / CELLS as f64;
+    let mut points = vec![DVec3::ZERO; n * n];
+    let triangle = surface.domain() == Domain::Triangle;
+    if triangle {
+        for j in 0..n {
+            for i in 0..n - j {
+                points[j * n + i] = surface.point(at(u, i), at(v, j));
+            }
+        }
+    } else {
+        let us: Vec<f64> = (0..n).map(|i| at(u, i)).collect();
+        let vs: Vec<f64> = (0..n).map(|j| at(v, j)).collect();
+        surface.grid(&us, &vs, &mut points);
+    }
+    let sample = Sample { points, triangle };
+    let (mut a, mut b) = (Wish::default(), Wish::default());
+    for k in 0..n {
+        a.length = a.length.max(sample.line(k, true));
+        b.length = b.length.max(sample.line(k, false));
+    }
+    let cells = CELLS as f64;
+    for wish in [&mut a, &mut b] {
+        wish.size = wish.length / (SIZE_ROOM * size);
+    }
+    sample.bends(&mut a, &mut b, limits);
+    if triangle {
+        let slant = sample.slants(limits);
+        let both = Wish {
+            size: a.size.max(b.size).max(slant.length / (SIZE_ROOM * size)),
+            least: a.least.max(b.least).max(slant.least),
+            length: a.length.max(b.length).max(slant.length),
+            bend: a.bend.max(b.bend).max(slant.bend),
+        };
+        return [both; 2];
+    }
+    if let Some(chord) = limits.chord {
+        sample.balance(&mut a, &mut b, chord, cells);
+    }
+    [a, b]
+}
+
+struct Sample {
+    points: Vec<DVec3>,
+    triangle: bool,
+}
+
+impl Sample {
+    const N: usize = CELLS + 1;
+
+    fn point(&self, i: usize, j: usize) -> DVec3 {
+        self.points[j * Self::N + i]
+    }
+
+    fn holds(&self, i: usize, j: usize) -> bool {
+        !self.triangle && i < Self::N && j < Self::N || i + j < Self::N
+    }
+
+    /// Length of row (`along_u`) or column `k`.
+    fn line(&self, k: usize, along_u: bool) -> f64 {
+        let end = if self.triangle { CELLS - k } else { CELLS };
+        let at = |n: usize| if along_u { self.point(n, k) } else { self.point(k, n) };
+        (0..end).map(|n| at(n).distance(at(n + 1))).sum()
+    }
+
+    /// Unit normal at an inner sample.
+    fn normal(&self, i: usize, j: usize) -> Option<DVec3> {
+        let inside = i > 0 && j > 0 && self.holds(i + 1, j + 1);
+        let n = inside.then(|| {
+            (self.point(i + 1, j) - self.point(i - 1, j)).cross(self.point(i, j + 1) - self.point(i, j - 1)).normalize_or_zero()
+        })?;
+        (n != DVec3::ZERO).then_some(n)
+    }
+
+    /// Second differences with their normals: along u, along v.
+    fn curvatures(&self) -> impl Iterator<Item = (usize, usize, f64, f64)> + '_ {
+        (1..CELLS).flat_map(move |j| {
+            (1..CELLS).filter_map(move |i| {
+                let n = self.normal(i, j)?;
+                let p = self.point(i, j);
+                let uu = (self.point(i + 1, j) - 2.0 * p + self.point(i - 1, j)).dot(n);
+                let vv = (self.point(i, j + 1) - 2.0 * p + self.point(i, j - 1)).dot(n);
+                Some((i, j, uu, vv))
+            })
+        })
+    }
+
+    fn bends(&self, a: &mut Wish, b: &mut Wish, limits: &Limits) {
+        let cells = CELLS as f64;
+        for (_, _, uu, vv) in self.curvatures() {
+            a.bend = a.bend.max(uu.abs());
+            b.bend = b.bend.max(vv.abs());
+        }
+        if let Some(chord) = limits.chord {
+            a.least = cells * (a.bend / (8.0 * chord)).sqrt();
+            b.least = cells * (b.bend / (8.0 * chord)).sqrt();
+        }
+        if let Some(angle) = limits.angle {
+            let (mut turn_u, mut turn_v) = (0.0_f64, 0.0_f64);
+            for j in 1..CELLS {
+                for i in 1..CELLS {
+                    let Some(n) = self.normal(i, j) else { continue };
+                    if let Some(next) = self.normal(i + 1, j) {
+                        turn_u = turn_u.max(angle_between(n, next));
+                    }
+                    if let Some(next) = self.normal(i, j + 1) {
+                        turn_v = turn_v.max(angle_between(n, next));
+                    }
+                }
+            }
+            a.least = a.least.max(cells * turn_u / angle);
+            b.least = b.least.max(cells * turn_v / angle);
+        }
+    }
+
+    /// Lines of constant u + v of a triangle.
+    fn slants(&self, limits: &Limits) -> Wish {
+        let mut wish = Wish::default();
+        for sum in 1..Self::N {
+            let length = (0..sum).map(|j| self.point(sum - j, j).distance(self.point(sum - j - 1, j + 1))).sum();
+            wish.length = wish.length.max(length);
+            for j in 1..sum {
+                let i = sum - j;
+                if let Some(n) = self.normal(i, j) {
+                    let second = self.point(i + 1, j - 1) - 2.0 * self.point(i, j) + self.point(i - 1, j + 1);
+                    wish.bend = wish.bend.max(second.dot(n).abs());
+                }
+            }
+        }
+        if let Some(chord) = limits.chord {
+            wish.least = CELLS as f64 * (wish.bend / (8.0 * chord)).sqrt();
+        }
+        wish
+    }
+
+    /// The middle of a cell is off by the bends of both directions: raises the one that adds more until their sum is kept.
+    fn balance(&self, a: &mut Wish, b: &mut Wish, chord: f64, cells: f64) {
+        let share = |wish: &Wish| (cells / wish.least.max(wish.size).max(1.0)).powi_two() / 8.0;
+        for _ in 0..CELLS {
+            let (fu, fv) = (share(a), share(b));
+            let worst = self.curvatures().map(|(_, _, uu, vv)| (uu * fu, vv * fv)).max_by(|x, y| (x.0 + x.1).abs().total_cmp(&(y.0 + y.1).abs()));
+            let Some((du, dv)) = worst else { return };
+            let total = (du + dv).abs();
+            if total <= chord {
+                return;
+            }
+            let (wish, other, own) = if du.abs() >= dv.abs() { (&mut *a, dv.abs(), du.abs()) } else { (&mut *b, du.abs(), dv.abs()) };
+            // What is left for the larger one when the smaller stays; at least half.
+            let left = (chord - other).max(0.5 * chord);
+            wish.least = wish.least.max(wish.size).max(1.0) * (own / left).sqrt().max(1.0 + 1.0 / cells);
+        }
+    }
+}
+
+trait Square {
+    fn powi_two(self) -> Self;
+}
+
+impl Square for f64 {
+    fn powi_two(self) -> Self {
+        self * self
+    }
+}

@@ -1,0 +1,372 @@
+//! Which setting decides each stretch: rules by rank, written counts shared out, wishes of size, chord and angle.
+
+use super::build::Input;
+use super::counts::share;
+use super::edges::{Limits, least_steps, wanted_steps};
+use super::layout::Layout;
+use super::plan::{Elements, Method, Rule, Target};
+use super::strips::Stretch;
+use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::limits::MESH_ELEMENTS;
+use crate::base::par;
+use crate::model::SurfaceId;
+use crate::model::atoms::Use;
+use crate::network::Chain;
+
+/// Largest count of one stretch; a mesh has no more elements than that.
+pub const MOST: u32 = MESH_ELEMENTS as u32;
+
+/// What a rule says of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Division {
+    Count(u32),
+    Size(f64),
+}
+
+/// A setting with the rule it comes from.
+#[derive(Clone, Copy, Debug)]
+struct Ruled<T> {
+    rank: u8,
+    rule: usize,
+    value: T,
+}
+
+/// The settings of one stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct Decision {
+    /// A written count and its rule.
+    pub count: Option<(u32, usize)>,
+    /// Target size, and the rule unless it is the mesh's own.
+    pub size: (f64, Option<usize>),
+    /// Last step over first step, along the stretch.
+    pub bias: f64,
+    /// The least count for chord and angle on the stretch itself.
+    pub least: u32,
+    /// The wanted count.
+    pub wish: u32,
+}
+
+/// Decisions for all stretches, and which rules have decided something so far.
+#[derive(Clone, Debug, Default)]
+pub struct Sizing {
+    /// One a stretch.
+    pub decisions: Vec<Decision>,
+    /// One a rule: whether it was taken anywhere.
+    pub taken: Vec<bool>,
+    /// Why a rule cannot be taken at all, in words.
+    pub homeless: Vec<Option<String>>,
+    /// The bias rule of each stretch.
+    pub bias_rule: Vec<Option<usize>>,
+    overridden: Vec<(usize, usize, &'static str)>,
+}
+
+const LINK: u8 = 2;
+const CURVE: u8 = 1;
+const FACE: u8 = 0;
+
+/// Settles a rule against what is there: inner rules win, of equal ones the later.
+fn settle<T>(slot: &mut Option<Ruled<T>>, new: Ruled<T>, key: &'static str, overridden: &mut Vec<(usize, usize, &'static str)>) {
+    if let Some(old) = slot {
+        if old.rank > new.rank {
+            return;
+        }
+        if old.rank == new.rank && old.rule != new.rule {
+            overridden.push((old.rule, new.rule, key));
+        }
+    }
+    *slot = Some(new);
+}
+
+impl Sizing {
+    /// Decides every stretch of a layout; faces get their size, elements and method.
+    pub fn new(input: &Input, layout: &mut Layout, size: f64) -> Result<Self> {
+        let n = layout.pieces.atoms.len();
+        let rules = &input.plan.rules;
+        let mut sizing = Self { taken: vec![false; rules.len()], homeless: vec![None; rules.len()], ..Self::default() };
+        sizing.faces(input, layout, size);
+        let mut division: Vec<Option<Ruled<Division>>> = vec![None; n];
+        let mut bias: Vec<Option<Ruled<f64>>> = vec![None; n];
+        for (index, rule) in rules.iter().enumerate() {
+            match &rule.target {
+                Target::Chain(chain) => sizing.chain_rule(input, layout, (index, rule, chain), &mut division, &mut bias)?,
+                Target::Surface(surface) => sizing.surface_counts(layout, (index, rule, *surface), &mut division)?,
+                Target::Point(_) => {}
+            }
+        }
+        let mut own = vec![(size, None); n];
+        let mut seen = vec![false; n];
+        for face in &layout.faces {
+            for stretch in face.sides.iter().flat_map(|s| s.stretches()) {
+                if !std::mem::replace(&mut seen[stretch], true) || face.size.0 < own[stretch].0 {
+                    own[stretch] = face.size;
+                }
+            }
+        }
+        let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
+        let shape = shapes(layout);
+        let least = par::try_map(n, |k| {
+            let bias = bias[k].map_or(1.0, |b| b.value);
+            least_steps(layout, k, bias, &limits, MOST).map(|least| least.max(shape[k]))
+        })?;
+        for k in 0..n {
+            let count = division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
+            let ruled = division[k].and_then(|d| if let Division::Size(s) = d.value { Some((s, Some(d.rule))) } else { None });
+            let size = ruled.unwrap_or(own[k]);
+            let bias_of = bias[k].map_or(1.0, |b| b.value);
+            let wish = wanted_steps(layout.length(k), size.0, bias_of, MOST).max(least[k]);
+            sizing.decisions.push(Decision { count, size, bias: bias_of, least: least[k], wish });
+        }
+        sizing.bias_rule = bias.iter().map(|b| b.map(|b| b.rule)).collect();
+        Ok(sizing)
+    }
+
+    /// The stretches as unknowns of the solver.
+    pub fn stretches(&self, layout: &Layout) -> Vec<Stretch> {
+        let one = |(k, d): (usize, &Decision)| Stretch { least: d.least, wish: d.wish, written: d.count.map(|c| c.0), length: layout.length(k) };
+        self.decisions.iter().enumerate().map(one).collect()
+    }
+
+    /// Size, elements and method of faces.
+    fn faces(&mut self, input: &Input, layout: &mut Layout, size: f64) {
+        for face in &mut layout.faces {
+            face.size = (size, None);
+            let mut last: [Option<usize>; 3] = [None; 3];
+            for (index, rule) in input.plan.rules.iter().enumerate() {
+                if !matches!(rule.target, Target::Surface(s) if s == face.surface) {
+                    continue;
+                }
+                let says = [rule.size.is_some(), rule.elements.is_some(), rule.method.is_some()];
+                for (k, key) in ["size", "elements", "method"].into_iter().enumerate() {
+                    if says[k] {
+                        if let Some(old) = last[k].replace(index) {
+                            self.overridden.push((old, index, key));
+                        }
+                    }
+                }
+            }
+            let rule = |k: usize| last[k].map(|i: usize| (i, &input.plan.rules[i]));
+            if let Some((i, (s, _))) = rule(0).and_then(|(i, r)| r.size.map(|s| (i, s))) {
+                face.size = (s, Some(i));
+            }
+            if let Some((i, (e, _))) = rule(1).and_then(|(i, r)| r.elements.map(|e| (i, e))) {
+                face.elements = e;
+                self.taken[i] = true;
+            }
+            if let Some((i, (m, _))) = rule(2).and_then(|(i, r)| r.method.map(|m| (i, m))) {
+                face.method = m;
+                self.taken[i] = true;
+            }
+        }
+        for (index, rule) in input.plan.rules.iter().enumerate() {
+            if let Target::Surface(surface) = rule.target {
+                if !layout.faces.iter().any(|f| f.surface == surface) {
+                    self.homeless[index] = Some("that surface is not in this mesh".to_owned());
+                } else if rule.bias.is_some() && rule.count.is_none() && rule.size.is_none() && rule.elements.is_none() && rule.method.is_none() {
+                    self.homeless[index] = Some("`bias` grows the steps along a curve, this is a face".to_owned());
+                }
+            }
+        }
+    }
+
+    /// A rule on a curve, chain or link.
+    fn chain_rule(
+        &mut self,
+        input: &Input,
+        layout: &Layout,
+        (index, rule, chain): (usize, &Rule, &Chain),
+        division: &mut [Option<Ruled<Division>>],
+        bias: &mut [Option<Ruled<f64>>],
+    ) -> Result<()> {
+        let (uses, links) = stretches_of(input, layout, chain);
+        if uses.is_empty() {
+            self.homeless[index] = Some("that curve is on no edge of this mesh".to_owned());
+            return Ok(());
+        }
+        if rule.count.is_none() && rule.size.is_none() && rule.bias.is_none() {
+            self.homeless[index] = Some("`elements` and `method` speak of faces, this is a curve".to_owned());
+            return Ok(());
+        }
+        let rank = if links.len() == 1 && chain.whole_curve().is_none() { LINK } else { CURVE };
+        if let Some((count, origin)) = rule.count {
+            let shares = count_shares(&uses, &links, count).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
+            for (u, n) in uses.iter().zip(shares) {
+                settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
+            }
+        } else if let Some((size, _)) = rule.size {
+            for u in &uses {
+                settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Size(size) }, "size", &mut self.overridden);
+            }
+        }
+        if let Some((b, _)) = rule.bias {
+            let total = chain.length();
+            for u in &uses {
+                // Steps that grow geometrically have a size that is linear in the length.
+                let grown = |s: f64| 1.0 + (b - 1.0) * (s / total).clamp(0.0, 1.0);
+                let local = grown(u.s.1) / grown(u.s.0);
+                let value = if u.against { 1.0 / local } else { local };
+                settle(&mut bias[u.atom], Ruled { rank, rule: index, value }, "bias", &mut self.overridden);
+            }
+        }
+        Ok(())
+    }
+
+    /// A count on a surface is for each of its sides.
+    fn surface_counts(&mut self, layout: &Layout, (index, rule, surface): (usize, &Rule, SurfaceId), division: &mut [Option<Ruled<Division>>]) -> Result<()> {
+        let Some((count, origin)) = rule.count else {
+            return Ok(());
+        };
+        let faces: Vec<_> = layout.faces.iter().filter(|f| f.surface == surface).collect();
+        let sides = faces.first().map_or(0, |f| f.sides.len());
+        for side in 0..sides {
+            let on: Vec<_> = faces.iter().filter(|f| f.sides.len() == sides).collect();
+            // A side of the whole surface is the run of those patch sides that no other patch of it continues.
+            let inner = |stretch: usize| {
+                let uses = on.iter().flat_map(|f| f.sides.iter().flat_map(|s| s.stretches())).filter(|s| *s == stretch).count();
+                uses > 1
+            };
+            let mut stretches: Vec<usize> = on.iter().flat_map(|f| f.sides[side].stretches()).filter(|s| !inner(*s)).collect();
+            stretches.dedup();
+            if stretches.is_empty() {
+                continue;
+            }
+            let weights: Vec<f64> = stretches.iter().map(|s| layout.length(*s)).collect();
+            let least = vec![1; stretches.len()];
+            let shares = share(count, &weights, &least)
+                .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: stretches.len() as u32 })?;
+            for (s, n) in stretches.iter().zip(shares) {
+                settle(&mut division[*s], Ruled { rank: FACE, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes which rules the final counts go back to; `counts` are of the stretches.
+    pub fn take(&mut self, counts: &[u32]) {
+        for (k, d) in self.decisions.iter().enumerate() {
+            match d.count {
+                Some((_, rule)) => self.taken[rule] = true,
+                None => {
+                    if let (_, Some(rule)) = d.size
+                        && d.wish == counts[k]
+                        && d.wish > d.least
+                    {
+                        self.taken[rule] = true;
+                    }
+                }
+            }
+            if let Some(rule) = self.bias_rule[k]
+                && counts[k] > 1
+                && d.bias != 1.0
+            {
+                self.taken[rule] = true;
+            }
+        }
+    }
+
+    /// W706 for rules overridden by equal ones, W701 for rules that decide nothing.
+    pub fn report(&self, rules: &[Rule], sink: &mut Vec<Fault>) {
+        let mut pairs = self.overridden.clone();
+        pairs.sort_unstable();
+        pairs.dedup();
+        for &(earlier, later, key) in &pairs {
+            sink.push(MeshFault::RuleOverridden { key, earlier: rules[earlier].origin, later: rules[later].origin }.into());
+        }
+        for (index, rule) in rules.iter().enumerate() {
+            if self.taken[index] || pairs.iter().any(|p| p.0 == index) {
+                continue;
+            }
+            let why = self.homeless[index].clone().unwrap_or_else(|| "other settings ask for more, or inner rules say it all".to_owned());
+            sink.push(MeshFault::RuleUnused { rule: rule.origin, why }.into());
+        }
+    }
+
+    /// Joins what another layout of the same mesh has taken (faces that share no nodes).
+    pub fn join(&mut self, other: &Self) {
+        for (a, b) in self.taken.iter_mut().zip(&other.taken) {
+            *a |= b;
+        }
+        for (a, b) in self.homeless.iter_mut().zip(&other.homeless) {
+            // A rule is homeless only where no layout knows its entity.
+            if b.is_none() {
+                *a = None;
+            }
+        }
+        self.overridden.extend(&other.overridden);
+    }
+}
+
+/// Least counts that keep a stretch from closing on itself: 3 for a ring, 2 for two stretches with the same ends.
+fn shapes(layout: &Layout) -> Vec<u32> {
+    let ends = |k: usize| {
+        let (a, b) = layout.pieces.atoms[k].ends;
+        (a.min(b), a.max(b))
+    };
+    let n = layout.pieces.atoms.len();
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by_key(|k| (ends(*k), *k));
+    let mut least = vec![1; n];
+    for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
+        for &k in group {
+            let (a, b) = ends(k);
+            least[k] = if a == b { 3 } else if group.len() > 1 { 2 } else { 1 };
+        }
+    }
+    least
+}
+
+/// Stretches along a chain, and the range of them on each of its links that has some.
+fn stretches_of(input: &Input, layout: &Layout, chain: &Chain) -> (Vec<Use>, Vec<LinkRange>) {
+    let uses = layout.along(input, chain);
+    let Some(links) = input.network.links_of(chain, input.tolerance) else {
+        return (uses, Vec::new());
+    };
+    let (mut ranges, mut start, mut from) = (Vec::new(), 0.0, 0);
+    for (link, _) in links {
+        let s = input.network.links[link.index()].s;
+        let end = start + (s.1 - s.0);
+        let to = from + uses[from..].iter().take_while(|u| 0.5 * (u.s.0 + u.s.1) < end).count();
+        ranges.push(LinkRange { length: s.1 - s.0, uses: from..to });
+        (start, from) = (end, to);
+    }
+    (uses, ranges)
+}
+
+/// One link of a chain with its stretches.
+struct LinkRange {
+    length: f64,
+    uses: std::ops::Range<usize>,
+}
+
+/// A count shared out to links by length, then to the stretches of each link; `Err`: how many stretches there are.
+fn count_shares(uses: &[Use], links: &[LinkRange], count: u32) -> std::result::Result<Vec<u32>, u32> {
+    let least: Vec<u32> = links.iter().map(|l| (l.uses.len() as u32).max(1)).collect();
+    let weights: Vec<f64> = links.iter().map(|l| l.length).collect();
+    let by_link = share(count, &weights, &least).ok_or(least.iter().sum::<u32>())?;
+    let mut shares = Vec::new();
+    for (n, link) in by_link.iter().zip(links) {
+        let lengths: Vec<f64> = uses[link.uses.clone()].iter().map(|u| u.s.1 - u.s.0).collect();
+        // A link of which only a part is meshed gives that part its share.
+        let covered: f64 = lengths.iter().sum::<f64>() / link.length;
+        let own = ((f64::from(*n) * covered).round() as u32).max(lengths.len() as u32);
+        shares.extend(share(own, &lengths, &vec![1; lengths.len()]).unwrap_or_default());
+    }
+    Ok(shares)
+}
+
+/// The method a face ends up with, as `-v` has it.
+pub fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::Auto => "auto",
+        Method::Mapped => "mapped",
+        Method::Later(name) => name,
+    }
+}
+
+/// The elements of a face, as `-v` has it.
+pub fn elements_name(elements: Elements) -> &'static str {
+    match elements {
+        Elements::Triangles => "triangles",
+        Elements::Quads => "quads",
+        Elements::Mixed => "mixed",
+    }
+}
