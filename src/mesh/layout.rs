@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::build::Input;
 use super::plan::{Elements, Method};
 use crate::model::atoms::{Atoms, Part, Use, atoms};
+use crate::model::glue::preference;
 use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Track, Trace};
 use crate::network::LinkId;
 use crate::surface::{Domain, Surface};
@@ -175,8 +176,7 @@ fn edge_part(input: &Input, edge: EdgeId) -> Part {
         }
         Track::Iso(_) => Vec::new(),
     };
-    let rank = u8::from(matches!(track, Track::Iso(_)));
-    Part { track, cuts, rank }
+    Part { track, cuts, rank: preference(&input.model.edges[edge.index()].curve) }
 }
 
 /// Adds the links of the plan's curves as tracks of their own; gives link and part, ascending.

@@ -9,6 +9,7 @@ use super::topology::{Edge, EdgeCurve, EdgeId, Model, Named, Patch, PatchId, Pat
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
+use crate::surface::Domain;
 
 /// Groups of points that are one: for each point the index of its group; groups are numbered by first appearance.
 ///
@@ -70,10 +71,22 @@ pub(super) fn same_run(a: &[DVec3; 3], b: &[DVec3; 3], tolerance: &Tolerance) ->
     }
 }
 
+/// Which geometry an edge takes when several faces bring one: links, other chains, lines of a surface.
+pub fn preference(curve: &EdgeCurve) -> u8 {
+    match curve {
+        EdgeCurve::Links { .. } => 0,
+        EdgeCurve::Run { .. } => 1,
+        EdgeCurve::Iso { .. } => 2,
+    }
+}
+
 /// The same run of links or line the other way round.
 fn reversed(curve: &EdgeCurve, network: &Network) -> EdgeCurve {
     match curve {
         EdgeCurve::Iso { surface, from, to } => EdgeCurve::Iso { surface: *surface, from: *to, to: *from },
+        EdgeCurve::Run { chain, span } => {
+            EdgeCurve::Run { chain: chain.reversed(), span: (chain.length() - span.1, chain.length() - span.0) }
+        }
         EdgeCurve::Links { links, span } => {
             let total: f64 = links.iter().map(|(l, _)| network.links[l.index()].s).map(|s| s.1 - s.0).sum();
             let links = links.iter().rev().map(|(l, against)| (*l, !against)).collect();
@@ -101,7 +114,7 @@ impl EdgeTable<'_> {
             };
             let edge = &mut self.edges[id.index()];
             // Links carry an edge better than a surface's own line: other faces and curves know them.
-            if matches!(edge.curve, EdgeCurve::Iso { .. }) && matches!(raw.curve, EdgeCurve::Links { .. }) {
+            if preference(&raw.curve) < preference(&edge.curve) {
                 edge.curve = if against { reversed(&raw.curve, self.network) } else { raw.curve.clone() };
                 edge.length = raw.length;
             }
@@ -133,13 +146,14 @@ pub(super) fn glue(surfaces: Vec<Named>, pieces: &[Pieces], network: &Network, t
     for (index, part) in pieces.iter().enumerate() {
         let vertex = |corner: usize| VertexId::at(group[base + corner]);
         let ids: Vec<_> = part.edges.iter().map(|raw| table.add(raw, (vertex(raw.ends.0), vertex(raw.ends.1)))).collect();
+        let around = surfaces[index].surface.domain() == Domain::Loop;
         for raw in &part.patches {
             let id = PatchId::at(patches.len());
             let mut sides = Vec::new();
             for (k, side) in raw.sides.iter().enumerate() {
                 let edges: Vec<_> = side.edges.iter().map(|e| ids[*e]).collect();
                 // The loop runs counter-clockwise: the last two sides of four, the last one of three, backwards.
-                let backwards = k >= 2;
+                let backwards = k >= 2 && !around;
                 for (edge, against) in &edges {
                     table.edges[edge.index()].users.push((id, *against != backwards));
                 }

@@ -64,7 +64,7 @@ impl Model {
         let (mut pieces, mut length) = (Vec::new(), 0.0);
         for (side, entry) in record.sides.iter().enumerate() {
             let (a, b) = (corners[side], corners[(side + 1) % corners.len()]);
-            let backwards = side >= 2;
+            let backwards = self.runs_back(record, side);
             let mut edges: Vec<Option<(EdgeId, bool)>> = entry.edges.iter().map(|(e, against)| Some((*e, *against != backwards))).collect();
             if backwards {
                 edges.reverse();

@@ -39,11 +39,17 @@ pub(super) struct Pieces {
     pub patches: Vec<RawPatch>,
 }
 
-/// A line of the surface that lies on a chain of the network: the chain's links and its fraction at each corner of the line.
+/// A line of the surface that lies on a chain: the chain, its links when the network has it, its fraction at each corner.
 struct OnChain {
-    links: Vec<(LinkId, bool)>,
-    length: f64,
+    chain: Chain,
+    links: Option<Vec<(LinkId, bool)>>,
     fractions: Vec<f64>,
+}
+
+impl OnChain {
+    fn new(chain: &Chain, fractions: Vec<f64>, network: &Network, tolerance: &Tolerance) -> Self {
+        Self { chain: chain.clone(), links: network.links_of(chain, tolerance), fractions }
+    }
 }
 
 /// Where a line runs: side number, or a line inside.
@@ -70,8 +76,8 @@ pub(super) fn cut(id: SurfaceId, surfaces: &[Named], network: &Network, toleranc
     match surface.domain() {
         Domain::Square => cutter.square(),
         Domain::Triangle => cutter.triangle(),
-        // A plane without a map has borders but nothing to cut along.
-        Domain::Loop | Domain::Unbounded => cutter.pieces,
+        Domain::Loop => cutter.around(),
+        Domain::Unbounded => cutter.pieces,
     }
 }
 
@@ -147,6 +153,52 @@ impl Cutter<'_> {
         self.pieces
     }
 
+    /// One patch inside a loop of sides; kinks become corners.
+    fn around(mut self) -> Pieces {
+        let (mut sides, mut first) = (Vec::new(), Vec::new());
+        let chains: Vec<(Chain, f64, f64)> = (0..self.surface.n_sides())
+            .filter_map(|k| match self.surface.side(k) {
+                Side::Chain { chain, from, to } => Some((chain, from, to)),
+                _ => None,
+            })
+            .collect();
+        for (chain, from, _) in &chains {
+            first.push(self.pieces.vertices.len());
+            self.pieces.vertices.push(chain.point(*from));
+        }
+        for (k, (chain, from, to)) in chains.iter().enumerate() {
+            let mut stops = vec![(*from, first[k])];
+            let mut kinks = chain.kinks(self.tolerance);
+            kinks.retain(|f| (f - from) * (f - to) < 0.0);
+            kinks.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
+            for f in kinks {
+                stops.push((f, self.pieces.vertices.len()));
+                self.pieces.vertices.push(chain.point(f));
+            }
+            stops.push((*to, first[(k + 1) % first.len()]));
+            let on = OnChain::new(chain, stops.iter().map(|s| s.0).collect(), self.network, self.tolerance);
+            let edges = (0..stops.len() - 1)
+                .filter_map(|n| {
+                    let curve = self.run_between(&on, n);
+                    self.edge(curve, (stops[n].1, stops[n + 1].1))
+                })
+                .collect();
+            sides.push(RawSide { edges, pole: None });
+        }
+        self.pieces.patches.push(RawPatch { u: (0.0, 1.0), v: (0.0, 1.0), sides });
+        self.pieces
+    }
+
+    /// Adds an edge unless it is shorter than the tolerance.
+    fn edge(&mut self, curve: EdgeCurve, ends: (usize, usize)) -> Option<usize> {
+        let track = Track::of(&curve, self.surfaces, self.network);
+        let length = track.length();
+        (length > self.tolerance.point).then(|| {
+            self.pieces.edges.push(RawEdge { ends, curve, length, probes: track.probes() });
+            self.pieces.edges.len() - 1
+        })
+    }
+
     /// Side parameters of the kinks of the chain along a side, ascending, ends left out.
     fn side_kinks(&self, k: usize) -> Vec<f64> {
         let Side::Chain { chain, from, to } = self.surface.side(k) else {
@@ -174,19 +226,15 @@ impl Cutter<'_> {
         let support = self.support(place, corners);
         let mut sides = Vec::new();
         for (n, w) in corners.windows(2).enumerate() {
-            let curve = support.as_ref().and_then(|on| self.links_between(on, n)).unwrap_or(EdgeCurve::Iso {
+            let curve = support.as_ref().map(|on| self.run_between(on, n)).unwrap_or(EdgeCurve::Iso {
                 surface: self.id,
                 from: w[0].0,
                 to: w[1].0,
             });
-            let track = Track::of(&curve, self.surfaces, self.network);
-            let length = track.length();
-            if length <= self.tolerance.point {
-                sides.push(RawSide { edges: Vec::new(), pole: Some(w[0].1) });
-                continue;
+            match self.edge(curve, (w[0].1, w[1].1)) {
+                Some(edge) => sides.push(RawSide { edges: vec![edge], pole: None }),
+                None => sides.push(RawSide { edges: Vec::new(), pole: Some(w[0].1) }),
             }
-            sides.push(RawSide { edges: vec![self.pieces.edges.len()], pole: None });
-            self.pieces.edges.push(RawEdge { ends: (w[0].1, w[1].1), curve, length, probes: track.probes() });
         }
         sides
     }
@@ -200,9 +248,8 @@ impl Cutter<'_> {
             for side in [k, (k + 2) % 4] {
                 match self.surface.side(side) {
                     Side::Chain { chain, .. } => {
-                        let links = self.network.links_of(&chain, self.tolerance)?;
                         let fractions = corners.iter().map(|(uv, _)| self.surface.side_fraction(side, parameter(*uv))).collect();
-                        return Some(OnChain { links, length: chain.length(), fractions });
+                        return Some(OnChain::new(&chain, fractions, self.network, self.tolerance));
                     }
                     Side::Seam => {}
                     Side::Pole(_) | Side::Free => break,
@@ -238,18 +285,29 @@ impl Cutter<'_> {
         fractions.push(curve.length_at(foot.t) / curve.length());
         let ascending = fractions.windows(2).all(|w| w[0] < w[1]);
         let descending = fractions.windows(2).all(|w| w[0] > w[1]);
-        let links = self.network.links_of(chain, self.tolerance)?;
-        (ascending || descending).then(|| OnChain { links, length: chain.length(), fractions })
+        (ascending || descending).then(|| OnChain::new(chain, fractions, self.network, self.tolerance))
     }
 
-    /// The links between corners `n` and `n + 1` of a line.
-    fn links_between(&self, on: &OnChain, n: usize) -> Option<EdgeCurve> {
-        let mut links: Vec<_> = on.links.clone();
-        let (mut a, mut b) = (on.fractions[n] * on.length, on.fractions[n + 1] * on.length);
-        if a > b {
+    /// The run of the chain between corners `n` and `n + 1` of a line, by links where the network has them.
+    fn run_between(&self, on: &OnChain, n: usize) -> EdgeCurve {
+        let length = on.chain.length();
+        let (mut a, mut b) = (on.fractions[n] * length, on.fractions[n + 1] * length);
+        let backwards = a > b;
+        if backwards {
+            (a, b) = (length - a, length - b);
+        }
+        let found = on.links.clone().and_then(|links| self.links_between(links, backwards, (a, b)));
+        found.unwrap_or_else(|| {
+            let chain = if backwards { on.chain.reversed() } else { on.chain.clone() };
+            EdgeCurve::Run { chain, span: (a, b) }
+        })
+    }
+
+    /// The links of a chain (run backwards first if so) between two arc lengths.
+    fn links_between(&self, mut links: Vec<(LinkId, bool)>, backwards: bool, (a, b): (f64, f64)) -> Option<EdgeCurve> {
+        if backwards {
             links.reverse();
             links.iter_mut().for_each(|(_, against)| *against = !*against);
-            (a, b) = (on.length - a, on.length - b);
         }
         let (mut used, mut before, mut start) = (Vec::new(), 0.0, 0.0);
         let near = self.tolerance.point;

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::atoms::{Atoms, Part, atoms};
-use super::glue::root;
-use super::topology::{EdgeCurve, EdgeId, Model, Shell, SurfaceId};
+use super::glue::{preference, root};
+use super::topology::{EdgeId, Model, Shell, SurfaceId};
 use super::trace::Track;
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
@@ -70,8 +70,7 @@ impl Model {
             .iter()
             .map(|e| {
                 let curve = &self.edges[e.index()].curve;
-                let rank = u8::from(matches!(curve, EdgeCurve::Iso { .. }));
-                Part { track: Track::of(curve, &self.surfaces, network), cuts: Vec::new(), rank }
+                Part { track: Track::of(curve, &self.surfaces, network), cuts: Vec::new(), rank: preference(curve) }
             })
             .collect();
         let anchors: Vec<_> = edges

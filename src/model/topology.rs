@@ -9,8 +9,8 @@ use crate::base::job::Job;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::network::{LinkId, Network, NodeId};
-use crate::surface::Surface;
+use crate::network::{Chain, LinkId, Network, NodeId};
+use crate::surface::{Domain, Surface};
 
 crate::ids! {
     /// A surface of the model.
@@ -35,13 +35,20 @@ pub struct Vertex {
 }
 
 /// What an edge runs along.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum EdgeCurve {
     /// Links of the network with direction flags, of which the edge may use a part: arc lengths from the start of the first to the end of the run.
     Links {
         /// Links in order, `true` where the edge runs against one.
         links: Vec<(LinkId, bool)>,
         /// Arc length along these links where the edge begins and ends.
+        span: (f64, f64),
+    },
+    /// A chain that is not in the network (construction geometry, a moved copy).
+    Run {
+        /// The chain.
+        chain: Chain,
+        /// Arc lengths on it where the edge begins and ends, ascending.
         span: (f64, f64),
     },
     /// An iso-line or free border of a surface between two (u, v).
@@ -86,7 +93,7 @@ pub struct Patch {
     pub u: (f64, f64),
     /// Range of v.
     pub v: (f64, f64),
-    /// Sides v = min, u = max, v = max, u = min (a triangle: three of them).
+    /// Sides v = min, u = max, v = max, u = min (a triangle: three of them; a plane without a map: any number, round the loop).
     pub sides: Vec<PatchSide>,
 }
 
@@ -133,6 +140,11 @@ impl Model {
             Ok::<_, Fault>(patches::cut(SurfaceId::at(n), &surfaces, network, tolerance))
         })?;
         Ok(glue::glue(surfaces, &pieces, network, tolerance))
+    }
+
+    /// Whether side `k` of a patch runs against its loop: ascending u or v is clockwise there.
+    pub fn runs_back(&self, patch: &Patch, k: usize) -> bool {
+        k >= 2 && self.surfaces[patch.surface.index()].surface.domain() != Domain::Loop
     }
 
     /// Patches of a surface.
@@ -199,7 +211,7 @@ impl Model {
         }
         let mut corners = Vec::new();
         for (k, side) in patch.sides.iter().enumerate() {
-            let backwards = k >= 2;
+            let backwards = self.runs_back(patch, k);
             let mut run = Vec::new();
             for (edge, against) in &side.edges {
                 let record = &self.edges[edge.index()];
