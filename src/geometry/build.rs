@@ -240,7 +240,7 @@ fn check_degree(degree: usize) -> Result<()> {
 }
 
 /// Knots must be as many as needed, not decrease, keep the curve in one piece and leave it a domain.
-fn check_knots(knots: &[f64], points: usize, degree: usize, of: Origin) -> Result<()> {
+pub(crate) fn check_knots(knots: &[f64], points: usize, degree: usize, of: Origin) -> Result<()> {
     let fault = |what| -> Result<()> { Err(CurveFault::Knots { of, what }.into()) };
     let needed = points + degree + 1;
     if knots.len() != needed {

@@ -93,7 +93,7 @@ fn inner_row(before: DVec3, after: DVec3, h0: f64, h1: f64) -> (Row, DVec3) {
 }
 
 /// The C2 cubic with these points and derivatives on the knots x₀⁴, x₁, …, xₙ⁴.
-fn through(points: &[DVec3], spans: &[f64], slopes: &[DVec3]) -> Nurbs {
+pub fn through(points: &[DVec3], spans: &[f64], slopes: &[DVec3]) -> Nurbs {
     let n = spans.len();
     let mut x = vec![0.0];
     for h in spans {

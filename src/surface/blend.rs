@@ -116,9 +116,7 @@ impl Blend {
             b.values().iter().enumerate().map(|(l, w)| (columns.along_u[b.first + l].as_slice(), w[0])).collect();
         // F_i(v) less the nodes: what each curve along v adds at weight 1.
         let own: Vec<DVec3> = (0..self.along_v.len())
-            .map(|i| {
-                b.values().iter().enumerate().fold(rows.along_v[i][k], |f, (l, w)| f - self.corner(i, b.first + l) * w[0])
-            })
+            .map(|i| b.values().iter().enumerate().fold(rows.along_v[i][k], |f, (l, w)| f - self.corner(i, b.first + l) * w[0]))
             .collect();
         match (curves.as_slice(), own.is_empty()) {
             ([(g0, w0), (g1, w1)], false) if columns.active == 2 => {

@@ -58,8 +58,18 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     let mut notes = Vec::new();
     let flow = grid.flow;
     let ends_v = (grid.poles.0.is_some(), grid.poles.1.is_some());
-    let along_u = prepare(grid, Family { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false) }, tolerance, &mut notes)?;
-    let along_v = prepare(grid, Family { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v }, tolerance, &mut notes)?;
+    let along_u = prepare(
+        grid,
+        Family { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false) },
+        tolerance,
+        &mut notes,
+    )?;
+    let along_v = prepare(
+        grid,
+        Family { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v },
+        tolerance,
+        &mut notes,
+    )?;
     let nodes_u = match along_u.is_empty() {
         // Meridians alone: nothing says how far apart they are.
         true => evenly(flow.along_v.len() + usize::from(flow.closed_u)),
@@ -73,10 +83,14 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     };
     let mut rails_u = rails(&along_u, &nodes_u, flow.closed_u);
     let mut rails_v = rails(&along_v, &nodes_v, flow.closed_v);
-    if flow.closed_v && let Some(first) = rails_u.first().cloned() {
+    if flow.closed_v
+        && let Some(first) = rails_u.first().cloned()
+    {
         rails_u.push(first);
     }
-    if flow.closed_u && let Some(first) = rails_v.first().cloned() {
+    if flow.closed_u
+        && let Some(first) = rails_v.first().cloned()
+    {
         rails_v.push(first);
     }
     if let Some(p) = grid.poles.0 {
@@ -90,7 +104,14 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     Ok((finish(blend, chains, flow, settings, tolerance, &mut notes), notes))
 }
 
-fn finish(mut blend: Blend, chains: Vec<Chain>, flow: &Flow, settings: &Settings, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Surface {
+fn finish(
+    mut blend: Blend,
+    chains: Vec<Chain>,
+    flow: &Flow,
+    settings: &Settings,
+    tolerance: &Tolerance,
+    notes: &mut Vec<Fault>,
+) -> Surface {
     let kinks = set_kinks(&mut blend, settings.origin, tolerance, notes);
     let kind = if settings.method == Method::Composite { SurfaceKind::Coons } else { SurfaceKind::Transfinite };
     if settings.method == Method::Lagrange {
@@ -172,7 +193,14 @@ fn shifted(chain: Chain, member: &Member, tolerance: &Tolerance) -> Result<Prepa
 }
 
 /// The part of a curve between the borders; what stands out is left out with a note.
-fn trimmed(grid: &Grid, family: &Family, member: &Member, (chain, raw): (Chain, Vec<f64>), tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Result<Prepared> {
+fn trimmed(
+    grid: &Grid,
+    family: &Family,
+    member: &Member,
+    (chain, raw): (Chain, Vec<f64>),
+    tolerance: &Tolerance,
+    notes: &mut Vec<Fault>,
+) -> Result<Prepared> {
     let (first, last) = if member.reversed { (1.0, 0.0) } else { (0.0, 1.0) };
     let (from, to) = (raw[0], raw[raw.len() - 1]);
     let border = |k: usize| family.across.get(k).map_or(Origin::NONE, |m| grid.chains[m.curve].origin());
@@ -210,7 +238,17 @@ fn averages(curves: &[Prepared], grid: &Grid, across: &[Member], tolerance: &Tol
         all.sort_by(f64::total_cmp);
         all.iter().sum::<f64>() / all.len() as f64
     };
-    Ok((0..n).map(|i| if i == 0 { 0.0 } else if i + 1 == n { 1.0 } else { mean(i) }).collect())
+    Ok((0..n)
+        .map(|i| {
+            if i == 0 {
+                0.0
+            } else if i + 1 == n {
+                1.0
+            } else {
+                mean(i)
+            }
+        })
+        .collect())
 }
 
 fn evenly(n: usize) -> Vec<f64> {

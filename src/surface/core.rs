@@ -378,6 +378,13 @@ impl Surface {
         }
     }
 
+    /// (u, v) of the foot of a point on a plane; `None` on any other surface.
+    pub fn flat_uv(&self, p: DVec3) -> Option<(f64, f64)> {
+        let Shape::Plane(frame) = &self.0.shape else { return None };
+        let (u, v) = frame.uv(p);
+        Some(if self.0.flipped { (u, 1.0 - v) } else { (u, v) })
+    }
+
     /// The modeling curves it stands on.
     pub fn chains(&self) -> &[Chain] {
         &self.0.chains

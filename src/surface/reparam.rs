@@ -62,7 +62,7 @@ impl Map {
     /// Value, first and second derivative. `before` takes the piece before a node; outside the nodes the end pieces go on.
     pub fn at(&self, x: f64, before: bool) -> Scalar {
         let last = self.x.len() - 2;
-        let k = self.x[1..=last].partition_point(|&node| if before { node < x } else { node <= x });
+        let k = self.x[1..=last].partition_point(|&node| if before { node < x - EPSILON } else { node <= x + EPSILON });
         let (x0, x1, y0, y1) = (self.x[k], self.x[k + 1], self.y[k], self.y[k + 1]);
         let h = x1 - x0;
         let secant = (y1 - y0) / h;

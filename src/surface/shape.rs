@@ -5,7 +5,10 @@ use glam::DVec3;
 use super::Jet2;
 use super::blend::Blend;
 use super::breaks::tidy;
+use super::nurbs::NurbsSurface;
+use super::plane::Frame;
 use super::rail::Lean;
+use super::sweep::Sweep;
 use super::trilateral::Trilateral;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::EPSILON;
@@ -18,6 +21,12 @@ pub enum Shape {
     Blend(Blend),
     /// Blended from three borders.
     Trilateral(Trilateral),
+    /// A profile carried along a path.
+    Sweep(Sweep),
+    /// A plane over its frame.
+    Plane(Frame),
+    /// A net.
+    Nurbs(NurbsSurface),
 }
 
 impl Shape {
@@ -26,6 +35,9 @@ impl Shape {
         match self {
             Self::Blend(s) => s.jet(u, v, lean),
             Self::Trilateral(s) => s.jet(u, v),
+            Self::Sweep(s) => s.jet(u, v, lean),
+            Self::Plane(s) => s.jet(u, v),
+            Self::Nurbs(s) => s.jet(u, v, lean),
         }
     }
 
@@ -33,6 +45,8 @@ impl Shape {
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
         match self {
             Self::Blend(s) => s.grid(us, vs, out),
+            Self::Sweep(s) => s.grid(us, vs, out),
+            Self::Nurbs(s) => s.grid(us, vs, out),
             _ => {
                 for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
                     for (p, &u) in row.iter_mut().zip(us) {
@@ -47,6 +61,7 @@ impl Shape {
     pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
         match self {
             Self::Blend(s) => s.jets(us, vs, out),
+            Self::Sweep(s) => s.jets(us, vs, out),
             _ => {
                 for &(v, lean_v) in vs {
                     out.extend(us.iter().map(|&(u, lean_u)| self.jet(u, v, (lean_u, lean_v))));
@@ -59,6 +74,9 @@ impl Shape {
     pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
         match self {
             Self::Blend(s) => s.breaks(),
+            Self::Sweep(s) => s.breaks(),
+            Self::Plane(_) => (Vec::new(), Vec::new()),
+            Self::Nurbs(s) => s.breaks(),
             Self::Trilateral(s) => {
                 let (mut us, mut vs) = (Vec::new(), Vec::new());
                 s.sides()[0].breaks(&mut us);
@@ -72,7 +90,9 @@ impl Shape {
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         match self {
             Self::Blend(s) => s.cells(),
-            Self::Trilateral(_) => (Vec::new(), Vec::new()),
+            Self::Sweep(s) => s.cells(),
+            Self::Nurbs(s) => s.breaks(),
+            Self::Trilateral(_) | Self::Plane(_) => (Vec::new(), Vec::new()),
         }
     }
 
@@ -81,6 +101,9 @@ impl Shape {
         match self {
             Self::Blend(s) => s.hull(),
             Self::Trilateral(s) => s.hull(),
+            Self::Sweep(s) => s.hull(),
+            Self::Plane(s) => s.hull(),
+            Self::Nurbs(s) => s.hull(),
         }
     }
 
@@ -89,6 +112,9 @@ impl Shape {
         match self {
             Self::Blend(s) => Self::Blend(s.moved(motion)),
             Self::Trilateral(s) => Self::Trilateral(s.moved(motion)),
+            Self::Sweep(s) => Self::Sweep(s.moved(motion)),
+            Self::Plane(s) => Self::Plane(s.moved(motion)),
+            Self::Nurbs(s) => Self::Nurbs(s.moved(motion)),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Blending functions of one direction: cubic between neighbours (composite Coons) or Lagrange through all.
 
 use super::rail::Lean;
+use crate::base::tolerance::EPSILON;
 
 /// How curves are blended across one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +62,7 @@ impl Axis {
     /// The cell that holds a parameter.
     pub fn cell(&self, x: f64, lean: Lean) -> usize {
         let inner = &self.nodes[1..self.nodes.len() - 1];
-        inner.partition_point(|&node| if lean == Lean::Before { node < x } else { node <= x })
+        inner.partition_point(|&node| if lean == Lean::Before { node < x - EPSILON } else { node <= x + EPSILON })
     }
 
     /// Blending values at a parameter.

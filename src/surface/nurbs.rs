@@ -1,0 +1,342 @@
+//! Rational tensor-product B-spline surfaces, evaluated on the stack.
+
+use glam::{DVec3, DVec4};
+
+use super::Jet2;
+use super::breaks::{distinct_inner, tidy};
+use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
+use super::flow_words::phrase;
+use super::rail::Lean;
+use super::shape::Shape;
+use crate::base::bbox::Box3;
+use crate::base::fault::{CurveFault, Result, ValueFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::geometry::Motion;
+use crate::geometry::nurbs::{MAX_DEGREE, projected, weighted};
+
+/// S(u, v) = Σ w_ij P_ij N_i(u) M_j(v) / Σ w_ij N_i(u) M_j(v) over 0 ≤ u, v ≤ 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NurbsSurface {
+    /// Degree in u and v, 1…9.
+    pub degree: (usize, usize),
+    /// Knots in u and v, clamped, from 0 to 1.
+    pub knots: (Vec<f64>, Vec<f64>),
+    /// Homogeneous poles (wx, wy, wz, w), u fastest.
+    pub poles: Vec<DVec4>,
+    /// Poles along u and along v.
+    pub counts: (usize, usize),
+}
+
+/// Values and two derivatives of the basis functions that do not vanish on one span.
+struct Basis {
+    first: usize,
+    n: usize,
+    values: [[f64; 3]; MAX_DEGREE + 1],
+}
+
+impl Basis {
+    fn values(&self) -> &[[f64; 3]] {
+        &self.values[..self.n]
+    }
+}
+
+/// The basis at a parameter [Piegl & Tiller 1997, A2.2 and eq. 2.9].
+fn basis(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis {
+    let (low, high) = (degree, knots.len() - degree - 2);
+    let inner = &knots[low + 1..=high];
+    let reached = |k: &f64| if lean == Lean::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
+    let span = low + inner.partition_point(reached);
+    let mut rows = [[0.0; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+    rows[0][0] = 1.0;
+    for p in 1..=degree {
+        let below = rows[p - 1];
+        for (r, &value) in below.iter().enumerate().take(p) {
+            // N_{i,p-1} with i = span - p + 1 + r feeds N_{i-1,p} and N_{i,p}.
+            let i = span + 1 + r - p;
+            let share = value / (knots[i + p] - knots[i]);
+            rows[p][r] += (knots[i + p] - t) * share;
+            rows[p][r + 1] += (t - knots[i]) * share;
+        }
+    }
+    let mut values = [[0.0; 3]; MAX_DEGREE + 1];
+    // Derivatives of degree p from values of degree p − 1.
+    let lower = |p: usize, from: &[f64; MAX_DEGREE + 1]| {
+        let mut out = [0.0; MAX_DEGREE + 1];
+        for (r, &value) in from.iter().enumerate().take(p) {
+            let i = span + 1 + r - p;
+            let share = p as f64 * value / (knots[i + p] - knots[i]);
+            out[r] -= share;
+            out[r + 1] += share;
+        }
+        out
+    };
+    let first = lower(degree, &rows[degree - 1]);
+    let second = if degree >= 2 { lower(degree, &lower(degree - 1, &rows[degree - 2])) } else { [0.0; MAX_DEGREE + 1] };
+    for r in 0..=degree {
+        values[r] = [rows[degree][r], first[r], second[r]];
+    }
+    Basis { first: span - degree, n: degree + 1, values }
+}
+
+/// Homogeneous sums: value, ∂u, ∂v, ∂uu, ∂uv, ∂vv.
+type Sums = [DVec4; 6];
+
+/// The quotient rule up to order two.
+fn quotient(a: &Sums) -> Jet2 {
+    let (w, n) = (a.map(|q| q.w), a.map(|q| q.truncate()));
+    let p = n[0] / w[0];
+    let du = (n[1] - p * w[1]) / w[0];
+    let dv = (n[2] - p * w[2]) / w[0];
+    Jet2 {
+        p,
+        du,
+        dv,
+        duu: (n[3] - du * (2.0 * w[1]) - p * w[3]) / w[0],
+        duv: (n[4] - du * w[2] - dv * w[1] - p * w[4]) / w[0],
+        dvv: (n[5] - dv * (2.0 * w[2]) - p * w[5]) / w[0],
+    }
+}
+
+impl NurbsSurface {
+    /// Pole (i, j) in homogeneous form.
+    pub fn pole(&self, i: usize, j: usize) -> DVec4 {
+        self.poles[j * self.counts.0 + i]
+    }
+
+    /// Point and derivatives, from the given sides where they jump.
+    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        let a = basis(&self.knots.0, self.degree.0, u, lean.0);
+        let b = basis(&self.knots.1, self.degree.1, v, lean.1);
+        let mut sums = [DVec4::ZERO; 6];
+        for (j, y) in b.values().iter().enumerate() {
+            let row = &self.poles[(b.first + j) * self.counts.0 + a.first..][..a.n];
+            let mut part = [DVec4::ZERO; 3];
+            for (q, x) in row.iter().zip(a.values()) {
+                for k in 0..3 {
+                    part[k] += *q * x[k];
+                }
+            }
+            add(&mut sums, &part, y);
+        }
+        quotient(&sums)
+    }
+
+    /// Points of the tensor grid, u fastest: the net is contracted once per row.
+    pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
+        let columns: Vec<Basis> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, Lean::After)).collect();
+        let mut row = vec![DVec4::ZERO; self.counts.0];
+        for (line, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
+            let b = basis(&self.knots.1, self.degree.1, v, Lean::After);
+            for (i, q) in row.iter_mut().enumerate() {
+                *q = b.values().iter().enumerate().fold(DVec4::ZERO, |sum, (j, y)| sum + self.pole(i, b.first + j) * y[0]);
+            }
+            for (p, a) in line.iter_mut().zip(&columns) {
+                let q = a.values().iter().zip(&row[a.first..]).fold(DVec4::ZERO, |sum, (x, q)| sum + *q * x[0]);
+                *p = projected(q);
+            }
+        }
+    }
+
+    /// Distinct knots inside, u and v.
+    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
+        let inner = |knots: &[f64], degree| tidy(distinct_inner(knots, degree), EPSILON);
+        (inner(&self.knots.0, self.degree.0), inner(&self.knots.1, self.degree.1))
+    }
+
+    /// The box of the control points: holds the surface (weights are positive).
+    pub fn hull(&self) -> Box3 {
+        Box3::of(self.poles.iter().map(|q| projected(*q)))
+    }
+
+    /// Carried by a motion.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        let poles = self.poles.iter().map(|q| weighted(motion.point(projected(*q)), q.w)).collect();
+        Self { poles, ..self.clone() }
+    }
+
+    /// Knots at which the direction across them jumps by more than the tolerance's angle somewhere along the line.
+    ///
+    /// Only knots of multiplicity ≥ degree can; along the line the directions are compared at more places than the
+    /// rational functions have free coefficients.
+    fn kinks(&self, tolerance: &Tolerance) -> (Vec<f64>, Vec<f64>) {
+        let (us, vs) = self.breaks();
+        let along = |breaks: &[f64], degree: usize| -> Vec<f64> {
+            let stops = [&[0.0], breaks, &[1.0]].concat();
+            let n = 4 * degree + 1;
+            stops.windows(2).flat_map(|w| (0..=n).map(|k| w[0] + (w[1] - w[0]) * k as f64 / n as f64).collect::<Vec<_>>()).collect()
+        };
+        let multiple = |knots: &[f64], x: f64, degree: usize| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count() >= degree;
+        let (along_u, along_v) = (along(&us, self.degree.0), along(&vs, self.degree.1));
+        let turns = |a: DVec3, b: DVec3| a.length_squared() > 0.0 && b.length_squared() > 0.0 && tolerance.is_kink(a, b);
+        let kink_u = us.iter().copied().filter(|&u| {
+            multiple(&self.knots.0, u, self.degree.0)
+                && along_v.iter().any(|&v| {
+                    let side = |lean| self.jet(u, v, (lean, Lean::After)).du;
+                    turns(side(Lean::Before), side(Lean::After))
+                })
+        });
+        let kink_v = vs.iter().copied().filter(|&v| {
+            multiple(&self.knots.1, v, self.degree.1)
+                && along_u.iter().any(|&u| {
+                    let side = |lean| self.jet(u, v, (Lean::After, lean)).dv;
+                    turns(side(Lean::Before), side(Lean::After))
+                })
+        });
+        (kink_u.collect(), kink_v.collect())
+    }
+
+    /// The border row or column on side k (v = 0, u = 1, v = 1, u = 0), ascending.
+    fn border(&self, k: usize) -> Vec<DVec3> {
+        let (nu, nv) = self.counts;
+        let at = |i: usize, j: usize| projected(self.pole(i, j));
+        match k {
+            0 => (0..nu).map(|i| at(i, 0)).collect(),
+            1 => (0..nv).map(|j| at(nu - 1, j)).collect(),
+            2 => (0..nu).map(|i| at(i, nv - 1)).collect(),
+            _ => (0..nv).map(|j| at(0, j)).collect(),
+        }
+    }
+
+    /// The surface value: poles where a row of the net is one point, closed where opposite rows are one.
+    pub fn surface(self, kind: SurfaceKind, origin: Origin, tolerance: &Tolerance) -> Surface {
+        let rows: Vec<Vec<DVec3>> = (0..4).map(|k| self.border(k)).collect();
+        let one = |row: &[DVec3]| row.iter().all(|p| tolerance.same_point(row[0], *p));
+        let alike = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).all(|(p, q)| tolerance.same_point(*p, *q));
+        let poles: Vec<bool> = rows.iter().map(|row| one(row)).collect();
+        let closed = (!poles[1] && alike(&rows[1], &rows[3]), !poles[0] && alike(&rows[0], &rows[2]));
+        let side = |k: usize| match (poles[k], if k % 2 == 1 { closed.0 } else { closed.1 }) {
+            (true, _) => Side::Pole(rows[k][0]),
+            (_, true) => Side::Seam,
+            _ => Side::Free,
+        };
+        Surface::new(Parts {
+            origin,
+            kind,
+            flow: phrase(poles.iter().filter(|pole| **pole).count(), closed),
+            domain: Domain::Square,
+            closed,
+            borders: (0..4).map(|k| Border::straight(side(k))).collect(),
+            kinks: self.kinks(tolerance),
+            shape: Shape::Nurbs(self),
+            chains: Vec::new(),
+            generated: Vec::new(),
+            flipped: false,
+        })
+    }
+}
+
+fn add(sums: &mut Sums, part: &[DVec4; 3], y: &[f64; 3]) {
+    sums[0] += part[0] * y[0];
+    sums[1] += part[1] * y[0];
+    sums[2] += part[0] * y[1];
+    sums[3] += part[2] * y[0];
+    sums[4] += part[1] * y[1];
+    sums[5] += part[0] * y[2];
+}
+
+/// A net as a script gives it: rows along u, one row per v.
+#[derive(Clone, Copy, Debug)]
+pub struct Net<'a> {
+    /// Control points; `rows[j]` are the points along u at the j-th v, all rows as long.
+    pub rows: &'a [Vec<DVec3>],
+    /// Weights of the same shape, all above 0; none: all 1.
+    pub weights: Option<&'a [Vec<f64>]>,
+}
+
+/// Bézier surface: degree = number of points − 1 each way.
+///
+/// Fails with E402 below 2×2 points, E306 for rows of different length or a degree above 9, E407 for a weight.
+pub fn bezier(net: &Net, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+    let (counts, poles) = checked(net, origin)?;
+    let degree = (counts.0 - 1, counts.1 - 1);
+    for (argument, degree) in [("net", degree.0), ("net", degree.1)] {
+        check_degree(argument, degree)?;
+    }
+    let knots = |degree: usize| [vec![0.0; degree + 1], vec![1.0; degree + 1]].concat();
+    let surface = NurbsSurface { degree, knots: (knots(degree.0), knots(degree.1)), poles, counts };
+    Ok(surface.surface(SurfaceKind::Bezier, origin, tolerance))
+}
+
+/// Rational B-spline surface. Knots default to clamped uniform ones; given ones are clamped and are scaled to 0…1.
+///
+/// Fails like [`bezier`], and with E406 for knots that decrease, are too many or too few, or are not clamped.
+pub fn nurbs(
+    net: &Net,
+    degree: (usize, usize),
+    knots: (Option<&[f64]>, Option<&[f64]>),
+    origin: Origin,
+    tolerance: &Tolerance,
+) -> Result<Surface> {
+    let (counts, poles) = checked(net, origin)?;
+    check_degree("degree_u", degree.0)?;
+    check_degree("degree_v", degree.1)?;
+    let knots = (checked_knots(knots.0, counts.0, degree.0, origin)?, checked_knots(knots.1, counts.1, degree.1, origin)?);
+    Ok(NurbsSurface { degree, knots, poles, counts }.surface(SurfaceKind::Nurbs, origin, tolerance))
+}
+
+fn check_degree(argument: &'static str, degree: usize) -> Result<()> {
+    if (1..=MAX_DEGREE).contains(&degree) {
+        return Ok(());
+    }
+    let (found, range) = (format!("degree {degree}"), format!("of degree 1 to {MAX_DEGREE}"));
+    Err(ValueFault::OutsideRange { argument, found, range }.into())
+}
+
+/// Counts along u and v and homogeneous poles, u fastest.
+fn checked(net: &Net, origin: Origin) -> Result<((usize, usize), Vec<DVec4>)> {
+    let (nu, nv) = (net.rows.first().map_or(0, Vec::len), net.rows.len());
+    if nu < 2 || nv < 2 {
+        return Err(CurveFault::TooFewPoints {
+            of: origin,
+            what: "each direction of a net",
+            argument: "net",
+            needed: 2,
+            given: nu.min(nv),
+        }
+        .into());
+    }
+    let uneven = |argument: &'static str, j: usize, found: usize| {
+        let (found, range) = (format!("{found} in row {j}"), format!("a list of rows of {nu} each, like the first one"));
+        Err(ValueFault::OutsideRange { argument, found, range }.into())
+    };
+    let mut poles = Vec::with_capacity(nu * nv);
+    for (j, row) in net.rows.iter().enumerate() {
+        if row.len() != nu {
+            return uneven("net", j, row.len());
+        }
+        for (i, p) in row.iter().enumerate() {
+            let w = match net.weights {
+                None => 1.0,
+                Some(rows) => match rows.get(j) {
+                    Some(weights) if weights.len() == nu => weights[i],
+                    other => return uneven("weights", j, other.map_or(0, Vec::len)),
+                },
+            };
+            if w <= 0.0 || !w.is_finite() {
+                return Err(CurveFault::Weight { of: origin, index: j * nu + i, weight: w }.into());
+            }
+            poles.push(weighted(*p, w));
+        }
+    }
+    Ok(((nu, nv), poles))
+}
+
+fn checked_knots(knots: Option<&[f64]>, n: usize, degree: usize, origin: Origin) -> Result<Vec<f64>> {
+    if n <= degree {
+        return Err(
+            CurveFault::TooFewPoints { of: origin, what: "a net of this degree", argument: "net", needed: degree + 1, given: n }.into()
+        );
+    }
+    let Some(knots) = knots else {
+        let inner = (1..n - degree).map(|k| k as f64 / (n - degree) as f64);
+        return Ok(std::iter::repeat_n(0.0, degree + 1).chain(inner).chain(std::iter::repeat_n(1.0, degree + 1)).collect());
+    };
+    crate::geometry::build::check_knots(knots, n, degree, origin)?;
+    let (first, last) = (knots[0], knots[knots.len() - 1]);
+    if knots[degree] != first || knots[n] != last {
+        let range = format!("clamped: the first and the last value {} times", degree + 1);
+        return Err(ValueFault::OutsideRange { argument: "knots", found: "knots that are not".to_owned(), range }.into());
+    }
+    Ok(knots.iter().map(|k| if *k == last { 1.0 } else { (k - first) / (last - first) }).collect())
+}

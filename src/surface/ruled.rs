@@ -1,0 +1,64 @@
+//! Straight lines between two curves.
+
+use super::blend::Blend;
+use super::coons::{borders, set_kinks};
+use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
+use super::flow_words::phrase;
+use super::rail::Rail;
+use super::reparam::Map;
+use super::shape::Shape;
+use super::weights::{Axis, Rule};
+use crate::base::fault::{Fault, Result};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::build::line;
+use crate::network::Chain;
+
+/// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
+///
+/// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them); closed
+/// curves are read as they are. Ends that meet are poles. Returns warnings too (W614).
+pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let closed = a.is_closed(tolerance) && b.is_closed(tolerance);
+    let apart = |b0: glam::DVec3, b1: glam::DVec3| a.start().distance_squared(b0) + a.end().distance_squared(b1);
+    let reversed = !closed && apart(b.end(), b.start()) < apart(b.start(), b.end());
+    let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
+    let rails = vec![Rail::new(a.clone(), Map::identity()), other];
+    let axis = || Axis { nodes: vec![0.0, 1.0], rule: Rule::Lagrange };
+    let mut blend = Blend::new(axis(), axis(), Vec::new(), rails);
+    let mut notes = Vec::new();
+    let kinks = set_kinks(&mut blend, origin, tolerance, &mut notes);
+    let mut borders = borders(&blend);
+    let mut generated = Vec::new();
+    let mut poles = 0;
+    for (k, u) in [(1, 1.0), (3, 0.0)] {
+        let (from, to) = (blend.along_u()[0].point(u), blend.along_u()[1].point(u));
+        borders[k] = if closed && k == 1 {
+            continue;
+        } else if tolerance.same_point(from, to) {
+            poles += 1;
+            Border::straight(Side::Pole(0.5 * (from + to)))
+        } else {
+            let side = Chain::of_curve(&line(from, to, origin)?);
+            generated.push(side.clone());
+            Border::chain(side, false)
+        };
+    }
+    if closed {
+        borders[1] = borders[3].clone();
+    }
+    let surface = Surface::new(Parts {
+        origin,
+        kind: SurfaceKind::Ruled,
+        flow: phrase(poles, (closed, false)),
+        domain: Domain::Square,
+        closed: (closed, false),
+        borders,
+        kinks,
+        shape: Shape::Blend(blend),
+        chains: vec![a.clone(), b.clone()],
+        generated,
+        flipped: false,
+    });
+    Ok((surface, notes))
+}

@@ -1,0 +1,185 @@
+//! Simple sweeps [Koh & Park 1990, §4.2; math notes §9]: a profile carried along a straight path or turned about an axis.
+//!
+//! u runs along the path, v along the profile by its arc-length fraction; both are exact.
+
+use glam::DVec3;
+
+use super::Jet2;
+use super::breaks::{chain_breaks, tidy};
+use super::rail::{Lean, Rail};
+use crate::base::bbox::Box3;
+use crate::base::math;
+use crate::base::tolerance::EPSILON;
+use crate::geometry::{Jet, Motion};
+use crate::network::Chain;
+
+/// How a profile moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Path {
+    /// S(u, v) = G(v) + u·by.
+    Straight {
+        /// The whole way, model units.
+        by: DVec3,
+    },
+    /// S(u, v) = o + Rot(a, uΘ)(G(v) − o).
+    Turn {
+        /// A point of the axis.
+        about: DVec3,
+        /// Unit direction of the axis.
+        axis: DVec3,
+        /// Whole angle Θ, radians.
+        angle: f64,
+    },
+}
+
+/// A profile carried along a path.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    profile: Rail,
+    path: Path,
+}
+
+/// A rotation about an axis, made once per column.
+#[derive(Clone, Copy)]
+struct Turned {
+    sin: f64,
+    cos: f64,
+    axis: DVec3,
+}
+
+impl Turned {
+    fn new(axis: DVec3, angle: f64) -> Self {
+        let (sin, cos) = math::sin_cos(angle);
+        Self { sin, cos, axis }
+    }
+
+    fn carry(&self, v: DVec3) -> DVec3 {
+        v * self.cos + self.axis.cross(v) * self.sin + self.axis * (self.axis.dot(v) * (1.0 - self.cos))
+    }
+}
+
+impl Sweep {
+    /// The profile under its own parameter 0…1 along a path.
+    pub fn new(profile: Rail, path: Path) -> Self {
+        Self { profile, path }
+    }
+
+    /// The way it moves.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The profile.
+    pub fn profile(&self) -> Option<&Chain> {
+        self.profile.chain()
+    }
+
+    /// The profile.
+    pub fn rail_mut(&mut self) -> &mut Rail {
+        &mut self.profile
+    }
+
+    /// The angle at a parameter; a whole turn comes back to the first column to the last bit.
+    fn angle_at(angle: f64, u: f64) -> f64 {
+        if u == 1.0 && angle.abs() == std::f64::consts::TAU { 0.0 } else { u * angle }
+    }
+
+    fn carried(&self, g: &Jet, u: f64) -> Jet2 {
+        match self.path {
+            Path::Straight { by } => Jet2 { p: g.p + by * u, du: by, dv: g.d1, dvv: g.d2, ..Jet2::default() },
+            Path::Turn { about, axis, angle } => {
+                let turned = Turned::new(axis, Self::angle_at(angle, u));
+                let arm = turned.carry(g.p - about);
+                let (dv, dvv) = (turned.carry(g.d1), turned.carry(g.d2));
+                let du = axis.cross(arm) * angle;
+                Jet2 { p: about + arm, du, dv, duu: axis.cross(du) * angle, duv: axis.cross(dv) * angle, dvv }
+            }
+        }
+    }
+
+    /// Point and derivatives, from the given side in v where they jump.
+    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        self.carried(&self.profile.jet(v, lean.1), u)
+    }
+
+    /// Points of the tensor grid, u fastest: the profile is evaluated once per row, the turn once per column.
+    pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
+        let profile = self.profile.points(vs);
+        let rows = out.chunks_exact_mut(us.len().max(1)).zip(profile);
+        match self.path {
+            Path::Straight { by } => rows.for_each(|(row, g)| row.iter_mut().zip(us).for_each(|(p, u)| *p = g + by * *u)),
+            Path::Turn { about, axis, angle } => {
+                let turns: Vec<Turned> = us.iter().map(|&u| Turned::new(axis, Self::angle_at(angle, u))).collect();
+                for (row, g) in rows {
+                    let arm = g - about;
+                    // What lies along the axis stays, the rest turns in its plane.
+                    let still = axis * axis.dot(arm);
+                    let (out_of, across) = (arm - still, axis.cross(arm));
+                    let foot = about + still;
+                    for (p, t) in row.iter_mut().zip(&turns) {
+                        *p = foot + out_of * t.cos + across * t.sin;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Jets of the tensor grid, u fastest.
+    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+        for &(v, lean) in vs {
+            let g = self.profile.jet(v, lean);
+            out.extend(us.iter().map(|&(u, _)| self.carried(&g, u)));
+        }
+    }
+
+    /// Interior parameters where the profile is less than analytic.
+    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
+        (Vec::new(), tidy(self.profile.chain().map(chain_breaks).unwrap_or_default(), EPSILON))
+    }
+
+    /// Interior kinks of the profile.
+    pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
+        match &self.profile {
+            Rail::Chain { kinks, .. } => (Vec::new(), kinks.iter().map(|k| k.0).collect()),
+            Rail::Point(_) => (Vec::new(), Vec::new()),
+        }
+    }
+
+    /// A box that holds the surface: of a turn, that of the whole cylinder about the axis.
+    pub fn hull(&self) -> Box3 {
+        let profile = self.profile.chain().map_or(Box3::EMPTY, Chain::bbox);
+        match self.path {
+            Path::Straight { by } => profile.union(Box3 { min: profile.min + by, max: profile.max + by }),
+            Path::Turn { about, axis, .. } => {
+                let corner = |k: u8| {
+                    let pick = |bit: u8, low: f64, high: f64| if k & bit == 0 { low } else { high };
+                    let (a, b) = (profile.min, profile.max);
+                    DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z))
+                };
+                // Each corner sweeps a circle; along coordinate k it reaches √(1 − a_k²) of its radius.
+                (0..8).map(corner).fold(Box3::EMPTY, |hull, p| {
+                    let arm = p - about;
+                    let foot = about + axis * axis.dot(arm);
+                    let radius = p.distance(foot);
+                    let reach = (DVec3::ONE - axis * axis).max(DVec3::ZERO) * radius * radius;
+                    let reach = DVec3::new(reach.x.sqrt(), reach.y.sqrt(), reach.z.sqrt());
+                    hull.with(foot - reach).with(foot + reach)
+                })
+            }
+        }
+    }
+
+    /// Carried by a motion.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        let path = match self.path {
+            Path::Straight { by } => Path::Straight { by: motion.vector(by) },
+            Path::Turn { about, axis, angle } => Path::Turn {
+                about: motion.point(about),
+                axis: (motion.vector(axis) / motion.scale()).normalize(),
+                // Seen in a mirror it turns the other way.
+                angle: if motion.mirrors() { -angle } else { angle },
+            },
+        };
+        Self { profile: self.profile.moved(motion), path }
+    }
+}
