@@ -216,7 +216,7 @@ mod meetings {
         check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.5), (0.5, 1e-5)), "");
         check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.5), (0.5, 9e-7)), "cross");
         check(&line((0.0, 0.0), (2.0, 0.0)), &line((2.0, 0.0), (3.0, 1.0)), "cross");
-        check(&line((0.0, 0.0), (2.0, 0.0)), &line((2.0, 0.0), (3.0, 0.0)), "cross");
+        check(&line((0.0, 0.0), (2.0, 0.0)), &line((2.0, 0.0), (3.0, 0.0)), "touch");
         check(&line((0.0, 0.0), (2.0, 0.0)), &line((1.0, 0.0), (3.0, 0.0)), "along");
         check(&line((0.0, 0.0), (2.0, 0.0)), &line((3.0, 0.0), (1.0, 0.0)), "against");
         check(&line((0.0, 0.0), (2.0, 0.0)), &line((0.5, 0.0), (1.0, 0.0)), "along");
@@ -252,10 +252,10 @@ mod meetings {
         check(&c, &c.reversed(), "against");
         check(&c, &arc((0.0, 0.0), (0.0, 1.0), 90.0), "along");
         check(&arc((0.0, 0.0), (1.0, 0.0), 120.0), &arc((0.0, 0.0), (0.0, 1.0), 120.0), "along");
-        check(&arc((0.0, 0.0), (1.0, 0.0), 90.0), &arc((0.0, 0.0), (0.0, 1.0), 90.0), "cross");
+        check(&arc((0.0, 0.0), (1.0, 0.0), 90.0), &arc((0.0, 0.0), (0.0, 1.0), 90.0), "touch");
         // A fillet that leaves its line smoothly, and one that comes back over it.
-        check(&line((0.0, 0.0), (1.0, 0.0)), &arc((1.0, 1.0), (1.0, 0.0), 90.0), "cross");
-        check(&line((0.0, 0.0), (3.0, 0.0)), &arc((1.0, 1.0), (1.0, 0.0), 90.0), "cross");
+        check(&line((0.0, 0.0), (1.0, 0.0)), &arc((1.0, 1.0), (1.0, 0.0), 90.0), "touch");
+        check(&line((0.0, 0.0), (3.0, 0.0)), &arc((1.0, 1.0), (1.0, 0.0), 90.0), "touch");
     }
 
     #[test]
@@ -265,7 +265,7 @@ mod meetings {
         let at = |f: f64| a + (b - a) * f;
         check(&whole, &whole.part(at(0.2), at(0.7)), "along");
         check(&whole.part(a, at(0.6)), &whole.part(at(0.3), b).reversed(), "against");
-        check(&whole.part(a, at(0.5)), &whole.part(at(0.5), b), "cross");
+        check(&whole.part(a, at(0.5)), &whole.part(at(0.5), b), "touch");
         check(&whole, &line((-1.0, 0.5), (5.0, 0.5)), "cross cross cross cross");
         let other = spline(&[(0.0, 1.0), (1.0, 0.0), (2.0, 1.0), (3.0, 0.0), (4.0, 0.5)]);
         check(&whole, &other, "cross cross cross cross");

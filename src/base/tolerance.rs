@@ -43,7 +43,10 @@ pub const SINGULAR: f64 = 1e-9;
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;
 const POINT_SHARE: f64 = 1e-6;
-const ROUNDING_SHARE: f64 = 1e-12;
+/// What arithmetic may have done to a coordinate, as a share of the model's size.
+pub const ROUNDING_SHARE: f64 = 1e-12;
+/// Nearest points are the nearest ones to this share of their distance.
+pub const NEAREST: f64 = 1e-9;
 
 impl Tolerance {
     /// Tolerance with the given point distance in a model of the given box diagonal, both in model units.

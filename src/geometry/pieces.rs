@@ -62,6 +62,11 @@ impl View<'_> {
     pub(crate) fn point(&self, t: f64) -> DVec3 {
         self.jet(t).p
     }
+
+    /// Whether `t` is an end of the section.
+    pub(crate) fn at_end(&self, t: f64) -> bool {
+        t <= self.section.range.0 || t >= self.section.range.1
+    }
 }
 
 /// A part of a curve: ends, middle and what bounds it.

@@ -1,48 +1,392 @@
-//! The machine that runs a script: declarations on demand, expressions by walking their tree.
+//! The machine that runs a script: declarations on demand, each once, in dependency order.
 
 use std::sync::Arc;
 
-use super::origins::{Origins, Place};
+use super::cx::{Cx, Stop};
+use super::diag::{Diagnostic, Label};
+use super::module::{Module, State, bound};
+use super::names::Name;
+use super::origins::{NO_MEMBER, Origins, Place};
 use super::plans::MeshSpec;
-use super::syntax::ast::ExprId;
-use super::value::ModuleId;
+use super::std::Builtin;
+use super::syntax::ast::{Declaration, Expr, ExprId, Node, Span};
+use super::value::{ModuleId, Value};
+use crate::base::fault::{Fault, Severity};
+use crate::base::limits;
 use crate::base::origin::Origin;
+
+/// Declarations inside each other's evaluation; reached by cycles through branches alone, since dependencies are
+/// evaluated first.
+const DECLARATION_DEPTH: usize = 500;
+/// Expressions inside each other over all calls; with the stack of [`on_big_stack`] that is safe.
+const EXPRESSION_DEPTH: u32 = 150_000;
+/// Steps between two looks at the stop flag.
+const STEPS_A_LOOK: u64 = 1 << 16;
+const STACK_BYTES: usize = 1 << 30;
+
+/// Runs `work` on a thread whose stack holds the deepest legal recursion; on this one when no thread can be had.
+pub fn on_big_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let mut work = Some(work);
+    let mut result = None;
+    let started = std::thread::scope(|scope| {
+        let (work, result) = (&mut work, &mut result);
+        let body = move || *result = work.take().map(|w| w());
+        match std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, body) {
+            Ok(handle) => handle.join(),
+            Err(_) => Ok(()),
+        }
+    });
+    if let Err(panic) = started {
+        std::panic::resume_unwind(panic);
+    }
+    match result {
+        Some(value) => value,
+        None => work.take().expect("the work is taken only by a thread that ran")(),
+    }
+}
+
+/// Code of one declaration: its arena and where it stands.
+#[derive(Clone, Copy)]
+pub(super) struct Code<'c> {
+    pub nodes: &'c [Node],
+    pub module: ModuleId,
+    pub declaration: u32,
+}
+
+impl<'c> Code<'c> {
+    pub fn node(&self, id: ExprId) -> &'c Node {
+        &self.nodes[id.index()]
+    }
+    pub fn expr(&self, id: ExprId) -> &'c Expr {
+        &self.nodes[id.index()].expr
+    }
+    pub fn span(&self, id: ExprId) -> Span {
+        self.nodes[id.index()].span
+    }
+}
 
 /// Where the machine is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Site {
     pub module: ModuleId,
     pub declaration: u32,
-    pub member: u32,
+    pub member: [u32; 2],
     pub expr: ExprId,
-    pub caller: Origin,
+}
+
+/// A call of a script's function that is being run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    /// The function.
+    pub name: Name,
+    /// Where it was called; its `expr` is the call.
+    pub site: Site,
+    /// The origin of the call, made when first asked for.
+    pub origin: Origin,
+}
+
+/// What `name(` leads to, looked up once per name.
+#[derive(Debug)]
+pub(super) enum Word {
+    Unknown,
+    Known { function: Option<&'static Builtin>, fields: Box<[&'static Builtin]> },
 }
 
 /// State of evaluation.
 #[derive(Debug)]
 pub struct Machine {
+    pub(super) modules: Vec<Module>,
     pub(super) site: Site,
-    meshes: Vec<Arc<MeshSpec>>,
+    pub(super) locals: Vec<(Name, Value)>,
+    pub(super) base: usize,
+    pub(super) calls: Vec<Frame>,
+    pub(super) running: Vec<(ModuleId, u32)>,
+    pub(super) words: Vec<Word>,
+    pub(super) steps: u64,
+    next_look: u64,
+    pub(super) depth: u32,
+    pub(super) in_within: bool,
+    pub(super) defaults: std::collections::BTreeMap<(usize, usize), Value>,
+    pub(super) filed: Vec<(Option<(ModuleId, u32)>, Diagnostic)>,
 }
 
 impl Default for Machine {
     fn default() -> Self {
-        let site = Site { module: ModuleId::MAIN, declaration: 0, member: 0, expr: ExprId(0), caller: Origin::NONE };
-        Self { site, meshes: Vec::new() }
+        let site = Site { module: ModuleId::MAIN, declaration: 0, member: [NO_MEMBER; 2], expr: ExprId(0) };
+        Self {
+            modules: Vec::new(),
+            site,
+            locals: Vec::new(),
+            base: 0,
+            calls: Vec::new(),
+            running: Vec::new(),
+            words: Vec::new(),
+            steps: 0,
+            next_look: STEPS_A_LOOK,
+            depth: 0,
+            in_within: false,
+            defaults: std::collections::BTreeMap::new(),
+            filed: Vec::new(),
+        }
     }
 }
 
+fn place(site: Site, caller: Origin) -> Place {
+    Place { module: site.module, declaration: site.declaration, member: site.member, expr: Some(site.expr), caller }
+}
+
 impl Machine {
+    /// The origin of the expression being run; the calls that lead to it get theirs on the way.
     pub(super) fn origin(&mut self, origins: &mut Origins) -> Origin {
-        let Site { module, declaration, member, expr, caller } = self.site;
-        origins.add(Place { module, declaration, member, expr: Some(expr), caller })
+        let mut caller = Origin::NONE;
+        for frame in &mut self.calls {
+            if !frame.origin.is_some() {
+                frame.origin = origins.add(place(frame.site, caller));
+            }
+            caller = frame.origin;
+        }
+        origins.add(place(self.site, caller))
     }
 
     pub(super) fn module(&self) -> ModuleId {
         self.site.module
     }
 
-    pub(super) fn meshes(&self, _module: ModuleId) -> &[Arc<MeshSpec>] {
-        &self.meshes
+    pub(super) fn meshes(&self, module: ModuleId) -> &[Arc<MeshSpec>] {
+        self.modules.get(module.index()).map_or(&[], |m| &m.meshes)
+    }
+
+    pub(super) fn at(&self, module: ModuleId) -> &Module {
+        &self.modules[module.index()]
+    }
+
+    pub(super) fn at_mut(&mut self, module: ModuleId) -> &mut Module {
+        &mut self.modules[module.index()]
+    }
+}
+
+impl Stop {
+    /// Of two reasons the one that says more: what was reported, then what was skipped, then what waits.
+    pub(super) fn or(self, other: Self) -> Self {
+        let rank = |s: &Self| match s {
+            Self::Failed | Self::Fault(_) | Self::Bug(_) => 0,
+            Self::Broken => 1,
+            Self::Skipped(..) => 2,
+            Self::NotYet => 3,
+        };
+        if rank(&other) < rank(&self) { other } else { self }
+    }
+}
+
+/// Collects values of independent parts: goes on after a failure, so that each part reports its own.
+#[derive(Default)]
+pub(super) struct Gather {
+    stop: Option<Stop>,
+}
+
+impl Gather {
+    pub fn take<T>(&mut self, result: Result<T, Stop>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(stop) => {
+                self.stop = Some(match self.stop.take() {
+                    Some(before) => before.or(stop),
+                    None => stop,
+                });
+                None
+            }
+        }
+    }
+
+    pub fn done(self) -> Result<(), Stop> {
+        self.stop.map_or(Ok(()), Err)
+    }
+}
+
+impl Cx<'_> {
+    /// Counts a step; fails when the work limit is reached or the run is stopped.
+    #[inline]
+    pub(super) fn step(&mut self) -> Result<(), Stop> {
+        self.machine.steps += 1;
+        if self.machine.steps >= self.machine.next_look { self.look() } else { Ok(()) }
+    }
+
+    #[cold]
+    fn look(&mut self) -> Result<(), Stop> {
+        self.machine.next_look = self.machine.steps + STEPS_A_LOOK;
+        self.job.go_on()?;
+        if self.machine.steps > limits::EVALUATION_STEPS {
+            return Err(crate::base::fault::ValueFault::Limit {
+                what: "the work of this script".into(),
+                limit: "10^9 evaluation steps".into(),
+            }
+            .into());
+        }
+        Ok(())
+    }
+
+    /// Counts `n` steps of a builtin or loop at once.
+    pub fn steps(&mut self, n: usize) -> Result<(), Stop> {
+        self.machine.steps += n as u64;
+        if self.machine.steps >= self.machine.next_look { self.look() } else { Ok(()) }
+    }
+
+    #[inline]
+    pub(super) fn deeper(&mut self, code: Code<'_>, id: ExprId) -> Result<(), Stop> {
+        self.machine.depth += 1;
+        if self.machine.depth > EXPRESSION_DEPTH { Err(self.too_deep(code, id)) } else { Ok(()) }
+    }
+
+    #[cold]
+    pub(super) fn too_deep(&mut self, code: Code<'_>, id: ExprId) -> Stop {
+        let span = code.span(id);
+        self.error(code, "E216", "calls inside each other too deep", span, "no end in sight here")
+            .help(format!("a function may call itself at most {} times deep; give it an `if` that ends it", limits::CALL_DEPTH))
+            .stop()
+    }
+
+    /// Evaluates a declaration with everything it depends on, dependencies first, so that long chains stay flat.
+    pub(super) fn ensure_all(&mut self, module: ModuleId, declaration: u32) {
+        let mut stack: Vec<(u32, usize)> = vec![(declaration, 0)];
+        let mut entered: Vec<u32> = Vec::new();
+        let script = self.machine.at(module).script.clone();
+        while let Some((index, from)) = stack.pop() {
+            if !matches!(self.machine.at(module).states[index as usize], State::Waiting) {
+                continue;
+            }
+            let nodes = &script.declarations[index as usize].nodes;
+            let next = (from..nodes.len()).find_map(|k| {
+                let name = match &nodes[k].expr {
+                    Expr::Name(name) | Expr::Call { name, .. } => *name,
+                    _ => return None,
+                };
+                let found = self.machine.at(module).find(name)?;
+                let waits = matches!(self.machine.at(module).states[found as usize], State::Waiting);
+                (waits && found != index && entered.binary_search(&found).is_err()).then_some((k, found))
+            });
+            match next {
+                Some((k, found)) => {
+                    if let Err(place) = entered.binary_search(&index) {
+                        entered.insert(place, index);
+                    }
+                    stack.push((index, k + 1));
+                    stack.push((found, 0));
+                }
+                None => {
+                    let _ = self.ensure(module, index);
+                }
+            }
+        }
+    }
+
+    /// The value of a declaration, evaluated on first use.
+    pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
+        match &self.machine.at(module).states[index as usize] {
+            State::Done(value) => Ok(value.clone()),
+            State::Waiting => self.evaluate(module, index),
+            State::Failed => Err(Stop::Skipped(module, index)),
+            State::Skipped(m, d) => Err(Stop::Skipped(*m, *d)),
+            State::Suspended => Err(Stop::NotYet),
+            State::Broken => Err(Stop::Broken),
+            State::Running => Err(self.cycle(module, index)),
+        }
+    }
+
+    fn evaluate(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
+        if self.machine.running.len() >= DECLARATION_DEPTH {
+            return Err(self.cycle(module, index));
+        }
+        self.machine.at_mut(module).states[index as usize] = State::Running;
+        self.machine.running.push((module, index));
+        let script = self.machine.at(module).script.clone();
+        let declaration: &Declaration = &script.declarations[index as usize];
+        let site = Site { module, declaration: index, member: [NO_MEMBER; 2], expr: ExprId(u32::MAX) };
+        let site = std::mem::replace(&mut self.machine.site, site);
+        let base = std::mem::replace(&mut self.machine.base, self.machine.locals.len());
+        let calls = std::mem::take(&mut self.machine.calls);
+        let sink = std::mem::take(&mut self.sink);
+        let depth = self.machine.depth;
+
+        let code = Code { nodes: &declaration.nodes, module, declaration: index };
+        let mut result = self.declare(code, declaration);
+        if let Err(stop) = result {
+            result = Err(self.settle(code, stop, declaration.span));
+        }
+
+        self.machine.depth = depth;
+        self.machine.locals.truncate(self.machine.base);
+        self.machine.base = base;
+        self.machine.calls = calls;
+        self.machine.site = site;
+        self.machine.running.pop();
+        let said = std::mem::replace(&mut self.sink, sink);
+        let failed = said.iter().any(|d| d.severity() == Severity::Error);
+        let state = match &result {
+            Ok(_) if failed => State::Failed,
+            Ok(value) => State::Done(value.clone()),
+            Err(Stop::Skipped(..) | Stop::NotYet | Stop::Broken) if failed => State::Failed,
+            Err(Stop::Skipped(m, d)) => State::Skipped(*m, *d),
+            Err(Stop::NotYet) => State::Suspended,
+            Err(Stop::Broken) => State::Broken,
+            Err(_) => State::Failed,
+        };
+        if !matches!(state, State::Suspended) {
+            self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
+        }
+        let answer = match &state {
+            State::Done(_) => result,
+            State::Failed => Err(Stop::Skipped(module, index)),
+            State::Skipped(m, d) => Err(Stop::Skipped(*m, *d)),
+            State::Suspended => Err(Stop::NotYet),
+            _ => Err(Stop::Broken),
+        };
+        self.machine.at_mut(module).states[index as usize] = state;
+        answer
+    }
+
+    /// Turns a fault that reached a declaration into its diagnostic.
+    pub(super) fn settle(&mut self, code: Code<'_>, stop: Stop, span: Span) -> Stop {
+        match stop {
+            Stop::Fault(Fault::Interrupted) => Stop::Broken,
+            Stop::Fault(fault) => {
+                let diagnostic = self.locate(&fault, code, span, &[]);
+                self.sink.push(diagnostic);
+                Stop::Failed
+            }
+            Stop::Bug(what) => self.error(code, "E999", format!("a bug in loft: {what}"), span, "while evaluating this").stop(),
+            other => other,
+        }
+    }
+
+    /// Reports a cycle once, with all its members.
+    pub(super) fn cycle(&mut self, module: ModuleId, index: u32) -> Stop {
+        let from = self.machine.running.iter().position(|r| *r == (module, index)).unwrap_or(0);
+        let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
+        let mut names: Vec<String> = members.iter().map(|&(m, d)| self.declaration_name(m, d)).collect();
+        names.push(self.declaration_name(module, index));
+        let shown = if names.len() > 9 { format!("{} → … → {}", names[..4].join(" → "), names[names.len() - 1]) } else { names.join(" → ") };
+        let labels: Vec<Label> = members
+            .iter()
+            .take(4)
+            .filter_map(|&(m, d)| {
+                let module = self.machine.at(m);
+                let b = bound(&module.script.declarations[d as usize])?;
+                Some(Label { file: module.file, span: b.span, text: format!("`{}` is declared here", self.names.text(b.name)) })
+            })
+            .collect();
+        let site = self.machine.site;
+        let script = self.machine.at(site.module).script.clone();
+        let nodes = &script.declarations[site.declaration as usize].nodes;
+        let code = Code { nodes, module: site.module, declaration: site.declaration };
+        let span = self.machine_span(code);
+        self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here").labels(labels).stop()
+    }
+
+    /// The narrowest expression being evaluated.
+    pub(super) fn machine_span(&self, code: Code<'_>) -> Span {
+        match code.nodes.get(self.machine.site.expr.index()) {
+            Some(node) => node.span,
+            None => self.machine.at(code.module).script.declarations[code.declaration as usize].span,
+        }
     }
 }

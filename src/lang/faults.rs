@@ -3,39 +3,157 @@
 use glam::DVec3;
 
 use super::cx::Cx;
-use super::diag::Diagnostic;
-use super::diag::FileId;
-use super::syntax::ast::Span;
-use crate::base::fault::{Describe, Fault, Say};
+use super::diag::{Diagnostic, FileId, Label};
+use super::eval::Code;
+use super::module::bound;
+use super::origins::{NO_MEMBER, Place};
+use super::syntax::ast::{DeclarationKind, ExprId, Span};
+use super::value::ModuleId;
+use crate::base::fault::{Describe, Fault, Say, Subject};
 use crate::base::origin::Origin;
+
+/// Longest source text that stands for the name of a nameless entity.
+const NAME_CHARACTERS: usize = 40;
 
 /// Speaks of entities by their declared names and of quantities in model units.
 impl Say for Cx<'_> {
     fn name(&self, origin: Origin) -> String {
-        let _ = origin;
-        String::new()
+        let Some(place) = self.origins.place(origin) else { return String::new() };
+        let outer = self.outermost(*place);
+        let module = self.machine.at(outer.module);
+        let declaration = &module.script.declarations[outer.declaration as usize];
+        let is_root = match outer.expr {
+            None => true,
+            Some(expr) => matches!(&declaration.kind, DeclarationKind::Value { value, .. } if *value == expr),
+        };
+        if is_root && let Some(b) = bound(declaration) {
+            return member_name(self.names.text(b.name), outer.member);
+        }
+        let text = outer.expr.and_then(|e| declaration.nodes.get(e.index())).map(|n| self.sources.text(module.file, n.span)).unwrap_or("");
+        let short = text.chars().count() <= NAME_CHARACTERS && !text.contains(['\n', '`']);
+        if short { text.to_owned() } else { String::new() }
     }
+
     fn length(&self, length: f64) -> String {
-        format!("{length:.3} {}", self.unit().name)
+        format!("{} {}", self.decimals(length), self.unit().name)
     }
+
     fn point(&self, p: DVec3) -> String {
-        format!("({:.3}, {:.3}, {:.3})", p.x, p.y, p.z)
+        format!("({}, {}, {})", self.decimals(p.x), self.decimals(p.y), self.decimals(p.z))
     }
+
     fn angle(&self, radians: f64) -> String {
-        format!("{:.2}°", radians.to_degrees())
+        let degrees = super::units::degrees(radians);
+        let text = format!("{degrees:.2}");
+        if degrees != 0.0 && text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.')) {
+            return format!("{degrees:.1e}°");
+        }
+        format!("{text}°")
     }
 }
 
+/// `ribs[2]`, `cells[1][3]`.
+pub(super) fn member_name(name: &str, member: [u32; 2]) -> String {
+    let mut text = name.to_owned();
+    for index in member.into_iter().filter(|i| *i != NO_MEMBER) {
+        text.push_str(&format!("[{index}]"));
+    }
+    text
+}
+
 impl Cx<'_> {
+    /// A length with as many decimals as the tolerance has, or three significant digits where that would show zero.
+    fn decimals(&self, x: f64) -> String {
+        let point = self.tolerance.map_or(1e-3_f64, |t| t.point);
+        let places = (-crate::base::math::log10(point)).ceil().clamp(0.0, 9.0) as usize;
+        let text = format!("{x:.places$}");
+        let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
+        match (zero, x.abs() > point * 1e-3) {
+            (true, true) => format!("{x:.1e}"),
+            (true, false) => text.trim_start_matches('-').to_owned(),
+            _ => text,
+        }
+    }
+
+    /// The call of the declaration's own expression that led to a place.
+    fn outermost(&self, mut place: Place) -> Place {
+        while let Some(caller) = self.origins.place(place.caller) {
+            place = *caller;
+        }
+        place
+    }
+
+    /// Where an entity was made: the innermost expression, and the calls that led there.
+    pub fn span_of(&self, origin: Origin) -> Option<(FileId, Span)> {
+        let place = self.origins.place(origin)?;
+        let module = self.machine.at(place.module);
+        let declaration = &module.script.declarations[place.declaration as usize];
+        let span = match place.expr {
+            Some(ExprId(u32::MAX)) => declaration.span,
+            Some(expr) => declaration.nodes.get(expr.index())?.span,
+            None => match &declaration.kind {
+                DeclarationKind::Value { value, .. } => declaration.nodes.get(value.index())?.span,
+                _ => bound(declaration).map_or(declaration.span, |b| b.span),
+            },
+        };
+        Some((module.file, span))
+    }
+
     /// A fault as a diagnostic; what has no place is shown at the call being made.
     pub fn diagnose(&self, fault: &Fault) -> Diagnostic {
-        let report = fault.describe(self);
-        Diagnostic {
-            code: report.code,
-            message: report.message,
-            labels: vec![super::diag::Label { file: FileId(0), span: Span::default(), text: String::new() }],
-            help: report.help,
-            notes: report.notes,
+        let site = self.machine.site;
+        match self.machine.modules.get(site.module.index()) {
+            Some(module) if (site.declaration as usize) < module.script.declarations.len() => {
+                let nodes = &module.script.declarations[site.declaration as usize].nodes;
+                let code = Code { nodes, module: site.module, declaration: site.declaration };
+                self.locate(fault, code, self.machine_span(code), &[])
+            }
+            _ => {
+                let report = fault.describe(self);
+                Diagnostic { code: report.code, message: report.message, labels: Vec::new(), help: report.help, notes: report.notes }
+            }
         }
+    }
+
+    /// A fault as a diagnostic with places: entities where they were made, arguments by `blame`, the rest at `span`.
+    pub(super) fn locate(&self, fault: &Fault, code: Code<'_>, span: Span, blame: &[(&'static str, Span)]) -> Diagnostic {
+        let report = fault.describe(self);
+        let file = self.machine.at(code.module).file;
+        let mut labels: Vec<Label> = Vec::new();
+        for (subject, text) in report.labels {
+            let place = match subject {
+                Subject::Entity(origin) => self.span_of(origin),
+                Subject::Argument(name) => blame.iter().find(|b| b.0 == name).map(|b| (file, b.1)),
+                Subject::Item(name, k) => {
+                    let items: Vec<Span> = blame.iter().filter(|b| b.0 == name).map(|b| b.1).collect();
+                    items.get(k).or(items.first()).map(|s| (file, *s))
+                }
+                Subject::Call => Some((file, span)),
+            };
+            let (file, span) = place.unwrap_or((file, span));
+            match labels.iter_mut().find(|l| l.file == file && l.span == span) {
+                Some(label) if label.text != text => label.text = format!("{}; {text}", label.text),
+                Some(_) => {}
+                None => labels.push(Label { file, span, text }),
+            }
+        }
+        if !labels.iter().any(|l| l.file == file && l.span == span) {
+            let text = if labels.is_empty() { "here".to_owned() } else { String::new() };
+            labels.push(Label { file, span, text });
+        }
+        let mut diagnostic = Diagnostic { code: report.code, message: report.message, labels, help: report.help, notes: report.notes };
+        self.add_calls(&mut diagnostic);
+        diagnostic
+    }
+
+    /// The name of a declaration, or its source when it binds none.
+    pub(super) fn declaration_name(&self, module: ModuleId, index: u32) -> String {
+        let m = self.machine.at(module);
+        let declaration = &m.script.declarations[index as usize];
+        let name = match bound(declaration) {
+            Some(b) => self.names.text(b.name).to_owned(),
+            None => self.sources.text(m.file, declaration.span).lines().next().unwrap_or("").to_owned(),
+        };
+        if m.label.is_empty() { name } else { format!("{}.{name}", m.label) }
     }
 }

@@ -7,6 +7,9 @@ use super::syntax::ast::{ExprId, Span};
 use super::value::ModuleId;
 use crate::base::origin::Origin;
 
+/// Not a member of a family.
+pub const NO_MEMBER: u32 = u32::MAX;
+
 /// One entry: a declaration, the member of its family, an expression of it, and the call it was run by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -14,11 +17,11 @@ pub struct Place {
     pub module: ModuleId,
     /// Declaration in it.
     pub declaration: u32,
-    /// Member of a family, counted through; 0 otherwise.
-    pub member: u32,
+    /// Indices of the family's member, [`NO_MEMBER`] where there is none.
+    pub member: [u32; 2],
     /// Expression; `None` means the declaration itself.
     pub expr: Option<ExprId>,
-    /// The call of a function that ran this, or the member being made.
+    /// The call of a script's function that ran this.
     pub caller: Origin,
 }
 
@@ -71,6 +74,11 @@ impl Sources {
     /// All of them in order.
     pub fn all(&self) -> &[Source] {
         &self.files
+    }
+
+    /// Line of a byte, counted from 1.
+    pub fn line(&self, file: FileId, byte: u32) -> usize {
+        self.get(file).map_or(1, |s| 1 + s.text.as_bytes().iter().take(byte as usize).filter(|b| **b == b'\n').count())
     }
 
     /// The stretch of a text.

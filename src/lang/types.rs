@@ -165,63 +165,61 @@ impl Ty {
         }
     }
 
-    /// The type a script calls by this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Some(match name {
-            "number" => Self::Number,
-            "count" => Self::Count,
-            "bool" => Self::Bool,
-            "text" => Self::Text,
-            "word" => Self::Word,
-            "length" => Self::Quantity(Dim::LENGTH),
-            "area" => Self::Quantity(Dim::AREA),
-            "volume" => Self::Quantity(Dim::VOLUME),
-            "angle" => Self::Quantity(Dim::ANGLE),
-            "mass" => Self::Quantity(Dim::MASS),
-            "point" => Self::Point,
-            "direction" => Self::Direction,
-            "node" => Self::Node,
-            "link" => Self::Link,
-            "curve" => Self::Curve,
-            "surface" => Self::Surface,
-            "patch" => Self::Patch,
-            "edge" => Self::Edge,
-            "vertex" => Self::Vertex,
-            "shell" => Self::Shell,
-            "mesh" => Self::Mesh,
-            "list" => Self::List(&Self::Any),
-            "record" => Self::Record,
-            _ => return None,
-        })
+    /// The type that a script writes as this name inside so many brackets.
+    pub fn written(name: &str, lists: u8) -> Option<Self> {
+        let i = TYPE_NAMES.iter().position(|t| *t == name)?;
+        match lists {
+            0 => Some(TYPES[i]),
+            1 => Some(LISTS[i]),
+            _ => Some(LISTS_OF_LISTS[i]),
+        }
     }
 }
 
 /// The names of types that a script may write.
 pub const TYPE_NAMES: &[&str] = &[
-    "number",
-    "count",
-    "bool",
-    "text",
-    "word",
-    "length",
-    "area",
-    "volume",
-    "angle",
-    "mass",
-    "point",
-    "direction",
-    "node",
-    "link",
-    "curve",
-    "surface",
-    "patch",
-    "edge",
-    "vertex",
-    "shell",
-    "mesh",
-    "list",
-    "record",
+    "number", "count", "bool", "text", "word", "length", "area", "volume", "angle", "mass", "point", "direction", "node", "link", "curve",
+    "surface", "patch", "edge", "vertex", "shell", "mesh", "list", "record",
 ];
+
+/// The types of [`TYPE_NAMES`], in the same order.
+static TYPES: [Ty; 23] = [
+    Ty::Number,
+    Ty::Count,
+    Ty::Bool,
+    Ty::Text,
+    Ty::Word,
+    Ty::Quantity(Dim::LENGTH),
+    Ty::Quantity(Dim::AREA),
+    Ty::Quantity(Dim::VOLUME),
+    Ty::Quantity(Dim::ANGLE),
+    Ty::Quantity(Dim::MASS),
+    Ty::Point,
+    Ty::Direction,
+    Ty::Node,
+    Ty::Link,
+    Ty::Curve,
+    Ty::Surface,
+    Ty::Patch,
+    Ty::Edge,
+    Ty::Vertex,
+    Ty::Shell,
+    Ty::Mesh,
+    Ty::List(&Ty::Any),
+    Ty::Record,
+];
+static LISTS: [Ty; 23] = lists_of(&TYPES);
+static LISTS_OF_LISTS: [Ty; 23] = lists_of(&LISTS);
+
+const fn lists_of(types: &'static [Ty; 23]) -> [Ty; 23] {
+    let mut lists = [Ty::Any; 23];
+    let mut i = 0;
+    while i < lists.len() {
+        lists[i] = Ty::List(&types[i]);
+        i += 1;
+    }
+    lists
+}
 
 fn dim_name(dim: Dim) -> Option<&'static str> {
     Some(match dim {

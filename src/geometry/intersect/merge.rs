@@ -34,7 +34,15 @@ pub(super) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) ->
             let common = |side: Side, section: usize, t: f64| side.pieces.sections[section].to_common(t);
             let ta = seam_a.settle(common(a, found.sections.0, found.near.ta));
             let tb = seam_b.settle(common(b, found.sections.1, found.near.tb));
-            Point { ta, tb, found: *found, ends: seam_a.is_end(ta) + seam_b.is_end(tb) }
+            let (va, vb) = (a.view(found.sections.0), b.view(found.sections.1));
+            let ends = u8::from(va.at_end(found.near.ta)) + u8::from(vb.at_end(found.near.tb));
+            let mut found = *found;
+            // An end neither crosses nor touches by itself: its direction tells.
+            if ends > 0 {
+                let (da, db) = (va.jet(found.near.ta).d1, vb.jet(found.near.tb).d1);
+                found.tangent = !tolerance.is_kink(da, db) || !tolerance.is_kink(da, -db);
+            }
+            Point { ta, tb, found, ends }
         })
         .filter(|p| !stretches.iter().any(|s| s.holds(a.curve, b.curve, p, tolerance)))
         .collect();
@@ -67,10 +75,6 @@ impl Seam {
 
     fn settle(&self, t: f64) -> f64 {
         if self.closed && t == self.domain.1 { self.domain.0 } else { t }
-    }
-
-    fn is_end(&self, t: f64) -> u8 {
-        u8::from(t == self.domain.0 || t == self.domain.1)
     }
 }
 

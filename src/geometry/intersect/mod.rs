@@ -28,7 +28,7 @@ pub enum Hit {
         at: DVec3,
         /// Distance of the two points, model units.
         gap: f64,
-        /// Whether they touch without crossing.
+        /// Whether they touch without crossing; at an end, whether their directions are parallel.
         tangent: bool,
     },
     /// They run within the tolerance of each other.

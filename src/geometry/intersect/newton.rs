@@ -97,11 +97,12 @@ pub(crate) fn segments((p0, p1): (DVec3, DVec3), (q0, q1): (DVec3, DVec3)) -> (f
     let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
     let (uw, vw) = (u.dot(w), v.dot(w));
     let det = uu * vv - uv * uv;
+    let foot_on_first = |t: f64| if uu > 0.0 { ((uv * t - uw) / uu).clamp(0.0, 1.0) } else { 0.0 };
     let mut s = if det > EPSILON * uu * vv { ((uv * vw - vv * uw) / det).clamp(0.0, 1.0) } else { 0.0 };
-    let mut t = if vv > 0.0 { (uv * s + vw) / vv } else { 0.0 };
+    let mut t = if vv > 0.0 { (uv * s + vw) / vv } else { -1.0 };
     if !(0.0..=1.0).contains(&t) {
         t = t.clamp(0.0, 1.0);
-        s = if uu > 0.0 { ((uv * t - uw) / uu).clamp(0.0, 1.0) } else { 0.0 };
+        s = foot_on_first(t);
     }
     ((w + u * s - v * t).length_squared(), s, t)
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::newton::{Near, approach, foot, segments};
 use crate::base::math;
-use crate::base::tolerance::NEWTON_STEP;
+use crate::base::tolerance::{NEWTON_STEP, NUDGE};
 use crate::geometry::curve::Curve;
 use crate::geometry::pieces::{Node, Pieces, Rates, View, children};
 
@@ -170,7 +170,7 @@ impl<'a> Search<'a> {
             let inner = |share: f64| 0.0 < share && share < 1.0;
             if fine || (inner(s) && inner(t)) {
                 let near = approach(a.view, b.view, (x.t.0 + (x.t.1 - x.t.0) * s, y.t.0 + (y.t.1 - y.t.0) * t));
-                if near.gap() <= self.point && self.belongs(x, near.ta, sine) && self.belongs(y, near.tb, sine) {
+                if near.gap() <= self.point && self.belongs((a.view, x), (b.view, y), &near, sine) {
                     self.settle(a, b, near, sine);
                     return;
                 }
@@ -208,14 +208,25 @@ impl<'a> Search<'a> {
         let sine = x.axis.cross(y.axis).length();
         let shorter = x.p.0.distance_squared(x.p.1).min(y.p.0.distance_squared(y.p.1));
         let limit = DIVERGENCE * self.point;
-        (sine > sx * cy + cx * sy && sine * sine * shorter > limit * limit).then_some(sine)
+        (sine > (sx * cy + cx * sy) * (1.0 + NUDGE) && sine * sine * shorter > limit * limit).then_some(sine)
     }
 
-    /// Whether a parameter lies in a part, or beyond its end by no more than the tolerance allows a meeting to move.
-    fn belongs(&self, node: &Node, t: f64, sine: f64) -> bool {
-        let h = node.t.1 - node.t.0;
-        let slack = h * (2.0 * self.point / (sine * node.p.0.distance(node.p.1)) + NEWTON_STEP);
-        node.t.0 - slack <= t && t <= node.t.1 + slack
+    /// Whether a meeting lies in both parts, or beyond an end by no more than the tolerance allows it to move.
+    fn belongs(&self, (a, x): (&View, &Node), (b, y): (&View, &Node), near: &Near, sine: f64) -> bool {
+        let beyond = |node: &Node, t: f64| {
+            let h = node.t.1 - node.t.0;
+            (node.t.0 - t).max(t - node.t.1).max(0.0) / h * node.p.0.distance(node.p.1)
+        };
+        let out = beyond(x, near.ta).max(beyond(y, near.tb));
+        if out == 0.0 {
+            return true;
+        }
+        if out * sine > 2.0 * self.point {
+            return false;
+        }
+        // Outside the parts the curves may be parallel again.
+        let (da, db) = (a.jet(near.ta).d1.normalize_or_zero(), b.jet(near.tb).d1.normalize_or_zero());
+        da.cross(db).length() > 0.5 * sine
     }
 
     /// Records a crossing; an end of a section that lies on the other curve within the tolerance takes its place.

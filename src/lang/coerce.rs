@@ -1,0 +1,342 @@
+//! Fitting a value to a type: bare numbers become lengths, tuples points, nested lists flat ones.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::cx::{Cx, Stop};
+use super::eval::Code;
+use super::syntax::ast::{Expr, ExprId};
+use super::types::Ty;
+use super::units;
+use super::value::{Dim, ModuleId, Quantity, Value};
+use crate::network::Chain;
+
+/// Why a value does not fit a type.
+#[derive(Clone, Debug)]
+pub(super) enum Misfit {
+    /// Another kind.
+    Kind,
+    /// A bare number where the unit must be written.
+    Bare,
+    /// A number that is not whole, or negative.
+    NotWhole,
+    /// A word, but none of those allowed.
+    Choice,
+    /// A member of a list: which, what it is, and why.
+    Member(usize, Box<Value>, Box<Misfit>),
+    /// Something it depends on.
+    Stop(Stop),
+}
+
+impl From<Stop> for Misfit {
+    fn from(stop: Stop) -> Self {
+        Self::Stop(stop)
+    }
+}
+
+impl Cx<'_> {
+    /// The value as this type; bare lengths are in the units of `module`.
+    pub(super) fn coerce(&mut self, value: Value, ty: Ty, module: ModuleId) -> Result<Value, (Value, Misfit)> {
+        match self.fit(&value, ty, module) {
+            Ok(None) => Ok(value),
+            Ok(Some(other)) => Ok(other),
+            Err(misfit) => Err((value, misfit)),
+        }
+    }
+
+    /// `Ok(None)`: fits as it is; `Ok(Some(v))`: fits as `v`.
+    fn fit(&mut self, value: &Value, ty: Ty, module: ModuleId) -> Result<Option<Value>, Misfit> {
+        let ok = |fits: bool| if fits { Ok(None) } else { Err(Misfit::Kind) };
+        match (ty, value) {
+            (Ty::Any, _) => Ok(None),
+            (Ty::Optional(_) | Ty::None, Value::None) => Ok(None),
+            (Ty::Optional(of), v) => self.fit(v, *of, module),
+            (Ty::OneOf(of), v) => self.fit_one(v, of, module),
+            (Ty::Number, Value::Number(q)) => ok(q.dim.is_none()),
+            (Ty::Count | Ty::Whole, Value::Number(q)) if q.dim.is_none() => {
+                let whole = q.value == q.value.trunc() && q.value.abs() <= 9e15 && (ty == Ty::Whole || q.value >= 0.0);
+                if whole { Ok(None) } else { Err(Misfit::NotWhole) }
+            }
+            (Ty::Quantity(dim), Value::Number(q)) => match q.dim {
+                d if d == dim => Ok(None),
+                Dim::NONE if dim.is_length_power() && !q.percent => {
+                    let factor = units::convert(1.0, self.machine.at(module).unit, self.unit, dim.length);
+                    Ok(Some(Value::quantity(q.value * factor, dim)))
+                }
+                Dim::NONE => Err(Misfit::Bare),
+                _ => Err(Misfit::Kind),
+            },
+            (Ty::Measure, Value::Number(_)) => Ok(None),
+            (Ty::Station, Value::Number(q)) => ok(q.dim.is_none() || q.dim == Dim::LENGTH),
+            (Ty::Choice(words), Value::Word(w)) => if words.contains(&&**w) { Ok(None) } else { Err(Misfit::Choice) },
+            (Ty::Point, Value::Vector(_, Dim::LENGTH) | Value::Node(_)) => Ok(None),
+            (Ty::Point, Value::Vector(v, Dim::NONE)) => Ok(Some(Value::point(*v * self.bare_unit(module)))),
+            (Ty::Point, Value::Vertex(..)) => Ok(Some(Value::point(self.as_vector(value.clone())?.0))),
+            (Ty::Node, Value::Node(_)) => Ok(None),
+            (Ty::Node, Value::Vector(..) | Value::Vertex(..)) => match self.fit(value, Ty::Point, module)? {
+                Some(Value::Vector(p, _)) => Ok(Some(Value::Node(p))),
+                _ => Ok(Some(Value::Node(self.as_vector(value.clone())?.0))),
+            },
+            (Ty::Vector | Ty::Direction | Ty::Axis, Value::Vector(..)) => Ok(None),
+            (Ty::Vector | Ty::Direction | Ty::Axis, Value::Node(p)) => Ok(Some(Value::point(*p))),
+            (Ty::Vector | Ty::Direction, Value::Vertex(..)) => Ok(Some(Value::point(self.as_vector(value.clone())?.0))),
+            (Ty::Curve | Ty::Axis, Value::Curve(_)) => Ok(None),
+            (Ty::Curve | Ty::Axis, Value::Link(..)) => Ok(Some(Value::Curve(self.as_chain(value.clone())?))),
+            (Ty::List(of) | Ty::Rest(of), Value::Table(t)) => self.fit(&Value::List(t.rows.clone()), Ty::List(of), module),
+            (Ty::List(of) | Ty::Rest(of), v) if v.len().is_some() => self.fit_list(v, *of, module),
+            (wanted, v) => ok(plain(wanted, v)),
+        }
+    }
+
+    fn fit_one(&mut self, value: &Value, types: &[Ty], module: ModuleId) -> Result<Option<Value>, Misfit> {
+        let mut first = None;
+        for ty in types {
+            match self.fit(value, *ty, module) {
+                Ok(fitted) => return Ok(fitted),
+                Err(Misfit::Stop(stop)) => return Err(Misfit::Stop(stop)),
+                Err(misfit) => {
+                    if first.is_none() || matches!(misfit, Misfit::Member(..) | Misfit::Choice | Misfit::NotWhole) {
+                        first = Some(misfit);
+                    }
+                }
+            }
+        }
+        Err(first.unwrap_or(Misfit::Kind))
+    }
+
+    fn fit_list(&mut self, list: &Value, of: Ty, module: ModuleId) -> Result<Option<Value>, Misfit> {
+        let member = |i: usize, v: &Value, m: Misfit| match m {
+            Misfit::Stop(stop) => Misfit::Stop(stop),
+            other => Misfit::Member(i, Box::new(v.clone()), Box::new(other)),
+        };
+        let Value::List(items) = list else {
+            let mut out = Vec::new();
+            for i in 0..list.len().unwrap_or(0) {
+                let item = list.item(i).unwrap_or_default();
+                out.push(match self.fit(&item, of, module) {
+                    Ok(fitted) => fitted.unwrap_or(item),
+                    Err(m) => return Err(member(i, &item, m)),
+                });
+            }
+            return Ok(Some(Value::list(out)));
+        };
+        if of == Ty::Any {
+            return Ok(None);
+        }
+        // A list is copied only from the first member that changes.
+        let mut changed: Option<Vec<Value>> = None;
+        for (i, item) in items.iter().enumerate() {
+            let fitted = self.fit(item, of, module).map_err(|m| member(i, item, m))?;
+            match (&mut changed, fitted) {
+                (None, None) => {}
+                (None, Some(new)) => {
+                    let mut out = items[..i].to_vec();
+                    out.push(new);
+                    changed = Some(out);
+                }
+                (Some(out), fitted) => out.push(fitted.unwrap_or_else(|| item.clone())),
+            }
+        }
+        Ok(changed.map(Value::list))
+    }
+
+    /// A point, node, vertex or tuple as a vector with its dimension.
+    pub(super) fn as_vector(&mut self, value: Value) -> Result<(DVec3, Dim), Stop> {
+        match value {
+            Value::Vector(v, dim) => Ok((v, dim)),
+            Value::Node(p) => Ok((p, Dim::LENGTH)),
+            Value::Vertex(module, id) => {
+                let model = self.model(module)?;
+                Ok((model.vertices.get(id.index()).map_or(DVec3::ZERO, |v| v.point), Dim::LENGTH))
+            }
+            _ => Err(Stop::Bug("not a vector")),
+        }
+    }
+
+    /// A curve or link as a chain.
+    pub(super) fn as_chain(&mut self, value: Value) -> Result<Chain, Stop> {
+        match value {
+            Value::Curve(chain) => Ok(chain),
+            Value::Link(module, id) => Ok(self.network(module)?.link_chain(id)),
+            _ => Err(Stop::Bug("not a curve")),
+        }
+    }
+
+    /// Fits the value of an expression, reporting what does not; `subject` is what wants it: "`h`".
+    pub(super) fn fit_expr(&mut self, code: Code<'_>, id: ExprId, value: Value, ty: Ty, subject: &str) -> Result<Value, Stop> {
+        if super::operators::is_zero(code, id)
+            && let Some(dim) = zero_dim(ty)
+        {
+            return Ok(Value::quantity(0.0, dim));
+        }
+        match self.coerce(value, ty, code.module) {
+            Ok(value) => Ok(value),
+            Err((_, Misfit::Stop(Stop::Fault(fault)))) => Err(Stop::Fault(fault)),
+            Err((_, Misfit::Stop(stop))) => Err(stop),
+            Err((value, misfit)) => Err(self.misfit(code, id, &value, ty, subject, &misfit)),
+        }
+    }
+
+    #[cold]
+    fn misfit(&mut self, code: Code<'_>, id: ExprId, value: &Value, ty: Ty, subject: &str, misfit: &Misfit) -> Stop {
+        let wanted = ty.words();
+        if let Misfit::Member(i, item, inner) = misfit {
+            // A list written out is blamed at its member.
+            let (place, of) = match (code.expr(id), ty) {
+                (Expr::List(items), Ty::List(of) | Ty::Rest(of)) => (items.get(*i).copied(), of),
+                (_, Ty::List(of) | Ty::Rest(of)) => (None, of),
+                _ => (None, &Ty::Any),
+            };
+            if let Some(place) = place {
+                return self.misfit(code, place, item, *of, &format!("member {i} of {subject}"), inner);
+            }
+            let found = self.kind(item);
+            let text = format!("{subject} is {wanted}, got {found} at place {i}");
+            return self.error(code, "E211", text, code.span(id), format!("[{i}] is {found}")).stop();
+        }
+        let span = code.span(id);
+        match misfit {
+            Misfit::NotWhole => {
+                let found = self.show_inside(value);
+                self.error(code, "E306", format!("{subject} is {wanted}, got {found}"), span, "not a whole number in its range").stop()
+            }
+            Misfit::Choice => {
+                let (word, words) = (self.show(value), ty.choices().unwrap_or(&[]));
+                self.no_choice(code, id, &word, words, subject)
+            }
+            Misfit::Bare => {
+                let source = self.source(code, id);
+                let draft = self.error(code, "E211", format!("{subject} is {wanted}, got a bare number"), span, "the unit is missing");
+                let unit = match ty {
+                    Ty::Quantity(dim) => units::unit_text(dim, draft.unit()),
+                    _ => "deg".into(),
+                };
+                match code.expr(id) {
+                    Expr::Number(_) => draft.help(format!("`{source}{unit}`")).stop(),
+                    _ => draft.help(format!("`({source}) * 1{unit}`")).stop(),
+                }
+            }
+            _ => {
+                let found = self.kind(value);
+                let label = found.strip_prefix("a ").or_else(|| found.strip_prefix("an ")).unwrap_or(&found).to_owned();
+                let text = format!("{subject} is {wanted}, got {found}");
+                let help = match (ty, value) {
+                    (Ty::Choice(_), Value::Text(t)) => Some(format!("a word stands bare: `{t}`")),
+                    (Ty::Curve | Ty::Surface, Value::List(_)) => Some("take one member: `[i]`".to_owned()),
+                    _ => None,
+                };
+                let draft = self.error(code, "E211", text, span, label);
+                match help {
+                    Some(help) => draft.help(help).stop(),
+                    None => draft.stop(),
+                }
+            }
+        }
+    }
+
+    /// E213: a word that is none of those allowed.
+    #[cold]
+    pub(super) fn no_choice(&mut self, code: Code<'_>, id: ExprId, word: &str, words: &[&str], subject: &str) -> Stop {
+        let near = super::names::nearest(word, words.iter().copied()).map(str::to_owned);
+        let list = words.join(", ");
+        let draft = self.error(code, "E213", format!("{subject} is one of {list}, got `{word}`"), code.span(id), "no such choice");
+        match near {
+            Some(near) => draft.help(format!("`{near}`")).stop(),
+            None => draft.stop(),
+        }
+    }
+
+    /// Evaluates an expression where this type is wanted: a name that is one of its words is the word.
+    pub(super) fn eval_as(&mut self, code: Code<'_>, id: ExprId, ty: Ty, subject: &str) -> Result<Value, Stop> {
+        let value = match ty.choices() {
+            Some(words) => self.eval_choice(code, id, words, subject)?,
+            None => self.eval(code, id)?,
+        };
+        self.fit_expr(code, id, value, ty, subject)
+    }
+
+    fn eval_choice(&mut self, code: Code<'_>, id: ExprId, words: &[&str], subject: &str) -> Result<Value, Stop> {
+        match code.expr(id) {
+            Expr::Name(name) => {
+                let text = self.names.text(*name);
+                if words.contains(&text) {
+                    return Ok(Value::Word(text.into()));
+                }
+                if self.is_bound(code.module, *name) || self.machine.at(code.module).is_broken(*name) {
+                    return self.eval(code, id);
+                }
+                let text = text.to_owned();
+                Err(self.no_choice(code, id, &text, words, subject))
+            }
+            Expr::If { condition, then, otherwise } => {
+                let chosen = if self.condition(code, *condition)? { *then } else { *otherwise };
+                self.eval_choice(code, chosen, words, subject)
+            }
+            Expr::Let { name, value, body, .. } => {
+                let value = self.eval(code, *value)?;
+                self.with_local(*name, value, |cx| cx.eval_choice(code, *body, words, subject))
+            }
+            _ => self.eval(code, id),
+        }
+    }
+}
+
+/// Dimension that a literal 0 takes where this type is wanted.
+fn zero_dim(ty: Ty) -> Option<Dim> {
+    match ty {
+        Ty::Quantity(dim) => Some(dim),
+        Ty::Optional(of) => zero_dim(*of),
+        _ => None,
+    }
+}
+
+/// Types that a value has or has not, without conversion.
+fn plain(ty: Ty, value: &Value) -> bool {
+    match (ty, value) {
+        (Ty::Bool, Value::Bool(_))
+        | (Ty::Text, Value::Text(_))
+        | (Ty::Word, Value::Word(_))
+        | (Ty::Link, Value::Link(..))
+        | (Ty::Edge, Value::Edge(..))
+        | (Ty::Vertex, Value::Vertex(..))
+        | (Ty::Patch, Value::Patch(..))
+        | (Ty::Surface, Value::Surface(_))
+        | (Ty::Shell, Value::Shell(_))
+        | (Ty::Mesh, Value::Mesh(_))
+        | (Ty::Plane, Value::Plane(_))
+        | (Ty::Record, Value::Record(_))
+        | (Ty::Range, Value::Range(..))
+        | (Ty::Table, Value::Table(_))
+        | (Ty::Module, Value::Module(_))
+        | (Ty::Network, Value::Network(_)) => true,
+        _ => false,
+    }
+}
+
+/// Whether a field of this type's values is meant: the kind decides, without conversion but those of points.
+pub(super) fn accepts(ty: Ty, value: &Value) -> bool {
+    match (ty, value) {
+        (Ty::Any, _) => true,
+        (Ty::Point | Ty::Vector | Ty::Direction, Value::Vector(..) | Value::Node(_) | Value::Vertex(..)) => true,
+        (Ty::Node, Value::Node(_)) => true,
+        (Ty::Curve, Value::Curve(_) | Value::Link(..)) => true,
+        (Ty::Measure, Value::Number(_)) => true,
+        (Ty::Number, Value::Number(Quantity { dim, .. })) => dim.is_none(),
+        (Ty::List(_) | Ty::Rest(_), v) => v.len().is_some(),
+        (Ty::OneOf(of), v) => of.iter().any(|t| accepts(*t, v)),
+        (ty, v) => plain(ty, v),
+    }
+}
+
+/// Nested lists flattened into one.
+pub(super) fn flatten_into(value: Value, out: &mut Vec<Value>) {
+    match value {
+        Value::List(items) => match Arc::try_unwrap(items) {
+            Ok(items) => items.into_iter().for_each(|v| flatten_into(v, out)),
+            Err(shared) => shared.iter().for_each(|v| flatten_into(v.clone(), out)),
+        },
+        range @ Value::Range(..) => out.extend((0..range.len().unwrap_or(0)).filter_map(|i| range.item(i))),
+        other => out.push(other),
+    }
+}

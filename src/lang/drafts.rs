@@ -1,0 +1,86 @@
+//! Writing diagnostics while evaluating: place, labels, help, and the calls that led there.
+
+use super::cx::{Cx, Stop};
+use super::diag::{Diagnostic, FileId, Label};
+use super::eval::Code;
+use super::syntax::ast::Span;
+
+/// Calls shown above a failure.
+const CALLS_SHOWN: usize = 3;
+
+/// A diagnostic being written; [`Draft::stop`] files it.
+pub(super) struct Draft<'a, 'w> {
+    cx: &'a mut Cx<'w>,
+    diagnostic: Diagnostic,
+}
+
+impl<'w> Cx<'w> {
+    /// Begins a report at a place of the code being run; the calls that led there are added.
+    pub(super) fn error(
+        &mut self,
+        code: Code<'_>,
+        error: &'static str,
+        message: impl Into<String>,
+        span: Span,
+        label: impl Into<String>,
+    ) -> Draft<'_, 'w> {
+        let file = self.machine.at(code.module).file;
+        let mut diagnostic = Diagnostic::new(error, message, file, span, label);
+        self.add_calls(&mut diagnostic);
+        Draft { cx: self, diagnostic }
+    }
+
+    /// Adds "in `rib(…)` called here" for the calls being run, innermost first.
+    pub(super) fn add_calls(&self, diagnostic: &mut Diagnostic) {
+        for frame in self.machine.calls.iter().rev().take(CALLS_SHOWN) {
+            let module = self.machine.at(frame.site.module);
+            let nodes = &module.script.declarations[frame.site.declaration as usize].nodes;
+            let Some(node) = nodes.get(frame.site.expr.index()) else { continue };
+            let text = format!("in `{}(…)` called here", self.names.text(frame.name));
+            diagnostic.labels.push(Label { file: module.file, span: node.span, text });
+        }
+        if self.machine.calls.len() > CALLS_SHOWN {
+            diagnostic.notes.push(format!("{} calls inside each other", self.machine.calls.len()));
+        }
+    }
+}
+
+impl Draft<'_, '_> {
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.diagnostic.help = Some(text.into());
+        self
+    }
+
+    pub fn note(mut self, text: impl Into<String>) -> Self {
+        self.diagnostic.notes.push(text.into());
+        self
+    }
+
+    /// One more label in the same file.
+    pub fn and(mut self, span: Span, text: impl Into<String>) -> Self {
+        let file = self.diagnostic.labels.first().map_or(FileId(0), |l| l.file);
+        self.diagnostic.labels.insert(1.min(self.diagnostic.labels.len()), Label { file, span, text: text.into() });
+        self
+    }
+
+    pub fn labels(mut self, labels: impl IntoIterator<Item = Label>) -> Self {
+        self.diagnostic.labels.extend(labels);
+        self
+    }
+
+    /// The unit of the run.
+    pub fn unit(&self) -> super::units::LengthUnit {
+        self.cx.unit
+    }
+
+    /// Files it and gives the reason to stop.
+    pub fn stop(self) -> Stop {
+        self.cx.sink.push(self.diagnostic);
+        Stop::Failed
+    }
+
+    /// Files it; evaluation goes on (warnings).
+    pub fn say(self) {
+        self.cx.sink.push(self.diagnostic);
+    }
+}

@@ -1,0 +1,167 @@
+//! Words of later versions: known, and refused by one error instead of being taken for a mistake.
+
+use super::cx::{Cx, Stop};
+use super::eval::Code;
+use super::names::{Name, nearest};
+use super::syntax::ast::{ExprId, Keyword, Span};
+use super::value::{ModuleId, Value};
+use super::{module::bound, std};
+
+const FUNCTIONS: &[&str] = &[
+    "sweep",
+    "trim",
+    "gordon",
+    "fit",
+    "picture",
+    "skin",
+    "hermite",
+    "along",
+    "scatter",
+    "blend",
+    "join",
+    "hydrostatics",
+    "connection",
+    "iso",
+    "project",
+    "deviation",
+];
+
+const SETTINGS: &[&str] = &["min_size", "growth", "smooth"];
+
+const ENDINGS: &[&str] = &["igs", "iges", "stp", "step"];
+
+/// Whether a later version has a function of this name.
+pub(super) fn is_function(name: &str) -> bool {
+    FUNCTIONS.contains(&name)
+}
+
+/// Whether a later version has a mesh setting of this name.
+pub(super) fn is_setting(name: &str) -> bool {
+    SETTINGS.contains(&name)
+}
+
+/// Whether a later version reads files with this ending.
+pub(super) fn is_ending(ending: &str) -> bool {
+    ENDINGS.contains(&ending)
+}
+
+impl Cx<'_> {
+    /// E230 at a place.
+    #[cold]
+    pub(super) fn not_yet(&mut self, code: Code<'_>, what: &str, span: Span) -> Stop {
+        self.error(code, "E230", format!("{what} is not in this version"), span, "a later version has it").stop()
+    }
+
+    /// A name that nothing binds: a word, `pi`, `network`, or a mistake.
+    #[cold]
+    pub(super) fn unbound(&mut self, code: Code<'_>, id: ExprId, name: Name) -> Result<Value, Stop> {
+        if self.machine.at(code.module).is_broken(name) {
+            return Err(Stop::Broken);
+        }
+        match self.names.text(name) {
+            "pi" => return Ok(Value::number(::std::f64::consts::PI)),
+            "network" => return Ok(Value::Network(code.module)),
+            word if is_word(word) => return Ok(Value::Word(word.into())),
+            _ => {}
+        }
+        if self.is_param_word(code.module, name) {
+            return Ok(Value::Word(self.names.text(name).into()));
+        }
+        let text = self.names.text(name).to_owned();
+        let span = code.span(id);
+        let is_function = std::builtins().any(|b| b.name == text);
+        if is_function {
+            let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, "a function, not a value");
+            return Err(draft.help(format!("call it: `{text}(…)`")).stop());
+        }
+        let label = match self.near_name(code.module, &text) {
+            Some((near, Some((keyword, line)))) => format!("did you mean `{near}` ({keyword}, line {line})?"),
+            Some((near, None)) => format!("did you mean `{near}`?"),
+            None => "no such name".to_owned(),
+        };
+        Err(self.error(code, "E201", format!("`{text}` is not defined"), span, label).stop())
+    }
+
+    /// E201 or E230: a function that is none.
+    #[cold]
+    pub(super) fn no_function(&mut self, code: Code<'_>, name: Name, span: Span) -> Stop {
+        let text = self.names.text(name).to_owned();
+        if is_function(&text) {
+            return self.not_yet(code, &format!("`{text}`"), span);
+        }
+        if self.machine.at(code.module).is_broken(name) {
+            return Stop::Broken;
+        }
+        if let Some(declaration) = self.machine.at(code.module).find(name) {
+            let word = keyword_word(self.machine.at(code.module).script.declarations[declaration as usize].keyword);
+            let message = format!("`{text}` is a {word}, not a function");
+            return self.error(code, "E201", message, span, "cannot be called").stop();
+        }
+        let mut names: Vec<String> = std::builtins().map(|b| b.name.to_owned()).collect();
+        let module = self.machine.at(code.module);
+        names.extend(
+            module.script.declarations.iter().filter(|d| d.keyword == Keyword::Fn).filter_map(bound).map(|b| self.names.text(b.name).to_owned()),
+        );
+        let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
+        let label = near.map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
+        self.error(code, "E201", format!("there is no function `{text}`"), span, label).stop()
+    }
+
+    /// The nearest name in sight, with keyword and line when it is declared.
+    fn near_name(&self, module: ModuleId, text: &str) -> Option<(String, Option<(&'static str, usize)>)> {
+        let m = self.machine.at(module);
+        let locals = self.machine.locals[self.machine.base..].iter().map(|l| self.names.text(l.0));
+        let declared: Vec<(&str, u32, &'static str)> = m
+            .script
+            .declarations
+            .iter()
+            .filter(|d| d.keyword != Keyword::Fn)
+            .filter_map(|d| bound(d).map(|b| (self.names.text(b.name), b.span.start, keyword_word(d.keyword))))
+            .collect();
+        let near = nearest(text, locals.chain(declared.iter().map(|d| d.0)))?;
+        let place = declared.iter().find(|d| d.0 == near).map(|d| (d.2, self.sources.line(m.file, d.1)));
+        Some((near.to_owned(), place))
+    }
+
+    /// Whether some param of the script lists this name among its choices.
+    fn is_param_word(&self, module: ModuleId, name: Name) -> bool {
+        use super::syntax::ast::{Allowed, DeclarationKind, Expr};
+        self.machine.at(module).script.declarations.iter().any(|d| match &d.kind {
+            DeclarationKind::Param { allowed: Some(Allowed::Choices(items)), .. } => {
+                items.iter().any(|i| matches!(d.nodes[i.index()].expr, Expr::Name(n) if n == name))
+            }
+            _ => false,
+        })
+    }
+}
+
+/// Whether a bare name is a word of some choice of the language.
+fn is_word(name: &str) -> bool {
+    let mut choices = std::builtins().flat_map(|b| b.params.iter().filter_map(|p| p.ty.choices()));
+    choices.any(|words| words.contains(&name)) || super::settings::words().any(|word| word == name)
+}
+
+/// A keyword as messages say it.
+pub(super) fn keyword_word(keyword: Keyword) -> &'static str {
+    match keyword {
+        Keyword::Units => "units",
+        Keyword::Tolerance => "tolerance",
+        Keyword::Snap => "snap",
+        Keyword::Use => "module",
+        Keyword::Import => "import",
+        Keyword::Param => "param",
+        Keyword::Let => "let",
+        Keyword::Fn => "fn",
+        Keyword::Point => "point",
+        Keyword::Curve => "curve",
+        Keyword::ModelingCurve => "modeling curve",
+        Keyword::Surface => "surface",
+        Keyword::Shell => "shell",
+        Keyword::Group => "group",
+        Keyword::Mesh => "mesh",
+        Keyword::Check => "check",
+        Keyword::Report => "report",
+        Keyword::Export => "export",
+        Keyword::Picture => "picture",
+    }
+}

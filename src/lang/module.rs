@@ -1,0 +1,159 @@
+//! One evaluated script: its declarations, their states and what they have produced.
+
+use std::sync::Arc;
+
+use super::cx::Parts;
+use super::diag::FileId;
+use super::names::Name;
+use super::plans::{CheckResult, ExportSpec, MeshSpec, ReportTable};
+use super::syntax::ast::{Bound, Declaration, DeclarationKind, Script};
+use super::units::LengthUnit;
+use super::value::{ModuleId, Value};
+use crate::mesh::Mesh;
+use crate::model::Model;
+use crate::network::Network;
+
+/// How far a declaration is.
+#[derive(Clone, Debug)]
+pub(super) enum State {
+    /// Not asked for yet.
+    Waiting,
+    /// Being evaluated; being asked for now is a cycle.
+    Running,
+    /// Asked for the tolerance before it was known.
+    Suspended,
+    /// Evaluated.
+    Done(Value),
+    /// Reported.
+    Failed,
+    /// Depends on a declaration that failed.
+    Skipped(ModuleId, u32),
+    /// Depends on something reported elsewhere.
+    Broken,
+}
+
+/// A stage that is made once.
+#[derive(Clone, Debug)]
+pub(super) enum Stage<T> {
+    /// Not asked for yet.
+    Waiting,
+    /// Being made.
+    Running,
+    /// Made.
+    Done(T),
+    /// Reported.
+    Failed,
+    /// A declaration it depends on failed.
+    Skipped(ModuleId, u32),
+}
+
+/// A param set from outside: its value, or the text of a literal.
+#[derive(Clone, Debug)]
+pub(super) enum Given {
+    /// From `--set` or a table: text and the pseudo-file it stands in.
+    Text(Arc<str>, FileId),
+    /// From `use`: an evaluated value and where it stands.
+    Value(Value, FileId, super::syntax::ast::Span),
+}
+
+/// One evaluated script.
+#[derive(Debug)]
+pub(super) struct Module {
+    /// Its text.
+    pub file: FileId,
+    /// Resolved path, for what it loads itself.
+    pub path: Arc<str>,
+    /// Its name in the script that uses it, empty for the main one.
+    pub label: String,
+    /// The `use` that made it.
+    pub parent: Option<(ModuleId, u32)>,
+    /// Its declarations.
+    pub script: Arc<Script>,
+    /// Its unit: what bare numbers are in.
+    pub unit: LengthUnit,
+    /// Declaration by name, plus one.
+    by_name: Vec<u32>,
+    /// Names of declarations that did not parse, sorted.
+    broken: Vec<Name>,
+    /// State of each declaration.
+    pub states: Vec<State>,
+    /// Params set from outside.
+    pub given: Vec<(Name, Given)>,
+    pub parts: Stage<Arc<Parts>>,
+    pub network: Stage<Arc<Network>>,
+    pub model: Stage<Arc<Model>>,
+    pub meshes: Vec<Arc<MeshSpec>>,
+    pub mesh_stages: Vec<Stage<Arc<Mesh>>>,
+    pub checks: Vec<(u32, CheckResult)>,
+    pub reports: Vec<(u32, ReportTable)>,
+    pub exports: Vec<(u32, ExportSpec)>,
+}
+
+impl Module {
+    /// A script ready to be evaluated, and the pairs of declarations that bind the same name.
+    pub fn new(file: FileId, path: Arc<str>, script: Arc<Script>, n_names: usize) -> (Self, Vec<(u32, u32)>) {
+        let mut by_name = vec![0; n_names];
+        let mut states = vec![State::Waiting; script.declarations.len()];
+        let mut twice = Vec::new();
+        for (i, declaration) in script.declarations.iter().enumerate() {
+            let Some(bound) = bound(declaration) else { continue };
+            let slot: &mut u32 = &mut by_name[bound.name.index()];
+            if *slot == 0 {
+                *slot = i as u32 + 1;
+            } else {
+                twice.push((*slot - 1, i as u32));
+                states[i] = State::Failed;
+            }
+        }
+        let mut broken: Vec<Name> = script.broken.iter().map(|b| b.name).collect();
+        broken.sort_unstable();
+        let module = Self {
+            file,
+            path,
+            label: String::new(),
+            parent: None,
+            script,
+            unit: super::units::MILLIMETRE,
+            by_name,
+            broken,
+            states,
+            given: Vec::new(),
+            parts: Stage::Waiting,
+            network: Stage::Waiting,
+            model: Stage::Waiting,
+            meshes: Vec::new(),
+            mesh_stages: Vec::new(),
+            checks: Vec::new(),
+            reports: Vec::new(),
+            exports: Vec::new(),
+        };
+        (module, twice)
+    }
+
+    /// The declaration that binds a name.
+    pub fn find(&self, name: Name) -> Option<u32> {
+        self.by_name.get(name.index()).and_then(|i| i.checked_sub(1))
+    }
+
+    /// Whether a declaration of that name did not parse.
+    pub fn is_broken(&self, name: Name) -> bool {
+        self.broken.binary_search(&name).is_ok()
+    }
+
+    /// All names bound here.
+    pub fn names(&self) -> impl Iterator<Item = Name> + '_ {
+        self.script.declarations.iter().filter_map(|d| bound(d).map(|b| b.name))
+    }
+}
+
+/// The name that a declaration binds.
+pub(super) fn bound(declaration: &Declaration) -> Option<Bound> {
+    match &declaration.kind {
+        DeclarationKind::Load { bound, .. }
+        | DeclarationKind::Param { bound, .. }
+        | DeclarationKind::Fn { bound, .. }
+        | DeclarationKind::Value { bound, .. }
+        | DeclarationKind::Collection { bound, .. } => Some(*bound),
+        _ => None,
+    }
+}

@@ -1,0 +1,64 @@
+//! Settings of blocks: what each key takes, where it may stand, and what it means.
+
+use super::types::Ty;
+use super::value::Dim;
+
+/// Words of `elements:`.
+pub const ELEMENTS: &[&str] = &["triangles", "quads", "mixed"];
+/// Words of `method:`.
+pub const METHODS: &[&str] = &["auto", "mapped", "quadtree", "delaunay", "isoline", "display"];
+/// Words of `encoding:`.
+pub const ENCODINGS: &[&str] = &["binary", "text"];
+/// Words of `units:` of an export.
+pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "in", "ft"];
+/// Shell elements of decks.
+pub const DECK_ELEMENTS: &[&str] =
+    &["S3", "S3R", "S4", "S4R", "S6", "S8", "S8R", "STRI3", "STRI65", "M3D3", "M3D4", "M3D6", "M3D8", "CTRIA3", "CQUAD4", "CTRIA6", "CQUAD8"];
+
+/// A key of a settings block.
+#[derive(Debug)]
+pub struct Setting {
+    /// As written before the colon.
+    pub key: &'static str,
+    /// What it means, with its default.
+    pub docs: &'static str,
+    /// What it takes.
+    pub ty: Ty,
+}
+
+const LENGTH: Ty = Ty::Quantity(Dim::LENGTH);
+
+/// `mesh m of … { … }`.
+pub const MESH: &[Setting] = &[
+    Setting { key: "size", docs: "Target edge length; default a 20th of the diagonal of what is meshed.", ty: LENGTH },
+    Setting { key: "chord_error", docs: "Largest distance between mesh and surface.", ty: LENGTH },
+    Setting { key: "angle_error", docs: "Largest turn of the normal across an element.", ty: Ty::Quantity(Dim::ANGLE) },
+    Setting { key: "elements", docs: "Kind of elements; default `triangles`.", ty: Ty::Choice(ELEMENTS) },
+    Setting { key: "order", docs: "1, or 2 with mid nodes; default 1.", ty: Ty::Count },
+    Setting { key: "method", docs: "How faces are meshed; default `auto`.", ty: Ty::Choice(METHODS) },
+    Setting { key: "conforming", docs: "Neighbouring faces share nodes; default `true`.", ty: Ty::Bool },
+];
+
+/// `on things { … }` inside a mesh.
+pub const ON: &[Setting] = &[
+    Setting { key: "count", docs: "Steps over the whole length of a curve.", ty: Ty::Count },
+    Setting { key: "size", docs: "Target edge length here.", ty: LENGTH },
+    Setting { key: "bias", docs: "Last step over first step along the curve.", ty: Ty::Number },
+    Setting { key: "elements", docs: "Kind of elements of these faces.", ty: Ty::Choice(ELEMENTS) },
+    Setting { key: "method", docs: "How these faces are meshed.", ty: Ty::Choice(METHODS) },
+];
+
+/// `shell s of … { … }`.
+pub const SHELL: &[Setting] = &[Setting { key: "snap", docs: "Distance within which edges are glued.", ty: LENGTH }];
+
+/// `export x to "…" { … }`.
+pub const EXPORT: &[Setting] = &[
+    Setting { key: "encoding", docs: "Binary or text; default by format.", ty: Ty::Choice(ENCODINGS) },
+    Setting { key: "element", docs: "Element name of a deck.", ty: Ty::Choice(DECK_ELEMENTS) },
+    Setting { key: "units", docs: "Unit of lengths in the file; default the model's.", ty: Ty::Choice(FILE_UNITS) },
+];
+
+/// All words that settings take.
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    [MESH, ON, EXPORT].into_iter().flatten().filter(|s| s.key != "units").filter_map(|s| s.ty.choices()).flatten().copied()
+}

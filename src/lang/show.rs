@@ -1,0 +1,87 @@
+//! Values as text: what interpolation, messages and reports print.
+
+use glam::DVec3;
+
+use super::cx::Cx;
+use super::units::{number_text, quantity_text, unit_text};
+use super::value::{Dim, MeshValue, Quantity, Value};
+
+/// Members of a list shown in a text.
+const MEMBERS_SHOWN: usize = 1000;
+
+impl Cx<'_> {
+    /// A value as text: shortest numbers with units, names for geometry.
+    pub fn show(&self, value: &Value) -> String {
+        match value {
+            Value::None => "none".into(),
+            Value::Bool(b) => b.to_string(),
+            Value::Number(q) => self.quantity(*q),
+            Value::Range(a, b) => format!("{a}..{b}"),
+            Value::Vector(v, dim) => self.vector(*v, *dim),
+            Value::Node(p) => self.vector(*p, Dim::LENGTH),
+            Value::Text(t) | Value::Word(t) => t.to_string(),
+            Value::List(items) => {
+                let mut parts: Vec<String> = items.iter().take(MEMBERS_SHOWN).map(|v| self.show_inside(v)).collect();
+                if items.len() > MEMBERS_SHOWN {
+                    parts.push(format!("… {} in all", items.len()));
+                }
+                format!("[{}]", parts.join(", "))
+            }
+            Value::Record(r) => {
+                let parts: Vec<String> =
+                    r.keys.iter().zip(&r.values).map(|(k, v)| format!("{}: {}", self.names.text(*k), self.show_inside(v))).collect();
+                format!("{{{}}}", parts.join(", "))
+            }
+            Value::Curve(c) => self.entity(c.origin(), "curve"),
+            Value::Surface(s) => self.entity(s.origin(), "surface"),
+            Value::Shell(s) => s.name.to_string(),
+            Value::Mesh(m) => match &**m {
+                MeshValue::Declared { module, index } => {
+                    self.meshes(*module).get(*index as usize).map_or_else(|| "mesh".into(), |m| m.name.to_string())
+                }
+                MeshValue::Data(mesh, _) if mesh.name.is_empty() => "mesh".into(),
+                MeshValue::Data(mesh, _) => mesh.name.clone(),
+            },
+            Value::Link(_, id) => format!("link {}", id.0 + 1),
+            Value::Edge(_, id) => format!("edge {}", id.0 + 1),
+            Value::Vertex(_, id) => format!("vertex {}", id.0 + 1),
+            Value::Patch(_, id) => format!("patch {}", id.0 + 1),
+            Value::Plane(_) => "plane".into(),
+            Value::Table(_) => "table".into(),
+            Value::Module(m) => self.machine.modules.get(m.index()).map_or_else(String::new, |m| m.label.clone()),
+            Value::Network(_) => "network".into(),
+        }
+    }
+
+    /// Like [`Cx::show`] with quotes around texts.
+    pub fn show_inside(&self, value: &Value) -> String {
+        match value {
+            Value::Text(t) => format!("\"{}\"", t.replace('\\', "\\\\").replace('"', "\\\"")),
+            other => self.show(other),
+        }
+    }
+
+    /// A quantity as shortest number and unit.
+    pub fn quantity(&self, q: Quantity) -> String {
+        quantity_text(q, self.unit)
+    }
+
+    fn vector(&self, v: DVec3, dim: Dim) -> String {
+        let unit = unit_text(dim, self.unit);
+        let part = |x: f64| format!("{}{unit}", number_text(x));
+        format!("({}, {}, {})", part(v.x), part(v.y), part(v.z))
+    }
+
+    fn entity(&self, origin: crate::base::origin::Origin, kind: &str) -> String {
+        let name = crate::base::fault::Say::name(self, origin);
+        if name.is_empty() { kind.to_owned() } else { name }
+    }
+
+    /// What kind of value it is, in words: "a length".
+    pub fn kind(&self, value: &Value) -> String {
+        match value {
+            Value::List(items) if items.is_empty() => "an empty list".into(),
+            other => other.ty().words(),
+        }
+    }
+}
