@@ -43,13 +43,7 @@ fn places(params: &[&str], rest: Option<usize>, taken: usize, args: &[Option<&st
 
 impl Cx<'_> {
     /// Parameter of each argument of a call, every mistake reported.
-    pub(super) fn match_args(
-        &mut self,
-        code: Code<'_>,
-        signature: &Signature<'_>,
-        taken: usize,
-        args: &[Arg],
-    ) -> Result<Vec<usize>, Stop> {
+    pub(super) fn match_args(&mut self, code: Code<'_>, signature: &Signature<'_>, taken: usize, args: &[Arg]) -> Result<Vec<usize>, Stop> {
         let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.names.text(n))).collect();
         let found = places(&signature.params, signature.rest, taken, &names);
         drop(names);
@@ -88,11 +82,8 @@ impl Cx<'_> {
         let taken = usize::from(first.is_some());
         // The usual call, positions only, needs no names.
         let simple = rest_at.is_none() && args.iter().all(|a| a.name.is_none()) && args.len() + taken <= builtin.params.len();
-        let places: Vec<usize> = if simple {
-            (taken..taken + args.len()).collect()
-        } else {
-            self.match_args(code, &builtin_signature(builtin), taken, args)?
-        };
+        let places: Vec<usize> =
+            if simple { (taken..taken + args.len()).collect() } else { self.match_args(code, &builtin_signature(builtin), taken, args)? };
         let mut values: Args = vec![Value::None; builtin.params.len()];
         let (mut given, mut rest, mut gather) = (0_u64, Vec::new(), Gather::default());
         if let Some(value) = first {
@@ -229,7 +220,14 @@ impl Cx<'_> {
     }
 
     /// Where the arguments of a failed call stand, by parameter name.
-    pub(super) fn blame(&self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: bool, args: &[Arg]) -> Vec<(&'static str, Span)> {
+    pub(super) fn blame(
+        &self,
+        code: Code<'_>,
+        id: ExprId,
+        builtin: &'static Builtin,
+        first: bool,
+        args: &[Arg],
+    ) -> Vec<(&'static str, Span)> {
         let params: Vec<&str> = builtin.params.iter().map(|p| p.name).collect();
         let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.names.text(n))).collect();
         let found = places(&params, rest_of(builtin), usize::from(first), &names);

@@ -164,7 +164,7 @@ impl Cx<'_> {
 
         let site = self.machine.site;
         let base = self.machine.locals.len();
-        let old_base = std::mem::replace(&mut self.machine.base, base);
+        let old_base = ::std::mem::replace(&mut self.machine.base, base);
         self.machine.calls.push(Frame { name: bound.name, site: Site { expr: id, ..site }, origin: Origin::NONE });
         self.machine.site = Site { module, declaration, member: site.member, expr: *body };
         let result = self.run_fn(callee, params, given, *body).and_then(|value| match returns {

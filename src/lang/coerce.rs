@@ -69,7 +69,13 @@ impl Cx<'_> {
             },
             (Ty::Measure, Value::Number(_)) => Ok(None),
             (Ty::Station, Value::Number(q)) => ok(q.dim.is_none() || q.dim == Dim::LENGTH),
-            (Ty::Choice(words), Value::Word(w)) => if words.contains(&&**w) { Ok(None) } else { Err(Misfit::Choice) },
+            (Ty::Choice(words), Value::Word(w)) => {
+                if words.contains(&&**w) {
+                    Ok(None)
+                } else {
+                    Err(Misfit::Choice)
+                }
+            }
             (Ty::Point, Value::Vector(_, Dim::LENGTH) | Value::Node(_)) => Ok(None),
             (Ty::Point, Value::Vector(v, Dim::NONE)) => Ok(Some(Value::point(*v * self.bare_unit(module)))),
             (Ty::Point, Value::Vertex(..)) => Ok(Some(Value::point(self.as_vector(value.clone())?.0))),

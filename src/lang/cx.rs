@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::diag::Diagnostic;
+use super::diag::{Diagnostic, Sources};
 use super::eval::Machine;
 use super::names::Names;
-use super::origins::{Origins, Sources};
-use super::plans::MeshSpec;
+use super::origins::Origins;
+use super::plans::{MeshSpec, ReportTable};
 use super::units::LengthUnit;
 use super::value::{MeshValue, ModuleId, Record, ShellValue, Value};
 use crate::base::bbox::Box3;
@@ -78,10 +78,6 @@ pub struct Parts {
     pub modeling: Vec<Declared<Chain>>,
     /// `surface`s.
     pub surfaces: Vec<Declared<Surface>>,
-    /// `shell`s.
-    pub shells: Vec<Declared<Arc<ShellValue>>>,
-    /// `group`s: their things, nested lists flattened.
-    pub groups: Vec<Declared<Vec<Value>>>,
 }
 
 /// The stages that depend on everything declared; the session implements them over the kernel floors.
@@ -98,6 +94,11 @@ pub trait Pipeline: Sync {
     fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop>;
     /// A declared mesh.
     fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Stop>;
+    /// The table that `report x` shows for a mesh or other entity; `None` for plain values (title is set by the caller).
+    fn table(&self, cx: &mut Cx, value: &Value) -> Result<Option<ReportTable>, Stop> {
+        let _ = (cx, value);
+        Ok(None)
+    }
 }
 
 /// One run: scripts, values, and what builtins may ask for.
@@ -193,6 +194,16 @@ impl<'w> Cx<'w> {
     /// What a script declares; evaluates all its points, curves and surfaces first.
     pub fn parts(&mut self, module: ModuleId) -> Result<Arc<Parts>, Stop> {
         super::stages::parts(self, module)
+    }
+
+    /// The declared groups of a script: their things, nested lists flattened.
+    pub fn groups(&mut self, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
+        super::stages::groups(self, module)
+    }
+
+    /// The declared shells of a script.
+    pub fn shells(&mut self, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
+        super::stages::shells(self, module)
     }
 
     /// The mesh behind a value; a declared one is built on first use.

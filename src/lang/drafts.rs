@@ -32,13 +32,21 @@ impl<'w> Cx<'w> {
 
     /// Adds "in `rib(…)` called here" for the calls being run, innermost first.
     pub(super) fn add_calls(&self, diagnostic: &mut Diagnostic) {
-        for frame in self.machine.calls.iter().rev().take(CALLS_SHOWN) {
+        let mut shown: Vec<Label> = Vec::new();
+        for frame in self.machine.calls.iter().rev() {
             let module = self.machine.at(frame.site.module);
             let nodes = &module.script.declarations[frame.site.declaration as usize].nodes;
             let Some(node) = nodes.get(frame.site.expr.index()) else { continue };
             let text = format!("in `{}(…)` called here", self.names.text(frame.name));
-            diagnostic.labels.push(Label { file: module.file, span: node.span, text });
+            let label = Label { file: module.file, span: node.span, text };
+            let outermost = frame.site.module == self.machine.running.last().map_or(frame.site.module, |r| r.0)
+                && Some(frame.site.declaration) == self.machine.running.last().map(|r| r.1);
+            let known = diagnostic.labels.iter().chain(&shown).any(|l| l.file == label.file && l.span == label.span);
+            if !known && (shown.len() < CALLS_SHOWN || outermost) {
+                shown.push(label);
+            }
         }
+        diagnostic.labels.extend(shown);
         if self.machine.calls.len() > CALLS_SHOWN {
             diagnostic.notes.push(format!("{} calls inside each other", self.machine.calls.len()));
         }

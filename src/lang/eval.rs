@@ -54,9 +54,6 @@ pub(super) struct Code<'c> {
 }
 
 impl<'c> Code<'c> {
-    pub fn node(&self, id: ExprId) -> &'c Node {
-        &self.nodes[id.index()]
-    }
     pub fn expr(&self, id: ExprId) -> &'c Expr {
         &self.nodes[id.index()].expr
     }
@@ -106,6 +103,10 @@ pub struct Machine {
     next_look: u64,
     pub(super) depth: u32,
     pub(super) in_within: bool,
+    /// Declarations that a reported cycle holds.
+    pub(super) in_cycle: Vec<(ModuleId, u32)>,
+    /// Stages being gathered, for the words of a cycle.
+    pub(super) stages: u32,
     pub(super) defaults: std::collections::BTreeMap<(usize, usize), Value>,
     pub(super) filed: Vec<(Option<(ModuleId, u32)>, Diagnostic)>,
 }
@@ -125,6 +126,8 @@ impl Default for Machine {
             next_look: STEPS_A_LOOK,
             depth: 0,
             in_within: false,
+            in_cycle: Vec::new(),
+            stages: 0,
             defaults: std::collections::BTreeMap::new(),
             filed: Vec::new(),
         }
@@ -362,9 +365,14 @@ impl Cx<'_> {
     pub(super) fn cycle(&mut self, module: ModuleId, index: u32) -> Stop {
         let from = self.machine.running.iter().position(|r| *r == (module, index)).unwrap_or(0);
         let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
+        self.machine.in_cycle.extend(&members);
         let mut names: Vec<String> = members.iter().map(|&(m, d)| self.declaration_name(m, d)).collect();
         names.push(self.declaration_name(module, index));
-        let shown = if names.len() > 9 { format!("{} → … → {}", names[..4].join(" → "), names[names.len() - 1]) } else { names.join(" → ") };
+        let shown = if names.len() > 9 {
+            format!("{} → … → {}", names[..4].join(" → "), names[names.len() - 1])
+        } else {
+            names.join(" → ")
+        };
         let labels: Vec<Label> = members
             .iter()
             .take(4)
@@ -379,7 +387,13 @@ impl Cx<'_> {
         let nodes = &script.declarations[site.declaration as usize].nodes;
         let code = Code { nodes, module: site.module, declaration: site.declaration };
         let span = self.machine_span(code);
-        self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here").labels(labels).stop()
+        let through_all = self.machine.stages > 0;
+        let draft =
+            self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here").labels(labels);
+        if through_all {
+            return draft.note("links, nodes, `network` and meshes depend on all curves and surfaces").stop();
+        }
+        draft.stop()
     }
 
     /// The narrowest expression being evaluated.

@@ -60,7 +60,9 @@ impl Cx<'_> {
                 self.with_local(*name, value, |cx| cx.eval(code, *body))
             }
             Expr::Text(parts) => self.interpolate(code, parts).map(|t| Value::Text(t.into())),
-            Expr::Slice { .. } => Err(self.error(code, "E102", "a run stands inside `[ ]`", code.span(id), "runs from where to where").stop()),
+            Expr::Slice { .. } => {
+                Err(self.error(code, "E102", "a run stands inside `[ ]`", code.span(id), "runs from where to where").stop())
+            }
             _ => Err(Stop::Bug("a simple expression in the wrong place")),
         }
     }
@@ -77,14 +79,8 @@ impl Cx<'_> {
         match units::quantity(value, unit, self.unit) {
             Some(q) if q.value.is_finite() => Ok(Value::Number(q)),
             Some(_) => Err(self.error(code, "E408", "this number is too large", code.span(id), "not a finite number").stop()),
-            None => {
-                let nearest = super::names::nearest(unit, UNITS.iter().copied());
-                let draft = self.error(code, "E107", format!("`{unit}` is not a unit"), code.span(id), "no such unit");
-                Err(match nearest {
-                    Some(near) => draft.help(format!("`{}{near}`?", units::number_text(value))).stop(),
-                    None => draft.help("lengths um mm cm m km in ft, angles deg rad, mm2, cm3, kg, t, kg/m3, %").stop(),
-                })
-            }
+            // The parser lets known units through alone.
+            None => Err(self.error(code, "E107", format!("`{unit}` is not a unit"), code.span(id), "no such unit").stop()),
         }
     }
 
@@ -155,7 +151,9 @@ impl Cx<'_> {
                 Value::Number(q) => Ok(q),
                 other => {
                     let found = self.kind(&other);
-                    Err(self.error(code, "E211", format!("a coordinate is a number or a length, got {found}"), code.span(*item), found).stop())
+                    Err(self
+                        .error(code, "E211", format!("a coordinate is a number or a length, got {found}"), code.span(*item), found)
+                        .stop())
                 }
             });
             if let Some(q) = gather.take(number) {
@@ -251,7 +249,9 @@ impl Cx<'_> {
 
     #[cold]
     pub(super) fn too_long(&mut self, code: Code<'_>, id: ExprId, what: &str) -> Stop {
-        self.error(code, "E217", format!("{what} has too many members"), code.span(id), "made here").help("the limit is 10^7 members").stop()
+        self.error(code, "E217", format!("{what} has too many members"), code.span(id), "made here")
+            .help("the limit is 10^7 members")
+            .stop()
     }
 
     /// Binds the name to each member in turn.
@@ -299,8 +299,3 @@ impl Cx<'_> {
         units::convert(1.0, self.machine.at(module).unit, self.unit, 1)
     }
 }
-
-/// Units as written, for suggestions.
-const UNITS: &[&str] = &[
-    "um", "mm", "cm", "m", "km", "in", "ft", "deg", "rad", "kg", "t", "mm2", "cm2", "m2", "mm3", "cm3", "m3", "kg/m3",
-];

@@ -110,38 +110,29 @@ impl Cx<'_> {
             }
             _ => {
                 let report = fault.describe(self);
-                Diagnostic { code: report.code, message: report.message, labels: Vec::new(), help: report.help, notes: report.notes }
+                Diagnostic::from_report(report, |_| None)
             }
         }
     }
 
     /// A fault as a diagnostic with places: entities where they were made, arguments by `blame`, the rest at `span`.
     pub(super) fn locate(&self, fault: &Fault, code: Code<'_>, span: Span, blame: &[(&'static str, Span)]) -> Diagnostic {
-        let report = fault.describe(self);
         let file = self.machine.at(code.module).file;
-        let mut labels: Vec<Label> = Vec::new();
-        for (subject, text) in report.labels {
-            let place = match subject {
-                Subject::Entity(origin) => self.span_of(origin),
-                Subject::Argument(name) => blame.iter().find(|b| b.0 == name).map(|b| (file, b.1)),
-                Subject::Item(name, k) => {
-                    let items: Vec<Span> = blame.iter().filter(|b| b.0 == name).map(|b| b.1).collect();
-                    items.get(k).or(items.first()).map(|s| (file, *s))
-                }
-                Subject::Call => Some((file, span)),
-            };
-            let (file, span) = place.unwrap_or((file, span));
-            match labels.iter_mut().find(|l| l.file == file && l.span == span) {
-                Some(label) if label.text != text => label.text = format!("{}; {text}", label.text),
-                Some(_) => {}
-                None => labels.push(Label { file, span, text }),
+        let find = |subject| match subject {
+            Subject::Entity(origin) => self.span_of(origin),
+            Subject::Argument(name) => blame.iter().find(|b| b.0 == name).map(|b| (file, b.1)).or(Some((file, span))),
+            Subject::Item(name, k) => {
+                let mut items = blame.iter().filter(|b| b.0 == name).map(|b| (file, b.1));
+                items.clone().nth(k).or(items.next()).or(Some((file, span)))
             }
+            Subject::Call => Some((file, span)),
+        };
+        let mut diagnostic = Diagnostic::from_report(fault.describe(self), find);
+        let inside = self.machine.at(code.module).script.declarations[code.declaration as usize].span;
+        let shown = |l: &Label| l.file == file && l.span.start >= inside.start && l.span.end <= inside.end;
+        if !diagnostic.labels.iter().any(shown) {
+            diagnostic.labels.push(Label { file, span, text: "asked for here".to_owned() });
         }
-        if !labels.iter().any(|l| l.file == file && l.span == span) {
-            let text = if labels.is_empty() { "here".to_owned() } else { String::new() };
-            labels.push(Label { file, span, text });
-        }
-        let mut diagnostic = Diagnostic { code: report.code, message: report.message, labels, help: report.help, notes: report.notes };
         self.add_calls(&mut diagnostic);
         diagnostic
     }

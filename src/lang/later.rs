@@ -100,7 +100,13 @@ impl Cx<'_> {
         let mut names: Vec<String> = std::builtins().map(|b| b.name.to_owned()).collect();
         let module = self.machine.at(code.module);
         names.extend(
-            module.script.declarations.iter().filter(|d| d.keyword == Keyword::Fn).filter_map(bound).map(|b| self.names.text(b.name).to_owned()),
+            module
+                .script
+                .declarations
+                .iter()
+                .filter(|d| d.keyword == Keyword::Fn)
+                .filter_map(bound)
+                .map(|b| self.names.text(b.name).to_owned()),
         );
         let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
         let label = near.map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
@@ -119,7 +125,7 @@ impl Cx<'_> {
             .filter_map(|d| bound(d).map(|b| (self.names.text(b.name), b.span.start, keyword_word(d.keyword))))
             .collect();
         let near = nearest(text, locals.chain(declared.iter().map(|d| d.0)))?;
-        let place = declared.iter().find(|d| d.0 == near).map(|d| (d.2, self.sources.line(m.file, d.1)));
+        let place = declared.iter().find(|d| d.0 == near).map(|d| (d.2, self.sources.place(m.file, d.1).map_or(1, |p| p.line)));
         Some((near.to_owned(), place))
     }
 

@@ -1,15 +1,33 @@
 //! Floor 7: the language: text to tree, values, evaluation by dependency, diagnostics.
 
+mod bind;
+mod call;
 pub mod codes;
+mod coerce;
+mod collections;
 pub mod cx;
+mod declare;
 pub mod diag;
 pub mod diag_render;
+mod drafts;
 pub mod eval;
+mod expr;
 mod faults;
+mod imports;
+mod later;
+mod load;
+mod meetings;
+mod module;
 pub mod names;
+mod operators;
 pub mod origins;
+mod outputs;
+mod params;
 pub mod plans;
+pub mod run;
 pub mod scene;
+pub mod settings;
+mod show;
 mod stages;
 pub mod std;
 pub mod syntax;

@@ -109,7 +109,10 @@ impl Cx<'_> {
                 let (x, y) = self.same_dim(at, x, y)?;
                 self.finite(at, Quantity::new(x.value + sign * y.value, x.dim))
             }
-            (a @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)), b @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..))) => {
+            (
+                a @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)),
+                b @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)),
+            ) => {
                 let ((a, da), (b, db)) = (self.as_vector(a)?, self.as_vector(b)?);
                 let (a, b, dim) = self.same_vectors(at, (a, da), (b, db))?;
                 self.finite_vector(at, a + b * sign, dim)
@@ -146,7 +149,8 @@ impl Cx<'_> {
                     let span = at.code.span(at.b);
                     return Err(self.error(at.code, "E306", "division by zero", at.op_span, "divides here").and(span, "this is 0").stop());
                 }
-                self.finite(at, Quantity::new(value, self.dim_of(at, dim)?))
+                let dim = self.dim_of(at, dim)?;
+                self.finite(at, Quantity::new(value, dim))
             }
             (Value::Number(x), v @ (Value::Vector(..) | Value::Node(_))) if times => self.scale(at, v, x, true),
             (v @ (Value::Vector(..) | Value::Node(_)), Value::Number(x)) => self.scale(at, v, x, times),
@@ -208,7 +212,7 @@ impl Cx<'_> {
     }
 
     fn range(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<Value, Stop> {
-        let mut end = |cx: &mut Self, value: &Value, id: ExprId| match value {
+        let end = |cx: &mut Self, value: &Value, id: ExprId| match value {
             Value::Number(q) if q.dim.is_none() && q.value == q.value.trunc() && q.value.abs() < 9e15 => Ok(q.value as i64),
             Value::Number(q) if !q.dim.is_none() => {
                 let found = dim_words(q.dim);
@@ -374,7 +378,10 @@ impl Cx<'_> {
                 let (x, y) = self.same_dim(at, *x, *y)?;
                 (Quantity::new((x.value - y.value).abs(), x.dim), y.value.abs())
             }
-            (a @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)), b @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..))) => {
+            (
+                a @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)),
+                b @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)),
+            ) => {
                 let (a, b) = (self.as_vector(a.clone())?, self.as_vector(b.clone())?);
                 let (a, b, dim) = self.same_vectors(at, a, b)?;
                 (Quantity::new(a.distance(b), dim), b.length())
@@ -393,7 +400,8 @@ impl Cx<'_> {
             t.value * super::units::convert(1.0, self.machine.at(code.module).unit, self.unit, difference.dim.length)
         } else {
             let (found, wanted) = (dim_words(t.dim), dim_words(difference.dim));
-            let draft = self.error(code, "E211", format!("this tolerance is {found}, the values differ by {wanted}"), code.span(tolerance), found);
+            let draft =
+                self.error(code, "E211", format!("this tolerance is {found}, the values differ by {wanted}"), code.span(tolerance), found);
             return Err(draft.help("a tolerance in the same unit, or relative like `0.1%`").stop());
         };
         let holds = (difference.value <= allowed) == (at.op == Binary::Equal);
@@ -405,9 +413,7 @@ impl Cx<'_> {
     pub(super) fn comparison(&mut self, code: Code<'_>, id: ExprId) -> Option<Result<Comparison, Stop>> {
         match *code.expr(id) {
             Expr::Within { of, tolerance } => Some(self.within(code, of, tolerance)),
-            Expr::Binary { op, op_span, a, b } if compares(op) => {
-                Some(self.compared(At { code, op, op_span, id, a, b }))
-            }
+            Expr::Binary { op, op_span, a, b } if compares(op) => Some(self.compared(At { code, op, op_span, id, a, b })),
             _ => None,
         }
     }
@@ -423,7 +429,9 @@ impl Cx<'_> {
             _ => self.order(at, &left, &right)?,
         };
         let difference = match (&left, &right) {
-            (Value::Number(x), Value::Number(y)) => Some(Quantity::new((x.value - y.value).abs(), if x.dim.is_none() { y.dim } else { x.dim })),
+            (Value::Number(x), Value::Number(y)) => {
+                Some(Quantity::new((x.value - y.value).abs(), if x.dim.is_none() { y.dim } else { x.dim }))
+            }
             _ => None,
         };
         Ok(Comparison { left, right, holds, allowed: None, difference })

@@ -1,9 +1,6 @@
 //! Origins: which declaration and expression made an entity, and how faults find their places in the script.
 
-use std::sync::Arc;
-
-use super::diag::FileId;
-use super::syntax::ast::{ExprId, Span};
+use super::syntax::ast::ExprId;
 use super::value::ModuleId;
 use crate::base::origin::Origin;
 
@@ -41,48 +38,5 @@ impl Origins {
     /// The entry of an origin.
     pub fn place(&self, origin: Origin) -> Option<&Place> {
         self.places.get((origin.0 as usize).wrapping_sub(1))
-    }
-}
-
-/// A text that diagnostics point into.
-#[derive(Clone, Debug)]
-pub struct Source {
-    /// Name as shown.
-    pub name: String,
-    /// The text.
-    pub text: Arc<str>,
-}
-
-/// All texts of a run: the main script is 0.
-#[derive(Clone, Debug, Default)]
-pub struct Sources {
-    files: Vec<Source>,
-}
-
-impl Sources {
-    /// Adds a text.
-    pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<str>>) -> FileId {
-        self.files.push(Source { name: name.into(), text: text.into() });
-        FileId::at(self.files.len() - 1)
-    }
-
-    /// A text by id.
-    pub fn get(&self, file: FileId) -> Option<&Source> {
-        self.files.get(file.index())
-    }
-
-    /// All of them in order.
-    pub fn all(&self) -> &[Source] {
-        &self.files
-    }
-
-    /// Line of a byte, counted from 1.
-    pub fn line(&self, file: FileId, byte: u32) -> usize {
-        self.get(file).map_or(1, |s| 1 + s.text.as_bytes().iter().take(byte as usize).filter(|b| **b == b'\n').count())
-    }
-
-    /// The stretch of a text.
-    pub fn text(&self, file: FileId, span: Span) -> &str {
-        self.get(file).and_then(|s| s.text.get(span.start as usize..span.end as usize)).unwrap_or("")
     }
 }

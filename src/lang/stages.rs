@@ -2,33 +2,194 @@
 
 use std::sync::Arc;
 
-use super::cx::{Cx, Parts, Stop};
-use super::value::{MeshValue, ModuleId};
+use glam::DVec3;
+
+use super::cx::{Cx, Declared, Parts, Stop};
+use super::eval::Code;
+use super::faults::member_name;
+use super::module::{Module, Stage, State, bound};
+use super::names::Names;
+use super::origins::NO_MEMBER;
+use super::syntax::ast::{DeclarationKind, Keyword};
+use super::value::{MeshValue, ModuleId, ShellValue, Value};
+use crate::base::fault::Fault;
+use crate::base::origin::Origin;
 use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::network::Network;
 
+/// Geometry that the network and the surface model are built from.
+const GEOMETRY: &[Keyword] = &[Keyword::Point, Keyword::Curve, Keyword::ModelingCurve, Keyword::Surface];
+
+/// Evaluates all declarations of these keywords; the first that failed is the reason to stop.
+fn all(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<(), Stop> {
+    let script = cx.machine.at(module).script.clone();
+    cx.machine.stages += 1;
+    let mut stop: Option<Stop> = None;
+    for (i, declaration) in script.declarations.iter().enumerate() {
+        if keywords.contains(&declaration.keyword)
+            && let Err(found) = cx.ensure(module, i as u32)
+        {
+            stop = Some(match stop {
+                Some(before) => before.or(found),
+                None => found,
+            });
+        }
+    }
+    cx.machine.stages -= 1;
+    // A curve that did not parse leaves a hole that must not be meshed over.
+    if stop.is_none() && !script.broken.is_empty() {
+        stop = Some(Stop::Broken);
+    }
+    stop.map_or(Ok(()), Err)
+}
+
+/// Values of a declaration with their members, in order.
+fn walk(value: &Value, levels: usize, member: [u32; 2], level: usize, out: &mut dyn FnMut([u32; 2], &Value)) {
+    match value {
+        Value::List(items) if level < levels => {
+            for (i, item) in items.iter().enumerate() {
+                let mut member = member;
+                member[level.min(1)] = i as u32;
+                walk(item, levels, member, level + 1, out);
+            }
+        }
+        other => out(member, other),
+    }
+}
+
+/// Calls `out` for each evaluated member of each declaration with one of these keywords.
+pub(super) fn each_member(
+    module: &Module,
+    names: &Names,
+    keywords: &[Keyword],
+    out: &mut dyn FnMut(u32, Keyword, [u32; 2], Arc<str>, &Value),
+) {
+    for (i, declaration) in module.script.declarations.iter().enumerate() {
+        if !keywords.contains(&declaration.keyword) {
+            continue;
+        }
+        let (State::Done(value), Some(b)) = (&module.states[i], bound(declaration)) else { continue };
+        let levels = match &declaration.kind {
+            DeclarationKind::Value { family, .. } | DeclarationKind::Collection { family, .. } => family.len(),
+            _ => 0,
+        };
+        walk(value, levels, [NO_MEMBER; 2], 0, &mut |member, value| {
+            out(i as u32, declaration.keyword, member, member_name(names.text(b.name), member).into(), value);
+        });
+    }
+}
+
+/// What is evaluated so far of a script's geometry.
+pub(super) fn gather(cx: &mut Cx, module: ModuleId) -> Parts {
+    let mut parts = Parts::default();
+    let mut points: Vec<(u32, [u32; 2], Arc<str>, DVec3)> = Vec::new();
+    each_member(cx.machine.at(module), &cx.names, GEOMETRY, &mut |i, keyword, member, name, value| match (keyword, value) {
+        (Keyword::Point, Value::Vector(p, _)) => points.push((i, member, name, *p)),
+        (Keyword::Curve, Value::Curve(c)) => parts.curves.push(Declared { name, origin: c.origin(), value: c.clone() }),
+        (Keyword::ModelingCurve, Value::Curve(c)) => parts.modeling.push(Declared { name, origin: c.origin(), value: c.clone() }),
+        (Keyword::Surface, Value::Surface(s)) => parts.surfaces.push(Declared { name, origin: s.origin(), value: s.clone() }),
+        _ => {}
+    });
+    for (declaration, member, name, value) in points {
+        let origin = cx.own_origin(Code { nodes: &[], module, declaration }, member);
+        parts.points.push(Declared { name, origin, value });
+    }
+    parts
+}
+
 pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
-    let _ = (cx, module);
-    Err(Stop::Bug("parts"))
+    if let Stage::Done(parts) = &cx.machine.at(module).parts {
+        return Ok(parts.clone());
+    }
+    cx.tolerance()?;
+    all(cx, module, GEOMETRY)?;
+    let parts = Arc::new(gather(cx, module));
+    cx.machine.at_mut(module).parts = Stage::Done(parts.clone());
+    Ok(parts)
+}
+
+/// The declared groups of a script with what they hold.
+pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
+    all(cx, module, &[Keyword::Group])?;
+    let mut found: Vec<(u32, [u32; 2], Arc<str>, Vec<Value>)> = Vec::new();
+    each_member(cx.machine.at(module), &cx.names, &[Keyword::Group], &mut |i, _, member, name, value| {
+        if let Value::List(items) = value {
+            found.push((i, member, name, items.to_vec()));
+        }
+    });
+    let own = |cx: &mut Cx, (declaration, member, name, value)| {
+        let origin: Origin = cx.own_origin(Code { nodes: &[], module, declaration }, member);
+        Declared { name, origin, value }
+    };
+    Ok(found.into_iter().map(|f| own(cx, f)).collect())
+}
+
+/// The declared shells of a script.
+pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
+    all(cx, module, &[Keyword::Shell])?;
+    let mut found = Vec::new();
+    each_member(cx.machine.at(module), &cx.names, &[Keyword::Shell], &mut |_, _, _, name, value| {
+        if let Value::Shell(s) = value {
+            found.push(Declared { name, origin: s.origin, value: s.clone() });
+        }
+    });
+    Ok(found)
+}
+
+/// Makes a stage at most once; a fault is reported once and what depends on it is skipped.
+fn once<T: Clone>(
+    cx: &mut Cx,
+    slot: impl for<'a> Fn(&'a mut Cx<'_>) -> Option<&'a mut Stage<T>>,
+    make: impl FnOnce(&mut Cx) -> Result<T, Stop>,
+) -> Result<T, Stop> {
+    match slot(cx) {
+        Some(Stage::Done(made)) => return Ok(made.clone()),
+        Some(Stage::Failed) => return Err(Stop::Broken),
+        Some(Stage::Skipped(m, d)) => return Err(Stop::Skipped(*m, *d)),
+        Some(Stage::Running) | None => return Err(Stop::Bug("a stage that needs itself")),
+        Some(stage) => *stage = Stage::Running,
+    }
+    let made = make(cx);
+    let (stage, result) = match made {
+        Ok(made) => (Stage::Done(made.clone()), Ok(made)),
+        Err(Stop::Fault(Fault::Interrupted)) => (Stage::Failed, Err(Stop::Broken)),
+        Err(Stop::Fault(fault)) => {
+            let diagnostic = cx.diagnose(&fault);
+            cx.machine.filed.push((None, diagnostic));
+            (Stage::Failed, Err(Stop::Broken))
+        }
+        Err(Stop::Bug(what)) => (Stage::Failed, Err(Stop::Bug(what))),
+        Err(Stop::Skipped(m, d)) => (Stage::Skipped(m, d), Err(Stop::Skipped(m, d))),
+        Err(Stop::NotYet) => (Stage::Waiting, Err(Stop::NotYet)),
+        Err(_) => (Stage::Failed, Err(Stop::Broken)),
+    };
+    if let Some(slot) = slot(cx) {
+        *slot = stage;
+    }
+    result
 }
 
 pub(super) fn network(cx: &mut Cx, module: ModuleId) -> Result<Arc<Network>, Stop> {
     let parts = parts(cx, module)?;
-    cx.pipeline.network(cx, module, &parts)
+    once(cx, |cx| Some(&mut cx.machine.at_mut(module).network), |cx| cx.pipeline.network(cx, module, &parts))
 }
 
 pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Stop> {
     let parts = parts(cx, module)?;
-    cx.pipeline.model(cx, module, &parts)
+    once(cx, |cx| Some(&mut cx.machine.at_mut(module).model), |cx| cx.pipeline.model(cx, module, &parts))
 }
 
 pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
     match mesh {
         MeshValue::Data(mesh, _) => Ok(mesh.clone()),
-        MeshValue::Declared { .. } => {
-            let _ = cx;
-            Err(Stop::Bug("mesh"))
+        MeshValue::Declared { module, index } => {
+            let (module, index) = (*module, *index as usize);
+            cx.tolerance()?;
+            let Some(spec) = cx.machine.at(module).meshes.get(index).cloned() else {
+                return Err(Stop::Bug("a mesh that was not declared"));
+            };
+            once(cx, |cx| cx.machine.at_mut(module).mesh_stages.get_mut(index), |cx| cx.pipeline.mesh(cx, module, &spec))
         }
     }
 }

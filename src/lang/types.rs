@@ -178,8 +178,29 @@ impl Ty {
 
 /// The names of types that a script may write.
 pub const TYPE_NAMES: &[&str] = &[
-    "number", "count", "bool", "text", "word", "length", "area", "volume", "angle", "mass", "point", "direction", "node", "link", "curve",
-    "surface", "patch", "edge", "vertex", "shell", "mesh", "list", "record",
+    "number",
+    "count",
+    "bool",
+    "text",
+    "word",
+    "length",
+    "area",
+    "volume",
+    "angle",
+    "mass",
+    "point",
+    "direction",
+    "node",
+    "link",
+    "curve",
+    "surface",
+    "patch",
+    "edge",
+    "vertex",
+    "shell",
+    "mesh",
+    "list",
+    "record",
 ];
 
 /// The types of [`TYPE_NAMES`], in the same order.

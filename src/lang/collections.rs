@@ -1,0 +1,293 @@
+//! `shell`, `group`, `mesh`: things and settings, resolved to plain data.
+
+use std::sync::Arc;
+
+use super::coerce::flatten_into;
+use super::cx::{Cx, Stop};
+use super::eval::{Code, Gather};
+use super::faults::member_name;
+use super::later;
+use super::module::bound;
+use super::names::nearest;
+use super::plans::{MeshSpec, RuleSpec, Said};
+use super::settings::{self, Setting};
+use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
+use super::units;
+use super::value::{MeshValue, ShellValue, Value};
+use crate::base::origin::Origin;
+use crate::mesh::{Elements, Method};
+
+/// A setting as resolved: its key, its value, the expression that says it.
+pub(super) struct Resolved {
+    pub key: &'static str,
+    pub value: Value,
+    pub origin: Origin,
+}
+
+/// The setting of a key.
+pub(super) fn find<'r>(resolved: &'r [Resolved], key: &str) -> Option<&'r Resolved> {
+    resolved.iter().find(|r| r.key == key)
+}
+
+fn said<T>(resolved: &[Resolved], key: &str, take: impl Fn(&Value) -> Option<T>) -> Said<T> {
+    find(resolved, key).and_then(|r| take(&r.value).map(|v| (v, r.origin)))
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(q) => Some(q.value),
+        _ => None,
+    }
+}
+
+fn elements(value: &Value) -> Option<Elements> {
+    let Value::Word(w) = value else { return None };
+    Some(match &**w {
+        "quads" => Elements::Quads,
+        "mixed" => Elements::Mixed,
+        _ => Elements::Triangles,
+    })
+}
+
+fn method(value: &Value) -> Option<Method> {
+    let Value::Word(w) = value else { return None };
+    Some(if &**w == "mapped" { Method::Mapped } else { Method::Auto })
+}
+
+impl Cx<'_> {
+    /// The origin of an expression of the declaration being evaluated.
+    pub(super) fn origin_at(&mut self, expr: ExprId) -> Origin {
+        self.machine.site.expr = expr;
+        self.origin()
+    }
+
+    pub(super) fn collection(
+        &mut self,
+        code: Code<'_>,
+        declaration: &Declaration,
+        family: &[For],
+        things: &[ExprId],
+        (settings, clauses): (&[ast::Setting], &[MeshClause]),
+    ) -> Result<Value, Stop> {
+        let name = bound(declaration).map(|b| self.names.text(b.name).to_owned()).unwrap_or_default();
+        let mut meshes: Vec<MeshSpec> = Vec::new();
+        let base = self.machine.at(code.module).meshes.len();
+        let keyword = declaration.keyword;
+        let value = self.family(code, family, &mut |cx, member| {
+            let name: Arc<str> = member_name(&name, member).into();
+            let origin = cx.own_origin(code, member);
+            let mut gather = Gather::default();
+            let things = gather.take(cx.things(code, things, keyword));
+            match keyword {
+                Keyword::Shell => {
+                    let settings = gather.take(cx.settings(code, "shell", settings::SHELL, settings));
+                    gather.done()?;
+                    let (things, settings) = (things.unwrap_or_default(), settings.unwrap_or_default());
+                    let mut surfaces = Vec::with_capacity(things.len());
+                    for (thing, _) in things {
+                        match thing {
+                            Value::Surface(s) => surfaces.push(s),
+                            Value::Shell(s) => surfaces.extend(s.surfaces.iter().cloned()),
+                            _ => return Err(Stop::Bug("a shell of something else")),
+                        }
+                    }
+                    let snap = said(&settings, "snap", number);
+                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap })))
+                }
+                Keyword::Mesh => {
+                    let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));
+                    let rules: Vec<RuleSpec> = clauses.iter().filter_map(|c| gather.take(cx.rule(code, c))).collect();
+                    gather.done()?;
+                    let settings = settings.unwrap_or_default();
+                    meshes.push(MeshSpec {
+                        name,
+                        origin,
+                        things: things.unwrap_or_default(),
+                        size: said(&settings, "size", number),
+                        chord_error: said(&settings, "chord_error", number),
+                        angle_error: said(&settings, "angle_error", |v| number(v).map(units::radians)),
+                        elements: said(&settings, "elements", elements),
+                        order: said(&settings, "order", |v| number(v).map(|n| n as u8)),
+                        method: said(&settings, "method", method),
+                        conforming: said(&settings, "conforming", |v| if let Value::Bool(b) = v { Some(*b) } else { None }),
+                        rules,
+                    });
+                    let index = u32::try_from(base + meshes.len() - 1).unwrap_or(u32::MAX);
+                    Ok(Value::Mesh(Arc::new(MeshValue::Declared { module: code.module, index })))
+                }
+                _ => {
+                    gather.take(cx.settings(code, "group", &[], settings));
+                    gather.done()?;
+                    Ok(Value::list(things.unwrap_or_default().into_iter().map(|t| t.0).collect()))
+                }
+            }
+        })?;
+        let module = self.machine.at_mut(code.module);
+        module.mesh_stages.resize_with(base + meshes.len(), || super::module::Stage::Waiting);
+        module.meshes.extend(meshes.into_iter().map(Arc::new));
+        Ok(value)
+    }
+
+    /// Things of a collection, nested lists flattened, each of a kind that may be there.
+    pub(super) fn things(&mut self, code: Code<'_>, things: &[ExprId], keyword: Keyword) -> Result<Vec<(Value, Origin)>, Stop> {
+        let (wanted, fits): (&str, fn(&Value) -> bool) = match keyword {
+            Keyword::Shell => ("surfaces", |v| matches!(v, Value::Surface(_) | Value::Shell(_))),
+            Keyword::Mesh => ("surfaces, shells, curves and points", |v| {
+                matches!(
+                    v,
+                    Value::Surface(_)
+                        | Value::Shell(_)
+                        | Value::Curve(_)
+                        | Value::Link(..)
+                        | Value::Patch(..)
+                        | Value::Vector(..)
+                        | Value::Node(_)
+                        | Value::Vertex(..)
+                )
+            }),
+            Keyword::Export => ("meshes, curves, surfaces or records", |v| !matches!(v, Value::None | Value::Module(_) | Value::Plane(_))),
+            _ => ("things with geometry", |v| {
+                !matches!(
+                    v,
+                    Value::None
+                        | Value::Bool(_)
+                        | Value::Number(_)
+                        | Value::Text(_)
+                        | Value::Word(_)
+                        | Value::Record(_)
+                        | Value::Range(..)
+                        | Value::Module(_)
+                        | Value::Table(_)
+                        | Value::Plane(_)
+                )
+            }),
+        };
+        let (mut out, mut gather) = (Vec::new(), Gather::default());
+        for &thing in things {
+            let Some(value) = gather.take(self.eval(code, thing)) else { continue };
+            let origin = self.origin_at(thing);
+            let mut flat = Vec::new();
+            flatten_into(value, &mut flat);
+            for value in flat {
+                if fits(&value) {
+                    // A bare tuple is a point here.
+                    let value = if keyword != Keyword::Export && matches!(value, Value::Vector(_, d) if d.is_none()) {
+                        self.fit_expr(code, thing, value, super::types::Ty::Point, "this")?
+                    } else {
+                        value
+                    };
+                    out.push((value, origin));
+                    continue;
+                }
+                let (found, word) = (self.kind(&value), later::keyword_word(keyword));
+                let text = match keyword {
+                    Keyword::Export => format!("{found} cannot be exported"),
+                    _ => format!("a {word} is of {wanted}, got {found}"),
+                };
+                gather.take::<()>(Err(self.error(code, "E211", text, code.span(thing), found).stop()));
+                break;
+            }
+        }
+        gather.done().map(|()| out)
+    }
+
+    /// Settings of a block, each key known, given once and of its type.
+    pub(super) fn settings(
+        &mut self,
+        code: Code<'_>,
+        word: &str,
+        table: &'static [Setting],
+        settings: &[ast::Setting],
+    ) -> Result<Vec<Resolved>, Stop> {
+        let (mut out, mut gather) = (Vec::<Resolved>::with_capacity(settings.len()), Gather::default());
+        for setting in settings {
+            let key = self.names.text(setting.key).to_owned();
+            let Some(known) = table.iter().find(|s| s.key == key) else {
+                gather.take::<()>(Err(self.no_setting(code, (word, table), &key, setting.key_span)));
+                continue;
+            };
+            if let Some(before) = settings.iter().take_while(|s| s.key_span != setting.key_span).find(|s| s.key == setting.key) {
+                let draft = self.error(code, "E304", format!("`{key}` is given twice"), setting.key_span, "the second time");
+                gather.take::<()>(Err(draft.and(before.key_span, "the first time").stop()));
+                continue;
+            }
+            let value = self.eval_as(code, setting.value, known.ty, &format!("`{key}`"));
+            let value = value.and_then(|v| self.in_range(code, &key, v, setting.value));
+            if let Some(value) = gather.take(value) {
+                let origin = self.origin_at(setting.value);
+                out.push(Resolved { key: known.key, value, origin });
+            }
+        }
+        gather.done().map(|()| out)
+    }
+
+    fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
+        if key == "method" && !matches!(&value, Value::Word(w) if matches!(&**w, "auto" | "mapped")) {
+            let what = format!("`method: {}`", self.show(&value));
+            return Err(self.not_yet(code, &what, code.span(id)));
+        }
+        let Some(x) = number(&value) else { return Ok(value) };
+        let range = match key {
+            "order" if x != 1.0 && x != 2.0 => "1 or 2",
+            "count" if x < 1.0 => "at least 1",
+            "count" if x > 1e8 => "at most 10^8",
+            "size" | "chord_error" | "angle_error" | "bias" | "snap" if x <= 0.0 => "more than 0",
+            _ => return Ok(value),
+        };
+        let found = self.show(&value);
+        Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).stop())
+    }
+
+    #[cold]
+    fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Stop {
+        if word == "mesh" && later::is_setting(key) {
+            return self.not_yet(code, &format!("`{key}`"), span);
+        }
+        let near = nearest(key, table.iter().map(|s| s.key)).map(str::to_owned);
+        let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("a {word}") });
+        let label = near.map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
+        let keys: Vec<&str> = table.iter().map(|s| s.key).collect();
+        let draft = self.error(code, "E303", text, span, label);
+        if keys.is_empty() { draft.stop() } else { draft.note(format!("it takes {}", keys.join(", "))).stop() }
+    }
+
+    /// `on things { … }`; `near` and `in` are of a later version.
+    fn rule(&mut self, code: Code<'_>, clause: &MeshClause) -> Result<RuleSpec, Stop> {
+        let word_span = |len: u32| Span { start: clause.span.start, end: clause.span.start + len };
+        match clause.word {
+            ClauseWord::On => {}
+            ClauseWord::Near => return Err(self.not_yet(code, "`near`", word_span(4))),
+            ClauseWord::In => return Err(self.not_yet(code, "`in`", word_span(2))),
+        }
+        let mut gather = Gather::default();
+        let things = gather.take(self.rule_things(code, &clause.things)).unwrap_or_default();
+        let settings = gather.take(self.settings(code, "on", settings::ON, &clause.settings)).unwrap_or_default();
+        gather.done()?;
+        let origin = match clause.things.first() {
+            Some(thing) => self.origin_at(*thing),
+            None => Origin::NONE,
+        };
+        Ok(RuleSpec {
+            things,
+            count: said(&settings, "count", |v| number(v).map(|n| n as u32)),
+            size: said(&settings, "size", number),
+            bias: said(&settings, "bias", number),
+            elements: said(&settings, "elements", elements),
+            method: said(&settings, "method", method),
+            origin,
+        })
+    }
+
+    fn rule_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Stop> {
+        let found = self.things(code, things, Keyword::Group)?;
+        let wrong = found.iter().find(|(v, _)| matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Mesh(_)));
+        match wrong {
+            None => Ok(found),
+            Some((value, origin)) => {
+                let (kind, span) = (self.kind(value), self.span_of(*origin).map_or_else(Span::default, |s| s.1));
+                let text = format!("`on` speaks of links, curves, edges and faces, got {kind}");
+                Err(self.error(code, "E211", text, span, kind).stop())
+            }
+        }
+    }
+}

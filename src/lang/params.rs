@@ -1,0 +1,232 @@
+//! `param`: the only thing that may be set from outside, by a literal, inside its range.
+
+use std::sync::Arc;
+
+use super::cx::{Cx, Stop};
+use super::diag::{Diagnostic, FileId};
+use super::eval::Code;
+use super::module::{Given, bound};
+use super::names::nearest;
+use super::syntax::ast::{Allowed, Bound, DeclarationKind, Expr, ExprId, Keyword, Node, Span, TextPart, TypeName, Unary};
+use super::types::Ty;
+use super::units;
+use super::value::{Dim, ModuleId, Quantity, Value};
+
+impl Cx<'_> {
+    pub(super) fn param(
+        &mut self,
+        code: Code<'_>,
+        name: Bound,
+        ty: Option<&TypeName>,
+        value: ExprId,
+        allowed: Option<&Allowed>,
+    ) -> Result<Value, Stop> {
+        let subject = format!("`{}`", self.names.text(name.name));
+        let ty = match ty {
+            Some(ty) => Some(self.written_type(code, ty)?),
+            None => None,
+        };
+        let default = match ty {
+            Some(ty) => self.eval_as(code, value, ty, &subject)?,
+            None => self.eval(code, value)?,
+        };
+        let ty = match (ty, &default) {
+            (Some(ty), _) => ty,
+            (None, Value::Number(_) | Value::Bool(_) | Value::Text(_) | Value::Word(_)) => default.ty(),
+            (None, other) => {
+                let found = self.kind(other);
+                let text = format!("a param is a number, quantity, bool, string or word, got {found}");
+                return Err(self.error(code, "E211", text, code.span(value), found).help("`let` holds anything").stop());
+            }
+        };
+        self.allowed(code, &subject, &default, (ty, allowed), None, code.span(value))?;
+        let given = self.machine.at(code.module).given.iter().rev().find(|g| g.0 == name.name).map(|g| g.1.clone());
+        match given {
+            None => Ok(default),
+            Some(given) => self.set_param(code, name, &subject, (ty, allowed), given),
+        }
+    }
+
+    /// A value from outside instead of the default.
+    fn set_param(
+        &mut self,
+        code: Code<'_>,
+        name: Bound,
+        subject: &str,
+        (ty, allowed): (Ty, Option<&Allowed>),
+        given: Given,
+    ) -> Result<Value, Stop> {
+        let (value, file, span) = match given {
+            Given::Value(value, file, span) => (Some(value), file, span),
+            Given::Text(text, file) => {
+                let span = Span { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) };
+                let literal = text.split_once('=').map_or(&*text, |(_, v)| v).trim();
+                let value = match ty {
+                    Ty::Text if !literal.starts_with('"') => Some(Value::text(literal)),
+                    Ty::Word => Some(Value::Word(literal.into())),
+                    _ => self.literal_text(literal),
+                };
+                (value, file, span)
+            }
+        };
+        let declared = self.machine.at(code.module).file;
+        let fail = |cx: &mut Self, code: &'static str, message: String, label: &str| {
+            let diagnostic = Diagnostic::new(code, message, file, span, label).label(declared, name.span, "declared here");
+            cx.sink.push(diagnostic);
+            Stop::Failed
+        };
+        let Some(value) = value else {
+            return Err(fail(
+                self,
+                "E211",
+                format!("{subject} is set by a literal: a number with its unit, true, false or a word"),
+                "not a literal",
+            ));
+        };
+        let value = match self.coerce(value, ty, code.module) {
+            Ok(value) => value,
+            Err((value, _)) => {
+                let (wanted, found) = (ty.words(), self.kind(&value));
+                let label = found.clone();
+                return Err(fail(self, "E211", format!("{subject} is {wanted}, got {found}"), &label));
+            }
+        };
+        self.allowed(code, subject, &value, (ty, allowed), Some((file, span)), name.span)?;
+        Ok(value)
+    }
+
+    /// Whether a value is inside the range or among the choices.
+    fn allowed(
+        &mut self,
+        code: Code<'_>,
+        subject: &str,
+        value: &Value,
+        (ty, allowed): (Ty, Option<&Allowed>),
+        outside: Option<(FileId, Span)>,
+        span: Span,
+    ) -> Result<(), Stop> {
+        let (range, holds) = match allowed {
+            None => return Ok(()),
+            Some(Allowed::Range(a, b)) => {
+                let (low, high) = (self.eval_as(code, *a, ty, "the range")?, self.eval_as(code, *b, ty, "the range")?);
+                let (Value::Number(x), Value::Number(l), Value::Number(h)) = (value, &low, &high) else {
+                    return Err(self.error(code, "E211", "a range goes from one number to another", code.span(*a), "not a number").stop());
+                };
+                if l.value > h.value {
+                    return Err(self.error(code, "E306", "this range is empty", code.span(*a), "above the other end").stop());
+                }
+                (format!("{} to {}", self.show(&low), self.show(&high)), x.value >= l.value && x.value <= h.value)
+            }
+            Some(Allowed::Choices(items)) => {
+                let mut choices = Vec::with_capacity(items.len());
+                for item in items {
+                    choices.push(self.eval_as(code, *item, ty, "a choice")?);
+                }
+                let near = |a: &Value, b: &Value| match (a, b) {
+                    (Value::Number(x), Value::Number(y)) => x.value == y.value,
+                    _ => super::operators::same(a, b) == Some(true),
+                };
+                let texts: Vec<String> = choices.iter().map(|c| self.show_inside(c)).collect();
+                (format!("one of {}", texts.join(", ")), choices.iter().any(|c| near(c, value)))
+            }
+        };
+        if holds {
+            return Ok(());
+        }
+        let message = format!("{subject} must be {range}, got {}", self.show_inside(value));
+        match outside {
+            None => Err(self.error(code, "E218", message, span, "outside").stop()),
+            Some((file, place)) => {
+                let declared = self.machine.at(code.module).file;
+                self.sink.push(Diagnostic::new("E218", message, file, place, "outside").label(declared, span, "declared here"));
+                Err(Stop::Failed)
+            }
+        }
+    }
+
+    /// A literal as a value: a number, quantity, bool, text, word or one of these negated.
+    pub(super) fn literal_text(&mut self, text: &str) -> Option<Value> {
+        if let Ok(value) = text.parse::<f64>()
+            && value.is_finite()
+            && text.starts_with(|c: char| c.is_ascii_digit() || c == '-')
+        {
+            return Some(Value::number(value));
+        }
+        let file = FileId(u32::MAX);
+        let (script, mistakes) = super::syntax::parse(&format!("let x = {text}"), file, &mut self.names);
+        if !mistakes.is_empty() {
+            return None;
+        }
+        match script.declarations.as_slice() {
+            [only] => match &only.kind {
+                DeclarationKind::Value { value, family, .. } if family.is_empty() => self.literal_value(&only.nodes, *value),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn literal_value(&self, nodes: &[Node], id: ExprId) -> Option<Value> {
+        Some(match &nodes[id.index()].expr {
+            Expr::Number(x) if x.is_finite() => Value::number(*x),
+            Expr::Quantity(x, unit) => Value::Number(units::quantity(*x, unit, self.unit)?),
+            Expr::Bool(b) => Value::Bool(*b),
+            Expr::Name(name) => Value::Word(self.names.text(*name).into()),
+            Expr::Text(parts) => match parts.as_slice() {
+                [] => Value::text(""),
+                [TextPart::Literal(text)] => Value::text(text),
+                _ => return None,
+            },
+            Expr::Unary(Unary::Minus, of) => match self.literal_value(nodes, *of)? {
+                Value::Number(q) => Value::Number(Quantity { value: -q.value, ..q }),
+                _ => return None,
+            },
+            Expr::Tuple(items) => {
+                let mut v = [Quantity::bare(0.0); 3];
+                for (slot, item) in v.iter_mut().zip(items) {
+                    let Value::Number(q) = self.literal_value(nodes, *item)? else { return None };
+                    *slot = q;
+                }
+                if v.iter().any(|q| !q.dim.is_none()) {
+                    return None;
+                }
+                Value::Vector(glam::DVec3::new(v[0].value, v[1].value, v[2].value), Dim::NONE)
+            }
+            Expr::List(items) => Value::list(items.iter().map(|i| self.literal_value(nodes, *i)).collect::<Option<_>>()?),
+            _ => return None,
+        })
+    }
+
+    /// Params that a `--set`, a table or a `use` names, each checked to exist; E219 with the nearest one.
+    pub(super) fn give(&mut self, module: ModuleId, name: &str, given: Given) -> Result<(), Diagnostic> {
+        let script = self.machine.at(module).script.clone();
+        let params = || script.declarations.iter().filter(|d| d.keyword == Keyword::Param).filter_map(bound);
+        if let Some(b) = params().find(|b| self.names.text(b.name) == name) {
+            self.machine.at_mut(module).given.push((b.name, given));
+            return Ok(());
+        }
+        let (file, span) = match &given {
+            Given::Text(text, file) => (*file, Span { start: 0, end: text.len() as u32 }),
+            Given::Value(_, file, span) => (*file, *span),
+        };
+        let names: Vec<&str> = params().map(|b| self.names.text(b.name)).collect();
+        let near = nearest(name, names.iter().copied());
+        let label = near.map_or_else(|| "no such param".to_owned(), |n| format!("did you mean `{n}`?"));
+        let diagnostic = Diagnostic::new("E219", format!("there is no param `{name}`"), file, span, label);
+        Err(match names.is_empty() {
+            true => diagnostic.note("this script has no params"),
+            false => diagnostic.note(format!("its params are {}", names.join(", "))),
+        })
+    }
+
+    /// Params from outside as `name = literal` texts, each with a pseudo-file of its own.
+    pub(super) fn give_all(&mut self, module: ModuleId, sets: &[(String, String)]) {
+        for (name, value) in sets {
+            let text: Arc<str> = format!("{name}={value}").into();
+            let file = self.sources.add("--set", &*text);
+            if let Err(diagnostic) = self.give(module, name, Given::Text(text, file)) {
+                self.machine.filed.push((None, diagnostic));
+            }
+        }
+    }
+}

@@ -1,0 +1,361 @@
+//! A run from the first declaration to the last report: phases around the tolerance, and what is said in the end.
+
+use std::sync::Arc;
+
+use super::cx::{Cx, Stop};
+use super::diag::{self, Diagnostic};
+use super::eval::Code;
+use super::module::{State, bound};
+use super::plans::{CheckResult, ExportSpec, ReportTable};
+use super::stages;
+use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword};
+use super::types::Ty;
+use super::units;
+use super::value::{Dim, ModuleId, Value};
+use crate::base::fault::Severity;
+use crate::base::tolerance::Tolerance;
+
+/// Names listed in a note about what was not built.
+const NAMES_LISTED: usize = 12;
+/// The tolerance of a model without points, in millimetres.
+const FALLBACK_MM: f64 = 0.001;
+
+/// The main script of a run.
+pub struct Entry<'e> {
+    /// As the user knows it: `hall.loft`, `<stdin>`.
+    pub name: &'e str,
+    /// Resolved path that its imports are beside.
+    pub path: &'e str,
+    /// Its text.
+    pub text: &'e str,
+    /// Params set from outside: name and the text of a literal.
+    pub sets: &'e [(String, String)],
+}
+
+impl Cx<'_> {
+    /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
+    pub fn load(&mut self, entry: &Entry) {
+        let main = self.add_module(entry.name, entry.path, entry.text.into());
+        self.unit = self.machine.at(main).unit;
+        self.give_all(main, entry.sets);
+    }
+
+    /// Evaluates every declaration: first what needs no tolerance, then the tolerance, then the rest.
+    pub fn evaluate_all(&mut self) {
+        let said = self.said_tolerance();
+        self.pass();
+        self.fix_tolerance(said);
+        self.snap();
+        for module in &mut self.machine.modules {
+            for state in &mut module.states {
+                if matches!(state, State::Suspended) {
+                    *state = State::Waiting;
+                }
+            }
+        }
+        self.pass();
+    }
+
+    /// Evaluates what waits, in all modules; more modules may turn up on the way.
+    fn pass(&mut self) {
+        let mut m = 0;
+        while m < self.machine.modules.len() {
+            let module = ModuleId::at(m);
+            for i in 0..self.machine.at(module).states.len() {
+                if self.job.go_on().is_err() {
+                    return;
+                }
+                if matches!(self.machine.at(module).states[i], State::Waiting) {
+                    self.ensure_all(module, i as u32);
+                }
+            }
+            m += 1;
+        }
+    }
+
+    /// The only declaration of a head keyword; further ones are reported.
+    fn single(&mut self, module: ModuleId, keyword: Keyword) -> Option<u32> {
+        let found = self.heads(module, keyword);
+        let script = self.machine.at(module).script.clone();
+        let file = self.machine.at(module).file;
+        for again in found.iter().skip(1) {
+            let (first, second) = (script.declarations[found[0] as usize].keyword_span, script.declarations[*again as usize].keyword_span);
+            let word = super::later::keyword_word(keyword);
+            let diagnostic =
+                Diagnostic::new("E202", format!("`{word}` is said once"), file, second, "again here").label(file, first, "first here");
+            self.machine.filed.push((Some((module, *again)), diagnostic));
+        }
+        found.first().copied()
+    }
+
+    /// Evaluates expressions of a head line outside any other declaration.
+    fn head(&mut self, module: ModuleId, index: u32, values: &[(ExprId, Ty, &str)]) -> Option<Vec<Value>> {
+        let script = self.machine.at(module).script.clone();
+        let declaration = &script.declarations[index as usize];
+        let code = Code { nodes: &declaration.nodes, module, declaration: index };
+        self.machine.site.module = module;
+        self.machine.site.declaration = index;
+        let mut out = Vec::with_capacity(values.len());
+        for (expr, ty, subject) in values {
+            match self.eval_as(code, *expr, *ty, subject) {
+                Ok(Value::Number(q)) if q.value <= 0.0 => {
+                    let found = self.quantity(q);
+                    self.error(code, "E306", format!("{subject} must be more than 0, got {found}"), code.span(*expr), found).say();
+                }
+                Ok(value) => out.push(value),
+                Err(Stop::NotYet) => {
+                    let text = format!("{subject} cannot depend on what depends on the tolerance");
+                    self.error(code, "E203", text, code.span(*expr), "needs the tolerance").say();
+                }
+                Err(stop) => {
+                    self.settle(code, stop, code.span(*expr));
+                }
+            }
+        }
+        let said = std::mem::take(&mut self.sink);
+        self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
+        (out.len() == values.len()).then_some(out)
+    }
+
+    /// `tolerance 0.001mm, 0.5deg`: lengths in model units, angles in radians.
+    fn said_tolerance(&mut self) -> Option<(f64, Option<f64>)> {
+        let index = self.single(ModuleId::MAIN, Keyword::Tolerance)?;
+        let script = self.machine.at(ModuleId::MAIN).script.clone();
+        let DeclarationKind::Tolerance(exprs) = &script.declarations[index as usize].kind else { return None };
+        let wanted = [(Ty::Quantity(Dim::LENGTH), "the tolerance"), (Ty::Quantity(Dim::ANGLE), "the angle of kinks")];
+        let values: Vec<(ExprId, Ty, &str)> = exprs.iter().zip(wanted).map(|(e, (ty, s))| (*e, ty, s)).collect();
+        if let Some(extra) = exprs.get(2) {
+            let nodes = &script.declarations[index as usize].nodes;
+            let code = Code { nodes, module: ModuleId::MAIN, declaration: index };
+            self.error(code, "E302", "a tolerance is a length and an angle", code.span(*extra), "one too many").say();
+        }
+        let values = self.head(ModuleId::MAIN, index, &values)?;
+        let number = |i: usize| match values.get(i) {
+            Some(Value::Number(q)) => Some(q.value),
+            _ => None,
+        };
+        Some((number(0)?, number(1).map(units::radians)))
+    }
+
+    fn fix_tolerance(&mut self, said: Option<(f64, Option<f64>)>) {
+        let diagonal = self.seen.diagonal();
+        self.tolerance = Some(match said {
+            Some((point, None)) => Tolerance::new(point, diagonal),
+            Some((point, Some(angle))) => Tolerance::new(point, diagonal).with_angle(angle),
+            None => Tolerance::from_diagonal(diagonal, units::convert(FALLBACK_MM, units::MILLIMETRE, self.unit, 1)),
+        });
+    }
+
+    /// `snap 4mm` of each script: moves curve ends, then forgets what was made from the curves before.
+    fn snap(&mut self) {
+        for m in 0..self.machine.modules.len() {
+            let module = ModuleId::at(m);
+            let Some(index) = self.single(module, Keyword::Snap) else { continue };
+            let script = self.machine.at(module).script.clone();
+            let DeclarationKind::Snap(expr) = script.declarations[index as usize].kind else { continue };
+            let Some(values) = self.head(module, index, &[(expr, Ty::Quantity(Dim::LENGTH), "the distance")]) else { continue };
+            let [Value::Number(distance)] = values.as_slice() else { continue };
+            self.snap_module(module, index, expr, distance.value);
+        }
+    }
+
+    fn snap_module(&mut self, module: ModuleId, index: u32, expr: ExprId, distance: f64) {
+        let mut parts = stages::gather(self, module);
+        self.machine.site.module = module;
+        self.machine.site.declaration = index;
+        let origin = self.origin_at(expr);
+        let pipeline = self.pipeline;
+        let result = pipeline.snap(self, &mut parts, distance, origin);
+        if let Err(stop) = result {
+            let script = self.machine.at(module).script.clone();
+            let declaration = &script.declarations[index as usize];
+            let code = Code { nodes: &declaration.nodes, module, declaration: index };
+            self.settle(code, stop, declaration.span);
+        }
+        let said = std::mem::take(&mut self.sink);
+        self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
+        let mut curves = parts.curves.into_iter();
+        self.replace_curves(module, &mut || curves.next().map(|c| Value::Curve(c.value)));
+        self.forget_dependents(module);
+    }
+
+    /// Puts snapped curves in the place of those evaluated before, in the order in which they were gathered.
+    fn replace_curves(&mut self, module: ModuleId, next: &mut dyn FnMut() -> Option<Value>) {
+        fn walk(value: Value, next: &mut dyn FnMut() -> Option<Value>) -> Value {
+            match value {
+                Value::List(items) => Value::list(items.iter().map(|v| walk(v.clone(), next)).collect()),
+                curve => next().unwrap_or(curve),
+            }
+        }
+        let script = self.machine.at(module).script.clone();
+        for (i, declaration) in script.declarations.iter().enumerate() {
+            if declaration.keyword == Keyword::Curve
+                && let State::Done(value) = &self.machine.at(module).states[i]
+            {
+                let value = walk(value.clone(), next);
+                self.machine.at_mut(module).states[i] = State::Done(value);
+            }
+        }
+    }
+
+    /// Declarations other than curves that name a snapped curve, at first or second hand, are evaluated again.
+    fn forget_dependents(&mut self, module: ModuleId) {
+        let script = self.machine.at(module).script.clone();
+        let n = script.declarations.len();
+        let mut stale: Vec<bool> = script.declarations.iter().map(|d| d.keyword == Keyword::Curve).collect();
+        loop {
+            let before = stale.iter().filter(|s| **s).count();
+            for i in 0..n {
+                stale[i] = stale[i]
+                    || script.declarations[i].nodes.iter().any(|node| match node.expr {
+                        Expr::Name(name) | Expr::Call { name, .. } => self.machine.at(module).find(name).is_some_and(|d| stale[d as usize]),
+                        _ => false,
+                    });
+            }
+            if stale.iter().filter(|s| **s).count() == before {
+                break;
+            }
+        }
+        for i in 0..n {
+            let again = stale[i] && script.declarations[i].keyword != Keyword::Curve;
+            if again && matches!(self.machine.at(module).states[i], State::Done(_)) {
+                self.machine.at_mut(module).states[i] = State::Waiting;
+                let owner = Some((module, i as u32));
+                self.machine.filed.retain(|f| f.0 != owner);
+                let m = self.machine.at_mut(module);
+                m.checks.retain(|c| c.0 != i as u32);
+                m.reports.retain(|c| c.0 != i as u32);
+                m.exports.retain(|c| c.0 != i as u32);
+            }
+        }
+    }
+
+    /// Everything said, in order of place: what was skipped is noted at its cause, equal reports are counted.
+    pub fn finish(&mut self) -> Vec<Diagnostic> {
+        let rest = std::mem::take(&mut self.sink);
+        self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
+        let skipped = self.skipped();
+        let filed = std::mem::take(&mut self.machine.filed);
+        let mut out: Vec<(Diagnostic, usize)> = Vec::with_capacity(filed.len());
+        let mut noted: Vec<(ModuleId, u32)> = Vec::new();
+        for (owner, mut diagnostic) in filed {
+            if let Some(owner) = owner
+                && diagnostic.severity() == Severity::Error
+                && !noted.contains(&owner)
+            {
+                noted.push(owner);
+                if let Some(note) = skipped.iter().find(|s| s.0 == owner).map(|s| self.not_built(owner, &s.1)) {
+                    diagnostic.notes.push(note);
+                }
+            }
+            let same = |d: &Diagnostic| {
+                d.code == diagnostic.code && d.place() == diagnostic.place() && d.labels.first() == diagnostic.labels.first()
+            };
+            match out.iter_mut().rev().take(64).find(|(d, _)| same(d)) {
+                Some(found) => found.1 += 1,
+                None => out.push((diagnostic, 0)),
+            }
+        }
+        let mut out: Vec<Diagnostic> = out
+            .into_iter()
+            .map(|(mut d, more)| {
+                if more > 0 {
+                    d.notes.push(format!("{} like this one here", more + 1));
+                }
+                d
+            })
+            .collect();
+        diag::sort(&mut out);
+        out
+    }
+
+    /// For each failed declaration what was skipped because of it.
+    #[allow(clippy::type_complexity)]
+    fn skipped(&self) -> Vec<((ModuleId, u32), Vec<(ModuleId, u32)>)> {
+        let mut out: Vec<((ModuleId, u32), Vec<(ModuleId, u32)>)> = Vec::new();
+        for (m, module) in self.machine.modules.iter().enumerate() {
+            for (i, state) in module.states.iter().enumerate() {
+                let State::Skipped(cm, cd) = state else { continue };
+                if self.machine.in_cycle.contains(&(ModuleId::at(m), i as u32)) {
+                    continue;
+                }
+                match out.iter_mut().find(|o| o.0 == (*cm, *cd)) {
+                    Some(found) => found.1.push((ModuleId::at(m), i as u32)),
+                    None => out.push(((*cm, *cd), vec![(ModuleId::at(m), i as u32)])),
+                }
+            }
+        }
+        out
+    }
+
+    /// "nothing that depends on `SE` was built: south, east, roof (2 curves, 1 surface, 1 mesh)".
+    fn not_built(&self, owner: (ModuleId, u32), members: &[(ModuleId, u32)]) -> String {
+        let named = |(m, d): &&(ModuleId, u32)| bound(&self.machine.at(*m).script.declarations[*d as usize]).is_some();
+        let names: Vec<String> = members.iter().filter(named).take(NAMES_LISTED + 1).map(|(m, d)| self.declaration_name(*m, *d)).collect();
+        let list = match names.len() {
+            0 => String::new(),
+            n if n > NAMES_LISTED => format!(": {}, …", names[..NAMES_LISTED].join(", ")),
+            _ => format!(": {}", names.join(", ")),
+        };
+        format!("nothing that depends on `{}` was built{list} ({})", self.declaration_name(owner.0, owner.1), self.count_words(members))
+    }
+
+    /// Whether anything said so far is an error.
+    pub fn has_errors(&self) -> bool {
+        self.machine.filed.iter().map(|f| &f.1).chain(&self.sink).any(|d| d.severity() == Severity::Error)
+    }
+
+    /// The tolerance that was fixed, for showing it.
+    pub fn tolerance_used(&self) -> Option<Tolerance> {
+        self.tolerance
+    }
+
+    /// Results of all checks, modules' included, in order of declaration.
+    pub fn checks(&self) -> Vec<CheckResult> {
+        let mut out = Vec::new();
+        for module in &self.machine.modules {
+            let mut checks: Vec<&(u32, CheckResult)> = module.checks.iter().collect();
+            checks.sort_by_key(|c| c.0);
+            out.extend(checks.into_iter().map(|c| c.1.clone()));
+        }
+        out
+    }
+
+    /// Reports of the main script in order of declaration.
+    pub fn reports(&self) -> Vec<ReportTable> {
+        in_order(self.machine.modules.first().map_or(&[], |m| &m.reports))
+    }
+
+    /// Exports of the main script in order of declaration.
+    pub fn exports(&self) -> Vec<ExportSpec> {
+        in_order(self.machine.modules.first().map_or(&[], |m| &m.exports))
+    }
+
+    /// The declared meshes of the main script, in order of declaration, as values for [`Cx::mesh`].
+    pub fn mesh_values(&self) -> Vec<(Arc<str>, super::value::MeshValue)> {
+        let mut out = Vec::new();
+        if let Some(module) = self.machine.modules.first() {
+            stages::each_member(module, &self.names, &[Keyword::Mesh], &mut |_, _, _, name, value| {
+                if let Value::Mesh(mesh) = value {
+                    out.push((name, (**mesh).clone()));
+                }
+            });
+        }
+        out
+    }
+
+    /// The value of a name of the main script; `None` when it has none or failed.
+    pub fn value_of(&self, name: &str) -> Option<Value> {
+        let module = self.machine.modules.first()?;
+        match &module.states[module.find(self.names.find(name)?)? as usize] {
+            State::Done(value) => Some(value.clone()),
+            _ => None,
+        }
+    }
+}
+
+fn in_order<T: Clone>(found: &[(u32, T)]) -> Vec<T> {
+    let mut found: Vec<&(u32, T)> = found.iter().collect();
+    found.sort_by_key(|f| f.0);
+    found.into_iter().map(|f| f.1.clone()).collect()
+}
