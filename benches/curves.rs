@@ -89,7 +89,11 @@ fn bench(c: &mut Criterion) {
         b.iter_batched(wavy_spline, |curve| curve.length(), criterion::BatchSize::SmallInput)
     });
     c.bench_function("100 000 lines made and measured", |b| {
-        b.iter(|| (0..100_000).map(|i| build::line(DVec3::ZERO, DVec3::splat(1.0 + f64::from(i)), Origin::NONE).expect("ends differ").length()).sum::<f64>())
+        b.iter(|| {
+            (0..100_000)
+                .map(|i| build::line(DVec3::ZERO, DVec3::splat(1.0 + f64::from(i)), Origin::NONE).expect("ends differ").length())
+                .sum::<f64>()
+        })
     });
 }
 

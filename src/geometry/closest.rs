@@ -220,7 +220,8 @@ mod tests {
                 let p = DVec3::new((f * 0.7) % 5.0 - 2.5, (f * 1.3) % 7.0 - 2.0, (f * 0.37) % 3.0);
                 let found = closest(&curve, p);
                 assert!((curve.point(found.t).distance(p) - found.distance).abs() < 1e-12);
-                let sampled = (0..=2000).map(|k| curve.point(a + (b - a) * f64::from(k) / 2000.0).distance(p)).fold(f64::INFINITY, f64::min);
+                let sampled =
+                    (0..=2000).map(|k| curve.point(a + (b - a) * f64::from(k) / 2000.0).distance(p)).fold(f64::INFINITY, f64::min);
                 assert!(found.distance <= sampled + 1e-9 && found.distance > sampled - 1e-3, "{} {sampled}", found.distance);
             }
         }

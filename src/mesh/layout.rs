@@ -6,7 +6,7 @@ use super::build::Input;
 use super::plan::{Elements, Method};
 use crate::model::atoms::{Atoms, Part, Use, atoms};
 use crate::model::glue::preference;
-use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Track, Trace};
+use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Trace, Track};
 use crate::network::LinkId;
 use crate::surface::{Domain, Surface};
 
@@ -212,7 +212,8 @@ fn by_link(input: &Input, edges: &[EdgeId], links: &[(LinkId, usize)], pieces: &
             let s = input.network.links[link.index()].s;
             let length = s.1 - s.0;
             let inside = |u: &&Use| 0.5 * (u.s.0 + u.s.1) > start && 0.5 * (u.s.0 + u.s.1) < start + length;
-            let own: Vec<Use> = pieces.of_track[part].iter().filter(inside).map(|u| Use { s: (u.s.0 - start, u.s.1 - start), ..*u }).collect();
+            let own: Vec<Use> =
+                pieces.of_track[part].iter().filter(inside).map(|u| Use { s: (u.s.0 - start, u.s.1 - start), ..*u }).collect();
             found.entry(*link).or_default().extend(oriented(&own, *against, length, 0.0));
             start += length;
         }

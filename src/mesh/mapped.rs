@@ -59,7 +59,8 @@ impl Frame {
     /// Triangles and quads that the grid makes.
     pub fn elements(&self, kind: Elements) -> (u64, u64) {
         let (nu, nv) = (self.size().0 as u64, self.size().1 as u64);
-        let at_poles = nu * (u64::from(self.poles[0]) + u64::from(self.poles[2])) + nv * (u64::from(self.poles[1]) + u64::from(self.poles[3]));
+        let at_poles =
+            nu * (u64::from(self.poles[0]) + u64::from(self.poles[2])) + nv * (u64::from(self.poles[1]) + u64::from(self.poles[3]));
         let quads = nu * nv - at_poles;
         if kind == Elements::Triangles { (at_poles + 2 * quads, 0) } else { (at_poles, quads) }
     }

@@ -166,7 +166,8 @@ impl Sample {
         let share = |wish: &Wish| (cells / wish.least.max(wish.size).max(1.0)).powi_two() / 8.0;
         for _ in 0..CELLS {
             let (fu, fv) = (share(a), share(b));
-            let worst = self.curvatures().map(|(_, _, uu, vv)| (uu * fu, vv * fv)).max_by(|x, y| (x.0 + x.1).abs().total_cmp(&(y.0 + y.1).abs()));
+            let worst =
+                self.curvatures().map(|(_, _, uu, vv)| (uu * fu, vv * fv)).max_by(|x, y| (x.0 + x.1).abs().total_cmp(&(y.0 + y.1).abs()));
             let Some((du, dv)) = worst else { return };
             let total = (du + dv).abs();
             if total <= chord {

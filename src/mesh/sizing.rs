@@ -122,7 +122,8 @@ impl Sizing {
 
     /// The stretches as unknowns of the solver.
     pub fn stretches(&self, layout: &Layout) -> Vec<Stretch> {
-        let one = |(k, d): (usize, &Decision)| Stretch { least: d.least, wish: d.wish, written: d.count.map(|c| c.0), length: layout.length(k) };
+        let one =
+            |(k, d): (usize, &Decision)| Stretch { least: d.least, wish: d.wish, written: d.count.map(|c| c.0), length: layout.length(k) };
         self.decisions.iter().enumerate().map(one).collect()
     }
 
@@ -161,7 +162,12 @@ impl Sizing {
             if let Target::Surface(surface) = rule.target {
                 if !layout.faces.iter().any(|f| f.surface == surface) {
                     self.homeless[index] = Some("that surface is not in this mesh".to_owned());
-                } else if rule.bias.is_some() && rule.count.is_none() && rule.size.is_none() && rule.elements.is_none() && rule.method.is_none() {
+                } else if rule.bias.is_some()
+                    && rule.count.is_none()
+                    && rule.size.is_none()
+                    && rule.elements.is_none()
+                    && rule.method.is_none()
+                {
                     self.homeless[index] = Some("`bias` grows the steps along a curve, this is a face".to_owned());
                 }
             }
@@ -188,7 +194,8 @@ impl Sizing {
         }
         let rank = if links.len() == 1 && chain.whole_curve().is_none() { LINK } else { CURVE };
         if let Some((count, origin)) = rule.count {
-            let shares = count_shares(&uses, &links, count).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
+            let shares =
+                count_shares(&uses, &links, count).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
             for (u, n) in uses.iter().zip(shares) {
                 settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
             }
@@ -211,7 +218,12 @@ impl Sizing {
     }
 
     /// A count on a surface is for each of its sides.
-    fn surface_counts(&mut self, layout: &Layout, (index, rule, surface): (usize, &Rule, SurfaceId), division: &mut [Option<Ruled<Division>>]) -> Result<()> {
+    fn surface_counts(
+        &mut self,
+        layout: &Layout,
+        (index, rule, surface): (usize, &Rule, SurfaceId),
+        division: &mut [Option<Ruled<Division>>],
+    ) -> Result<()> {
         let Some((count, origin)) = rule.count else {
             return Ok(());
         };
@@ -308,7 +320,13 @@ fn shapes(layout: &Layout) -> Vec<u32> {
     for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
         for &k in group {
             let (a, b) = ends(k);
-            least[k] = if a == b { 3 } else if group.len() > 1 { 2 } else { 1 };
+            least[k] = if a == b {
+                3
+            } else if group.len() > 1 {
+                2
+            } else {
+                1
+            };
         }
     }
     least

@@ -197,7 +197,9 @@ impl<'a> Solver<'a> {
         if target < least {
             let limiting = open.iter().find(|(s, _)| self.strips[*s].least.0 > 1);
             return Err(match limiting {
-                Some((s, _)) if target > 0 => Conflict::TooCoarse { written: by, needs: self.strips[*s].least.1, least: self.strips[*s].least.0 },
+                Some((s, _)) if target > 0 => {
+                    Conflict::TooCoarse { written: by, needs: self.strips[*s].least.1, least: self.strips[*s].least.0 }
+                }
                 _ => self.differ(relation, a, b),
             });
         }
@@ -260,11 +262,8 @@ impl<'a> Solver<'a> {
         let even = |n: i64| n + (n + i64::from(others[0] + others[1])).rem_euclid(2);
         let target = if even(wish.max(low)) <= high { even(wish.max(low)) } else { high };
         let by: Vec<usize> = (0..3).flat_map(|o| maps[o].keys()).filter_map(|s| self.strips[*s].fixed.map(|f| f.1)).collect();
-        let fail = Conflict::ThreeSides {
-            relation,
-            counts: [0, 1, 2].map(|o| known[o].unwrap_or(least.max(0) as u32)),
-            written: by.clone(),
-        };
+        let fail =
+            Conflict::ThreeSides { relation, counts: [0, 1, 2].map(|o| known[o].unwrap_or(least.max(0) as u32)), written: by.clone() };
         if target < least || target < low {
             return Err(fail);
         }

@@ -226,11 +226,8 @@ impl Cutter<'_> {
         let support = self.support(place, corners);
         let mut sides = Vec::new();
         for (n, w) in corners.windows(2).enumerate() {
-            let curve = support.as_ref().map(|on| self.run_between(on, n)).unwrap_or(EdgeCurve::Iso {
-                surface: self.id,
-                from: w[0].0,
-                to: w[1].0,
-            });
+            let curve =
+                support.as_ref().map(|on| self.run_between(on, n)).unwrap_or(EdgeCurve::Iso { surface: self.id, from: w[0].0, to: w[1].0 });
             match self.edge(curve, (w[0].1, w[1].1)) {
                 Some(edge) => sides.push(RawSide { edges: vec![edge], pole: None }),
                 None => sides.push(RawSide { edges: Vec::new(), pole: Some(w[0].1) }),

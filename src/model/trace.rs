@@ -134,7 +134,9 @@ impl Track {
     pub fn of(curve: &EdgeCurve, surfaces: &[super::topology::Named], network: &Network) -> Self {
         match curve {
             EdgeCurve::Iso { surface, from, to } => Self::Iso(Trace::new(&surfaces[surface.index()].surface, *from, *to)),
-            EdgeCurve::Run { chain, span } => Self::Links { chains: vec![(chain.clone(), false)], starts: vec![0.0, chain.length()], span: *span },
+            EdgeCurve::Run { chain, span } => {
+                Self::Links { chains: vec![(chain.clone(), false)], starts: vec![0.0, chain.length()], span: *span }
+            }
             EdgeCurve::Links { links, span } => {
                 let chains: Vec<_> = links.iter().map(|(link, against)| (network.link_chain(*link), *against)).collect();
                 let mut starts = vec![0.0];

@@ -39,7 +39,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
             }
         }
     }
-    for group in &parts.groups {
+    for group in &cx.groups(module)? {
         let mut members = Vec::new();
         for value in &group.value {
             // What the mesh does not hold is no part of its groups.

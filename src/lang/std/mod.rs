@@ -78,8 +78,17 @@ impl Builtin {
 }
 
 /// All tables of functions.
-pub const BUILTINS: &[&[Builtin]] =
-    &[numbers::BUILTINS, lists::BUILTINS, text::BUILTINS, vectors::BUILTINS, curves::BUILTINS, network::BUILTINS, surfaces::BUILTINS, transforms::BUILTINS, topology::BUILTINS];
+pub const BUILTINS: &[&[Builtin]] = &[
+    numbers::BUILTINS,
+    lists::BUILTINS,
+    text::BUILTINS,
+    vectors::BUILTINS,
+    curves::BUILTINS,
+    network::BUILTINS,
+    surfaces::BUILTINS,
+    transforms::BUILTINS,
+    topology::BUILTINS,
+];
 
 /// All tables of fields.
 pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, network::FIELDS, topology::FIELDS];
