@@ -13,3 +13,4 @@ pub mod quadrature;
 pub mod solve;
 pub mod text;
 pub mod tolerance;
+pub mod triangulate;

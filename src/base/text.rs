@@ -196,7 +196,11 @@ impl Decimal {
         if rounded.negative {
             out.push(b'-');
         }
-        if fixed >= (rounded.len as i32).min(scientific) {
+        // The form that holds more digits; of two that hold all, the shorter.
+        let all = rounded.len as i32;
+        let fixed_length = if rounded.exponent > 0 { rounded.exponent.max(all) } else { all - rounded.exponent } + 1;
+        let shorter = fixed_length <= all + 1 + rounded.exponent_width(field);
+        if fixed >= all && (shorter || scientific < all) || fixed > scientific {
             rounded.push_fixed(out);
         } else {
             rounded.push_scientific(out, field);

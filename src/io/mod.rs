@@ -2,15 +2,25 @@
 
 mod bdf;
 mod blocks;
+pub mod curves;
 pub mod deck;
 pub mod files;
 mod inp;
+pub mod json;
 mod msh;
 mod obj;
+pub mod obj_read;
 mod ply;
 mod sets;
 mod stl;
+pub mod stl_read;
+pub mod table;
 mod vtu;
+mod weld;
 
+pub use curves::{CURVE_FORMATS, CurveFormat, Drawing, Polyline, curve_format_for};
 pub use deck::{Deck, Encoding, FORMATS, Format, Loss, Options, Shape, extension, format_for, no_format};
 pub use files::{FileError, Files, Memory};
+pub use json::Json;
+pub use obj_read::Obj;
+pub use table::{Cell, Table};

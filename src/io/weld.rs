@@ -1,0 +1,29 @@
+//! Equal points made one: what formats without shared nodes need.
+
+use glam::DVec3;
+
+/// The different points in order of first use, and for each given point its place among them.
+///
+/// Points are equal when their bits are, zero of either sign being one.
+pub fn weld(points: &[DVec3]) -> (Vec<DVec3>, Vec<u32>) {
+    let mut order: Vec<([u64; 3], u32)> =
+        points.iter().enumerate().map(|(i, p)| ((*p + DVec3::ZERO).to_array().map(f64::to_bits), i as u32)).collect();
+    order.sort_unstable();
+    let mut first = vec![0_u32; points.len()];
+    for run in order.chunk_by(|a, b| a.0 == b.0) {
+        for (_, i) in run {
+            first[*i as usize] = run[0].1;
+        }
+    }
+    let mut different = Vec::new();
+    let mut places = vec![0_u32; points.len()];
+    for i in 0..points.len() {
+        places[i] = if first[i] as usize == i {
+            different.push(points[i] + DVec3::ZERO);
+            different.len() as u32 - 1
+        } else {
+            places[first[i] as usize]
+        };
+    }
+    (different, places)
+}

@@ -1,0 +1,378 @@
+//! Files: what is written reads back, what is read is what the file's own facts say, and no bytes break a reader.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use lofting::base::origin::Origin;
+use lofting::base::par;
+use lofting::base::triangulate::newell;
+use lofting::io::deck::{Deck, Encoding, FORMATS, Format, Loss, Options, format_for};
+use lofting::io::{json, obj_read, stl_read, table};
+use lofting::mesh::{FaceRange, Group, Mesh};
+use proptest::prelude::*;
+
+/// A wavy sheet of `nx` × `ny` cells: the left half of surface `left`, the right of `right[1]`, triangles or quads;
+/// the lower rim as line elements of the curve `rim`; groups of faces, lines and nodes.
+fn sheet(nx: u32, ny: u32, quads: bool, order: u8) -> Mesh {
+    let at = |i: u32, j: u32| j * (nx + 1) + i;
+    let point = |x: f64, y: f64| DVec3::new(x, y / 3.0, (x * 0.7).sin() * (y * 0.4).cos());
+    let mut mesh = Mesh { name: "sheet".into(), order, ..Mesh::default() };
+    mesh.nodes = (0..=ny).flat_map(|j| (0..=nx).map(move |i| point(f64::from(i), f64::from(j)))).collect();
+    mesh.lines = (0..nx).map(|i| [at(i, 0), at(i + 1, 0)]).collect();
+    let halves = [0..nx / 2, nx / 2..nx];
+    for (name, columns) in ["left", "right[1]"].into_iter().zip(halves) {
+        let (t, q) = (mesh.triangles.len() as u32, mesh.quads.len() as u32);
+        for (i, j) in columns.flat_map(|i| (0..ny).map(move |j| (i, j))) {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if quads { mesh.quads.push([a, b, c, d]) } else { mesh.triangles.extend([[a, b, c], [a, c, d]]) }
+        }
+        let face = FaceRange {
+            name: name.into(),
+            triangles: t..mesh.triangles.len() as u32,
+            quads: q..mesh.quads.len() as u32,
+            lines: 0..0,
+        };
+        mesh.groups.push(set(&mesh, name, face.triangles.clone(), face.quads.clone()));
+        mesh.faces.push(face);
+    }
+    mesh.faces.push(FaceRange { name: "rim".into(), triangles: 0..0, quads: 0..0, lines: 0..nx });
+    let (t, q) = (mesh.triangles.len() as u32, mesh.quads.len() as u32);
+    mesh.groups.push(set(&mesh, "지붕 all", 0..t, 0..q));
+    mesh.groups.push(Group { name: "rim_lines".into(), nodes: (0..=nx).collect(), lines: (0..nx).collect(), ..Group::default() });
+    mesh.groups.push(Group { name: "corners".into(), nodes: vec![0, nx, at(0, ny), at(nx, ny)], ..Group::default() });
+    if order == 2 {
+        add_mids(&mut mesh);
+    }
+    mesh
+}
+
+fn set(mesh: &Mesh, name: &str, triangles: std::ops::Range<u32>, quads: std::ops::Range<u32>) -> Group {
+    let of_triangles = triangles.clone().flat_map(|k| mesh.triangles[k as usize]);
+    let mut nodes: Vec<u32> = of_triangles.chain(quads.clone().flat_map(|k| mesh.quads[k as usize])).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    Group { name: name.into(), nodes, lines: vec![], triangles: triangles.collect(), quads: quads.collect() }
+}
+
+fn add_mids(mesh: &mut Mesh) {
+    let mut known = std::collections::BTreeMap::new();
+    let mut nodes = mesh.nodes.clone();
+    let mut mid = |a: u32, b: u32| {
+        *known.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            nodes.push((nodes[a as usize] + nodes[b as usize]) / 2.0);
+            nodes.len() as u32 - 1
+        })
+    };
+    mesh.line_mids = mesh.lines.iter().map(|[a, b]| mid(*a, *b)).collect();
+    mesh.triangle_mids = mesh.triangles.iter().map(|[a, b, c]| [mid(*a, *b), mid(*b, *c), mid(*c, *a)]).collect();
+    mesh.quad_mids = mesh.quads.iter().map(|[a, b, c, d]| [mid(*a, *b), mid(*b, *c), mid(*c, *d), mid(*d, *a)]).collect();
+    mesh.nodes = nodes;
+}
+
+fn write(format: &Format, mesh: &Mesh, options: &Options) -> (Vec<u8>, Vec<Loss>) {
+    let deck = Deck { mesh, unit: "mm", options };
+    format.check(Origin::NONE, &deck).unwrap();
+    let mut out = Vec::new();
+    let losses = (format.write)(&deck, &mut out).unwrap();
+    (out, losses)
+}
+
+fn named(path: &str) -> &'static Format {
+    format_for(Origin::NONE, path).unwrap()
+}
+
+fn text_of(path: &str, mesh: &Mesh) -> (String, Vec<Loss>) {
+    let options = Options { encoding: Some(Encoding::Text), ..Options::default() };
+    let (bytes, losses) = write(named(path), mesh, &options);
+    (String::from_utf8(bytes).unwrap(), losses)
+}
+
+#[test]
+fn every_format_writes_every_kind_of_mesh_the_same_on_any_number_of_threads() {
+    // 20 000 cells are several blocks of records.
+    let meshes = [sheet(200, 100, true, 1), sheet(100, 100, false, 2), Mesh::default()];
+    for (format, mesh) in FORMATS.iter().flat_map(|format| meshes.iter().map(move |mesh| (format, mesh))) {
+        for encoding in format.encodings {
+            let options = Options { encoding: Some(*encoding), ..Options::default() };
+            let (first, losses) = write(format, mesh, &options);
+            par::set_threads(1);
+            let (again, _) = write(format, mesh, &options);
+            par::set_threads(0);
+            assert!(first == again && !first.is_empty(), "{} {encoding:?}", format.name);
+            assert!(losses.len() < 8);
+        }
+    }
+}
+
+#[test]
+fn deck_of_a_solver_word_by_word() {
+    let mut mesh = sheet(2, 1, true, 1);
+    mesh.nodes[0] = DVec3::new(-0.0, -0.001_234_567_890_123_456_7, 1e-7);
+    let (text, losses) = text_of("a.inp", &mesh);
+    let expected = "** sheet: made by loft, lengths in mm\n*NODE\n1, 0, -.001234567890123457, 1e-7\n2, 1, 0, 0.644217687237691\n";
+    assert!(text.starts_with(expected), "{text}");
+    for part in [
+        "*ELEMENT, TYPE=T3D2, ELSET=rim\n1, 1, 2\n2, 2, 3\n",
+        "*ELEMENT, TYPE=S4, ELSET=left\n3, 1, 2, 5, 4\n*ELEMENT, TYPE=S4, ELSET=right_1\n4, 2, 3, 6, 5\n",
+        "*NSET, NSET=left\n1, 2, 4, 5\n",
+        "*ELSET, ELSET=s___all\n3, 4\n",
+        "*ELSET, ELSET=rim_lines\n1, 2\n*NSET, NSET=rim_lines\n1, 2, 3\n",
+        "*NSET, NSET=corners\n1, 3, 4, 6\n",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    assert_eq!(losses, [Loss::Renamed("지붕 all".into(), "s___all".into())]);
+}
+
+#[test]
+fn bulk_data_word_by_word() {
+    let (text, losses) = text_of("a.bdf", &sheet(2, 1, true, 2));
+    for part in [
+        "SOL 101\nCEND\n$ SET 1: elements of left\nSET 1 = 3\n$ SET 2: nodes of left\nSET 2 = 1, 2, 4, 5\n",
+        "$ PSHELL 2: left\nPSHELL  2       1\n",
+        "GRID*   2                               1.0             0.0             *\n*       .644217687237691\n",
+        "CROD    1       1       1       2\n",
+        "CQUAD8  3       2       1       2       5       4       7       9       +\n+       10      11\n",
+        "ENDDATA\n",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    assert_eq!(losses.len(), 2);
+    let (text, _) = text_of("a.nas", &sheet(30, 20, false, 1));
+    assert!(text.contains("SET 1 = 31 THRU 630\n") && text.lines().all(|line| line.len() <= 73));
+}
+
+#[test]
+fn settings_that_do_not_fit_are_errors() {
+    let mesh = sheet(2, 1, true, 1);
+    let check = |path: &str, options: Options| {
+        let fault = named(path).check(Origin::NONE, &Deck { mesh: &mesh, unit: "mm", options: &options });
+        fault.err().map(|fault| lofting::base::fault::Fault::from(fault).to_string())
+    };
+    let element = |name: &str| Options { elements: vec![name.into()], ..Options::default() };
+    assert_eq!(check("a.inp", element("s4r")), None);
+    assert_eq!(check("a.inp", element("S8R")).unwrap(), "`element: S8R` is for 8-node quads, but `sheet` has 2-node lines and 4-node quads");
+    assert_eq!(check("a.inp", element("HEX")).unwrap(), "INP has no element `HEX`");
+    assert_eq!(check("a.stl", element("S4R")).unwrap(), "STL has no element names, got `element: S4R`");
+    let binary = Options { encoding: Some(Encoding::Binary), ..Options::default() };
+    assert_eq!(check("a.obj", binary).unwrap(), "OBJ has no binary encoding");
+    let (bytes, _) = write(named("a.inp"), &mesh, &element("S4R"));
+    assert!(String::from_utf8(bytes).unwrap().contains("TYPE=S4R, ELSET=left"));
+    let metres = Options { units_per_file_unit: Some(1000.0), ..Options::default() };
+    assert!(String::from_utf8(write(named("a.obj"), &mesh, &metres).0).unwrap().contains("v 0.002 0 "));
+    assert_eq!(format_for(Origin::NONE, "x.glb").err().map(|f| lofting::base::fault::Fault::from(f).code().0), Some("E230"));
+    assert_eq!(format_for(Origin::NONE, "dir.x/mesh").err().map(|f| lofting::base::fault::Fault::from(f).code().0), Some("E804"));
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_said() {
+    let mesh = sheet(4, 2, true, 2);
+    let count = |path: &str, encoding| {
+        let options = Options { encoding: Some(encoding), ..Options::default() };
+        write(named(path), &mesh, &options).1.iter().filter(|loss| matches!(loss, Loss::LeftOut(_))).count()
+    };
+    // Mid nodes, line elements, sets; text STL and OBJ keep part of the sets.
+    assert_eq!((count("a.stl", Encoding::Binary), count("a.stl", Encoding::Text)), (3, 3));
+    assert_eq!((count("a.ply", Encoding::Binary), count("a.obj", Encoding::Text)), (2, 2));
+    assert_eq!((count("a.vtu", Encoding::Binary), count("a.msh", Encoding::Text), count("a.inp", Encoding::Text)), (0, 0, 0));
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    let p = |n: &u32| mesh.nodes[*n as usize];
+    let triangles = mesh.triangles.iter().map(|t| newell(&t.iter().map(p).collect::<Vec<_>>()).length() / 2.0);
+    let quads = mesh.quads.iter().map(|q| newell(&q.iter().map(p).collect::<Vec<_>>()).length() / 2.0);
+    triangles.chain(quads).sum()
+}
+
+#[test]
+fn our_own_files_read_back() {
+    for quads in [true, false] {
+        let mesh = sheet(12, 8, quads, 1);
+        let (text, _) = text_of("a.obj", &mesh);
+        let obj = obj_read::read(text.as_bytes()).unwrap();
+        assert_eq!((obj.points.as_slice(), obj.polylines.len(), obj.skipped.len()), (mesh.nodes.as_slice(), 12, 0));
+        let (again, skipped) = obj.mesh("again");
+        assert!(skipped.is_empty());
+        assert_eq!((again.triangles.len(), again.quads.len()), (mesh.triangles.len(), mesh.quads.len()));
+        let corners = |mesh: &Mesh| -> Vec<DVec3> {
+            mesh.triangles.as_flattened().iter().chain(mesh.quads.as_flattened()).map(|n| mesh.nodes[*n as usize]).collect()
+        };
+        assert_eq!(corners(&again), corners(&mesh));
+        let names: Vec<&str> = again.faces.iter().map(|face| face.name.as_str()).collect();
+        assert_eq!(names, ["left 지붕_all", "right_1 지붕_all"]);
+    }
+    let mesh = sheet(12, 8, false, 1);
+    let (text, _) = text_of("a.stl", &mesh);
+    let (again, skipped) = stl_read::read(text.as_bytes(), "x").unwrap();
+    assert!(skipped.is_empty() && (area(&again) - area(&mesh)).abs() < 1e-12 * area(&mesh));
+    assert_eq!((again.nodes.len(), again.triangles.len(), again.faces.len()), (mesh.nodes.len(), mesh.triangles.len(), 2));
+    assert_eq!(again.faces[1].name, "right_1");
+    let (bytes, _) = write(named("a.stl"), &mesh, &Options::default());
+    let (again, _) = stl_read::read(&bytes, "x").unwrap();
+    assert_eq!((again.nodes.len(), again.triangles.len(), bytes.len()), (mesh.nodes.len(), mesh.triangles.len(), 84 + 50 * mesh.triangles.len()));
+    assert!((area(&again) - area(&mesh)).abs() < 1e-6 * area(&mesh));
+}
+
+fn data(folder: &str) -> (PathBuf, serde_json::Value) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(folder);
+    let truth = serde_json::from_slice(&std::fs::read(folder.join("truth.json")).unwrap()).unwrap();
+    (folder, truth)
+}
+
+fn keyword(facts: &serde_json::Value, word: &str) -> usize {
+    facts["keywords"][word].as_u64().unwrap_or(0) as usize
+}
+
+/// Counts, box and area of an OBJ against the facts that came with it.
+fn check_obj(name: &str, obj: &obj_read::Obj, facts: &serde_json::Value) {
+    let polygon = |k: &Vec<u32>| k.iter().map(|n| obj.vertices[*n as usize]).collect::<Vec<_>>();
+    if keyword(facts, "p") == 0 {
+        assert_eq!(obj.points.len(), keyword(facts, "v"), "{name}");
+    }
+    assert_eq!((obj.polygons.len(), obj.polylines.len()), (keyword(facts, "f"), keyword(facts, "l")), "{name}");
+    for (size, n) in facts["face_sizes"].as_object().unwrap() {
+        let found = obj.polygons.iter().filter(|polygon| polygon.len().to_string() == *size).count();
+        assert_eq!(found as u64, n.as_u64().unwrap(), "{name} {size}");
+    }
+    let expected = facts["area_vector_faces"].as_f64().unwrap();
+    let area: f64 = obj.polygons.iter().map(|p| newell(&polygon(p)).length() / 2.0).sum();
+    assert!((area - expected).abs() <= 1e-8 * expected.max(1.0), "{name}: {area} {expected}");
+    let bounds = lofting::base::bbox::Box3::of(obj.points.iter().copied());
+    for (k, x) in bounds.min.to_array().into_iter().chain(bounds.max.to_array()).enumerate() {
+        assert!((x - facts["bbox"][k].as_f64().unwrap()).abs() < 1e-6, "{name}");
+    }
+}
+
+#[test]
+fn valid_obj_files_hold_what_is_known_of_them() {
+    let (folder, truth) = data("obj-valid-a");
+    for (name, facts) in truth.as_object().unwrap() {
+        let obj = obj_read::read(&std::fs::read(folder.join(name)).unwrap()).unwrap();
+        check_obj(name, &obj, facts);
+        let (mesh, skipped) = obj.mesh("x");
+        assert!(skipped.is_empty(), "{name} {skipped:?}");
+        assert_eq!(mesh.triangles.len() + 2 * mesh.quads.len(), facts["triangles_after_fan"].as_u64().unwrap() as usize, "{name}");
+        // `t` lines of the torus are no part of OBJ and are told once.
+        assert_eq!(obj.skipped.len(), usize::from(keyword(facts, "t") > 0), "{name}");
+    }
+    let read = |name: &str| obj_read::read(&std::fs::read(folder.join(name)).unwrap()).unwrap();
+    assert_eq!(read("cornell_box.obj").groups.len(), 9);
+    assert_eq!(read("cube.obj").groups.len(), 6);
+    assert_eq!(read("line-prim.obj").polylines.iter().map(Vec::len).sum::<usize>(), 8);
+    assert_eq!(read("points-prim.obj").points.len(), 8);
+}
+
+#[test]
+fn odd_obj_files_are_read_or_refused_by_line() {
+    let (folder, truth) = data("obj-odd-a");
+    let refused = [
+        ("invalid-face-definition.obj", "line 18: a face needs at least 3 vertex indices, got 2"),
+        ("invalid-relative-texture-index.obj", "line 2: there is no vertex 1, the file has 0"),
+        ("invalid-relative-vertex-index.obj", "line 1: index -4 reaches back beyond the 0 vertices so far"),
+        ("issue-140-zero-face-idx.obj", "line 16: vertex indices start at 1, got 0"),
+        ("test-nan.obj", "line 12: `nan` is no coordinate"),
+        ("tobj-invalid_index.obj", "line 12: there is no vertex 7, the file has 6"),
+    ];
+    for (name, facts) in truth.as_object().unwrap() {
+        let read = obj_read::read(&std::fs::read(folder.join(name)).unwrap());
+        match (read, refused.iter().find(|(refused, _)| refused == name)) {
+            (Err(e), Some((_, expected))) => assert_eq!(format!("line {}: {}", e.line, e.what), *expected, "{name}"),
+            (Ok(obj), None) => {
+                check_obj(name, &obj, facts);
+                let (mesh, skipped) = obj.mesh("x");
+                let polygons: f64 = facts["area_vector_faces"].as_f64().unwrap();
+                assert!(skipped.is_empty() && area(&mesh) >= polygons * (1.0 - 1e-8), "{name} {} {polygons} {skipped:?}", area(&mesh));
+            }
+            (read, expected) => panic!("{name}: {:?} {expected:?}", read.err()),
+        }
+    }
+}
+
+#[test]
+fn lines_are_joined_and_comments_dropped() {
+    let obj = obj_read::read(b"v 0 0 0 # a\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n  3 4 # c\ncurv 0 1\n\ncurv 2 3\nl 1 2 3\np 2 -1\n").unwrap();
+    assert_eq!((obj.polygons.len(), obj.polylines[0].len(), obj.points.len()), (1, 3, 2));
+    assert_eq!((obj.skipped[0].line, obj.skipped[0].what.as_str()), (7, "`curv` is skipped (2 lines)"));
+    let e = obj_read::read(b"v 0 0 0\nv 1 0 0\n\nf 1 \\\n 2 \\\n 9\n").unwrap_err();
+    assert_eq!((e.line, e.column), (4, Some(4)));
+}
+
+#[test]
+fn broken_stl_files_are_refused_by_place() {
+    let check = |bytes: &[u8], line: u64, words: &str| {
+        let e = stl_read::read(bytes, "x").unwrap_err();
+        assert!(e.line == line && e.what.contains(words), "{e:?}");
+    };
+    check(b"", 0, "neither");
+    check(b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", 4, "three coordinates");
+    check(b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n", 5, "three vertices, got 1");
+    check(b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n", 4, "three coordinates");
+    let mut bytes = write(named("a.stl"), &sheet(2, 2, true, 1), &Options::default()).0;
+    check(&bytes[..bytes.len() - 1], 0, "needs 484 bytes, but it has 483");
+    bytes[100..104].copy_from_slice(&f32::NAN.to_le_bytes());
+    check(&bytes, 0, "triangle 1 has a coordinate that is no number");
+    // A binary file may begin with the word of the other form.
+    bytes[100..104].copy_from_slice(&1_f32.to_le_bytes());
+    bytes[..5].copy_from_slice(b"solid");
+    assert_eq!(stl_read::read(&bytes, "x").unwrap().0.triangles.len(), 8);
+}
+
+#[test]
+fn binary_junk_in_a_table_is_refused_at_once() {
+    let mut seed = 1_u64;
+    let junk: Vec<u8> = (0..20_000_000)
+        .map(|_| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 56) as u8
+        })
+        .collect();
+    let never = |_: &str| false;
+    for layout in [table::Layout::Separated, table::Layout::Blanks] {
+        let e = table::read(&junk, &table::Reading { layout, header: None, is_unit: &never }).unwrap_err();
+        assert!(e.line <= 2 && e.column.is_some() && e.what.contains("byte"), "{e:?}");
+    }
+    assert!(json::read(&junk).is_err() && obj_read::read(&junk).is_err() && stl_read::read(&junk, "x").is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, rng_seed: proptest::test_runner::RngSeed::Fixed(7), ..ProptestConfig::default() })]
+
+    #[test]
+    fn readers_survive_any_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..400), header in any::<Option<bool>>()) {
+        survive(&bytes, header);
+    }
+
+    #[test]
+    fn readers_survive_almost_good_text(lines in proptest::collection::vec("(v|f|l|p|g|vertex|solid|endloop|outer loop|\\{|\\[|\"|1,2;3|# x)[ ,;\\\\\"0-9eE.+/-]{0,12}", 0..30)) {
+        survive(lines.join("\n").as_bytes(), None);
+    }
+
+    #[test]
+    fn any_coordinates_come_back_bit_by_bit(xs in proptest::collection::vec(proptest::num::f64::NORMAL, 9)) {
+        let mut mesh = Mesh { name: "m".into(), order: 1, ..Mesh::default() };
+        mesh.nodes = xs.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)).collect();
+        mesh.triangles.push([0, 1, 2]);
+        let obj = obj_read::read(text_of("a.obj", &mesh).0.as_bytes()).unwrap();
+        prop_assert_eq!(obj.points, mesh.nodes.clone());
+        let (again, _) = stl_read::read(text_of("a.stl", &mesh).0.as_bytes(), "m").unwrap();
+        prop_assert_eq!(again.nodes, mesh.nodes);
+    }
+}
+
+fn survive(bytes: &[u8], header: Option<bool>) {
+    let unit = |word: &str| word == "m";
+    for layout in [table::Layout::Separated, table::Layout::Blanks] {
+        if let Ok(table) = table::read(bytes, &table::Reading { layout, header, is_unit: &unit }) {
+            assert_eq!(table.rows.len(), table.lines.len());
+            table::write_csv(&table, &mut std::io::sink()).unwrap();
+        }
+    }
+    let _ = json::read(bytes);
+    if let Ok(obj) = obj_read::read(bytes) {
+        let (mesh, _) = obj.mesh("x");
+        assert!(mesh.triangles.as_flattened().iter().all(|n| (*n as usize) < mesh.nodes.len()));
+    }
+    let _ = stl_read::read(bytes, "x");
+    std::io::sink().flush().unwrap();
+}
