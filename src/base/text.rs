@@ -12,6 +12,13 @@ pub fn push_real(out: &mut Vec<u8>, x: f64) {
     out.extend_from_slice(text.strip_suffix(b".0").unwrap_or(text));
 }
 
+/// [`push_real`] in single precision: as many digits as an `f32` has.
+pub fn push_single(out: &mut Vec<u8>, x: f32) {
+    let mut buffer = ryu::Buffer::new();
+    let text = buffer.format(x + 0.0).as_bytes();
+    out.extend_from_slice(text.strip_suffix(b".0").unwrap_or(text));
+}
+
 /// [`push_real`] as a string.
 pub fn real(x: f64) -> String {
     let mut out = Vec::with_capacity(24);

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::blocks::{write_fixed, write_records};
 use super::deck::{Deck, Encoding, Format, Loss};
 use super::sets::{Names, Naming, left_out, listed};
-use crate::base::text::push_real;
+use crate::base::text::{push_real, push_single};
 use crate::mesh::{FaceRange, Mesh};
 
 /// Binary by default.
@@ -121,9 +121,12 @@ fn write_text(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
 
 fn facet_text(deck: &Deck, nodes: [u32; 3], text: &mut Vec<u8>) {
     let [a, b, c] = corners(deck, nodes);
-    text.extend_from_slice(b"facet normal ");
-    let n = normal(a, b, c);
-    push_real_single(text, n);
+    text.extend_from_slice(b"facet normal");
+    // Readers compute the normal from the corners anyway: single precision is enough.
+    for x in normal(a, b, c).to_array() {
+        text.push(b' ');
+        push_single(text, x as f32);
+    }
     text.extend_from_slice(b"\nouter loop\n");
     for p in [a, b, c] {
         text.extend_from_slice(b"vertex ");
@@ -135,15 +138,4 @@ fn facet_text(deck: &Deck, nodes: [u32; 3], text: &mut Vec<u8>) {
         text.push(b'\n');
     }
     text.extend_from_slice(b"endloop\nendfacet\n");
-}
-
-/// A normal in single precision: readers compute it from the corners anyway.
-fn push_real_single(text: &mut Vec<u8>, n: DVec3) {
-    let mut buffer = ryu::Buffer::new();
-    for (k, x) in [n.x, n.y, n.z].into_iter().enumerate() {
-        if k > 0 {
-            text.push(b' ');
-        }
-        text.extend_from_slice(buffer.format(x as f32 + 0.0).as_bytes());
-    }
 }
