@@ -96,7 +96,13 @@ impl BoxTree {
 /// Moves bit i of a coordinate to bit 3i.
 fn spread(x: u64) -> u64 {
     let mut x = x & ((1 << KEY_BITS) - 1);
-    for (shift, mask) in [(32, 0x1f_0000_0000_ffff), (16, 0x1f_0000_ff00_00ff), (8, 0x100f_00f0_0f00_f00f), (4, 0x10c3_0c30_c30c_30c3), (2, 0x1249_2492_4924_9249)] {
+    for (shift, mask) in [
+        (32, 0x1f_0000_0000_ffff),
+        (16, 0x1f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
         x = (x | x << shift) & mask;
     }
     x

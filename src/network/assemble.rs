@@ -47,8 +47,8 @@ pub struct Stations {
 /// Nodes and links of curves; writes their runs and stations into `curves` and returns notes about shared runs.
 pub fn assemble(curves: &mut [NetCurve], parts: &Parts) -> Result<(Vec<Node>, Vec<Link>, Vec<Fault>)> {
     let mut stations = stations(curves, parts)?;
-    let shared = shared::match_stretches(curves, parts, &mut stations);
     lonely_rings(curves, parts, &mut stations);
+    let shared = shared::match_stretches(curves, parts, &mut stations);
     Ok(number(curves, stations, shared))
 }
 
@@ -100,7 +100,9 @@ fn stations(curves: &[NetCurve], parts: &Parts) -> Result<Stations> {
         let settled = settle(&curves[k], std::mem::take(&mut stations.rows[k]), &stations, stations.closed[k], tolerance);
         if !stations.closed[k] && settled.len() < 2 {
             let curve = &curves[k].curve;
-            return Err(NetworkFault::NoLength { of: curve.origin(), at: curve.start(), length: lengths[k], tolerance: tolerance.point }.into());
+            return Err(
+                NetworkFault::NoLength { of: curve.origin(), at: curve.start(), length: lengths[k], tolerance: tolerance.point }.into()
+            );
         }
         stations.rows[k] = settled;
     }
@@ -189,7 +191,8 @@ fn ambiguous(curves: &[NetCurve], group: &[(u32, u32)], sites: &[DVec3], marks: 
     };
     let shown: Vec<usize> = [a, b].into_iter().chain((0..points.len()).filter(|&k| k != a && k != b)).take(SHOWN).collect();
     // The smallest distance that is not mere rounding is what a smaller tolerance must stay below.
-    let mut gaps: Vec<f64> = points.iter().flat_map(|p| points.iter().map(|q| p.distance(*q))).filter(|d| *d > tolerance.rounding).collect();
+    let mut gaps: Vec<f64> =
+        points.iter().flat_map(|p| points.iter().map(|q| p.distance(*q))).filter(|d| *d > tolerance.rounding).collect();
     gaps.sort_by(f64::total_cmp);
     NetworkFault::ClusterAmbiguous {
         points: shown.into_iter().map(|k| (points[k], origin(k))).collect(),
@@ -221,7 +224,16 @@ pub fn settle(net: &NetCurve, mut row: Vec<Station>, stations: &Stations, closed
         }
         let (first, last) = (row[start].s, row[k - 1].s);
         let at_end = !closed && last == length && first > 0.0;
-        out.push(Station { s: if first == 0.0 || first == last { first } else if at_end { length } else { 0.5 * (first + last) }, node: row[start].node });
+        out.push(Station {
+            s: if first == 0.0 || first == last {
+                first
+            } else if at_end {
+                length
+            } else {
+                0.5 * (first + last)
+            },
+            node: row[start].node,
+        });
         start = k;
     }
     if closed && out.len() > 1 {

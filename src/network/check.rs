@@ -44,7 +44,12 @@ impl Network {
             return Err(format!("curve `{name}` runs over no link"));
         }
         if net.nodes.len() != net.links.len() + 1 || net.stations.len() != net.nodes.len() {
-            return Err(format!("curve `{name}` has {} links, {} nodes and {} stations", net.links.len(), net.nodes.len(), net.stations.len()));
+            return Err(format!(
+                "curve `{name}` has {} links, {} nodes and {} stations",
+                net.links.len(),
+                net.nodes.len(),
+                net.stations.len()
+            ));
         }
         if !net.stations.windows(2).all(|w| w[0] < w[1]) {
             return Err(format!("the stations of `{name}` do not ascend"));

@@ -53,7 +53,8 @@ fn join_close(points: &[DVec3], group: &[u32], reach: f64, sets: &mut Sets) {
 
 /// A group without gaps along any axis: all one when it is small enough, else a sweep along its widest axis.
 fn join_dense(points: &[DVec3], group: &mut [u32], reach: f64, sets: &mut Sets) {
-    let (low, high) = group.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &k| (lo.min(points[k as usize]), hi.max(points[k as usize])));
+    let (low, high) =
+        group.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &k| (lo.min(points[k as usize]), hi.max(points[k as usize])));
     let size = high - low;
     if size.length_squared() <= reach * reach {
         for &k in &group[1..] {
@@ -131,8 +132,11 @@ mod tests {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        for (n, reach, flat) in [(0, 0.1, false), (1, 0.1, false), (200, 0.02, true), (300, 0.08, false), (300, 0.3, false), (150, 2.0, false)] {
-            let points: Vec<DVec3> = (0..n).map(|_| DVec3::new(next(), if flat { 0.5 } else { next() }, (next() * 8.0).floor() / 8.0)).collect();
+        for (n, reach, flat) in
+            [(0, 0.1, false), (1, 0.1, false), (200, 0.02, true), (300, 0.08, false), (300, 0.3, false), (150, 2.0, false)]
+        {
+            let points: Vec<DVec3> =
+                (0..n).map(|_| DVec3::new(next(), if flat { 0.5 } else { next() }, (next() * 8.0).floor() / 8.0)).collect();
             assert_eq!(cluster(&points, reach), slow(&points, reach), "{n} {reach}");
         }
     }

@@ -41,7 +41,8 @@ pub fn all(curves: &[NetCurve], tolerance: &Tolerance, job: &Job) -> Result<Vec<
 /// Contacts of one curve with all others and itself.
 pub fn of_one(curves: &[NetCurve], one: usize, tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
     let own = curves[one].curve.bbox();
-    let near = |k: &usize| if *k == one { may_meet_itself(&curves[one].curve) } else { curves[*k].curve.bbox().touches(&own, tolerance.point) };
+    let near =
+        |k: &usize| if *k == one { may_meet_itself(&curves[one].curve) } else { curves[*k].curve.bbox().touches(&own, tolerance.point) };
     let pairs: Vec<(u32, u32)> = (0..curves.len()).filter(near).map(|k| (k.min(one) as u32, k.max(one) as u32)).collect();
     of_pairs(curves, &pairs, tolerance, job)
 }
@@ -64,7 +65,7 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
             contacts.extend(hits.into_iter().map(|hit| contact([a, b], [first, second], hit)));
         }
         job.advance(chunk.len() as u64);
-        Ok(contacts)
+        Result::Ok(contacts)
     })?;
     Ok(chunks.into_iter().flatten().collect())
 }

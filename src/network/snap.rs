@@ -60,7 +60,12 @@ pub fn snap(ends: &[SnapEnd], points: &[DVec3], distance: f64, tolerance: &Toler
     }
     moves.sort_unstable_by_key(|m| m.end);
     // Where nothing is wrong, rounding is not worth a word.
-    sink.extend(moves.iter().filter(|m| m.to.distance(all[m.end]) > tolerance.rounding).map(|m| NetworkFault::Snapped { end: ends[m.end].end, to: m.to }.into()));
+    sink.extend(
+        moves
+            .iter()
+            .filter(|m| m.to.distance(all[m.end]) > tolerance.rounding)
+            .map(|m| NetworkFault::Snapped { end: ends[m.end].end, to: m.to }.into()),
+    );
     Ok(moves)
 }
 
