@@ -20,7 +20,6 @@ struct Finder<'s> {
 /// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
 pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(Plan, Scene), Stop> {
     let tolerance = cx.tolerance()?;
-    let parts = cx.parts(module)?;
     let rules = spec.rules.iter().flat_map(|rule| &rule.things);
     let values = spec.things.iter().chain(rules).map(|(value, _)| value);
     let surfaces: Vec<&Surface> = values.flat_map(surfaces_of).collect();
