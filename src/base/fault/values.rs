@@ -127,8 +127,9 @@ impl Describe for ValueFault {
             Self::WrongKind { argument, wanted, found } => {
                 Report::new("E211", format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())
             }
-            Self::Mixed { argument, found, beside } => Report::new("E211", format!("{found} beside {beside}"))
-                .label(Subject::Argument(argument), "these must be of one kind"),
+            Self::Mixed { argument, found, beside } => {
+                Report::new("E211", format!("{found} beside {beside}")).label(Subject::Argument(argument), "these must be of one kind")
+            }
             Self::Raised { message } => Report::new("E903", message.clone()).label(Subject::Call, "raised here"),
             Self::NotInThisVersion { what } => {
                 Report::new("E230", format!("{what} is not in this version")).label(Subject::Call, "asked for here")

@@ -70,7 +70,8 @@ fn keys(cx: &mut Cx, list: &[Value], key: &Value) -> Result<Vec<Value>, Stop> {
             Some(n) if n == list.len() => Ok((0..n).filter_map(|i| other.item(i)).collect()),
             _ => {
                 let found = cx.kind(other);
-                Err(ValueFault::WrongKind { argument: "key", wanted: "the name of a field, or a list with a key for each member", found }.into())
+                Err(ValueFault::WrongKind { argument: "key", wanted: "the name of a field, or a list with a key for each member", found }
+                    .into())
             }
         },
     }

@@ -47,7 +47,9 @@ fn sin_cos_degrees(x: f64) -> (f64, f64) {
 fn rounded(x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) -> Result<Quantity, Stop> {
     match to {
         None if x.dim.is_none() => Ok(Quantity::bare(round(x.value))),
-        None => Err(ValueFault::Missing { function: "round", what: "a step to round a quantity to", example: "round(12.3mm, to: 1mm)" }.into()),
+        None => {
+            Err(ValueFault::Missing { function: "round", what: "a step to round a quantity to", example: "round(12.3mm, to: 1mm)" }.into())
+        }
         Some(step) if step.value <= 0.0 => Err(outside("to", step.value, "more than 0")),
         Some(step) => {
             one_dim(&[x, step], "to")?;
