@@ -65,7 +65,7 @@ impl Pipeline for Stages {
         let input = mesh::build::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
         let built = mesh::build::build(&input, cx.job, &mut sink);
         say_all(cx, &sink);
-        let (mesh, explanation) = built?;
+        let mesh::build::Built { mesh, explanation } = built?;
         self.note(explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)));
         Ok(Arc::new(mesh))
     }
