@@ -106,7 +106,8 @@ mod tests {
 
     #[test]
     fn bounds_hold_and_are_not_far_off() {
-        let points = [(0.0, 0.0, 0.0), (1.0, 2.0, 1.0), (2.0, 2.5, 0.0), (4.0, 2.0, -1.0), (5.0, 0.0, 0.0)].map(|(x, y, z)| DVec3::new(x, y, z));
+        let points =
+            [(0.0, 0.0, 0.0), (1.0, 2.0, 1.0), (2.0, 2.5, 0.0), (4.0, 2.0, -1.0), (5.0, 0.0, 0.0)].map(|(x, y, z)| DVec3::new(x, y, z));
         for weights in [[1.0; 5], [1.0, 0.6, 2.0, 0.8, 1.2]] {
             let poles: Vec<DVec4> = points.iter().zip(weights).map(|(p, w)| weighted(*p, w)).collect();
             let curve = Nurbs::bezier(1.0, 3.0, poles);

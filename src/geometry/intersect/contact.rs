@@ -110,7 +110,8 @@ struct Sample {
 impl Contact<'_> {
     fn resolve(&mut self) {
         let extent = self.extent();
-        let wide = extent.low < extent.high && self.a.point(extent.low).distance(self.a.point(extent.high)) > SHORTEST * self.tolerance.point;
+        let wide =
+            extent.low < extent.high && self.a.point(extent.low).distance(self.a.point(extent.high)) > SHORTEST * self.tolerance.point;
         // A closed run has its ends at one place and is still long.
         let long = wide || (extent.low < extent.high && self.run.parts > 2 && self.length(&extent) > SHORTEST * self.tolerance.point);
         if !long {

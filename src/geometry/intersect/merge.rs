@@ -151,16 +151,15 @@ fn join(search: &Search, shared: &[Shared], tolerance: &Tolerance) -> Vec<Stretc
         let s = side.pieces.sections[section];
         (s.to_common(t.0), s.to_common(t.1))
     };
-    let mut all: Vec<Stretch> = shared
-        .iter()
-        .map(|s| Stretch { a: common(search.a, s.sections.0, s.a), b: common(search.b, s.sections.1, s.b) })
-        .collect();
+    let mut all: Vec<Stretch> =
+        shared.iter().map(|s| Stretch { a: common(search.a, s.sections.0, s.a), b: common(search.b, s.sections.1, s.b) }).collect();
     all.sort_by(|x, y| x.a.0.total_cmp(&y.a.0).then(x.b.0.total_cmp(&y.b.0)));
     let mut out: Vec<Stretch> = Vec::new();
     for next in all {
         let follows = |last: &Stretch| {
             let same_way = (last.b.1 >= last.b.0) == (next.b.1 >= next.b.0);
-            let meet = |curve: &Curve, t: f64, u: f64| t == u || same_place(curve, t, u, tolerance.point) && (t - u).abs() < 0.5 * width(curve);
+            let meet =
+                |curve: &Curve, t: f64, u: f64| t == u || same_place(curve, t, u, tolerance.point) && (t - u).abs() < 0.5 * width(curve);
             same_way && meet(search.a.curve, last.a.1, next.a.0) && meet(search.b.curve, last.b.1, next.b.0)
         };
         match out.iter_mut().find(|last| follows(last)) {

@@ -247,8 +247,7 @@ impl<'a> Search<'a> {
                 if p.distance_squared(end) > self.point * self.point {
                     continue;
                 }
-                let touch =
-                    if first { Near { ta: t, tb: at, pa: end, pb: p } } else { Near { ta: at, tb: t, pa: p, pb: end } };
+                let touch = if first { Near { ta: t, tb: at, pa: end, pb: p } } else { Near { ta: at, tb: t, pa: p, pb: end } };
                 if away > close * close {
                     self.found.push(Found { near: touch, ..found });
                 } else if taken.is_none_or(|best| better(a.view, b.view, touch, best)) {

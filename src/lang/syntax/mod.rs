@@ -233,4 +233,6 @@ impl Parser<'_> {
 }
 
 #[cfg(test)]
+mod fuzz;
+#[cfg(test)]
 mod tests;
