@@ -1,0 +1,47 @@
+//! Text to tree: 100 000 points and 100 000 lines of two shapes, and a script where every shape is new.
+//!
+//! The peer is `benches/peers/p6_startup.py`.
+
+use std::fmt::Write as _;
+
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use lofting::lang::diag::FileId;
+use lofting::lang::names::Names;
+use lofting::lang::syntax::parse;
+
+/// The script of the peer.
+fn points_and_lines(n: usize) -> String {
+    let mut text = String::new();
+    for i in 0..n {
+        let _ = writeln!(text, "point p{i} = ({:.3}, {:.3}, 0)", i as f64 * 0.001, (i * 7919 % 1000) as f64 / 1000.0);
+    }
+    for i in 0..n {
+        let _ = writeln!(text, "curve c{i} = line(p{i}, p{})", (i + 1) % n);
+    }
+    text
+}
+
+/// Lists whose lengths and items differ, so that no shape comes twice.
+fn new_shapes(n: usize) -> String {
+    let mut text = String::new();
+    for i in 0..n {
+        let items: Vec<&str> = (0..14).map(|bit| if i >> bit & 1 == 1 { "a" } else { "1mm" }).collect();
+        let _ = writeln!(text, "let v{i} = [{}]", items.join(", "));
+    }
+    text
+}
+
+fn parsing(c: &mut Criterion) {
+    let mut group = c.benchmark_group("parse");
+    group.sample_size(10);
+    for (name, text) in [("200 000 declarations of two shapes", points_and_lines(100_000)), ("16 000 declarations, each of a new shape", new_shapes(16_000))] {
+        group.throughput(criterion::Throughput::Bytes(text.len() as u64));
+        group.bench_function(name, |b| {
+            b.iter_batched_ref(Names::default, |names| parse(&text, FileId(0), names), BatchSize::PerIteration);
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, parsing);
+criterion_main!(benches);
