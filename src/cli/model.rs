@@ -83,15 +83,7 @@ fn case(model: &Model, disk: &Disk, sets: &[(String, String)], options: &Options
     interrupt::protect(disk.staging());
     let started = Instant::now();
     let clock = move || started.elapsed().as_secs_f64();
-    let task = Task {
-        name: model.name,
-        text: &model.text,
-        sets,
-        strict: options.strict,
-        keep_going: options.keep_going,
-        verbose: options.verbose,
-        clock: &clock,
-    };
+    let task = Task { name: model.name, text: &model.text, sets, strict: options.strict, keep_going: options.keep_going, clock: &clock };
     guarded(|| run::run(&task, disk, job))
 }
 
@@ -107,6 +99,8 @@ fn bug(bug: &Bug, model: &Model, terminal: &Terminal) -> Exit {
 fn exit_of(outcome: &Outcome) -> Exit {
     if outcome.interrupted {
         Exit::Interrupted
+    } else if outcome.bug {
+        Exit::Bug
     } else if outcome.report.ok {
         Exit::Fine
     } else {
@@ -129,7 +123,7 @@ fn one(
     };
     show(&outcome, options, terminal);
     if !options.json {
-        terminal.print(&summary::text(&outcome.report, terminal.color_out));
+        terminal.print(&summary::text(&outcome.report, outcome.tolerance, terminal.color_out));
     } else if !several {
         terminal.print(&report_text(&outcome.report));
     }
@@ -179,7 +173,7 @@ fn variants(model: &Model, table: &Path, options: &Options, job: &Arc<Job>, term
         }
         show(&outcome, options, terminal);
         if !options.json {
-            terminal.print(&summary::text(&outcome.report, terminal.color_out));
+            terminal.print(&summary::text(&outcome.report, outcome.tolerance, terminal.color_out));
         }
         worst = worst.max(exit_of(&outcome));
         cases.push(Case { case: row.name, report: outcome.report });

@@ -74,9 +74,12 @@ fn yes(b: bool) -> String {
 }
 
 /// The whole summary of one run.
-pub fn text(report: &Report, color: bool) -> String {
+pub fn text(report: &Report, tolerance: Option<f64>, color: bool) -> String {
     let mut out = String::new();
     out.push_str(&counts(report));
+    if let Some(tolerance) = tolerance {
+        out.push_str(&dim(&format!("units {}, tolerance {}\n", report.units, with_unit(tolerance, &report.units)), color));
+    }
     for block in [surfaces(report), shells(report), meshes(report)].into_iter().flatten() {
         out.push('\n');
         block.print(&mut out, color);

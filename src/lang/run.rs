@@ -305,6 +305,11 @@ impl Cx<'_> {
         self.machine.filed.iter().map(|f| &f.1).chain(&self.sink).any(|d| d.severity() == Severity::Error)
     }
 
+    /// Whether anything said so far is a warning.
+    pub fn has_warnings(&self) -> bool {
+        self.machine.filed.iter().map(|f| &f.1).chain(&self.sink).any(|d| d.severity() == Severity::Warning)
+    }
+
     /// The tolerance that was fixed, for showing it.
     pub fn tolerance_used(&self) -> Option<Tolerance> {
         self.tolerance

@@ -61,6 +61,17 @@ impl Disk {
         }
     }
 
+    /// What becomes of outputs.
+    pub fn outputs(&self) -> Outputs {
+        self.outputs
+    }
+
+    /// The resolved name of the script itself, beside which its imports are looked for.
+    pub fn script_name(&self, shown: &str) -> String {
+        let name = Path::new(shown).file_name().unwrap_or_default();
+        self.home.join(name).to_string_lossy().into_owned()
+    }
+
     /// The outputs that are staged; a clone can discard them from another thread.
     pub fn staging(&self) -> &Staging {
         &self.staging

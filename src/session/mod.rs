@@ -1,6 +1,8 @@
 //! Floor 8: a model from script to files, as commands and other programs use it.
 
+mod collect;
 pub mod disk;
+mod export;
 pub mod guard;
 pub mod json;
 mod plan;

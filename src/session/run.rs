@@ -1,9 +1,18 @@
 //! One run of a model: from text to report and files.
 
-use super::disk::Disk;
-use super::report::{Report, VERSION};
+use super::collect;
+use super::disk::{Disk, Outputs};
+use super::export;
+use super::report::{OutputRow, Report, Timings, VERSION};
+use super::stages::Stages;
+use crate::base::fault::{Fault, Severity};
 use crate::base::job::Job;
+use crate::base::tolerance::Tolerance;
+use crate::lang::cx::{Cx, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
+use crate::lang::diag_render::render_all;
+use crate::lang::run::Entry;
+use crate::lang::value::ModuleId;
 
 /// What is to be run.
 pub struct Task<'a> {
@@ -17,13 +26,12 @@ pub struct Task<'a> {
     pub strict: bool,
     /// What is sound is written although something failed.
     pub keep_going: bool,
-    /// How things were found is told.
-    pub verbose: bool,
     /// Seconds since some moment.
     pub clock: &'a (dyn Fn() -> f64 + Sync),
 }
 
 /// What became of it.
+#[derive(Debug, Default)]
 pub struct Outcome {
     /// All that was found out.
     pub report: Report,
@@ -31,23 +39,182 @@ pub struct Outcome {
     pub diagnostics: Vec<Diagnostic>,
     /// The texts that diagnostics point into.
     pub sources: Sources,
-    /// How things were found, a line each; empty unless asked for.
+    /// How things were found, a line each.
     pub notes: Vec<String>,
+    /// Distance within which two points are one, model units.
+    pub tolerance: Option<f64>,
     /// Stopped from outside.
     pub interrupted: bool,
+    /// Something that cannot happen did.
+    pub bug: bool,
 }
 
 impl Outcome {
     /// The diagnostics under their source lines; notes only when `verbose`.
     pub fn drawn(&self, color: bool, verbose: bool) -> String {
-        let _ = verbose;
-        crate::lang::diag_render::render_all(&self.diagnostics, &self.sources, color)
+        let shown: Vec<Diagnostic> = self.diagnostics.iter().filter(|d| verbose || d.severity() != Severity::Note).cloned().collect();
+        if shown.is_empty() { String::new() } else { render_all(&shown, &self.sources, color) }
     }
 }
 
 /// Runs it.
 pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
-    let _ = (disk, job);
-    let report = Report { loft: VERSION, model: task.name.to_owned(), units: "mm".to_owned(), ok: true, ..Report::default() };
-    Outcome { report, diagnostics: Vec::new(), sources: Sources::default(), notes: Vec::new(), interrupted: false }
+    let stages = Stages::new(task.clock);
+    let mut run = Run { cx: Cx::new(disk, &stages, job), task, disk, report: Report::default(), bug: None };
+    run.report.loft = VERSION;
+    run.report.model = task.name.to_owned();
+    match std::str::from_utf8(task.text) {
+        Ok(text) => run.evaluate(text),
+        Err(error) => {
+            let message = format!("{} is not UTF-8 text (byte {})", task.name, error.valid_up_to() + 1);
+            run.report.units = run.cx.unit().name.to_owned();
+            return run.finish(Some(Diagnostic::without_place("E801", message)), &stages);
+        }
+    }
+    run.finish(None, &stages)
+}
+
+struct Run<'r> {
+    cx: Cx<'r>,
+    task: &'r Task<'r>,
+    disk: &'r Disk,
+    report: Report,
+    bug: Option<&'static str>,
+}
+
+impl Run<'_> {
+    /// Everything up to the outputs on their way.
+    fn evaluate(&mut self, text: &str) {
+        let clock = self.task.clock;
+        let start = clock();
+        let name = if self.task.name == "-" { "<stdin>" } else { self.task.name };
+        self.cx.load(&Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets });
+        self.report.units = self.cx.unit().name.to_owned();
+        let parsed = clock();
+        self.cx.evaluate_all();
+        self.collect();
+        let evaluated = clock();
+        if self.is_sound() || self.task.keep_going {
+            self.write();
+        }
+        self.report.timings = Timings { parse: parsed - start, evaluate: evaluated - parsed, mesh: 0.0, write: clock() - evaluated };
+    }
+
+    /// No errors so far, under `--strict` no warnings either.
+    fn is_sound(&self) -> bool {
+        !self.cx.has_errors() && !(self.task.strict && self.cx.has_warnings()) && self.bug.is_none()
+    }
+
+    /// The result, or `None` when it was reported why there is none.
+    fn take<T>(&mut self, result: Result<T, Stop>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(Stop::Fault(Fault::Interrupted) | Stop::Failed | Stop::Skipped(..) | Stop::Broken) => None,
+            Err(Stop::Fault(fault)) => {
+                self.cx.say(&fault);
+                None
+            }
+            Err(Stop::NotYet) => {
+                self.bug = Some("the tolerance was asked for after the evaluation and not known");
+                None
+            }
+            Err(Stop::Bug(what)) => {
+                self.bug = Some(what);
+                None
+            }
+        }
+    }
+
+    /// Rows of the report: all stages are made, and all meshes.
+    fn collect(&mut self) {
+        let main = ModuleId::MAIN;
+        let Some(tolerance) = self.cx.tolerance_used() else { return };
+        if let Some(network) = {
+            let n = self.cx.network(main);
+            self.take(n)
+        } {
+            self.report.network = collect::network_counts(&network);
+            self.report.curves = collect::curves(&network);
+            if let Some(parts) = {
+                let p = self.cx.parts(main);
+                self.take(p)
+            } {
+                self.report.modeling = collect::modeling(&self.cx, &parts, &network, &tolerance);
+            }
+        }
+        let model = self.cx.model(main);
+        if let Some(model) = self.take(model) {
+            self.report.surfaces = collect::surfaces(&model);
+            self.report.topology = collect::topology(&model, 0);
+        }
+        self.shells(&tolerance);
+        for (name, value) in self.cx.mesh_values() {
+            let mesh = self.cx.mesh(&value);
+            if let Some(mesh) = self.take(mesh) {
+                self.report.meshes.push(collect::mesh(&name, &mesh));
+            }
+        }
+        self.report.reports = self.cx.reports().iter().map(collect::table).collect();
+        self.report.checks = self.cx.checks().iter().map(|check| collect::check(check, &self.cx.sources)).collect();
+    }
+
+    fn shells(&mut self, tolerance: &Tolerance) {
+        let shells = self.cx.shells(ModuleId::MAIN);
+        for shell in self.take(shells).unwrap_or_default() {
+            let row = collect::shell(&mut self.cx, &shell.value, tolerance);
+            if let Some(row) = self.take(row) {
+                self.report.shells.push(row);
+            }
+        }
+        self.report.topology.shells = self.report.shells.len();
+    }
+
+    /// Writes all outputs under temporary names.
+    fn write(&mut self) {
+        for spec in self.cx.exports() {
+            if self.cx.job.go_on().is_err() {
+                return;
+            }
+            let row = export::write(&mut self.cx, &spec, self.disk);
+            if let Some(row) = self.take(row)
+                && self.disk.outputs() == Outputs::Written
+            {
+                self.report.outputs.retain(|old: &OutputRow| old.path != row.path);
+                self.report.outputs.push(row);
+            }
+        }
+    }
+
+    /// Gives outputs their names when all is well, and puts the outcome together.
+    fn finish(mut self, said: Option<Diagnostic>, stages: &Stages) -> Outcome {
+        let interrupted = self.cx.job.go_on().is_err();
+        let mut diagnostics = self.cx.finish();
+        diagnostics.extend(said);
+        let wrong = |d: &Diagnostic| d.severity() == Severity::Error || (self.task.strict && d.severity() == Severity::Warning);
+        let mut ok = !diagnostics.iter().any(wrong) && self.report.checks.iter().all(|c| c.pass) && !interrupted;
+        if let Some(what) = self.bug {
+            let text = format!("a bug in loft: {what}");
+            diagnostics.push(Diagnostic::without_place("E999", text).help("please report it with this script and the command line"));
+            ok = false;
+        }
+        if (ok || self.task.keep_going) && !interrupted {
+            if let Err(error) = self.disk.staging().commit() {
+                diagnostics.push(Diagnostic::without_place("E808", format!("cannot write {error}")));
+                ok = false;
+                self.report.outputs.clear();
+            }
+        } else {
+            self.disk.staging().discard();
+            self.report.outputs.clear();
+        }
+        let bug = diagnostics.iter().any(|d| d.code.0 == "E999") && !interrupted;
+        self.report.ok = ok;
+        self.report.diagnostics = diagnostics.iter().map(|d| collect::diagnostic(d, &self.cx.sources)).collect();
+        let tolerance = self.cx.tolerance_used().map(|t| t.point);
+        let timings = &mut self.report.timings;
+        timings.mesh = stages.mesh_seconds();
+        timings.evaluate = (timings.evaluate - timings.mesh).max(0.0);
+        let sources = std::mem::take(&mut self.cx.sources);
+        Outcome { report: self.report, diagnostics, sources, notes: stages.notes(), tolerance, interrupted, bug }
+    }
 }

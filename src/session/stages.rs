@@ -1,7 +1,7 @@
 //! The stages of the pipeline over the kernel floors: curves to network, surfaces to model, plans to meshes.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
@@ -19,24 +19,44 @@ use crate::network::{Chain, Network};
 
 use super::plan;
 
-/// The pipeline of a session; remembers how things were found.
-#[derive(Debug, Default)]
-pub struct Stages {
-    notes: Mutex<Vec<String>>,
+/// The pipeline of a session; remembers how things were found and how long meshes took.
+pub struct Stages<'c> {
+    clock: &'c (dyn Fn() -> f64 + Sync),
+    found: Mutex<Found>,
 }
 
-impl Stages {
+#[derive(Debug, Default)]
+struct Found {
+    notes: Vec<String>,
+    mesh_seconds: f64,
+}
+
+impl<'c> Stages<'c> {
+    /// `clock` gives seconds since some moment.
+    pub fn new(clock: &'c (dyn Fn() -> f64 + Sync)) -> Self {
+        Self { clock, found: Mutex::default() }
+    }
+
+    fn found(&self) -> MutexGuard<'_, Found> {
+        self.found.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// How things were found, a line each.
-    pub fn into_notes(self) -> Vec<String> {
-        self.notes.into_inner().unwrap_or_else(PoisonError::into_inner)
+    pub fn notes(&self) -> Vec<String> {
+        self.found().notes.clone()
+    }
+
+    /// Seconds spent on meshes.
+    pub fn mesh_seconds(&self) -> f64 {
+        self.found().mesh_seconds
     }
 
     fn note(&self, lines: impl IntoIterator<Item = String>) {
-        self.notes.lock().unwrap_or_else(PoisonError::into_inner).extend(lines);
+        self.found().notes.extend(lines);
     }
 }
 
-impl Pipeline for Stages {
+impl Pipeline for Stages<'_> {
     fn snap(&self, _cx: &mut Cx, _parts: &mut Parts, _distance: f64, _origin: Origin) -> Result<(), Stop> {
         Err(Stop::Bug("snap"))
     }
@@ -59,13 +79,14 @@ impl Pipeline for Stages {
     }
 
     fn mesh(&self, cx: &mut Cx, module: ModuleId, spec: &MeshSpec) -> Result<Arc<Mesh>, Stop> {
-        let tolerance = cx.tolerance()?;
+        let (tolerance, start) = (cx.tolerance()?, (self.clock)());
         let mut sink = Vec::new();
         let (plan, scene) = plan::of(cx, module, spec, &mut sink)?;
         let input = mesh::build::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
         let built = mesh::build::build(&input, cx.job, &mut sink);
         say_all(cx, &sink);
-        let mesh::build::Built { mesh, explanation } = built?;
+        self.found().mesh_seconds += (self.clock)() - start;
+        let (mesh, explanation) = built?;
         self.note(explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)));
         Ok(Arc::new(mesh))
     }

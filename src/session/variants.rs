@@ -1,5 +1,10 @@
 //! Tables of variants: a header of param names, each row one run.
 
+use std::collections::BTreeSet;
+
+use crate::base::text::real;
+use crate::io::table::{Cell, Layout, Reading, read};
+
 /// One row of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
@@ -9,8 +14,82 @@ pub struct Row {
     pub sets: Vec<(String, String)>,
 }
 
-/// The rows of a table; `sets` are the params set for all rows. The error is a sentence about the table.
+/// Column that names the cases.
+const NAME: &str = "name";
+
+/// The rows of a csv; `sets` are the params set for all rows. The error is a sentence about the table.
+///
+/// A case is called by its column `name`, or by its number from 001. An empty cell leaves a param at its default.
 pub fn rows(bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<Row>, String> {
-    let _ = (bytes, sets);
-    Err("not yet".to_owned())
+    let is_unit = |word: &str| crate::lang::units::quantity(1.0, word, crate::lang::units::MILLIMETRE).is_some();
+    let reading = Reading { layout: Layout::Separated, header: Some(true), is_unit: &is_unit };
+    let table = read(bytes, &reading).map_err(|at| format!("line {}: {}", at.line, at.what))?;
+    let header = table.header.unwrap_or_default();
+    if let Some((_, name)) = header.iter().enumerate().find(|(i, name)| header[..*i].contains(name)) {
+        return Err(format!("the column {name:?} stands there twice"));
+    }
+    if let Some((name, _)) = sets.iter().find(|(name, _)| header.contains(name)) {
+        return Err(format!("`{name}` is set by the table and by --set"));
+    }
+    let mut names = BTreeSet::new();
+    let mut rows = Vec::new();
+    for (number, cells) in table.rows.iter().enumerate() {
+        let mut row = Row { name: format!("{:03}", number + 1), sets: sets.to_vec() };
+        for (column, cell) in header.iter().zip(cells) {
+            let Some(text) = literal(cell) else { continue };
+            if column == NAME {
+                row.name = text;
+            } else {
+                row.sets.push((column.clone(), text));
+            }
+        }
+        let line = table.lines.get(number).copied().unwrap_or(0);
+        if !is_folder_name(&row.name) {
+            return Err(format!("line {line}: {:?} cannot name an output folder", row.name));
+        }
+        if !names.insert(row.name.to_lowercase()) {
+            return Err(format!("line {line}: there is a case {:?} already", row.name));
+        }
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// The text of a cell as a literal of the language; `None` for an empty one.
+fn literal(cell: &Cell) -> Option<String> {
+    match cell {
+        Cell::Number(x) => Some(real(*x)),
+        Cell::Quantity(x, unit) => Some(format!("{}{unit}", real(*x))),
+        Cell::Text(text) => Some(text.clone()),
+        Cell::None => None,
+    }
+}
+
+/// One component of a path on every system.
+fn is_folder_name(name: &str) -> bool {
+    let forbidden = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
+    !name.is_empty() && !name.starts_with('.') && !name.contains(forbidden) && !name.chars().any(char::is_control)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_named_by_column_or_number() {
+        let sets = [("n".to_owned(), "3".to_owned())];
+        let found = rows(b"name,span,kind\nlong,50m,quads\n,7.5,\n", &sets).unwrap();
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        let long = Row { name: "long".into(), sets: vec![pair("n", "3"), pair("span", "50m"), pair("kind", "quads")] };
+        assert_eq!(found, [long, Row { name: "002".into(), sets: vec![pair("n", "3"), pair("span", "7.5")] }]);
+    }
+
+    #[test]
+    fn names_are_folders_of_their_own() {
+        let said = |text: &str| rows(text.as_bytes(), &[]).unwrap_err();
+        assert_eq!(said("name,n\na/b,1\n"), "line 2: \"a/b\" cannot name an output folder");
+        assert_eq!(said("name,n\nA,1\na,2\n"), "line 3: there is a case \"a\" already");
+        assert_eq!(said("n,n\n1,2\n"), "the column \"n\" stands there twice");
+        assert_eq!(rows(b"n\n1\n", &[("n".into(), "2".into())]).unwrap_err(), "`n` is set by the table and by --set");
+    }
 }

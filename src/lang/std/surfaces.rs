@@ -1,12 +1,20 @@
 //! Constructors of surfaces.
 
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::curves::unit;
+use super::transforms::axis_line;
 use crate::base::fault::{Fault, ValueFault};
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::types::{Point, Rest};
+use crate::lang::types::{Angle, Axis, Direction, Point, Rest};
+use crate::lang::value::{Plane, Value};
 use crate::network::{self, Chain, ChainFlow};
 use crate::surface::coons::{self, Grid, Method, Settings};
-use crate::surface::{Domain, Reparam, Surface};
+use crate::surface::nurbs::{self, Net};
+use crate::surface::{Domain, Reparam, Surface, extrude, interpolate, plane, revolve, ruled as surface_between};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
 pub(super) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Stop> {
@@ -94,6 +102,12 @@ fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, S
     Ok(surface)
 }
 
+fn rows(net: Vec<Vec<Point>>) -> Vec<Vec<DVec3>> {
+    net.into_iter().map(|row| row.into_iter().map(|p| p.0).collect()).collect()
+}
+
+const PLANE_EXAMPLE: &str = "plane(a, b, c), or plane(at: P, normal: (0, 0, 1))";
+
 builtins! {
     /// Composite Coons surface through a closed loop or a grid of curves.
     ///
@@ -149,5 +163,158 @@ builtins! {
         reparam: ReparamWord = "smooth",
     ) -> Surface = |cx, row, u, v, pole, closed, reparam| {
         over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method: Method::Lagrange })
+    };
+
+    /// Surface of straight lines between two curves.
+    ///
+    /// The second curve is read backwards where that keeps the lines from crossing.
+    /// ```loft
+    /// curve low = line((0, 0, 0), (4m, 0, 0))
+    /// curve high = arc((0, 2m, 1m), (4m, 2m, 1m), through: (2m, 2m, 2m))
+    /// surface ramp = ruled(low, high)
+    /// ```
+    fn ruled(
+        /// v = 0; its direction is +u.
+        a: Chain,
+        /// v = 1.
+        b: Chain,
+    ) -> Surface = |cx, a, b| {
+        let tolerance = cx.tolerance()?;
+        let (surface, notes) = surface_between(&a, &b, cx.origin(), &tolerance)?;
+        finished(cx, surface, &notes)
+    };
+
+    /// Flat face inside curves that close, or the unbounded plane through a point.
+    ///
+    /// Curves come in any order and direction; the first one runs along u.
+    /// ```loft
+    /// curve rim = circle(center: (0, 0, 0), radius: 1m)
+    /// surface lid = plane(rim)
+    /// let cut = plane(at: (0, 0, 500mm), normal: (0, 0, 1))
+    /// ```
+    fn plane(
+        /// Curves around the face.
+        curves: Rest<Chain>,
+        /// A point of the unbounded plane.
+        at: Option<Point>,
+        /// Its normal.
+        normal: Option<Direction>,
+    ) -> Value = |cx, curves, at, normal| match (curves.0.is_empty(), at, normal) {
+        (true, Some(at), Some(normal)) => Ok(Value::Plane(Arc::new(Plane { at: at.0, normal: unit(normal.0, "normal")? }))),
+        (false, None, None) => {
+            let tolerance = cx.tolerance()?;
+            let (surface, notes) = plane::bounded(&curves.0, cx.origin(), &tolerance)?;
+            finished(cx, surface, &notes).map(Value::Surface)
+        }
+        (false, at, _) => {
+            let arguments = vec!["curves", if at.is_some() { "at" } else { "normal" }];
+            let what = "curves around a face, or a point and a normal, not both";
+            Err(ValueFault::Exclusive { function: "plane", what, arguments, example: PLANE_EXAMPLE }.into())
+        }
+        _ => {
+            let what = "curves around a face, or a point and a normal";
+            Err(ValueFault::Missing { function: "plane", what, example: PLANE_EXAMPLE }.into())
+        }
+    };
+
+    /// Surface that a curve leaves when it is moved along a straight way.
+    ///
+    /// u runs along the way, v along the profile.
+    /// ```loft
+    /// curve foot = arc((0, 0, 0), (4m, 0, 0), through: (2m, 1m, 0))
+    /// surface wall = extrude(foot, by: (0, 0, 3m))
+    /// ```
+    fn extrude(
+        /// The curve that is moved.
+        profile: Chain,
+        /// How far and which way.
+        by: Point,
+    ) -> Surface = |cx, profile, by| {
+        let tolerance = cx.tolerance()?;
+        let surface = extrude::extrude(&profile, by.0, cx.origin(), &tolerance)?;
+        finished(cx, surface, &[])
+    };
+
+    /// Surface that a curve leaves when it is turned about an axis.
+    ///
+    /// u runs with the turn, v along the profile; ends of the profile on the axis are poles.
+    /// ```loft
+    /// curve profile = arc((0, 0, -1m), (0, 0, 1m), through: (1m, 0, 0))
+    /// surface ball = revolve(profile)
+    /// ```
+    fn revolve(
+        /// The curve that is turned.
+        profile: Chain,
+        /// Direction of the axis, or a straight curve.
+        axis: Axis = "(0, 0, 1)",
+        /// How far it is turned, at most 360deg either way.
+        angle: Angle = "360deg",
+        /// A point of the axis; the origin, or the curve's start.
+        about: Option<Point>,
+    ) -> Surface = |cx, profile, axis, angle, about| {
+        let tolerance = cx.tolerance()?;
+        let (direction, start) = axis_line(cx, &axis)?;
+        let about = about.map(|p| p.0).or(start).unwrap_or(DVec3::ZERO);
+        let surface = revolve::revolve(&profile, &revolve::Axis { about, direction }, angle.0, cx.origin(), &tolerance)?;
+        finished(cx, surface, &[])
+    };
+
+    /// Bézier surface of a net of control points.
+    ///
+    /// ```loft
+    /// surface sail = bezier_surface([[(0, 0, 0), (1m, 0, 1m), (2m, 0, 0)], [(0, 2m, 0), (1m, 2m, 0), (2m, 2m, 1m)]])
+    /// ```
+    fn bezier_surface(
+        /// Rows of control points along u, one row per v, all as long.
+        net: Vec<Vec<Point>>,
+        /// A weight for each point, in the same rows.
+        weights: Option<Vec<Vec<f64>>>,
+    ) -> Surface = |cx, net, weights| {
+        let tolerance = cx.tolerance()?;
+        let net = rows(net);
+        let surface = nurbs::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
+        finished(cx, surface, &[])
+    };
+
+    /// Rational B-spline surface of a net of control points.
+    ///
+    /// ```loft
+    /// let net = [for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, (i + j) * 100mm)]]
+    /// surface panel = nurbs_surface(net, degree_u: 3, degree_v: 2)
+    /// ```
+    fn nurbs_surface(
+        /// Rows of control points along u, one row per v, all as long.
+        net: Vec<Vec<Point>>,
+        /// Degree along u.
+        degree_u: usize = "3",
+        /// Degree along v.
+        degree_v: usize = "3",
+        /// Knots along u; clamped and uniform when left out.
+        knots_u: Option<Vec<f64>>,
+        /// Knots along v.
+        knots_v: Option<Vec<f64>>,
+        /// A weight for each point, in the same rows.
+        weights: Option<Vec<Vec<f64>>>,
+    ) -> Surface = |cx, net, degree_u, degree_v, knots_u, knots_v, weights| {
+        let tolerance = cx.tolerance()?;
+        let (net, knots) = (rows(net), (knots_u.as_deref(), knots_v.as_deref()));
+        let net = Net { rows: &net, weights: weights.as_deref() };
+        let surface = nurbs::nurbs(&net, (degree_u, degree_v), knots, cx.origin(), &tolerance)?;
+        finished(cx, surface, &[])
+    };
+
+    /// Smooth surface through a grid of points.
+    ///
+    /// Bicubic, twice continuously differentiable, natural at its border.
+    /// ```loft
+    /// surface ground = grid([for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, sin(i * 60deg) * 200mm)]])
+    /// ```
+    fn grid(
+        /// Rows of points along u, one row per v, all as long.
+        points: Vec<Vec<Point>>,
+    ) -> Surface = |cx, points| {
+        let tolerance = cx.tolerance()?;
+        let (surface, notes) = interpolate::grid(&rows(points), cx.origin(), &tolerance)?;
+        finished(cx, surface, &notes)
     };
 }

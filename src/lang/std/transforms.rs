@@ -5,14 +5,14 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::curves::unit;
-use crate::base::fault::{SurfaceFault, ValueFault};
-use crate::base::tolerance::PARALLEL;
+use crate::base::fault::ValueFault;
 use crate::builtins;
 use crate::geometry::Motion;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Angle, Axis, Direction, FromValue, Point, Ty};
 use crate::lang::value::{Dim, MeshValue, Plane, ShellValue, Value};
 use crate::network::Chain;
+use crate::surface::axis_of;
 
 /// What may be moved, in words.
 const MOVABLE: &str = "a point, curve, surface, shell or mesh, or a list of them";
@@ -57,18 +57,8 @@ pub(super) fn axis_line(cx: &Cx, axis: &Axis) -> Result<(DVec3, Option<DVec3>), 
     match axis {
         Axis::Direction(v) => Ok((unit(*v, "axis")?, None)),
         Axis::Curve(chain) => {
-            let (start, end) = (chain.start(), chain.end());
-            let direction = unit(end - start, "axis")?;
-            // The middle of each run and its ends; straight runs in a row need no more, curved ones stand out there.
-            let joints = chain.joints();
-            let inner = joints.windows(2).flat_map(|w| [w[0], 0.75 * w[0] + 0.25 * w[1], 0.5 * (w[0] + w[1]), 0.25 * w[0] + 0.75 * w[1]]);
-            let off = |p: DVec3| (p - start).cross(direction).length();
-            let worst = inner.map(|f| chain.point(f)).max_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(start);
-            let allowed = cx.tolerance().map_or(chain.length() * PARALLEL, |t| t.point);
-            if off(worst) > allowed {
-                return Err(SurfaceFault::AxisNotStraight { axis: chain.origin(), off: off(worst), at: worst }.into());
-            }
-            Ok((direction, Some(start)))
+            let line = axis_of(chain, &cx.tolerance()?)?;
+            Ok((line.direction, Some(line.about)))
         }
     }
 }

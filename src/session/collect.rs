@@ -1,0 +1,178 @@
+//! From a model to the rows of its report.
+
+use std::collections::BTreeSet;
+
+use crate::base::fault::{Say, Severity};
+use crate::base::tolerance::Tolerance;
+use crate::lang::cx::{Cx, Parts, Stop};
+use crate::lang::diag::{Diagnostic, Sources};
+use crate::lang::plans::{CheckResult, ReportTable};
+use crate::lang::scene::Scene;
+use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
+use crate::mesh::Mesh;
+use crate::model::{Model, SurfaceId};
+use crate::network::{Chain, LinkId, Network};
+
+use super::report::{
+    Cell, CheckRow, Column, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow, SurfaceRow, Table,
+    TopologyCounts,
+};
+
+/// Counts of the network.
+pub fn network_counts(network: &Network) -> NetworkCounts {
+    NetworkCounts { curves: network.curves.len(), links: network.links.len(), nodes: network.nodes.len() }
+}
+
+/// Curves of the network.
+pub fn curves(network: &Network) -> Vec<CurveRow> {
+    let row = |c: &crate::network::graph::NetCurve| CurveRow {
+        name: c.name.clone(),
+        kind: c.curve.kind().name(),
+        length: c.curve.length(),
+        links: c.links.len(),
+    };
+    network.curves.iter().map(row).collect()
+}
+
+/// Declared chains, then the unnamed ones that surfaces stand on; chains with the same links are one.
+pub fn modeling(cx: &Cx, parts: &Parts, network: &Network, tolerance: &Tolerance) -> Vec<ModelingRow> {
+    let mut seen = BTreeSet::new();
+    let mut rows = Vec::new();
+    let mut add = |name: String, chain: &Chain| {
+        let key = identity(chain, network, tolerance);
+        let links = if key.1.is_empty() { 1 } else { key.1.len() };
+        if seen.insert(key) {
+            rows.push(ModelingRow { name, links, length: chain.length(), kinks: chain.kinks(tolerance).len() });
+        }
+    };
+    parts.modeling.iter().for_each(|m| add(m.name.to_string(), &m.value));
+    let below = parts.surfaces.iter().flat_map(|s| s.value.chains());
+    below.for_each(|chain| add(cx.name(chain.origin()), chain));
+    rows
+}
+
+/// Which chains are one: those with the same links, direction aside; without links, those with the same ends and middle.
+fn identity(chain: &Chain, network: &Network, tolerance: &Tolerance) -> (Vec<[u64; 3]>, Vec<LinkId>) {
+    match network.links_of(chain, tolerance) {
+        Some(links) => {
+            let forward: Vec<LinkId> = links.into_iter().map(|(link, _)| link).collect();
+            let backward: Vec<LinkId> = forward.iter().rev().copied().collect();
+            (Vec::new(), forward.min(backward))
+        }
+        None => {
+            let mut points = [0.0, 0.5, 1.0].map(|f| chain.point(f).to_array().map(f64::to_bits));
+            if points[2] < points[0] {
+                points.reverse();
+            }
+            (points.to_vec(), Vec::new())
+        }
+    }
+}
+
+/// Declared surfaces.
+pub fn surfaces(model: &Model) -> Vec<SurfaceRow> {
+    let row = |(n, named): (usize, &crate::model::topology::Named)| {
+        let patches: Vec<_> = model.patches_of(SurfaceId::at(n)).collect();
+        let flow = named.surface.flow();
+        SurfaceRow {
+            name: named.name.clone(),
+            kind: named.surface.kind().name(),
+            flow: (!flow.is_empty()).then_some(flow),
+            patches: patches.len(),
+            edges: model.edges_of(&patches).len(),
+            vertices: model.vertices_of(&patches).len(),
+            area: None,
+        }
+    };
+    model.surfaces.iter().enumerate().map(row).collect()
+}
+
+/// Counts of the surface model.
+pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
+    TopologyCounts { patches: model.patches.len(), edges: model.edges.len(), vertices: model.vertices.len(), shells }
+}
+
+/// A shell: how it is closed, and what it measures.
+pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance) -> Result<ShellRow, Stop> {
+    let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
+    let built = scene.shell(shell, tolerance, &mut Vec::new())?;
+    let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
+    Ok(ShellRow { name: shell.name.to_string(), faces, closed: built.closed, ..ShellRow::default() })
+}
+
+/// A mesh: counts, quality and groups.
+pub fn mesh(name: &str, mesh: &Mesh) -> MeshRow {
+    let group = |g: &crate::mesh::Group| GroupRow {
+        name: g.name.clone(),
+        nodes: g.nodes.len(),
+        elements: g.lines.len() + g.triangles.len() + g.quads.len(),
+    };
+    MeshRow {
+        name: name.to_owned(),
+        nodes: mesh.nodes.len(),
+        triangles: mesh.triangles.len(),
+        quads: mesh.quads.len(),
+        order: mesh.order,
+        groups: mesh.groups.iter().map(group).collect(),
+        ..MeshRow::default()
+    }
+}
+
+/// A check with its line.
+pub fn check(result: &CheckResult, sources: &Sources) -> CheckRow {
+    let side = |value: &Option<Value>| value.as_ref().map_or(Cell::Missing, cell);
+    CheckRow {
+        label: result.label.clone(),
+        pass: result.pass,
+        line: sources.place(result.file, result.span.start).map_or(0, |place| place.line),
+        left: side(&result.left_value),
+        right: side(&result.right_value),
+    }
+}
+
+/// A report table.
+pub fn table(table: &ReportTable) -> Table {
+    let column = |c: &crate::lang::plans::Column| Column { name: c.name.clone(), unit: (!c.unit.is_empty()).then(|| c.unit.clone()) };
+    Table {
+        title: table.title.clone(),
+        columns: table.columns.iter().map(column).collect(),
+        rows: table.rows.iter().map(|row| row.iter().map(cell).collect()).collect(),
+    }
+}
+
+/// A value as plain data: numbers in model units and degrees.
+pub fn cell(value: &Value) -> Cell {
+    match value {
+        Value::Bool(b) => Cell::Bool(*b),
+        Value::Number(Quantity { value, .. }) => Cell::Number(*value),
+        Value::Text(text) | Value::Word(text) => Cell::Text(text.to_string()),
+        Value::Vector(p, _) | Value::Node(p) => Cell::List(p.to_array().map(Cell::Number).to_vec()),
+        Value::List(items) => Cell::List(items.iter().map(cell).collect()),
+        _ => Cell::Missing,
+    }
+}
+
+/// A diagnostic with places as editors count.
+pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> DiagnosticRow {
+    let label = |label: &crate::lang::diag::Label| {
+        let place = sources.place(label.file, label.span.start);
+        LabelRow {
+            file: sources.get(label.file).map(|f| f.name.clone()).unwrap_or_default(),
+            line: place.map_or(0, |p| p.line),
+            column: place.map_or(0, |p| p.column),
+            length: sources.text(label.file, label.span).chars().count(),
+            text: label.text.clone(),
+        }
+    };
+    DiagnosticRow {
+        code: found.code.0,
+        severity: match found.severity() {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        },
+        message: found.message.clone(),
+        help: found.help.clone(),
+        labels: found.labels.iter().map(label).collect(),
+    }
+}

@@ -1,0 +1,218 @@
+//! `export`: what is written, in which format, with which settings.
+
+use std::io::Write;
+
+use glam::DVec3;
+
+use super::report::OutputRow;
+use crate::base::fault::{FileFault, Say};
+use crate::base::origin::Origin;
+use crate::io::curves::{Drawing, Polyline, curve_format_for};
+use crate::io::json::{self, Json};
+use crate::io::table::{self, Cell, Table};
+use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::plans::ExportSpec;
+use crate::lang::value::{Record, Value};
+use crate::network::Chain;
+
+/// Largest turn between two points of an exported curve, radians.
+const TURN: f64 = std::f64::consts::PI / 36.0;
+/// Looks at a smooth piece to find how far it turns.
+const LOOKS: usize = 64;
+
+/// Writes one output; gives its row, and warnings about what the format cannot hold go to the sink of `cx`.
+pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
+    let losses = match spec.things.first() {
+        Some((Value::Mesh(_), _)) => mesh(cx, spec, files)?,
+        Some((Value::Curve(_), _)) => curves(cx, spec, files)?,
+        Some((Value::Record(_), _)) => records(cx, spec, files)?,
+        Some((other, origin)) => return Err(unsupported(*origin, format!("{} cannot be exported", other.ty().words()))),
+        None => return Err(unsupported(spec.origin, "there is nothing to export".to_owned())),
+    };
+    let (bytes, losses) = losses;
+    losses.into_iter().for_each(|loss| cx.say(&loss.fault(spec.path_origin, &spec.path).into()));
+    Ok(OutputRow { path: spec.path.clone(), bytes })
+}
+
+/// Size of a file and what it could not hold.
+type Written = (u64, Vec<Loss>);
+
+fn unsupported(of: Origin, what: String) -> Stop {
+    let help = Some("export meshes, curves, or a list of records".to_owned());
+    FileFault::Unsupported { of, what, help }.into()
+}
+
+/// Writes through `fill`; a failure names the path.
+fn put(spec: &ExportSpec, files: &dyn Files, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<Vec<Loss>>) -> Result<Written, Stop> {
+    let mut losses = Vec::new();
+    let written = files.write(&spec.path, &mut |out| fill(out).map(|found| losses = found));
+    match written {
+        Ok(bytes) => Ok((bytes, losses)),
+        Err(FileError::Outside) => Err(FileFault::Outside { of: spec.path_origin, path: spec.path.clone() }.into()),
+        Err(error) => {
+            let why = match error {
+                FileError::Other(why) => why,
+                _ => "the system refuses it".to_owned(),
+            };
+            Err(FileFault::CannotWrite { of: spec.path_origin, path: spec.path.clone(), why }.into())
+        }
+    }
+}
+
+/// Name of the file's unit of length, and model units in one of it where it is another one.
+fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>) {
+    let model = cx.unit();
+    match spec.units {
+        Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::units::convert(1.0, unit, model, 1))),
+        _ => (model.name, None),
+    }
+}
+
+fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+    let format = format_for(spec.path_origin, &spec.path)?;
+    let [(Value::Mesh(value), _)] = spec.things.as_slice() else {
+        return Err(one_thing(spec));
+    };
+    let mesh = cx.mesh(value)?;
+    let (unit, units_per_file_unit) = unit_of(cx, spec);
+    let encoding = spec.encoding.as_ref().map(|(word, _)| if **word == *"binary" { Encoding::Binary } else { Encoding::Text });
+    let elements = spec.element.iter().map(|(word, _)| word.to_string()).collect();
+    let options = Options { encoding, elements, units_per_file_unit };
+    let deck = Deck { mesh: &mesh, unit, options: &options };
+    format.check(spec.path_origin, &deck)?;
+    put(spec, files, &mut |out| (format.write)(&deck, out))
+}
+
+fn one_thing(spec: &ExportSpec) -> Stop {
+    let second = spec.things.get(1).map_or(spec.origin, |thing| thing.1);
+    let help = Some("one `export` for each, or one mesh of both".to_owned());
+    FileFault::Unsupported { of: second, what: "a file holds one mesh".to_owned(), help }.into()
+}
+
+/// Settings that mean something for meshes only.
+fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
+    let said = spec.encoding.as_ref().map(|s| ("encoding", s.1)).or(spec.element.as_ref().map(|s| ("element", s.1)));
+    match said {
+        Some((key, of)) => {
+            let what = format!("`{key}:` is for meshes");
+            Err(FileFault::Unsupported { of, what, help: Some(format!("remove `{key}:`")) }.into())
+        }
+        None => Ok(()),
+    }
+}
+
+fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+    let format = curve_format_for(spec.path_origin, &spec.path)?;
+    no_mesh_settings(spec)?;
+    let (unit, scale) = unit_of(cx, spec);
+    let tolerance = cx.tolerance()?;
+    let mut lines = Vec::with_capacity(spec.things.len());
+    for (value, origin) in &spec.things {
+        let Value::Curve(chain) = value else {
+            return Err(unsupported(*origin, format!("{} beside curves", value.ty().words())));
+        };
+        let closed = chain.is_closed(&tolerance);
+        let mut points = points_along(chain, &tolerance);
+        if closed {
+            points.pop();
+        }
+        if let Some(scale) = scale {
+            points.iter_mut().for_each(|p| *p /= scale);
+        }
+        lines.push(Polyline { name: cx.name(chain.origin()), points, closed });
+    }
+    let drawing = Drawing { curves: &lines, unit };
+    put(spec, files, &mut |out| (format.write)(&drawing, out))
+}
+
+/// Points that follow a curve: its ends and kinks, and between them as many that it turns little from one to the next.
+fn points_along(chain: &Chain, tolerance: &crate::base::tolerance::Tolerance) -> Vec<DVec3> {
+    let is_line = |run: &crate::network::Run| run.curve.kind() == crate::geometry::Kind::Line;
+    if chain.runs().iter().all(is_line) {
+        return chain.joints().iter().map(|f| chain.point(*f)).collect();
+    }
+    let mut corners = vec![0.0];
+    corners.extend(chain.kinks(tolerance).into_iter().filter(|f| *f > 0.0 && *f < 1.0));
+    corners.push(1.0);
+    let mut points = vec![chain.start()];
+    for piece in corners.windows(2) {
+        let at = |k: usize, n: usize| piece[0] + (piece[1] - piece[0]) * k as f64 / n as f64;
+        let tangents: Vec<DVec3> = (0..LOOKS).map(|k| chain.jet(0.5 * (at(k, LOOKS) + at(k + 1, LOOKS))).d1).collect();
+        let turn: f64 = tangents.windows(2).map(|t| crate::base::math::angle_between(t[0], t[1])).sum();
+        // The looks stand in the middle of their parts: half a part at each end is not seen.
+        let steps = (turn * (LOOKS as f64 / (LOOKS - 1) as f64) / TURN).ceil().max(1.0) as usize;
+        points.extend((1..steps).map(|k| chain.point(at(k, steps))));
+        points.push(chain.point(piece[1]));
+    }
+    points
+}
+
+fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+    no_mesh_settings(spec)?;
+    if let Some((_, of)) = spec.units {
+        let what = "`units:` is for meshes and curves; records carry their units".to_owned();
+        return Err(FileFault::Unsupported { of, what, help: Some("remove `units:`".to_owned()) }.into());
+    }
+    let mut rows = Vec::with_capacity(spec.things.len());
+    for (value, origin) in &spec.things {
+        match value {
+            Value::Record(record) => rows.push(record.clone()),
+            other => return Err(unsupported(*origin, format!("{} beside records", other.ty().words()))),
+        }
+    }
+    match extension(&spec.path).as_str() {
+        "json" => {
+            let list = Json::List(rows.iter().map(|row| json_record(cx, row)).collect());
+            put(spec, files, &mut |out| json::write(&list, out).map(|()| Vec::new()))
+        }
+        "csv" => {
+            let table = csv_table(cx, &rows);
+            put(spec, files, &mut |out| table::write_csv(&table, out).map(|()| Vec::new()))
+        }
+        _ => Err(crate::io::no_format(spec.path_origin, &spec.path, vec!["csv", "json"]).into()),
+    }
+}
+
+fn json_record(cx: &Cx, record: &Record) -> Json {
+    let fields = record.keys.iter().zip(&record.values);
+    Json::Record(fields.map(|(key, value)| (cx.names.text(*key).to_owned(), json_value(cx, value))).collect())
+}
+
+/// Numbers in model units and degrees, as in the report.
+fn json_value(cx: &Cx, value: &Value) -> Json {
+    match value {
+        Value::None => Json::Null,
+        Value::Bool(b) => Json::Bool(*b),
+        Value::Number(q) => Json::Number(q.value),
+        Value::Text(t) | Value::Word(t) => Json::Text(t.to_string()),
+        Value::Vector(p, _) | Value::Node(p) => Json::List(p.to_array().map(Json::Number).to_vec()),
+        Value::List(items) => Json::List(items.iter().map(|item| json_value(cx, item)).collect()),
+        Value::Record(record) => json_record(cx, record),
+        other => Json::Text(cx.show(other)),
+    }
+}
+
+/// Columns are the keys of all rows in order of appearance; quantities carry their units.
+fn csv_table(cx: &Cx, rows: &[std::sync::Arc<Record>]) -> Table {
+    let mut keys = Vec::new();
+    for key in rows.iter().flat_map(|row| row.keys.iter()) {
+        if !keys.contains(key) {
+            keys.push(*key);
+        }
+    }
+    let cell = |value: Option<&Value>| match value {
+        None | Some(Value::None) => Cell::None,
+        Some(Value::Number(q)) if q.dim.is_none() => Cell::Number(q.value),
+        Some(Value::Number(q)) => Cell::Quantity(q.value, crate::lang::units::unit_text(q.dim, cx.unit())),
+        Some(Value::Text(t) | Value::Word(t)) => Cell::Text(t.to_string()),
+        Some(other) => Cell::Text(cx.show(other)),
+    };
+    let cells = |row: &std::sync::Arc<Record>| keys.iter().map(|key| cell(row.get(*key))).collect();
+    Table {
+        title: Vec::new(),
+        header: Some(keys.iter().map(|key| cx.names.text(*key).to_owned()).collect()),
+        rows: rows.iter().map(cells).collect(),
+        lines: Vec::new(),
+    }
+}
