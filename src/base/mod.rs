@@ -1,6 +1,7 @@
 //! Floor 0: what every other floor stands on. Knows nothing of curves, text or files.
 
 pub mod bbox;
+pub mod boxtree;
 pub mod fault;
 pub mod ids;
 pub mod job;

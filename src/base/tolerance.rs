@@ -39,6 +39,8 @@ pub const POLE_REACH: f64 = 1e-6;
 pub const POLE_STEP: f64 = 1e-3;
 /// |U_u × U_v| below this share of the largest |U_u|·|U_v| is singular.
 pub const SINGULAR: f64 = 1e-9;
+/// An end that misses a curve by at most this many tolerances gets a warning.
+pub const NEAR_MISS: f64 = 100.0;
 
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;

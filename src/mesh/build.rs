@@ -1,12 +1,26 @@
 //! From a plan to a mesh: the one entry point for the floors above.
 
+use glam::DVec3;
+
+use super::assemble::{Part, Request, assemble};
 use super::data::Mesh;
-use super::plan::Plan;
-use crate::base::fault::{Fault, Result};
+use super::explain::Explanation;
+use super::layout::Layout;
+use super::nodes::Nodes;
+use super::plan::{Method, Plan};
+use super::sets;
+use crate::base::bbox::Box3;
+use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
-use crate::model::Model;
+use crate::model::{Model, PatchId, SurfaceId};
 use crate::network::Network;
+use crate::surface::Domain;
+
+/// Samples along each direction of a patch when the box of what is meshed is taken.
+const SAMPLES: usize = 9;
+/// Share of the box's diagonal that is the size when none is given.
+const SHARE: f64 = 0.05;
 
 /// What a mesh is made from.
 #[derive(Clone, Copy)]
@@ -21,16 +35,104 @@ pub struct Input<'a> {
     pub tolerance: &'a Tolerance,
 }
 
-/// How a mesh came about, for `-v` and `explain`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Explanation {
-    /// One line each: which method a face got and its counts; which rule decided a strip.
-    pub lines: Vec<String>,
+/// A mesh with what it was made of.
+#[derive(Clone, Debug, Default)]
+pub struct Built {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// How it came about.
+    pub explanation: Explanation,
 }
 
 /// Makes the mesh. Warnings and notes go to `sink`.
-pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<(Mesh, Explanation)> {
-    let _ = sink;
-    job.go_on()?;
-    Ok((Mesh { name: input.plan.name.clone(), order: input.plan.order, ..Mesh::default() }, Explanation::default()))
+///
+/// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
+/// E217 (too many elements), E715 (turned elements).
+pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
+    let patches: Vec<(PatchId, bool)> =
+        input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
+    refuse_later(input)?;
+    let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
+    let groups: Vec<(Vec<(PatchId, bool)>, bool)> = if input.plan.conforming {
+        vec![(patches, true)]
+    } else {
+        // Each face by itself, then the curves and points.
+        patches.iter().map(|p| (vec![*p], false)).chain(std::iter::once((Vec::new(), true))).collect()
+    };
+    let mut parts: Vec<Part> = Vec::new();
+    for (patches, with_lines) in &groups {
+        parts.push(assemble(input, &Request { patches, with_lines: *with_lines, size }, job)?);
+    }
+    if let Some((first, others)) = parts.split_first_mut() {
+        others.iter().for_each(|part| first.sizing.join(&part.sizing));
+        first.sizing.report(&input.plan.rules, sink);
+    }
+    Ok(merge(input, parts))
+}
+
+/// Parts one after the other as one mesh, with its named sets.
+fn merge(input: &Input, mut parts: Vec<Part>) -> Built {
+    let mut built = Built::default();
+    let mut ranges: sets::Ranges = Vec::new();
+    let mut offsets = Vec::new();
+    for part in &mut parts {
+        let mesh = std::mem::take(&mut part.mesh);
+        let (t, q) = (built.mesh.triangles.len() as u32, built.mesh.quads.len() as u32);
+        offsets.push(built.mesh.nodes.len() as u32);
+        ranges.extend(part.ranges.iter().map(|(s, a, b)| (*s, a.start + t..a.end + t, b.start + q..b.end + q)));
+        built.explanation.append(&mut part.explanation);
+        built.mesh.append(mesh);
+    }
+    (built.mesh.name, built.mesh.order) = (input.plan.name.clone(), input.plan.order);
+    let named: Vec<(&Layout, &Nodes, u32)> = parts.iter().zip(offsets).map(|(p, offset)| (&p.layout, &p.nodes, offset)).collect();
+    let mut groups = Vec::new();
+    let mut done: Vec<SurfaceId> = Vec::new();
+    for (surface, _) in &input.plan.surfaces {
+        if !done.contains(surface) {
+            done.push(*surface);
+            groups.push(sets::of_surface(input, &built.mesh, &ranges, *surface));
+        }
+    }
+    groups.extend(input.plan.groups.iter().map(|g| sets::of_request(input, &named, &built.mesh, &ranges, g)));
+    built.mesh.groups = groups;
+    built
+}
+
+/// E230 for methods of a later version.
+fn refuse_later(input: &Input) -> Result<()> {
+    let asked = std::iter::once((input.plan.method, input.plan.origin)).chain(input.plan.rules.iter().filter_map(|r| r.method));
+    for (method, origin) in asked {
+        if let Method::Later(name) = method {
+            return Err(MeshFault::MethodLater { of: origin, method: name }.into());
+        }
+    }
+    Ok(())
+}
+
+/// A twentieth of the diagonal of what is meshed.
+fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
+    let mut around = Box3::of(input.plan.points.iter().copied());
+    for (_, chain) in &input.plan.curves {
+        around = around.union(Box3::of((0..=SAMPLES * SAMPLES).map(|k| chain.point(k as f64 / (SAMPLES * SAMPLES) as f64))));
+    }
+    for (patch, _) in patches {
+        let record = &input.model.patches[patch.index()];
+        let surface = &input.model.surfaces[record.surface.index()].surface;
+        let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / (SAMPLES - 1) as f64;
+        let mut points = vec![DVec3::ZERO; SAMPLES * SAMPLES];
+        if surface.domain() == Domain::Square {
+            let us: Vec<f64> = (0..SAMPLES).map(|k| at(record.u, k)).collect();
+            let vs: Vec<f64> = (0..SAMPLES).map(|k| at(record.v, k)).collect();
+            surface.grid(&us, &vs, &mut points);
+        } else {
+            for (k, p) in points.iter_mut().enumerate() {
+                let (i, j) = (k % SAMPLES, k / SAMPLES);
+                let v = at((0.0, 1.0), j);
+                *p = surface.point((1.0 - v) * at((0.0, 1.0), i), v);
+            }
+        }
+        around = around.union(Box3::of(points));
+    }
+    let diagonal = around.diagonal();
+    if diagonal > 0.0 { SHARE * diagonal } else { 1.0 }
 }

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use super::faces::Frame;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::model::SurfaceId;
 use crate::surface::Surface;
 
 /// Rows of nodes that one thread takes at a time.
@@ -170,13 +170,36 @@ impl Lattice {
     }
 }
 
-/// The chart of one face of a mesh, with what its triangles and quads are made of.
-#[derive(Clone, Debug, PartialEq)]
+/// Charts of the faces of a mesh, in the order of its faces; they ride along for measuring and never decide whether two
+/// meshes are equal.
+#[derive(Clone, Debug, Default)]
+pub struct Charts(pub Vec<Chart>);
+
+impl PartialEq for Charts {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// One face of a mesh on its surface.
+#[derive(Clone, Debug)]
 pub struct Chart {
     /// The surface.
-    pub surface: SurfaceId,
-    /// (u, v) of the corners of each triangle of the face, in the order of the mesh.
+    pub surface: Surface,
+    /// Where its nodes lie.
     pub shape: Shape,
+    /// Which nodes of the mesh they are.
+    pub frame: Frame,
+    /// The other side is up.
+    pub flipped: bool,
+}
+
+impl Chart {
+    /// The same face in a mesh where its nodes come `by` later.
+    pub fn shifted(mut self, by: u32) -> Self {
+        self.frame.shift(by);
+        self
+    }
 }
 
 /// How a face is divided.

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::chart::Charts;
+
 /// Elements of one patch or curve, contiguous in the arrays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceRange {
@@ -66,4 +68,36 @@ pub struct Mesh {
     pub faces: Vec<FaceRange>,
     /// Named sets: one per surface, then one per `group`, in order of declaration.
     pub groups: Vec<Group>,
+    /// Where the nodes of its faces lie on their surfaces; empty for meshes that were read.
+    pub charts: Charts,
+}
+
+impl Mesh {
+    /// Adds the nodes and elements of another mesh after this one's; groups are left to the caller.
+    ///
+    /// Only meshes of order 1, or one mesh into an empty one, keep mid nodes after all corner nodes.
+    pub fn append(&mut self, other: Mesh) {
+        if self.nodes.is_empty() {
+            *self = other;
+            return;
+        }
+        let n = self.nodes.len() as u32;
+        let (l, t, q) = (self.lines.len() as u32, self.triangles.len() as u32, self.quads.len() as u32);
+        self.nodes.extend(other.nodes);
+        self.points.extend(other.points.iter().map(|p| p + n));
+        self.lines.extend(other.lines.iter().map(|e| e.map(|p| p + n)));
+        self.triangles.extend(other.triangles.iter().map(|e| e.map(|p| p + n)));
+        self.quads.extend(other.quads.iter().map(|e| e.map(|p| p + n)));
+        self.line_mids.extend(other.line_mids.iter().map(|p| p + n));
+        self.triangle_mids.extend(other.triangle_mids.iter().map(|e| e.map(|p| p + n)));
+        self.quad_mids.extend(other.quad_mids.iter().map(|e| e.map(|p| p + n)));
+        self.charts.0.extend(other.charts.0.into_iter().map(|chart| chart.shifted(n)));
+        let shift = |r: &Range<u32>, by: u32| r.start + by..r.end + by;
+        self.faces.extend(other.faces.into_iter().map(|f| FaceRange {
+            triangles: shift(&f.triangles, t),
+            quads: shift(&f.quads, q),
+            lines: shift(&f.lines, l),
+            name: f.name,
+        }));
+    }
 }

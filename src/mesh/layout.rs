@@ -7,7 +7,7 @@ use super::plan::{Elements, Method};
 use crate::model::atoms::{Atoms, Part, Use, atoms};
 use crate::model::glue::preference;
 use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Trace, Track};
-use crate::network::LinkId;
+use crate::network::{Chain, LinkId};
 use crate::surface::{Domain, Surface};
 
 /// One side of a face, in the direction of ascending u or v.
@@ -78,6 +78,7 @@ impl Layout {
         let edges = input.model.edges_of(&ids);
         let mut parts: Vec<Part> = edges.iter().map(|e| edge_part(input, *e)).collect();
         let links = if with_lines { link_parts(input, &mut parts) } else { Vec::new() };
+        let alone = if with_lines { lone_parts(input, &mut parts) } else { Vec::new() };
         let mut anchors: Vec<DVec3> = input.model.vertices_of(&ids).iter().map(|v| input.model.vertices[v.index()].point).collect();
         for part in &links {
             let ends = input.network.links[part.0.index()].nodes;
@@ -98,7 +99,11 @@ impl Layout {
             layout.faces.push(face);
         }
         if with_lines {
-            layout.curves = input.plan.curves.iter().map(|(_, chain)| layout.along(input, chain)).collect();
+            let along = |(k, (_, chain)): (usize, &(String, Chain))| match alone.iter().find(|a| a.0 == k) {
+                Some((_, part)) => layout.pieces.of_track[*part].clone(),
+                None => layout.along(input, chain),
+            };
+            layout.curves = input.plan.curves.iter().enumerate().map(along).collect();
         }
         layout
     }
@@ -127,7 +132,7 @@ impl Layout {
     }
 
     /// Stretches of a chain in its direction, `s` from its start; those of links that are in the mesh.
-    pub fn along(&self, input: &Input, chain: &crate::network::Chain) -> Vec<Use> {
+    pub fn along(&self, input: &Input, chain: &Chain) -> Vec<Use> {
         let Some(links) = input.network.links_of(chain, input.tolerance) else {
             return Vec::new();
         };
@@ -142,9 +147,33 @@ impl Layout {
         uses
     }
 
+    /// What a stretch lies on, by name: its curve, or the surface whose line it is.
+    pub fn name_of(&self, input: &Input, stretch: usize) -> String {
+        let on_link = self.of_link.iter().find(|(_, uses)| uses.iter().any(|u| u.atom == stretch));
+        if let Some((link, _)) = on_link {
+            let curve = input.network.links[link.index()].curve;
+            return input.network.curves[curve.index()].name.clone();
+        }
+        let on_face = self.faces.iter().find(|f| f.sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch)));
+        match on_face {
+            Some(face) => format!("a border in {}", input.model.surfaces[face.surface.index()].name),
+            None => "a curve".to_owned(),
+        }
+    }
+
+    /// Stretches that lie on a chain, in no order that means anything.
+    pub fn on(&self, input: &Input, chain: &Chain) -> Vec<usize> {
+        self.along(input, chain).iter().map(|u| u.atom).collect()
+    }
+
     /// Length of a stretch, model units.
     pub fn length(&self, stretch: usize) -> f64 {
         self.pieces.atoms[stretch].length()
+    }
+
+    /// Points of a stretch at ascending fractions of its length.
+    pub fn points_along(&self, stretch: usize, fractions: &[f64]) -> Vec<DVec3> {
+        fractions.iter().map(|f| self.point(stretch, *f)).collect()
     }
 
     /// Point of a stretch at a fraction of its length.
@@ -195,6 +224,20 @@ fn link_parts(input: &Input, parts: &mut Vec<Part>) -> Vec<(LinkId, usize)> {
             (link, parts.len() - 1)
         })
         .collect()
+}
+
+/// Adds the plan's curves that are not in the network as tracks of their own; gives curve and part.
+fn lone_parts(input: &Input, parts: &mut Vec<Part>) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    for (k, (_, chain)) in input.plan.curves.iter().enumerate() {
+        if input.network.links_of(chain, input.tolerance).is_none() {
+            let curve = EdgeCurve::Run { chain: chain.clone(), span: (0.0, chain.length()) };
+            let cuts = chain.joints().iter().map(|f| f * chain.length()).filter(|s| *s > 0.0 && *s < chain.length()).collect();
+            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts, rank: preference(&curve) });
+            found.push((k, parts.len() - 1));
+        }
+    }
+    found
 }
 
 /// Stretches of each link, along the link.

@@ -11,7 +11,7 @@ use crate::surface::Surface;
 const ROWS: usize = 16;
 
 /// Global node ids of a grid.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Nodes of the sides v = min, u = max, v = max, u = min, ascending; at a pole all the same.
     pub sides: [Vec<u32>; 4],

@@ -1,19 +1,35 @@
 //! Floor 5: meshes. Faces are asked for points and normals only; nothing here knows what kind a surface is.
+//!
+//! One dimension first: every stretch of a border or curve is divided once, for all faces that share it. Faces are then
+//! mapped between their divided sides. `docs/notes/mapped-mesh.md` tells the phases.
 
+mod assemble;
 pub mod build;
 pub mod chart;
+mod chord;
 pub mod counts;
 pub mod data;
-pub mod edges;
-pub mod layout;
+mod edges;
+pub mod explain;
+pub mod faces;
+mod foot;
+mod layout;
+mod limits;
+mod lines;
 pub mod mapped;
 mod moved;
+mod nodes;
 pub mod plan;
-pub mod rows;
-pub mod sizing;
+mod relations;
+mod rows;
+mod second_order;
+mod sets;
+mod shape_check;
+mod sizing;
 pub mod strips;
 pub mod trilateral;
 
-pub use build::{Explanation, Input, build};
+pub use build::{Built, Input, build};
 pub use data::{FaceRange, Group, Mesh};
+pub use explain::Explanation;
 pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};

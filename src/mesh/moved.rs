@@ -8,6 +8,10 @@ impl Mesh {
     pub fn moved(&self, motion: &Motion) -> Self {
         let mut moved = self.clone();
         moved.nodes.iter_mut().for_each(|p| *p = motion.point(*p));
+        for chart in &mut moved.charts.0 {
+            chart.surface = chart.surface.moved(motion);
+            chart.flipped ^= motion.mirrors();
+        }
         if motion.mirrors() {
             moved.triangles.iter_mut().for_each(|t| t.swap(1, 2));
             moved.triangle_mids.iter_mut().for_each(|m| m.swap(0, 2));

@@ -4,7 +4,7 @@ use super::build::Input;
 use super::counts::share;
 use super::edges::{Limits, least_steps, wanted_steps};
 use super::layout::Layout;
-use super::plan::{Elements, Method, Rule, Target};
+use super::plan::{Elements, Rule, Target};
 use super::strips::Stretch;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
@@ -369,15 +369,6 @@ fn count_shares(uses: &[Use], links: &[LinkRange], count: u32) -> std::result::R
         shares.extend(share(own, &lengths, &vec![1; lengths.len()]).unwrap_or_default());
     }
     Ok(shares)
-}
-
-/// The method a face ends up with, as `-v` has it.
-pub fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::Auto => "auto",
-        Method::Mapped => "mapped",
-        Method::Later(name) => name,
-    }
 }
 
 /// The elements of a face, as `-v` has it.

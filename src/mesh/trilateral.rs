@@ -3,7 +3,7 @@
 use super::chart::Lattice;
 
 /// Node ids of a lattice: its three sides ascending, and its first inner node.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LatticeFrame {
     /// Nodes along v = 0, along the slant (ascending v), along u = 0.
     pub sides: [Vec<u32>; 3],

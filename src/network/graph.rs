@@ -1,10 +1,20 @@
 //! The curve network: all declared curves in one graph of nodes and links [Koh & Park 1990, §3.1].
+//!
+//! It keeps the contacts of its curves pair by pair and assembles nodes and links from them after every change, so a
+//! network that was edited and one that was built afresh are the same (math notes §3.2, §3.3).
+
+use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::chain::Chain;
-use crate::base::fault::{Fault, Result};
+use super::assemble::{Parts, assemble};
+use super::chain::{Chain, Run, same_curve};
+use super::hits::{self, Contact};
+use super::near::near_misses;
+use crate::base::fault::{Fault, NetworkFault, Result};
 use crate::base::job::Job;
+use crate::base::math::compare_points;
+use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
 
@@ -18,7 +28,7 @@ crate::ids! {
 }
 
 /// A point where curves end or meet.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// Where it is: the declared point among the hits, else their mean.
     pub point: DVec3,
@@ -27,11 +37,11 @@ pub struct Node {
 }
 
 /// A run of one curve between neighbouring nodes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// The curve that owns it.
     pub curve: CurveId,
-    /// Arc lengths on the owner, ascending.
+    /// Arc lengths on the owner, ascending; past the start of a closed curve the second exceeds its length.
     pub s: (f64, f64),
     /// First and last node, in the direction of the owner.
     pub nodes: (NodeId, NodeId),
@@ -44,11 +54,14 @@ pub struct NetCurve {
     pub name: String,
     /// Its geometry.
     pub curve: Curve,
+    /// Arc lengths where a node was asked for.
+    pub cuts: Vec<f64>,
     /// Links it runs over from start to end, with `true` where it runs against the link's direction (shared runs).
     pub links: Vec<(LinkId, bool)>,
-    /// Its nodes from start to end, `links.len() + 1` of them.
+    /// Its nodes from start to end, `links.len() + 1` of them; those of a closed curve begin and end with its first
+    /// node, which is at its start only when nothing meets it or something meets it there.
     pub nodes: Vec<NodeId>,
-    /// Arc lengths of these nodes on this curve.
+    /// Arc lengths of these nodes on this curve, ascending; the last one of a closed curve is one turn after the first.
     pub stations: Vec<f64>,
 }
 
@@ -63,6 +76,9 @@ pub struct Input {
     pub cuts: Vec<f64>,
 }
 
+/// For each link before a change, the links that stand in its place, in its direction.
+pub type LinkMap = Vec<Vec<LinkId>>;
+
 /// The curves of a model, their nodes and links; numbered in order of declaration, then along curves.
 #[derive(Clone, Debug, Default)]
 pub struct Network {
@@ -72,35 +88,181 @@ pub struct Network {
     pub nodes: Vec<Node>,
     /// Links.
     pub links: Vec<Link>,
+    contacts: Vec<Contact>,
+    points: Vec<DVec3>,
+    by_start: OnceLock<Vec<(DVec3, u32)>>,
 }
 
 impl Network {
     /// All curves at once. `points` are the declared points, which give their place to the nodes they hit.
     ///
-    /// Notes and warnings (shared runs, near misses) go to `sink`.
+    /// Notes and warnings (shared runs N512, near misses W514) go to `sink`. Fails with E506 when it is not clear which
+    /// hits are one node, with E401 for a curve of no length, and with what intersection fails with.
     pub fn build(inputs: Vec<Input>, points: &[DVec3], tolerance: &Tolerance, job: &Job, sink: &mut Vec<Fault>) -> Result<Self> {
-        let _ = (inputs, points, tolerance, job, sink);
-        Ok(Self::default())
+        let mut network = Self { points: points.to_vec(), ..Self::default() };
+        for input in inputs {
+            network.admit(input, tolerance)?;
+        }
+        network.contacts = hits::all(&network.curves, tolerance, job)?;
+        sink.extend(network.assemble(tolerance)?);
+        sink.extend(near_misses(&network.curves, None, tolerance));
+        Ok(network)
     }
 
-    /// The links a chain runs over, with `true` where it runs against the link; `None` where a run lies on a curve that is not in the network.
+    /// Adds a curve; the map leads from the old links to the new ones. A network that fails is left as it was.
+    pub fn insert(&mut self, input: Input, tolerance: &Tolerance, job: &Job, sink: &mut Vec<Fault>) -> Result<LinkMap> {
+        let mut next = self.clone();
+        next.admit(input, tolerance)?;
+        let one = next.curves.len() - 1;
+        let own = next.curves[one].curve.origin();
+        next.contacts.extend(hits::of_one(&next.curves, one, tolerance, job)?);
+        let notes = next.assemble(tolerance)?;
+        sink.extend(notes.into_iter().filter(|note| concerns(note, own)));
+        sink.extend(near_misses(&next.curves, Some(one), tolerance));
+        let map = self.map_to(&next, |k| Some(k));
+        *self = next;
+        Ok(map)
+    }
+
+    /// Takes a curve away with what it leaves isolated; nodes that only it made disappear and their links merge.
+    ///
+    /// `users` are the entities that stand on the curve, upper-most first; when there are any, E510 lists them.
+    pub fn remove(&mut self, curve: CurveId, users: &[Origin], tolerance: &Tolerance) -> Result<LinkMap> {
+        let gone = curve.index();
+        if !users.is_empty() {
+            return Err(NetworkFault::InUse { of: self.curves[gone].curve.origin(), users: users.to_vec() }.into());
+        }
+        let mut next = self.clone();
+        next.curves.remove(gone);
+        next.contacts.retain(|c| c.curves.iter().all(|&k| k as usize != gone));
+        for k in next.contacts.iter_mut().flat_map(|c| &mut c.curves).filter(|k| **k as usize > gone) {
+            *k -= 1;
+        }
+        next.assemble(tolerance)?;
+        let map = self.map_to(&next, |k| match k.cmp(&gone) {
+            std::cmp::Ordering::Less => Some(k),
+            std::cmp::Ordering::Equal => None,
+            std::cmp::Ordering::Greater => Some(k - 1),
+        });
+        *self = next;
+        Ok(map)
+    }
+
+    fn admit(&mut self, input: Input, tolerance: &Tolerance) -> Result<()> {
+        let Input { name, curve, cuts } = input;
+        let length = curve.length();
+        // A NaN is not above the tolerance either.
+        if !(length > tolerance.point) {
+            return Err(NetworkFault::NoLength { of: curve.origin(), at: curve.start(), length, tolerance: tolerance.point }.into());
+        }
+        self.curves.push(NetCurve { name, curve, cuts, links: Vec::new(), nodes: Vec::new(), stations: Vec::new() });
+        Ok(())
+    }
+
+    fn assemble(&mut self, tolerance: &Tolerance) -> Result<Vec<Fault>> {
+        self.by_start = OnceLock::new();
+        let parts = Parts { contacts: &self.contacts, points: &self.points, tolerance };
+        let (nodes, links, notes) = assemble(&mut self.curves, &parts)?;
+        self.nodes = nodes;
+        self.links = links;
+        Ok(notes)
+    }
+
+    /// Links of `next` in the place of each link of this network; `curve_in` finds curves there.
+    fn map_to(&self, next: &Self, curve_in: impl Fn(usize) -> Option<usize>) -> LinkMap {
+        let place = |link: &Link| -> Vec<LinkId> {
+            // A link whose owner went may live on in another curve that runs over it.
+            let Some(net) = curve_in(link.curve.index()).map(|k| &next.curves[k]) else { return Vec::new() };
+            let nearest = |s: f64| {
+                let near = |k: &usize| (net.stations[*k] - s).abs();
+                (0..net.stations.len()).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap_or(0)
+            };
+            let whole = net.links.len();
+            let (from, mut to) = (nearest(link.s.0), nearest(link.s.1));
+            if to <= from {
+                to += whole;
+            }
+            (from..to).map(|k| net.links[k % whole].0).collect()
+        };
+        self.links.iter().map(place).collect()
+    }
+
+    /// The curve of the network with the same geometry.
+    pub fn find(&self, curve: &Curve) -> Option<CurveId> {
+        let by_start = self.by_start.get_or_init(|| {
+            let mut all: Vec<(DVec3, u32)> = self.curves.iter().zip(0..).map(|(net, k)| (net.curve.start(), k)).collect();
+            all.sort_by(|a, b| compare_points(a.0, b.0).then(a.1.cmp(&b.1)));
+            all
+        });
+        let start = curve.start();
+        let from = by_start.partition_point(|(p, _)| compare_points(*p, start).is_lt());
+        let same_start = by_start[from..].iter().take_while(|(p, _)| compare_points(*p, start).is_eq());
+        same_start.map(|&(_, k)| k as usize).find(|&k| same_curve(&self.curves[k].curve, curve)).map(CurveId::at)
+    }
+
+    /// The links a chain runs over, with `true` where it runs against the link; `None` where a run lies on a curve that
+    /// is not in the network or does not end in its nodes.
     pub fn links_of(&self, chain: &Chain, tolerance: &Tolerance) -> Option<Vec<(LinkId, bool)>> {
-        let _ = (chain, tolerance);
-        None
+        let mut links = Vec::new();
+        for run in chain.runs() {
+            let net = &self.curves[self.find(&run.curve)?.index()];
+            let mut part = net.links_between(run.s0.min(run.s1), run.s0.max(run.s1), tolerance)?;
+            if run.is_backward() {
+                part.reverse();
+                part.iter_mut().for_each(|(_, against)| *against = !*against);
+            }
+            links.extend(part);
+        }
+        Some(links)
     }
 
-    /// The node within tolerance of a point.
+    /// The node within tolerance of a point; the nearest one.
     pub fn node_at(&self, point: DVec3, tolerance: &Tolerance) -> Option<NodeId> {
-        self.nodes.iter().position(|n| tolerance.same_point(n.point, point)).map(NodeId::at)
+        let near = |k: &usize| self.nodes[*k].point.distance_squared(point);
+        let nearest = (0..self.nodes.len()).min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        tolerance.same_point(self.nodes[nearest].point, point).then(|| NodeId::at(nearest))
     }
 
     /// A link's geometry as a chain along its own direction.
     pub fn link_chain(&self, link: LinkId) -> Chain {
-        Chain::of_curve(&self.curves[self.links[link.index()].curve.index()].curve)
+        let Link { curve, s, .. } = self.links[link.index()];
+        let curve = &self.curves[curve.index()].curve;
+        Chain::of_runs(vec![Run { curve: curve.clone(), s0: s.0, s1: s.1 }], curve.origin())
     }
+}
 
-    /// Invariants of math.md 3.1; the sentence says what is broken.
-    pub fn check(&self) -> std::result::Result<(), String> {
-        Ok(())
+/// Whether a note speaks of the curve.
+fn concerns(note: &Fault, of: Origin) -> bool {
+    match note {
+        Fault::Network(fault) => match **fault {
+            NetworkFault::SharedRun { owner, other, .. } => owner == of || other == of,
+            _ => true,
+        },
+        _ => true,
+    }
+}
+
+impl NetCurve {
+    /// The links between two ascending arc lengths that are nodes within the tolerance.
+    fn links_between(&self, lo: f64, hi: f64, tolerance: &Tolerance) -> Option<Vec<(LinkId, bool)>> {
+        let reach = 4.0 * tolerance.point;
+        let length = self.curve.length();
+        let closed = self.nodes.first() == self.nodes.last() && self.stations[self.stations.len() - 1] >= length;
+        let at = |s: f64| self.stations.iter().position(|st| (st - s).abs() <= reach);
+        if !closed {
+            let (from, to) = (at(lo)?, at(hi)?);
+            return Some(self.links[from..to].to_vec());
+        }
+        if hi - lo >= length - reach {
+            // A whole turn, from wherever it begins; begun between nodes it is the ring all the same.
+            let from = at(lo).or_else(|| at(lo + length)).or_else(|| at(lo - length)).unwrap_or(0);
+            return Some((0..self.links.len()).map(|k| self.links[(from + k) % self.links.len()]).collect());
+        }
+        let find = |s: f64| [0.0, length, -length].into_iter().find_map(|turn| at(s + turn)).map(|k| k % self.links.len());
+        let (from, mut to) = (find(lo)?, find(hi)?);
+        if to <= from {
+            to += self.links.len();
+        }
+        Some((from..to).map(|k| self.links[k % self.links.len()]).collect())
     }
 }

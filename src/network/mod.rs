@@ -1,16 +1,24 @@
 //! Floor 2: curves become nodes and links; runs of them become modeling curves ("chains"); node lists become flows.
 
+mod assemble;
 pub mod chain;
+mod check;
+mod cluster;
 pub mod detect;
 pub mod flow;
 pub mod flow_chains;
 pub mod graph;
+mod hits;
 mod layout;
 pub mod meet;
+mod near;
+mod shared;
 mod slice;
+pub mod snap;
 
 pub use chain::{Chain, Run};
 pub use flow::{Flow, FlowFault, FlowKind, FlowOptions, NodeList};
 pub use flow_chains::{ChainFlow, of_chains};
-pub use graph::{Link, LinkId, Network, Node, NodeId};
+pub use graph::{CurveId, Input, Link, LinkId, LinkMap, Network, Node, NodeId};
 pub use meet::{Meeting, meet, meet_once};
+pub use snap::{Move, SnapEnd, snap};

@@ -86,7 +86,7 @@ impl Pipeline for Stages<'_> {
         let built = mesh::build::build(&input, cx.job, &mut sink);
         say_all(cx, &sink);
         self.found().mesh_seconds += (self.clock)() - start;
-        let (mesh, explanation) = built?;
+        let mesh::build::Built { mesh, explanation } = built?;
         self.note(explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)));
         Ok(Arc::new(mesh))
     }

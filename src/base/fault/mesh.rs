@@ -48,6 +48,22 @@ pub enum MeshFault {
         /// Where it is broken.
         at: DVec3,
     },
+    /// E703: a written count below what the shape of a face needs (a ring, a lens).
+    CountTooFew {
+        /// The count and its expression.
+        count: (u32, Origin),
+        /// The least count that works.
+        needed: u32,
+        /// Where.
+        at: DVec3,
+    },
+    /// E230: a method of a later version.
+    MethodLater {
+        /// The expression.
+        of: Origin,
+        /// The method.
+        method: &'static str,
+    },
     /// E703: counts of chains that are fewer than their links.
     CountBelowLinks {
         /// The count and its expression.

@@ -63,6 +63,20 @@ pub enum ValueFault {
         /// What is there, in words: "an angle".
         found: String,
     },
+    /// E211: numbers of several dimensions, or members of several kinds, where one is wanted.
+    Mixed {
+        /// Parameter name.
+        argument: &'static str,
+        /// One of them in words: "a length".
+        found: String,
+        /// What it stands beside: "an angle".
+        beside: String,
+    },
+    /// E903: the script itself says that something is wrong.
+    Raised {
+        /// In its words.
+        message: String,
+    },
     /// E230: known but not in this version.
     NotInThisVersion {
         /// What was asked for, for example "`method: delaunay`".
@@ -113,6 +127,10 @@ impl Describe for ValueFault {
             Self::WrongKind { argument, wanted, found } => {
                 Report::new("E211", format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())
             }
+            Self::Mixed { argument, found, beside } => {
+                Report::new("E211", format!("{found} beside {beside}")).label(Subject::Argument(argument), "these must be of one kind")
+            }
+            Self::Raised { message } => Report::new("E903", message.clone()).label(Subject::Call, "raised here"),
             Self::NotInThisVersion { what } => {
                 Report::new("E230", format!("{what} is not in this version")).label(Subject::Call, "asked for here")
             }

@@ -8,6 +8,7 @@ use super::types::Ty;
 use super::value::Value;
 
 mod curves;
+mod data;
 pub mod kinds;
 mod lists;
 mod network;
@@ -83,6 +84,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     lists::BUILTINS,
     text::BUILTINS,
     vectors::BUILTINS,
+    data::BUILTINS,
     curves::BUILTINS,
     network::BUILTINS,
     surfaces::BUILTINS,
@@ -91,7 +93,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
 ];
 
 /// All tables of fields.
-pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, network::FIELDS, topology::FIELDS];
+pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, data::FIELDS, network::FIELDS, topology::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

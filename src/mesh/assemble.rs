@@ -1,0 +1,220 @@
+//! Counts, nodes and elements of a set of faces that share their borders.
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::chart::Charts;
+use super::data::{FaceRange, Mesh};
+use super::edges::Limits;
+use super::explain::Explanation;
+use super::faces::{self, Prepared};
+use super::layout::Layout;
+use super::limits::{self, Finished, Verdict};
+use super::nodes::Nodes;
+use super::plan::Elements;
+use super::relations::Relations;
+use super::rows::{self, Wish};
+use super::sizing::{MOST, Sizing};
+use super::{lines, second_order, shape_check, strips};
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::limits::MESH_ELEMENTS;
+use crate::base::par;
+use crate::model::{PatchId, SurfaceId};
+
+/// Refinements of whole faces before a limit counts as out of reach.
+const ROUNDS: usize = 40;
+
+/// Which faces to mesh together.
+pub struct Request<'a> {
+    /// Patches, `true` where the other side is up.
+    pub patches: &'a [(PatchId, bool)],
+    /// Whether the plan's curves and points belong to these faces.
+    pub with_lines: bool,
+    /// Target size where no rule says another, model units.
+    pub size: f64,
+}
+
+/// The mesh of some faces, with what is needed to name its parts.
+pub struct Part {
+    /// The mesh, without groups.
+    pub mesh: Mesh,
+    /// Surface and element ranges of its faces.
+    pub ranges: super::sets::Ranges,
+    /// How it came about.
+    pub explanation: Explanation,
+    /// Its stretches.
+    pub layout: Layout,
+    /// Nodes on them.
+    pub nodes: Nodes,
+    /// Its rules.
+    pub sizing: Sizing,
+}
+
+/// Divides, refines until every limit is kept, and fills.
+pub fn assemble(input: &Input, request: &Request, job: &Job) -> Result<Part> {
+    let mut layout = Layout::new(input, request.patches, request.with_lines);
+    faces::refuse(input, &layout)?;
+    lines::refuse_inside(input, &layout)?;
+    let mut sizing = Sizing::new(input, &mut layout, request.size)?;
+    let limits = faces::limits_of(input);
+    let wishes = wishes(input, &layout, &sizing, &limits);
+    let mut relations = Relations::new(&layout, &wishes);
+    let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
+    for _ in 0..ROUNDS {
+        job.go_on()?;
+        let mut unknown = sizing.stretches(&layout);
+        unknown.extend(relations.rows());
+        let (counts, strip) = strips::solve(&unknown, &relations.list, MOST).map_err(|c| relations.fault(input, &layout, &sizing, &c))?;
+        // Nothing moved, so only the size is missed, where a written count overrules it.
+        let settled = counts == last;
+        let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
+        let prepared = prepare(input, &layout, &nodes, &relations, &counts)?;
+        let mesh = fill(input, &layout, &nodes, &prepared, job)?;
+        if !settled {
+            verdicts = limits::check(input, &limits, &mesh, &finished(&layout, &sizing, &prepared, &wishes));
+        }
+        if settled || verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
+            shape_check::refuse_turned(input, &prepared, &mesh)?;
+            sizing.take(&counts);
+            let explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
+            return Ok(finish(input, Whole { layout, nodes, prepared, sizing }, mesh, explanation));
+        }
+        relations.raise(&verdicts, &counts);
+        last = counts;
+    }
+    Err(relations.out_of_reach(input, &layout, &verdicts))
+}
+
+/// What the rows of each face want; nothing where all is written and no limit is set.
+fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits) -> Vec<[Wish; 2]> {
+    par::map(layout.faces.len(), |f| {
+        let face = &layout.faces[f];
+        let no_limit = limits.chord.is_none() && limits.angle.is_none();
+        if no_limit && written(layout, sizing, f) == [true; 2] {
+            return [Wish::default(); 2];
+        }
+        let patch = &input.model.patches[face.patch.index()];
+        rows::wishes(&input.model.surfaces[face.surface.index()].surface, patch.u, patch.v, face.size.0, limits)
+    })
+}
+
+/// Directions of a face with a side whose counts are all written out.
+fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
+    let sides = &layout.faces[face].sides;
+    let all = |k: usize| !sides[k].uses.is_empty() && sides[k].uses.iter().all(|u| sizing.decisions[u.atom].count.is_some());
+    if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
+}
+
+/// Charts and ids of all faces; checks how many elements there will be.
+fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
+    let mut total: u64 = 0;
+    for (face, rows) in layout.faces.iter().zip(&relations.of_face) {
+        let n = |k: usize| u64::from(counts[rows[k]]);
+        let cells = if face.is_triangle() { n(0).saturating_mul(n(0)) } else { n(0).saturating_mul(n(1)) };
+        total = total.saturating_add(if face.elements == Elements::Triangles && !face.is_triangle() { 2 * cells } else { cells });
+    }
+    for uses in &layout.curves {
+        total = uses.iter().fold(total, |t, u| t.saturating_add(u64::from(counts[u.atom])));
+    }
+    if total > MESH_ELEMENTS {
+        return Err(faces::too_many(&input.plan.name, total));
+    }
+    let mut prepared = par::try_map(layout.faces.len(), |f| {
+        let rows: Vec<u32> = relations.of_face[f].iter().map(|r| counts[*r]).collect();
+        faces::prepare(input, layout, nodes, &layout.faces[f], &rows)
+    })?;
+    faces::refuse_triangles(input, layout, &prepared)?;
+    let mut first = nodes.total;
+    for ready in &mut prepared {
+        ready.number(first);
+        first += ready.inner as u32;
+    }
+    Ok(prepared)
+}
+
+/// One face being filled: its parts of the arrays.
+struct Fill<'a> {
+    ready: &'a Prepared,
+    nodes: &'a mut [DVec3],
+    triangles: &'a mut [[u32; 3]],
+    quads: &'a mut [[u32; 4]],
+    result: Result<()>,
+}
+
+/// All nodes and elements; faces and rows of large faces on several threads.
+fn fill(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared], job: &Job) -> Result<Mesh> {
+    let sum = |f: &dyn Fn(&Prepared) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
+    let mut border = nodes.points(layout, &input.plan.points);
+    let on_border = border.len();
+    border.reserve_exact(sum(&|p| p.inner));
+    border.resize(on_border + sum(&|p| p.inner), DVec3::ZERO);
+    let mut mesh = Mesh { name: input.plan.name.clone(), order: input.plan.order, nodes: border, ..Mesh::default() };
+    mesh.triangles = vec![[0; 3]; sum(&|p| p.triangles)];
+    mesh.quads = vec![[0; 4]; sum(&|p| p.quads)];
+    let (border, mut inner) = mesh.nodes.split_at_mut(on_border);
+    let (border, mut triangles, mut quads) = (&*border, mesh.triangles.as_mut_slice(), mesh.quads.as_mut_slice());
+    let mut work = Vec::new();
+    for ready in prepared {
+        let own;
+        (own, inner) = inner.split_at_mut(ready.inner as usize);
+        let (t, q);
+        (t, triangles) = triangles.split_at_mut(ready.triangles as usize);
+        (q, quads) = quads.split_at_mut(ready.quads as usize);
+        work.push(Fill { ready, nodes: own, triangles: t, quads: q, result: Ok(()) });
+    }
+    job.expect(work.len() as u64);
+    par::chunks_mut(&mut work, 1, |_, faces| {
+        for face in faces {
+            face.result = job.go_on();
+            if face.result.is_ok() {
+                let surface = &input.model.surfaces[face.ready.surface.index()].surface;
+                face.ready.points(surface, face.nodes);
+                let (first, own) = (face.ready.first, &*face.nodes);
+                let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
+                face.ready.fill(surface, &node, input.tolerance.point, face.triangles, face.quads);
+                job.advance(1);
+            }
+        }
+    });
+    work.into_iter().try_for_each(|face| face.result)?;
+    Ok(mesh)
+}
+
+fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [Prepared], wishes: &'a [[Wish; 2]]) -> Vec<Finished<'a>> {
+    let mut first = 0;
+    let one = |(f, ready): (usize, &'a Prepared)| {
+        let triangles = first..first + ready.triangles as usize;
+        first = triangles.end;
+        Finished { face: &layout.faces[f], ready, triangles, wishes: &wishes[f], written: written(layout, sizing, f) }
+    };
+    prepared.iter().enumerate().map(one).collect()
+}
+
+/// Everything but the mesh.
+struct Whole {
+    layout: Layout,
+    nodes: Nodes,
+    prepared: Vec<Prepared>,
+    sizing: Sizing,
+}
+
+/// Ranges, line elements and mid nodes.
+fn finish(input: &Input, whole: Whole, mut mesh: Mesh, explanation: Explanation) -> Part {
+    let Whole { layout, nodes, prepared, sizing } = whole;
+    let mut ranges: Vec<(SurfaceId, std::ops::Range<u32>, std::ops::Range<u32>)> = Vec::new();
+    let (mut t, mut q) = (0, 0);
+    for ready in &prepared {
+        let (triangles, quads) = (t..t + ready.triangles as u32, q..q + ready.quads as u32);
+        (t, q) = (triangles.end, quads.end);
+        let name = input.model.surfaces[ready.surface.index()].name.clone();
+        mesh.faces.push(FaceRange { name, triangles: triangles.clone(), quads: quads.clone(), lines: 0..0 });
+        ranges.push((ready.surface, triangles, quads));
+    }
+    lines::add(input, &layout, &nodes, &mut mesh);
+    if input.plan.order == 2 {
+        second_order::add(input, &layout, &nodes, &prepared, &mut mesh);
+    }
+    mesh.charts = Charts(prepared.into_iter().map(Prepared::into_chart).collect());
+    Part { mesh, ranges, explanation, layout, nodes, sizing }
+}

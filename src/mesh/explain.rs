@@ -1,0 +1,157 @@
+//! How a mesh came about, for `-v` and `explain`.
+
+use super::build::Input;
+use super::faces::{Frame, Prepared};
+use super::layout::Layout;
+use super::sizing::{Sizing, elements_name};
+use crate::base::origin::Origin;
+use crate::model::SurfaceId;
+
+/// What was chosen for a face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaceNote {
+    /// The surface.
+    pub surface: SurfaceId,
+    /// Patch of the surface, from 0.
+    pub patch: usize,
+    /// Method.
+    pub method: &'static str,
+    /// Kind of elements.
+    pub elements: &'static str,
+    /// Steps along the sides (a side with several stretches: their sum; a pole: 0).
+    pub sides: Vec<u32>,
+}
+
+/// Who decided a count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Because {
+    /// A written count.
+    Count(Origin),
+    /// The size of a rule.
+    RuleSize(Origin),
+    /// The size of the mesh.
+    Size,
+    /// Chord error or angle, or the shape of a face.
+    Limit,
+    /// Other stretches of the strip, or the faces beside it.
+    Neighbours,
+}
+
+/// The count of one stretch of a border or curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StretchNote {
+    /// Stretches with the same number form one strip.
+    pub strip: usize,
+    /// Steps.
+    pub count: u32,
+    /// Arc length, model units.
+    pub length: f64,
+    /// First and last point.
+    pub ends: [glam::DVec3; 2],
+    /// Last step over first step.
+    pub bias: f64,
+    /// Who decided.
+    pub because: Because,
+}
+
+/// How a mesh came about.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Explanation {
+    /// One a face.
+    pub faces: Vec<FaceNote>,
+    /// One a stretch.
+    pub stretches: Vec<StretchNote>,
+    /// The same in words, one line a face and one a strip.
+    pub lines: Vec<String>,
+}
+
+impl Explanation {
+    /// Adds another part's notes.
+    pub fn append(&mut self, other: &mut Self) {
+        let strips = self.stretches.iter().map(|s| s.strip + 1).max().unwrap_or(0);
+        other.stretches.iter_mut().for_each(|s| s.strip += strips);
+        self.faces.append(&mut other.faces);
+        self.stretches.append(&mut other.stretches);
+        self.lines.append(&mut other.lines);
+    }
+
+    /// Of one set of faces with their counts.
+    pub fn new(input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[Prepared], (counts, strip): (&[u32], &[usize])) -> Self {
+        let mut notes = Self::default();
+        for (face, ready) in layout.faces.iter().zip(prepared) {
+            let first = input.model.patches_of(face.surface).next().map_or(0, |p| p.index());
+            let sides = match &ready.chart.frame {
+                Frame::Grid(frame) => {
+                    let steps = |k: usize| if frame.poles[k] { 0 } else { frame.sides[k].len() as u32 - 1 };
+                    (0..4).map(steps).collect()
+                }
+                _ => face.sides.iter().map(|s| s.uses.iter().map(|u| counts[u.atom]).sum()).collect(),
+            };
+            notes.faces.push(FaceNote {
+                surface: face.surface,
+                patch: face.patch.index() - first,
+                method: "mapped",
+                elements: elements_name(ready.elements),
+                sides,
+            });
+        }
+        let rule = |r: usize| input.plan.rules[r].origin;
+        for (k, d) in sizing.decisions.iter().enumerate() {
+            let because = match (d.count, d.size.1) {
+                (Some((_, r)), _) => Because::Count(rule(r)),
+                _ if d.wish != counts[k] => Because::Neighbours,
+                _ if d.wish == d.least && d.wish > 1 => Because::Limit,
+                (None, Some(r)) => Because::RuleSize(rule(r)),
+                _ => Because::Size,
+            };
+            let ends = layout.pieces.atoms[k].ends;
+            notes.stretches.push(StretchNote {
+                strip: strip[k],
+                count: counts[k],
+                length: layout.length(k),
+                ends: [layout.pieces.junctions[ends.0], layout.pieces.junctions[ends.1]],
+                bias: d.bias,
+                because,
+            });
+        }
+        notes.lines = notes.words(input, layout);
+        notes
+    }
+
+    fn words(&self, input: &Input, layout: &Layout) -> Vec<String> {
+        let face = |f: &FaceNote| {
+            let sides: Vec<String> = f.sides.iter().map(|n| if *n == 0 { "pole".to_owned() } else { n.to_string() }).collect();
+            let name = &input.model.surfaces[f.surface.index()].name;
+            format!("face {} of {name}: {}, {}, sides {}", f.patch, f.method, f.elements, sides.join(" "))
+        };
+        let mut lines: Vec<String> = self.faces.iter().map(face).collect();
+        let mut order: Vec<usize> = (0..self.stretches.len()).collect();
+        order.sort_by_key(|k| (self.stretches[*k].strip, *k));
+        for strip in order.chunk_by(|a, b| self.stretches[*a].strip == self.stretches[*b].strip) {
+            let mut names: Vec<String> = strip.iter().map(|k| layout.name_of(input, *k)).collect();
+            names.dedup();
+            let ranked = |k: &&usize| match self.stretches[**k].because {
+                Because::Count(_) => 0,
+                Because::RuleSize(_) => 1,
+                Because::Limit => 2,
+                Because::Size => 3,
+                Because::Neighbours => 4,
+            };
+            let Some(first) = strip.iter().min_by_key(ranked) else { continue };
+            let why = match self.stretches[*first].because {
+                Because::Count(_) => "a written count",
+                Because::RuleSize(_) => "the size of a rule",
+                Because::Limit => "chord_error, angle_error or the shape",
+                Because::Size => "the size",
+                Because::Neighbours => "the rows or faces beside it",
+            };
+            lines.push(format!(
+                "strip of {}: {} steps, by {why} (on {})",
+                names.join(", "),
+                self.stretches[*first].count,
+                layout.name_of(input, *first)
+            ));
+        }
+        lines
+    }
+}

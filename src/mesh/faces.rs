@@ -1,0 +1,301 @@
+//! Faces ready to be filled: their charts, the ids of their border nodes, and how many nodes and elements they make.
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::chart::{Chart, Grid, Lattice, Shape};
+use super::edges::Limits;
+use super::layout::{Face, Layout, side_parameters};
+use super::mapped;
+use super::nodes::Nodes;
+use super::plan::{Elements, Method};
+use super::trilateral::{Blocks, LatticeFrame};
+use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::limits::MESH_ELEMENTS;
+use crate::model::SurfaceId;
+use crate::surface::{Domain, Surface};
+
+/// Global node ids of a face.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Frame {
+    /// Of a grid.
+    Grid(mapped::Frame),
+    /// Of a lattice.
+    Lattice(LatticeFrame),
+    /// Of three blocks: ids by place among the blocks' nodes.
+    Blocks(Vec<u32>),
+}
+
+/// A face ready to be filled.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The surface.
+    pub surface: SurfaceId,
+    /// Its chart and node ids; inner ones from `first` on.
+    pub chart: Chart,
+    /// Elements.
+    pub elements: Elements,
+    /// First inner node.
+    pub first: u32,
+    /// Number of inner nodes.
+    pub inner: u64,
+    /// Number of triangles.
+    pub triangles: u64,
+    /// Number of quads.
+    pub quads: u64,
+}
+
+/// A point in the middle of a face.
+pub fn middle(input: &Input, face: &Face) -> DVec3 {
+    let patch = &input.model.patches[face.patch.index()];
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    if face.is_triangle() {
+        surface.point(1.0 / 3.0, 1.0 / 3.0)
+    } else {
+        surface.point(0.5 * (patch.u.0 + patch.u.1), 0.5 * (patch.v.0 + patch.v.1))
+    }
+}
+
+/// E705 or E230 for faces that no map fits, E704 for poles where only quads are wanted (counts come later).
+pub fn refuse(input: &Input, layout: &Layout) -> Result<()> {
+    for face in &layout.faces {
+        let surface = &input.model.surfaces[face.surface.index()].surface;
+        if let Some(why) = unmappable(surface, face) {
+            let (of, at) = (surface.origin(), middle(input, face));
+            return Err(match face.method {
+                Method::Mapped => MeshFault::CannotMap { surface: of, why, at },
+                _ => MeshFault::NeedsLater { of, what: format!("a face {why}"), method: "delaunay", at },
+            }
+            .into());
+        }
+    }
+    Ok(())
+}
+
+/// Why a face cannot be mapped, in words that follow "a face".
+fn unmappable(surface: &Surface, face: &Face) -> Option<String> {
+    if matches!(surface.domain(), Domain::Loop | Domain::Unbounded) {
+        return Some(match surface.domain() {
+            Domain::Loop => format!("with {} sides and no map between them", face.sides.len()),
+            _ => "without borders".to_owned(),
+        });
+    }
+    let empty = |k: usize| face.sides[k].uses.is_empty();
+    if face.is_triangle() {
+        return (0..3).any(empty).then(|| "with three sides of which one is a point".to_owned());
+    }
+    (0..4).any(|k| empty(k) && empty((k + 1) % 4)).then(|| "with two neighbouring sides that are points".to_owned())
+}
+
+/// E704 when faces for which only quads are wanted got triangles.
+pub fn refuse_triangles(input: &Input, layout: &Layout, prepared: &[Prepared]) -> Result<()> {
+    let mut places = Vec::new();
+    for (face, ready) in layout.faces.iter().zip(prepared) {
+        if ready.elements == Elements::Quads && ready.triangles > 0 {
+            let pole = face.sides.iter().find_map(|s| s.pole).map_or_else(|| middle(input, face), |p| layout.pieces.junctions[p]);
+            places.push((input.model.surfaces[face.surface.index()].surface.origin(), ready.triangles, pole));
+        }
+    }
+    if places.is_empty() { Ok(()) } else { Err(MeshFault::QuadsImpossible { mesh: input.plan.origin, places }.into()) }
+}
+
+/// Side nodes of a face with their lengths along the side.
+struct Line {
+    ids: Vec<u32>,
+    lengths: Vec<f64>,
+}
+
+/// The nodes along a side, ascending; a pole gives `steps + 1` times its node.
+fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usize) -> Line {
+    let border = &face.sides[side];
+    let (mut ids, mut lengths) = (Vec::new(), Vec::new());
+    for u in &border.uses {
+        let stretch = nodes.of_stretch(layout, u.atom, u.against);
+        let fractions = nodes.fractions(u.atom, u.against);
+        if !ids.is_empty() {
+            ids.pop();
+            lengths.pop();
+        }
+        ids.extend(stretch);
+        lengths.extend(fractions.iter().map(|f| if *f == 1.0 { u.s.1 } else { u.s.0 + (u.s.1 - u.s.0) * f }));
+    }
+    if border.uses.is_empty() {
+        ids = vec![border.pole.map_or(0, |p| nodes.of_junction(p)); steps + 1];
+    }
+    Line { ids, lengths }
+}
+
+/// The chart and ids of a face; `rows` are the counts of its rows, `first` becomes its first inner node.
+pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows: &[u32]) -> Result<Prepared> {
+    if face.is_triangle() {
+        return prepare_triangle(input, layout, nodes, face);
+    }
+    let patch = &input.model.patches[face.patch.index()];
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    let steps = |k: usize| rows[k % 2] as usize;
+    let lines = [0, 1, 2, 3].map(|k| line(layout, nodes, face, k, steps(k)));
+    let mut values =
+        [0, 1, 2, 3].map(|k| if lines[k].lengths.is_empty() { Vec::new() } else { side_parameters(input, face, k, &lines[k].lengths) });
+    for k in 0..4 {
+        if values[k].is_empty() {
+            let (low, high) = if k % 2 == 0 { patch.u } else { patch.v };
+            // At a pole lines go on as they come from the other side; between two poles they are even.
+            let even = || (0..=steps(k)).map(|i| low + (high - low) * i as f64 / steps(k) as f64).collect();
+            let opposite = &values[(k + 2) % 4];
+            values[k] = if opposite.is_empty() { even() } else { opposite.clone() };
+        }
+    }
+    let poles = [0, 1, 2, 3].map(|k| face.sides[k].uses.is_empty());
+    let [a, b, c, d] = lines;
+    let frame = mapped::Frame { sides: [a.ids, b.ids, c.ids, d.ids], poles, first: 0 };
+    let (triangles, quads) = frame.elements(face.elements);
+    let grid = Grid::new(patch.u, patch.v, values, input.tolerance);
+    Ok(Prepared {
+        inner: frame.inner(),
+        chart: Chart { surface: surface.clone(), shape: Shape::Grid(grid), frame: Frame::Grid(frame), flipped: face.flipped },
+        surface: face.surface,
+        elements: face.elements,
+        first: 0,
+        triangles,
+        quads,
+    })
+}
+
+fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) -> Result<Prepared> {
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    let lines = [0, 1, 2].map(|k| line(layout, nodes, face, k, 0));
+    let values = [0, 1, 2].map(|k| side_parameters(input, face, k, &lines[k].lengths));
+    let [a, b, c] = lines;
+    let ids = [a.ids, b.ids, c.ids];
+    let n = ids[0].len() as u64 - 1;
+    if face.elements == Elements::Triangles {
+        let inner = if n < 2 { 0 } else { (n - 1) * (n - 2) / 2 };
+        return Ok(Prepared {
+            chart: Chart {
+                surface: surface.clone(),
+                shape: Shape::Lattice(Lattice { sides: values }),
+                frame: Frame::Lattice(LatticeFrame { sides: ids, first: 0 }),
+                flipped: face.flipped,
+            },
+            surface: face.surface,
+            elements: face.elements,
+            first: 0,
+            inner,
+            triangles: n * n,
+            quads: 0,
+        });
+    }
+    let Some(blocks) = Blocks::new(&values) else {
+        let counts = [0, 1, 2].map(|k| ids[k].len() as u32 - 1);
+        return Err(MeshFault::SidesDoNotClose { counts, written: Vec::new(), surface: surface.origin() }.into());
+    };
+    let mut places = vec![0; blocks.uv.len()];
+    for (side, line) in blocks.sides.iter().zip(&ids) {
+        side.iter().zip(line).for_each(|(place, id)| places[*place as usize] = *id);
+    }
+    Ok(Prepared {
+        inner: blocks.inner as u64,
+        triangles: 0,
+        quads: blocks.quads.len() as u64,
+        chart: Chart { surface: surface.clone(), shape: Shape::Blocks(blocks), frame: Frame::Blocks(places), flipped: face.flipped },
+        surface: face.surface,
+        elements: face.elements,
+        first: 0,
+    })
+}
+
+impl Frame {
+    /// Moves all ids up.
+    pub fn shift(&mut self, by: u32) {
+        let lists: Vec<&mut Vec<u32>> = match self {
+            Self::Grid(frame) => {
+                frame.first += by;
+                frame.sides.iter_mut().collect()
+            }
+            Self::Lattice(frame) => {
+                frame.first += by;
+                frame.sides.iter_mut().collect()
+            }
+            Self::Blocks(places) => vec![places],
+        };
+        lists.into_iter().flatten().for_each(|id| *id += by);
+    }
+}
+
+impl Prepared {
+    /// What remains of it beside the mesh.
+    pub fn into_chart(self) -> Chart {
+        self.chart
+    }
+
+    /// Gives the inner nodes their ids.
+    pub fn number(&mut self, first: u32) {
+        self.first = first;
+        match &mut self.chart.frame {
+            Frame::Grid(frame) => frame.first = first,
+            Frame::Lattice(frame) => frame.first = first,
+            Frame::Blocks(places) => places[..self.inner as usize].iter_mut().zip(first..).for_each(|(place, id)| *place = id),
+        }
+    }
+
+    /// Points of the inner nodes.
+    pub fn points(&self, surface: &Surface, out: &mut [DVec3]) {
+        match &self.chart.shape {
+            Shape::Grid(grid) => grid.inner_points(surface, out),
+            Shape::Lattice(lattice) => {
+                for (p, (i, j)) in out.iter_mut().zip(LatticeFrame::inner(lattice.size())) {
+                    let (u, v) = lattice.uv(i, j);
+                    *p = surface.point(u, v);
+                }
+            }
+            Shape::Blocks(blocks) => {
+                for (p, (u, v)) in out.iter_mut().zip(&blocks.uv) {
+                    *p = surface.point(*u, *v);
+                }
+            }
+        }
+    }
+
+    /// Elements by global ids. `node` gives points of border and inner nodes, `even` the distance below which both
+    /// diagonals of a cell are as good.
+    pub fn fill(
+        &self,
+        surface: &Surface,
+        node: &(dyn Fn(u32) -> DVec3 + Sync),
+        even: f64,
+        triangles: &mut [[u32; 3]],
+        quads: &mut [[u32; 4]],
+    ) {
+        match (&self.chart.frame, &self.chart.shape) {
+            (Frame::Grid(frame), Shape::Grid(grid)) => {
+                let diagonals =
+                    if self.elements == Elements::Triangles { mapped::diagonals(grid, frame, surface, node, even) } else { Vec::new() };
+                mapped::fill(frame, self.elements, self.chart.flipped, &diagonals, triangles, quads);
+            }
+            (Frame::Lattice(frame), Shape::Lattice(lattice)) => {
+                for (slot, t) in triangles.iter_mut().zip(LatticeFrame::triangles(lattice.size())) {
+                    let [a, b, c] = t.map(|(i, j)| frame.node(i, j));
+                    *slot = if self.chart.flipped { [a, c, b] } else { [a, b, c] };
+                }
+            }
+            (Frame::Blocks(places), Shape::Blocks(blocks)) => {
+                for (slot, q) in quads.iter_mut().zip(&blocks.quads) {
+                    let [a, b, c, d] = q.map(|n| places[n as usize]);
+                    *slot = if self.chart.flipped { [a, d, c, b] } else { [a, b, c, d] };
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The limits a plan sets on faces.
+pub fn limits_of(input: &Input) -> Limits {
+    Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) }
+}
+
+/// Too many elements, before anything is allocated.
+pub fn too_many(name: &str, total: u64) -> Fault {
+    let what = format!("the mesh `{name}` of {total} elements");
+    crate::base::fault::ValueFault::Limit { what, limit: format!("{MESH_ELEMENTS} elements") }.into()
+}

@@ -1,0 +1,164 @@
+//! Mid nodes of order 2: on the curve for borders, on the surface for all other edges, each edge once.
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::chart::{Chart, Shape};
+use super::chord::{each_cell, ids};
+use super::data::Mesh;
+use super::faces::{Frame, Prepared};
+use super::layout::Layout;
+use super::nodes::Nodes;
+use crate::base::par;
+
+/// Mid nodes by edge: for each lower node a short list of higher nodes.
+struct Table {
+    head: Vec<u32>,
+    entries: Vec<(u32, u32, u32)>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Table {
+    fn new(nodes: usize) -> Self {
+        Self { head: vec![NONE; nodes], entries: Vec::new() }
+    }
+
+    /// The mid node of an edge, made by `make` when there is none yet.
+    fn mid(&mut self, a: u32, b: u32, make: impl FnOnce() -> u32) -> u32 {
+        let (low, high) = (a.min(b), a.max(b));
+        let mut at = self.head[low as usize];
+        while at != NONE {
+            let (other, mid, next) = self.entries[at as usize];
+            if other == high {
+                return mid;
+            }
+            at = next;
+        }
+        let mid = make();
+        self.entries.push((high, mid, self.head[low as usize]));
+        self.head[low as usize] = (self.entries.len() - 1) as u32;
+        mid
+    }
+}
+
+/// Adds mid nodes to a finished mesh of corner nodes.
+pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared], mesh: &mut Mesh) {
+    let corners = mesh.nodes.len() as u32;
+    let mut table = Table::new(corners as usize);
+    let mut next = corners;
+    for stretch in 0..layout.pieces.atoms.len() {
+        let (of, at) = (nodes.of_stretch(layout, stretch, false), nodes.fractions(stretch, false));
+        for (w, f) in of.windows(2).zip(at.windows(2)) {
+            table.mid(w[0], w[1], || {
+                mesh.nodes.push(layout.point(stretch, 0.5 * (f[0] + f[1])));
+                next += 1;
+                next - 1
+            });
+        }
+    }
+    let (mut triangle, mut quad) = (0, 0);
+    for ready in prepared {
+        let surface = &input.model.surfaces[ready.surface.index()].surface;
+        let places = Places { chart: &ready.chart, frame: &ready.chart.frame };
+        let mut made: Vec<(f64, f64)> = Vec::new();
+        let mut mid = |a: u32, b: u32, uv: &dyn Fn(u32, u32) -> (f64, f64)| {
+            table.mid(a, b, || {
+                made.push(uv(a, b));
+                next += 1;
+                next - 1
+            })
+        };
+        // Elements of a face come in the order of its cells.
+        places.each(
+            ready,
+            &mesh.triangles[triangle..triangle + ready.triangles as usize],
+            |corners, uv, is_quad| {
+                let n = corners.len();
+                let mids: Vec<u32> = (0..n).map(|k| mid(corners[k], corners[(k + 1) % n], uv)).collect();
+                if is_quad {
+                    mesh.quad_mids.push([mids[0], mids[1], mids[2], mids[3]]);
+                } else {
+                    mesh.triangle_mids.push([mids[0], mids[1], mids[2]]);
+                }
+            },
+            &mesh.quads[quad..quad + ready.quads as usize],
+        );
+        triangle += ready.triangles as usize;
+        quad += ready.quads as usize;
+        let points: Vec<DVec3> = par::map(made.len(), |k| surface.point(made[k].0, made[k].1));
+        mesh.nodes.extend(points);
+    }
+    mesh.line_mids = mesh.lines.iter().map(|l| table.mid(l[0], l[1], || l[0])).collect();
+}
+
+/// (u, v) of the corners of elements, cell by cell.
+struct Places<'a> {
+    chart: &'a Chart,
+    frame: &'a Frame,
+}
+
+/// Gives (u, v) in the middle of the edge between two nodes of a cell.
+type Middle<'a> = &'a dyn Fn(u32, u32) -> (f64, f64);
+
+impl Places<'_> {
+    /// Visits the elements of a face in the order of the mesh: corner nodes, and where the middles of their edges lie.
+    fn each(&self, ready: &Prepared, triangles: &[[u32; 3]], mut visit: impl FnMut(&[u32], Middle, bool), quads: &[[u32; 4]]) {
+        let (mut t, mut q) = (triangles.iter(), quads.iter());
+        if let (Shape::Grid(grid), Frame::Grid(frame)) = (&self.chart.shape, self.frame) {
+            let (nu, nv) = grid.size();
+            for j in 0..nv {
+                for i in 0..nu {
+                    let at = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+                    let of = at.map(|(i, j)| frame.node(i, j));
+                    let uv = at.map(|(i, j)| grid.uv(i, j));
+                    let middle = |a: u32, b: u32| cell_middle(&of, &uv, a, b);
+                    let pole = (0..4).any(|k| of[k] == of[(k + 1) % 4]);
+                    let count = if ready.quads > 0 || pole { 1 } else { 2 };
+                    for _ in 0..count {
+                        if ready.quads > 0 && !pole || ready.triangles == 0 {
+                            if let Some(corners) = q.next() {
+                                visit(corners, &middle, true);
+                            }
+                        } else if let Some(corners) = t.next() {
+                            visit(corners, &middle, false);
+                        }
+                    }
+                }
+            }
+            return;
+        }
+        let uv = match &self.chart.shape {
+            Shape::Lattice(lattice) => super::trilateral::lattice_points(lattice),
+            Shape::Blocks(blocks) => blocks.uv.clone(),
+            Shape::Grid(_) => Vec::new(),
+        };
+        let ids = ids(&self.chart.shape, self.frame);
+        each_cell(&self.chart.shape, |cell| {
+            let middle = |a: u32, b: u32| {
+                let of = |id: u32| cell.iter().find(|n| ids[**n] == id).map_or((0.0, 0.0), |n| uv[*n]);
+                mean(of(a), of(b))
+            };
+            if cell.len() == 4 {
+                if let Some(corners) = q.next() {
+                    visit(corners, &middle, true);
+                }
+            } else if let Some(corners) = t.next() {
+                visit(corners, &middle, false);
+            }
+        });
+    }
+}
+
+fn mean(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1))
+}
+
+/// The middle of an edge of a cell; from a pole straight along the line that ends there.
+fn cell_middle(of: &[u32; 4], uv: &[(f64, f64); 4], a: u32, b: u32) -> (f64, f64) {
+    let places = |id: u32| (0..4).filter(move |k| of[*k] == id);
+    // A pole stands for two corners of its cell: the one next to the other node is meant.
+    let pairs = places(a).flat_map(|x| places(b).map(move |y| (x, y)));
+    let near = pairs.min_by_key(|(x, y)| usize::from((x + 1) % 4 != *y && (y + 1) % 4 != *x));
+    near.map_or((0.0, 0.0), |(x, y)| mean(uv[x], uv[y]))
+}

@@ -1,0 +1,55 @@
+//! E715: elements that are turned over against their neighbours or have no area.
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::chart::Shape;
+use super::data::Mesh;
+use super::faces::{Frame, Prepared};
+use crate::base::fault::{MeshFault, Result};
+use crate::base::par;
+use crate::surface::Surface;
+
+/// Cells of a face that are compared with the surface's normal, along each direction.
+const PROBES: usize = 16;
+
+/// Fails when a face has turned elements, with their number and the first place.
+pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh) -> Result<()> {
+    let found = par::map(prepared.len(), |k| {
+        let surface = &input.model.surfaces[prepared[k].surface.index()].surface;
+        turned(surface, &prepared[k], mesh)
+    });
+    for (ready, bad) in prepared.iter().zip(found) {
+        if let Some((count, uv)) = bad {
+            let surface = &input.model.surfaces[ready.surface.index()].surface;
+            let at = surface.point(uv.0, uv.1);
+            return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at }.into());
+        }
+    }
+    Ok(())
+}
+
+/// Cells on a coarse selection of rows and columns whose normal stands against the surface's.
+fn turned(surface: &Surface, ready: &Prepared, mesh: &Mesh) -> Option<(u64, (f64, f64))> {
+    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.chart.shape, &ready.chart.frame) else {
+        return None;
+    };
+    let (nu, nv) = frame.size();
+    let pick = |n: usize| (0..n.min(PROBES)).map(move |k| k * n / n.min(PROBES));
+    let node = |i: usize, j: usize| mesh.nodes[frame.node(i, j) as usize];
+    let (mut count, mut first) = (0, None);
+    for j in pick(nv) {
+        for i in pick(nu) {
+            let normal: DVec3 = (node(i + 1, j + 1) - node(i, j)).cross(node(i, j + 1) - node(i + 1, j));
+            let (a, b) = (grid.uv(i, j), grid.uv(i + 1, j + 1));
+            let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
+            let wanted = surface.normal(middle.0, middle.1);
+            // Where the surface itself has no normal nothing can be said.
+            if wanted != DVec3::ZERO && normal.dot(wanted) <= 0.0 {
+                count += 1;
+                first = first.or(Some(middle));
+            }
+        }
+    }
+    first.map(|uv| (count, uv))
+}

@@ -1,0 +1,75 @@
+//! What must always hold of a network (math notes §3.1).
+
+use super::graph::{LinkId, NetCurve, Network};
+
+impl Network {
+    /// Invariants of math notes §3.1; the sentence says what is broken.
+    pub fn check(&self) -> Result<(), String> {
+        for (k, net) in self.curves.iter().enumerate() {
+            self.check_curve(k, net)?;
+        }
+        for (k, node) in self.nodes.iter().enumerate() {
+            if node.ends.is_empty() {
+                return Err(format!("node {k} has no link"));
+            }
+            if !node.ends.windows(2).all(|w| w[0] < w[1]) {
+                return Err(format!("the link ends of node {k} do not ascend"));
+            }
+            for &(link, at_end) in &node.ends {
+                let ends = self.links[link.index()].nodes;
+                if (if at_end { ends.1 } else { ends.0 }).index() != k {
+                    return Err(format!("node {k} claims an end of link {}", link.0));
+                }
+            }
+        }
+        let ends: usize = self.nodes.iter().map(|n| n.ends.len()).sum();
+        if ends != 2 * self.links.len() {
+            return Err(format!("{} links have {ends} ends in nodes", self.links.len()));
+        }
+        for (k, link) in self.links.iter().enumerate() {
+            let owner = &self.curves[link.curve.index()];
+            if !owner.links.contains(&(LinkId::at(k), false)) {
+                return Err(format!("link {k} is not run over by its owner `{}`", owner.name));
+            }
+            if link.s.0 >= link.s.1 {
+                return Err(format!("link {k} runs backwards along its owner"));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_curve(&self, k: usize, net: &NetCurve) -> Result<(), String> {
+        let name = &net.name;
+        if net.links.is_empty() {
+            return Err(format!("curve `{name}` runs over no link"));
+        }
+        if net.nodes.len() != net.links.len() + 1 || net.stations.len() != net.nodes.len() {
+            return Err(format!(
+                "curve `{name}` has {} links, {} nodes and {} stations",
+                net.links.len(),
+                net.nodes.len(),
+                net.stations.len()
+            ));
+        }
+        if !net.stations.windows(2).all(|w| w[0] < w[1]) {
+            return Err(format!("the stations of `{name}` do not ascend"));
+        }
+        let (length, last) = (net.curve.length(), net.stations[net.stations.len() - 1]);
+        let ring = net.nodes.first() == net.nodes.last() && last == net.stations[0] + length;
+        if !ring && (net.stations[0], last) != (0.0, length) {
+            return Err(format!("`{name}` does not run from its start to its end"));
+        }
+        for (i, &(link, against)) in net.links.iter().enumerate() {
+            let link = &self.links[link.index()];
+            let ends = if against { (link.nodes.1, link.nodes.0) } else { link.nodes };
+            if ends != (net.nodes[i], net.nodes[i + 1]) {
+                return Err(format!("link {i} of `{name}` does not join its neighbours"));
+            }
+            let owner = link.curve.index();
+            if owner != k && (self.curves[owner].name > *name) {
+                return Err(format!("a shared link of `{name}` belongs to `{}`, which comes later by name", self.curves[owner].name));
+            }
+        }
+        Ok(())
+    }
+}

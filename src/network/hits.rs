@@ -1,0 +1,94 @@
+//! Contacts: where the curves of a network meet each other and themselves, kept pair by pair.
+//!
+//! Pairs are asked in the order of names, so that a contact is the same to the last bit whatever was declared first.
+
+use glam::DVec3;
+
+use super::graph::NetCurve;
+use crate::base::bbox::Box3;
+use crate::base::boxtree::BoxTree;
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::par;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::curve::Shape;
+use crate::geometry::{Curve, Hit, intersect, self_intersect};
+
+/// One contact of two curves, or of a curve with itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The curves, as indices; the first by name first.
+    pub curves: [u32; 2],
+    /// Arc length on each.
+    pub s: [f64; 2],
+    /// Where.
+    pub at: DVec3,
+    /// The other end of a stretch that both run over: arc lengths (the second one may be less than its start) and point.
+    pub to: Option<([f64; 2], DVec3)>,
+}
+
+/// Pairs handed to a thread at once.
+const CHUNK: usize = 256;
+
+/// All contacts of curves, in order of pairs.
+pub fn all(curves: &[NetCurve], tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
+    let boxes: Vec<Box3> = curves.iter().map(|c| c.curve.bbox()).collect();
+    let mut pairs = BoxTree::build(&boxes).pairs(tolerance.point);
+    pairs.extend((0..curves.len() as u32).filter(|&k| may_meet_itself(&curves[k as usize].curve)).map(|k| (k, k)));
+    of_pairs(curves, &pairs, tolerance, job)
+}
+
+/// Contacts of one curve with all others and itself.
+pub fn of_one(curves: &[NetCurve], one: usize, tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
+    let own = curves[one].curve.bbox();
+    let near =
+        |k: &usize| if *k == one { may_meet_itself(&curves[one].curve) } else { curves[*k].curve.bbox().touches(&own, tolerance.point) };
+    let pairs: Vec<(u32, u32)> = (0..curves.len()).filter(near).map(|k| (k.min(one) as u32, k.max(one) as u32)).collect();
+    of_pairs(curves, &pairs, tolerance, job)
+}
+
+fn may_meet_itself(curve: &Curve) -> bool {
+    !matches!(curve.shape(), Shape::Line(..) | Shape::Arc(_))
+}
+
+fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
+    let rank = ranks(curves);
+    job.expect(pairs.len() as u64);
+    let chunks = par::try_map(pairs.len().div_ceil(CHUNK), |k| {
+        job.go_on()?;
+        let chunk = &pairs[k * CHUNK..((k + 1) * CHUNK).min(pairs.len())];
+        let mut contacts = Vec::with_capacity(chunk.len());
+        for &(a, b) in chunk {
+            let (a, b) = if rank[a as usize] <= rank[b as usize] { (a, b) } else { (b, a) };
+            let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
+            let hits = if a == b { self_intersect(first, tolerance)? } else { intersect(first, second, tolerance)? };
+            contacts.extend(hits.into_iter().map(|hit| contact([a, b], [first, second], hit)));
+        }
+        job.advance(chunk.len() as u64);
+        Result::Ok(contacts)
+    })?;
+    Ok(chunks.into_iter().flatten().collect())
+}
+
+/// Place of each curve in the order of names.
+pub fn ranks(curves: &[NetCurve]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..curves.len() as u32).collect();
+    order.sort_unstable_by(|&a, &b| curves[a as usize].name.cmp(&curves[b as usize].name).then(a.cmp(&b)));
+    let mut rank = vec![0; curves.len()];
+    for (place, &k) in order.iter().enumerate() {
+        rank[k as usize] = place as u32;
+    }
+    rank
+}
+
+fn contact(curves: [u32; 2], [a, b]: [&Curve; 2], hit: Hit) -> Contact {
+    match hit {
+        Hit::Point { ta, tb, at, .. } => Contact { curves, s: [a.length_at(ta), b.length_at(tb)], at, to: None },
+        Hit::Overlap { a: (ta0, ta1), b: (tb0, tb1) } => Contact {
+            curves,
+            s: [a.length_at(ta0), b.length_at(tb0)],
+            at: (a.point(ta0) + b.point(tb0)) * 0.5,
+            to: Some(([a.length_at(ta1), b.length_at(tb1)], (a.point(ta1) + b.point(tb1)) * 0.5)),
+        },
+    }
+}

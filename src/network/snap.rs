@@ -1,0 +1,104 @@
+//! `snap`: ends of measured curves that are nearly one point are moved together once (language, "Curves").
+
+use glam::DVec3;
+
+use super::cluster::cluster;
+use crate::base::fault::{CurveEnd, Fault, NetworkFault, Result};
+use crate::base::math::compare_points;
+use crate::base::tolerance::Tolerance;
+
+/// An end that `snap` looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SnapEnd {
+    /// The curve and its end.
+    pub end: CurveEnd,
+    /// Whether the curve can be rebuilt with this end elsewhere (it is built from points).
+    pub movable: bool,
+}
+
+/// An end that goes elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// Place in the list of ends.
+    pub end: usize,
+    /// Where it goes.
+    pub to: DVec3,
+}
+
+/// Moves that bring ends closer than `distance` together: to the end among them that cannot move, else to the declared
+/// point, else to their mean. Each move is noted in `sink` (N513); two ends that cannot move are E511.
+///
+/// Independent of the order of ends.
+pub fn snap(ends: &[SnapEnd], points: &[DVec3], distance: f64, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Vec<Move>> {
+    let all: Vec<DVec3> = ends.iter().map(|e| e.end.at).chain(points.iter().copied()).collect();
+    let roots = cluster(&all, distance);
+    let mut order: Vec<u32> = (0..all.len() as u32).collect();
+    order.sort_unstable_by_key(|&k| (roots[k as usize], k));
+    let mut moves = Vec::new();
+    for group in order.chunk_by(|&a, &b| roots[a as usize] == roots[b as usize]) {
+        let members: Vec<usize> = group.iter().map(|&k| k as usize).filter(|&k| k < ends.len()).collect();
+        if members.is_empty() || group.len() == 1 {
+            continue;
+        }
+        let declared: Vec<DVec3> = group.iter().map(|&k| k as usize).filter(|&k| k >= ends.len()).map(|k| all[k]).collect();
+        let fixed: Vec<usize> = members.iter().copied().filter(|&k| !ends[k].movable).collect();
+        for (i, &a) in fixed.iter().enumerate() {
+            if let Some(&b) = fixed[i + 1..].iter().find(|&&b| !tolerance.same_point(all[a], all[b])) {
+                return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance }.into());
+            }
+        }
+        let fixed_points: Vec<DVec3> = fixed.iter().map(|&k| all[k]).collect();
+        let mean = mean(members.iter().map(|&k| all[k]).collect());
+        for &k in &members {
+            let targets = if !fixed_points.is_empty() { &fixed_points } else { &declared };
+            let near = |p: &DVec3| p.distance_squared(all[k]);
+            let to = targets.iter().copied().min_by(|a, b| near(a).total_cmp(&near(b)).then(compare_points(*a, *b))).unwrap_or(mean);
+            if ends[k].movable && to != all[k] {
+                moves.push(Move { end: k, to });
+            }
+        }
+    }
+    moves.sort_unstable_by_key(|m| m.end);
+    // Where nothing is wrong, rounding is not worth a word.
+    sink.extend(
+        moves
+            .iter()
+            .filter(|m| m.to.distance(all[m.end]) > tolerance.rounding)
+            .map(|m| NetworkFault::Snapped { end: ends[m.end].end, to: m.to }.into()),
+    );
+    Ok(moves)
+}
+
+/// The mean, independent of the order given.
+fn mean(mut points: Vec<DVec3>) -> DVec3 {
+    points.sort_unstable_by(|a, b| compare_points(*a, *b));
+    let base = points[0];
+    base + points.iter().map(|p| *p - base).sum::<DVec3>() / points.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::origin::Origin;
+
+    fn end(x: f64, movable: bool) -> SnapEnd {
+        SnapEnd { end: CurveEnd { of: Origin::NONE, last: false, at: DVec3::new(x, 0.0, 0.0) }, movable }
+    }
+
+    fn moved(ends: &[SnapEnd], points: &[f64]) -> Result<Vec<(usize, f64)>> {
+        let points: Vec<DVec3> = points.iter().map(|&x| DVec3::new(x, 0.0, 0.0)).collect();
+        let mut sink = Vec::new();
+        let moves = snap(ends, &points, 0.5, &Tolerance::new(1e-6, 10.0), &mut sink)?;
+        assert_eq!(sink.len(), moves.len());
+        Ok(moves.into_iter().map(|m| (m.end, m.to.x)).collect())
+    }
+
+    #[test]
+    fn ends_go_to_the_fixed_end_the_declared_point_or_their_mean() {
+        assert_eq!(moved(&[end(0.0, true), end(0.25, true), end(9.0, true)], &[]).unwrap(), [(0, 0.125), (1, 0.125)]);
+        assert_eq!(moved(&[end(0.0, true), end(0.25, true)], &[0.3]).unwrap(), [(0, 0.3), (1, 0.3)]);
+        assert_eq!(moved(&[end(0.0, true), end(0.25, false)], &[0.3]).unwrap(), [(0, 0.25)]);
+        assert_eq!(moved(&[end(4.0, true)], &[4.25]).unwrap(), [(0, 4.25)]);
+        assert_eq!(moved(&[end(0.0, false), end(0.25, false)], &[]).unwrap_err().code().0, "E511");
+    }
+}
