@@ -5,6 +5,7 @@ use glam::{DVec3, DVec4};
 use super::curve::Jet;
 use super::motion::Motion;
 use crate::base::bbox::Box3;
+use crate::base::solve::Linear;
 
 /// Highest degree; evaluation works on arrays of this size.
 pub const MAX_DEGREE: usize = 9;
@@ -30,6 +31,37 @@ pub fn weighted(p: DVec3, w: f64) -> DVec4 {
 /// The point that a homogeneous pole stands for.
 pub fn projected(q: DVec4) -> DVec3 {
     q.truncate() / q.w
+}
+
+#[inline]
+fn mix<V: Linear>(a: V, b: V, share: f64) -> V {
+    a * (1.0 - share) + b * share
+}
+
+/// De Boor's scheme over the 2p knots `x` around the span, with value and first two derivatives at its end.
+///
+/// Level r combines neighbours j − 1 and j over the knots x[j-1]…x[j+p-r]. The last three and two points are values
+/// of the blossom, and their divided differences are the derivatives.
+#[inline]
+fn de_boor<V: Linear>(d: &mut [V], x: &[f64], t: f64) -> [V; 3] {
+    let p = d.len() - 1;
+    for r in 1..p.saturating_sub(1) {
+        for j in (r..=p).rev() {
+            let (low, high) = (x[j - 1], x[j + p - r]);
+            d[j] = mix(d[j - 1], d[j], (t - low) / (high - low));
+        }
+    }
+    let last = 1.0 / (x[p] - x[p - 1]);
+    let end = (t - x[p - 1]) * last;
+    if p == 1 {
+        let slope = d[1] - d[0];
+        return [mix(d[0], d[1], end), slope * last, slope * 0.0];
+    }
+    let (before, after) = (1.0 / (x[p] - x[p - 2]), 1.0 / (x[p + 1] - x[p - 1]));
+    let (first, second) = ((d[p - 1] - d[p - 2]) * before, (d[p] - d[p - 1]) * after);
+    let (a, b) = (d[p - 2] + first * (t - x[p - 2]), d[p - 1] + second * (t - x[p - 1]));
+    let degree = p as f64;
+    [mix(a, b, end), (b - a) * (last * degree), (second - first) * (last * degree * (degree - 1.0))]
 }
 
 impl Nurbs {
@@ -91,11 +123,20 @@ impl Nurbs {
 
     /// Point and derivatives of the polynomial piece of span `k`, also outside it.
     pub fn jet_in(&self, k: usize, t: f64) -> Jet {
-        let [a, d1, d2, _] = self.homogeneous::<2>(k, t);
+        let p = self.degree;
+        let (poles, x) = (&self.poles[k - p..=k], &self.knots[k + 1 - p..=k + p]);
         if self.polynomial {
-            let w = 1.0 / a.w;
-            return Jet { p: a.truncate() * w, d1: d1.truncate() * w, d2: d2.truncate() * w };
+            let w = 1.0 / poles[0].w;
+            let mut d = [DVec3::ZERO; MAX_DEGREE + 1];
+            for (d, q) in d.iter_mut().zip(poles) {
+                *d = q.truncate();
+            }
+            let [p, d1, d2] = de_boor(&mut d[..=p], x, t);
+            return if w == 1.0 { Jet { p, d1, d2 } } else { Jet { p: p * w, d1: d1 * w, d2: d2 * w } };
         }
+        let mut d = [DVec4::ZERO; MAX_DEGREE + 1];
+        d[..=p].copy_from_slice(poles);
+        let [a, d1, d2] = de_boor(&mut d[..=p], x, t);
         let w = 1.0 / a.w;
         let p = a.truncate() * w;
         let v = (d1.truncate() - p * d1.w) * w;
@@ -105,67 +146,30 @@ impl Nurbs {
     /// Third derivative of the span that follows `t`.
     pub fn third(&self, t: f64) -> DVec3 {
         let k = self.span(t);
-        let [a, d1, d2, d3] = self.homogeneous::<3>(k, t);
         let Jet { p, d1: v1, d2: v2 } = self.jet_in(k, t);
-        (d3.truncate() - v2 * (3.0 * d1.w) - v1 * (3.0 * d2.w) - p * d3.w) / a.w
+        let [w1, w2, a3] = [1, 2, 3].map(|order| self.homogeneous_derivative(k, t, order));
+        (a3.truncate() - v2 * (3.0 * w1.w) - v1 * (3.0 * w2.w) - p * a3.w) / self.homogeneous_derivative(k, t, 0).w
     }
 
-    /// Value and derivatives up to order `N` ≤ 3 of the homogeneous curve.
-    ///
-    /// De Boor's scheme is run to N levels before its end; the N + 1 points left are values of the blossom, whose
-    /// divided differences are the derivatives.
-    fn homogeneous<const N: usize>(&self, k: usize, t: f64) -> [DVec4; 4] {
+    /// Derivative of the homogeneous curve: a blossom with differences in the last `order` levels of de Boor's scheme.
+    fn homogeneous_derivative(&self, k: usize, t: f64, order: usize) -> DVec4 {
         let p = self.degree;
-        let x = &self.knots[k + 1 - p..=k + p];
+        if order > p {
+            return DVec4::ZERO;
+        }
         let mut d = [DVec4::ZERO; MAX_DEGREE + 1];
         d[..=p].copy_from_slice(&self.poles[k - p..=k]);
-        // Level r combines points j-1 and j over the knots x[j-1]…x[j+p-r] (counted in the local window).
-        let order = N.min(p);
-        for r in 1..=p - order {
-            for j in (r..=p).rev() {
-                let (low, high) = (x[j - 1], x[j + p - r]);
-                let a = (t - low) / (high - low);
-                d[j] = d[j - 1] * (1.0 - a) + d[j] * a;
-            }
-        }
-        let mut out = [DVec4::ZERO; 4];
         let mut factor = 1.0;
-        // `q` holds the derivative of the order reached so far at the last levels.
-        let base = p - order;
-        let mut q = [DVec4::ZERO; 4];
-        q[..=order].copy_from_slice(&d[base..=p]);
-        let mut values = q;
-        for r in base + 1..=p {
-            // Differences first (they need the old points), from the highest order down.
-            let level = r - base;
-            for j in (level..=order).rev() {
-                let i = base + j;
-                let (low, high) = (x[i - 1], x[i + p - r]);
-                let a = (t - low) / (high - low);
-                values[j] = values[j - 1] * (1.0 - a) + values[j] * a;
+        for r in 1..=p {
+            if r > p - order {
+                factor *= (2 * p + 1 - order - r) as f64;
+            }
+            for j in (r..=p).rev() {
+                let (low, high) = (self.knots[k - p + j], self.knots[k + 1 + j - r]);
+                d[j] = if r > p - order { (d[j] - d[j - 1]) / (high - low) } else { mix(d[j - 1], d[j], (t - low) / (high - low)) };
             }
         }
-        out[0] = values[order];
-        // Derivative of order n: n differences over the levels p-n+1…p after p-n blends.
-        for n in 1..=order {
-            factor *= (p + 1 - n) as f64;
-            let mut e = q;
-            for r in base + 1..=p {
-                let blend = r <= p - n;
-                for j in (r - base..=order).rev() {
-                    let i = base + j;
-                    let (low, high) = (x[i - 1], x[i + p - r]);
-                    e[j] = if blend {
-                        let a = (t - low) / (high - low);
-                        e[j - 1] * (1.0 - a) + e[j] * a
-                    } else {
-                        (e[j] - e[j - 1]) / (high - low)
-                    };
-                }
-            }
-            out[n] = e[order] * factor;
-        }
-        out
+        d[p] * factor
     }
 
     /// The symmetric multi-affine form (blossom) of span `k`'s piece at `degree` arguments.
