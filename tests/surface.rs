@@ -3,12 +3,15 @@
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{line, spline};
-use lofting::geometry::{Curve, Ends, Spline};
+use lofting::base::fault::Fault;
+use lofting::geometry::build::{arc_center, arc_through, circle, line, polyline, spline};
+use lofting::geometry::{Curve, Ends, Motion, Spline};
 use lofting::network::flow::Member;
-use lofting::network::{Chain, Flow, FlowKind};
+use lofting::network::{Chain, ChainFlow, Flow, FlowKind, of_chains};
 use lofting::surface::coons::{Grid, Method, Settings, build};
-use lofting::surface::{Lean, Reparam, Surface};
+use lofting::surface::interpolate::{Tangents, fitted};
+use lofting::surface::revolve::Axis;
+use lofting::surface::{Domain, Lean, NurbsSurface, Reparam, Side, Surface, axis_of, extrude, plane, revolve, ruled};
 use serde_json::Value;
 
 fn reference(name: &str) -> Value {
@@ -132,4 +135,508 @@ fn four_lines_span_the_bilinear_patch() {
         }
     }
     assert!(surface.review(&tolerance()).is_empty());
+}
+
+/// The surface over chains, its flow found from their meetings.
+fn spanned(chains: &[Chain], options: &ChainFlow, method: Method) -> (Surface, Vec<Fault>) {
+    let (flow, nodes) = of_chains(chains, options, &tolerance()).unwrap();
+    let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
+    let settings = Settings { method, reparam: Reparam::Smooth, origin: Origin::NONE };
+    build(&Grid { chains, flow: &flow, poles }, &settings, &tolerance()).unwrap()
+}
+
+fn straight(a: [f64; 3], b: [f64; 3]) -> Chain {
+    Chain::of_curve(&line(a.into(), b.into(), Origin::NONE).unwrap())
+}
+
+/// Quarter of a great circle between unit axis points.
+fn quarter(a: DVec3, b: DVec3) -> Chain {
+    Chain::of_curve(&arc_through(a, b, (a + b).normalize(), Origin::NONE).unwrap())
+}
+
+#[test]
+fn three_great_circles_give_the_uniform_trilateral() {
+    let data = reference("flow_types");
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let chains = [quarter(x, y), quarter(y, z), quarter(x, z)];
+    let (surface, _) = spanned(&chains, &ChainFlow::default(), Method::Composite);
+    assert_eq!((surface.domain(), surface.flow().as_str()), (Domain::Triangle, "uniform trilateral"));
+    for sample in data["uniform_trilateral"]["samples"].as_array().unwrap() {
+        let l = vec3(&sample["l"]);
+        close(surface.point(l.y, l.z), vec3(&sample["point"]), 1e-12, "sample");
+    }
+    for k in 0..=20 {
+        let t = f64::from(k) / 20.0;
+        close(surface.point(t, 0.0), chains[0].point(t), 1e-15, "v = 0");
+        close(surface.point(1.0 - t, t), chains[1].point(t), 1e-15, "slant");
+        close(surface.point(0.0, t), chains[2].point(t), 1e-15, "u = 0");
+    }
+    derivatives(&surface);
+    derivatives(&surface.flipped());
+}
+
+#[test]
+fn a_named_pole_gives_the_degenerate_trilateral() {
+    let data = reference("flow_types");
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let chains = [quarter(x, y), quarter(z, y), quarter(z, x)];
+    let options = ChainFlow { pole: Some(z), ..ChainFlow::default() };
+    let (surface, _) = spanned(&chains, &options, Method::Lagrange);
+    assert_eq!(surface.flow(), "degenerate trilateral");
+    for sample in data["degenerate_trilateral_bilinear"]["samples"].as_array().unwrap() {
+        close(surface.point(number(&sample["u"]), number(&sample["v"])), vec3(&sample["point"]), 1e-12, "sample");
+    }
+    // Every way along the collapsed side is the pole; its normal is the limit.
+    for u in [0.0, 0.3, 1.0] {
+        close(surface.point(u, 0.0), z, 1e-15, "pole");
+        assert!(surface.normal(u, 0.0).dot(z).abs() > 1.0 - 1e-12);
+    }
+    assert!(matches!(surface.side(0), Side::Pole(p) if p == z));
+    assert!(surface.review(&tolerance()).is_empty());
+    derivatives(&surface);
+}
+
+#[test]
+fn grid_parameters_of_a_reversed_curve() {
+    let data = &reference("parameter_maps")["grid_parameters"];
+    let chains = [
+        straight([0.0, 0.0, 0.0], [4.0, 0.0, 0.0]),
+        straight([0.0, 1.0, 0.0], [4.0, 1.0, 0.0]),
+        straight([4.0, 2.0, 0.0], [0.0, 2.0, 0.0]),
+        straight([0.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
+        straight([1.0, 0.0, 0.0], [3.0, 2.0, 0.0]),
+        straight([4.0, 0.0, 0.0], [4.0, 2.0, 0.0]),
+    ];
+    let (flow, _) = of_chains(&chains, &ChainFlow::default(), &tolerance()).unwrap();
+    let surface = built(&chains, &flow, Method::Composite, Reparam::Linear);
+    assert_eq!(surface.breaks().0, [number(&data["u_1"])]);
+    for (key, value) in data["f_2"].as_object().unwrap() {
+        let u: f64 = key.trim_start_matches("u=").parse().unwrap();
+        assert!((surface.side_fraction(2, u) - number(value)).abs() < 1e-12, "f_2({u})");
+        assert!((surface.side_parameter(2, number(value)) - u).abs() < 1e-12, "inverse of f_2({u})");
+    }
+    for (key, value) in data["f_0"].as_object().unwrap() {
+        let u: f64 = key.trim_start_matches("u=").parse().unwrap();
+        assert!((surface.side_fraction(0, u) - number(value)).abs() < 1e-12, "f_0({u})");
+    }
+}
+
+/// The two surfaces of figure 2.2 from its ten curves.
+fn figure() -> (Surface, Surface) {
+    let t = tolerance();
+    let c = |a: [f64; 3], b: [f64; 3]| straight(a, b);
+    let (c1, c6) = (c([0.0, 0.0, 0.0], [8.0, 0.0, 0.0]), c([8.0, -6.0, -3.0], [8.0, 3.0, 1.5]));
+    let (c2, c3) = (c([0.0, 6.0, 0.0], [4.0, 6.0, 2.0]), c([4.0, 6.0, 2.0], [8.0, 6.0, 0.0]));
+    let (c4, c5) = (c([0.0, 0.0, 0.0], [0.0, 3.0, 1.5]), c([0.0, 3.0, 1.5], [0.0, 6.0, 0.0]));
+    let c7 = c([8.0, 3.0, 1.5], [8.0, 6.0, 0.0]);
+    let (p, q) = (DVec3::new(4.0, -2.0, -4.0), DVec3::new(4.0, 6.0, 2.0));
+    let c8 = Chain::of_curve(&arc_through(p, q, DVec3::new(4.0, 0.0, 0.0), Origin::NONE).unwrap());
+    let (c9, c10) = (c([4.0, -2.0, -4.0], [4.0, -5.0, -6.0]), c([4.0, -5.0, -6.0], [8.0, -6.0, -3.0]));
+    let on_arc = c8.fraction_at(DVec3::new(4.0, 0.0, 0.0), &t).unwrap();
+    let joint = |parts: &[Chain]| Chain::join(parts, Origin::NONE, &t).unwrap();
+    let b = [
+        c1.clone(),
+        joint(&[c2, c3]),
+        joint(&[c4, c5]),
+        c8.slice(on_arc, 1.0, &t).unwrap(),
+        joint(&[c6.slice(2.0 / 3.0, 1.0, &t).unwrap(), c7]),
+    ];
+    let a = [c1.slice(0.5, 1.0, &t).unwrap(), c10, joint(&[c8.slice(on_arc, 0.0, &t).unwrap(), c9]), c6.slice(2.0 / 3.0, 0.0, &t).unwrap()];
+    (spanned(&b, &ChainFlow::default(), Method::Lagrange).0, spanned(&a, &ChainFlow::default(), Method::Lagrange).0)
+}
+
+#[test]
+fn the_two_surfaces_of_figure_2_2() {
+    let data = reference("figure_2_2");
+    let (b, a) = figure();
+    for (surface, key) in [(&b, "surface_B"), (&a, "surface_A")] {
+        for sample in data[key]["samples"].as_array().unwrap() {
+            close(surface.point(number(&sample["u"]), number(&sample["v"])), vec3(&sample["point"]), 1e-12, key);
+        }
+        for (own, direction) in [(surface.kinks().0, "u"), (surface.kinks().1, "v")] {
+            let expected: Vec<f64> = data[key]["kink_lines"][direction].as_array().unwrap().iter().map(number).collect();
+            assert_eq!(own.len(), expected.len(), "{key} {direction}");
+            assert!(own.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{key} {own:?}");
+        }
+        assert!(surface.review(&tolerance()).is_empty());
+        derivatives(surface);
+    }
+    // The kink of the border is met from the side that is asked for.
+    let v = a.kinks().1[0];
+    let side = |lean| a.jet_lean(0.0, v, (Lean::After, lean)).dv.normalize();
+    assert!(side(Lean::Before).distance(side(Lean::After)) > 0.1);
+    let far = |lean, h| a.jet_lean(0.0, v + h, (Lean::After, lean)).dv.normalize();
+    close(side(Lean::Before), far(Lean::After, -1e-9), 1e-6, "before");
+    close(side(Lean::After), far(Lean::After, 1e-9), 1e-6, "after");
+}
+
+/// First and second derivatives are difference quotients of points, away from lines where they jump.
+fn derivatives(surface: &Surface) {
+    let h = 1e-5;
+    let (us, vs) = surface.breaks();
+    let away = |x: f64, lines: &[f64]| lines.iter().all(|line| (line - x).abs() > 3.0 * h);
+    let size = surface.hull().diagonal();
+    for i in 1..8 {
+        for j in 1..8 {
+            let (mut u, v) = (f64::from(i) / 8.0 + 0.003, f64::from(j) / 8.0 + 0.004);
+            if surface.domain() == Domain::Triangle {
+                u *= 1.0 - v;
+            }
+            if !away(u, &us) || !away(v, &vs) {
+                continue;
+            }
+            let jet = surface.jet(u, v);
+            let at = |a: f64, b: f64| surface.jet(u + a * h, v + b * h);
+            let quotient = |a: DVec3, b: DVec3| (b - a) / (2.0 * h);
+            let check = |name: &str, exact: DVec3, a: DVec3, b: DVec3, within: f64| {
+                close(quotient(a, b), exact, within * (size + exact.length()), &format!("{name} at {u}, {v}"));
+            };
+            check("du", jet.du, at(-1.0, 0.0).p, at(1.0, 0.0).p, 1e-7);
+            check("dv", jet.dv, at(0.0, -1.0).p, at(0.0, 1.0).p, 1e-7);
+            check("duu", jet.duu, at(-1.0, 0.0).du, at(1.0, 0.0).du, 1e-5);
+            check("duv", jet.duv, at(0.0, -1.0).du, at(0.0, 1.0).du, 1e-5);
+            check("dvv", jet.dvv, at(0.0, -1.0).dv, at(0.0, 1.0).dv, 1e-5);
+        }
+    }
+}
+
+#[test]
+fn sweeps_have_the_exact_nets() {
+    let data = reference("sweep");
+    let z_axis = Axis { about: DVec3::ZERO, direction: DVec3::Z };
+    let turn = std::f64::consts::TAU;
+    let ring = |center: [f64; 3], normal: DVec3, start: [f64; 3], angle: f64| {
+        arc_center(center.into(), start.into(), angle, normal, Origin::NONE).unwrap()
+    };
+    let nurbs = |curve: &Curve| curve.to_nurbs(&tolerance()).unwrap();
+    let torus = ring([3.0, 0.0, 0.0], -DVec3::Y, [4.0, 0.0, 0.0], turn);
+    let sphere = ring([0.0; 3], -DVec3::Y, [0.0, 0.0, -1.0], 0.5 * turn);
+    let cone = line(DVec3::new(0.0, 0.0, 2.0), DVec3::X, Origin::NONE).unwrap();
+    let circle = ring([0.0; 3], DVec3::Z, [2.0, 0.0, 0.0], turn);
+    let turned = |curve: &Curve| revolve::net(&nurbs(curve), &z_axis, turn);
+    check_net(&data["torus_ROT"], &turned(&torus), false, |p| (p.truncate().length() - 3.0).powi(2) + p.z * p.z - 1.0);
+    check_net(&data["sphere_ROT"], &turned(&sphere), false, |p| p.length() - 1.0);
+    check_net(&data["cone_ROT"], &turned(&cone), false, |p| p.truncate().length_squared() - (1.0 - p.z / 2.0).powi(2));
+    let cylinder = extrude::net(&nurbs(&circle), DVec3::new(0.0, 0.0, 5.0));
+    check_net(&data["cylinder_PAR"], &cylinder, true, |p| p.truncate().length_squared() - 4.0);
+
+    // The surfaces themselves run by arc length; they are the same sets of points.
+    let surface = |curve: &Curve| revolve(&Chain::of_curve(curve), &z_axis, turn, Origin::NONE, &tolerance()).unwrap();
+    let (torus, sphere, cone) = (surface(&torus), surface(&sphere), surface(&cone));
+    assert_eq!(torus.flow(), "quadrilateral closed in u and v");
+    assert_eq!(sphere.flow(), "degenerate bilateral closed in u");
+    assert_eq!(cone.flow(), "degenerate trilateral closed in u");
+    for i in 0..=17 {
+        for j in 0..=17 {
+            let (u, v) = (f64::from(i) / 17.0, f64::from(j) / 17.0);
+            let p = torus.point(u, v);
+            assert!(((p.truncate().length() - 3.0).powi(2) + p.z * p.z - 1.0).abs() < 4e-15);
+            assert!((sphere.point(u, v).length() - 1.0).abs() < 1e-15);
+        }
+    }
+    for s in [&torus, &sphere, &cone] {
+        derivatives(s);
+        derivatives(&s.flipped());
+        assert!(s.review(&tolerance()).is_empty());
+    }
+    // A cone's tip has no tangent plane: the mean of the normals is its axis.
+    assert!(cone.normal(0.3, 0.0).dot(DVec3::Z).abs() > 1.0 - 1e-12);
+}
+
+fn check_net(data: &Value, net: &NurbsSurface, exchanged: bool, residual: impl Fn(DVec3) -> f64) {
+    let rows = data["control_net"].as_array().unwrap();
+    for (i, row) in rows.iter().enumerate() {
+        for (j, p) in row.as_array().unwrap().iter().enumerate() {
+            let q = if exchanged { net.pole(j, i) } else { net.pole(i, j) };
+            close(q.truncate() / q.w, vec3(p), 1e-12, "pole");
+            assert!((q.w - number(&data["weights"][i][j])).abs() < 1e-12, "weight {i} {j}");
+        }
+    }
+    let place = |u: f64, v: f64| if exchanged { (v, u) } else { (u, v) };
+    let at = |u: f64, v: f64| {
+        let (u, v) = place(u, v);
+        net.jet(u, v, (Lean::After, Lean::After)).p
+    };
+    for sample in data["samples"].as_array().unwrap() {
+        close(at(number(&sample["u"]), number(&sample["v"])), vec3(&sample["point"]), 1e-12, "sample");
+    }
+    for i in 0..18 {
+        for j in 0..18 {
+            let off = residual(at(f64::from(i) / 17.0, f64::from(j) / 17.0));
+            assert!(off.abs() < 5e-15, "{off}");
+        }
+    }
+}
+
+#[test]
+fn gridded_points_with_given_tangents() {
+    let data = &reference("nub_fit")["surface_fit"];
+    let points = |value: &Value| value.as_array().unwrap().iter().map(vec3).collect::<Vec<DVec3>>();
+    // The reference has the first index along u.
+    let by_u: Vec<Vec<DVec3>> = data["data"].as_array().unwrap().iter().map(points).collect();
+    let rows: Vec<Vec<DVec3>> = (0..4).map(|j| by_u.iter().map(|column| column[j]).collect()).collect();
+    let span = |key: &str| data[key].as_array().unwrap().iter().map(number).collect::<Vec<f64>>();
+    let (su, sv) = (span("spans_u"), span("spans_v"));
+    let local = |key: &str, h: f64| points(&data["tangents"][key]).into_iter().map(|t| t / h).collect::<Vec<DVec3>>();
+    let (h, k) = ((su[0], su[1]), (sv[0], sv[2]));
+    let twist = |key: &str, area: f64| vec3(&data["twists"][key]) / area;
+    let tangents = Tangents {
+        across_u: Some((local("s0", h.0), local("sm", h.1))),
+        across_v: Some((local("t0", k.0), local("tn", k.1))),
+        twists: [twist("x00", h.0 * k.0), twist("xm0", h.1 * k.0), twist("x0n", h.0 * k.1), twist("xmn", h.1 * k.1)],
+    };
+    let (net, notes) = fitted(&rows, &tangents, Origin::NONE, &tolerance()).unwrap();
+    assert!(notes.is_empty());
+    for (i, column) in data["control_net"].as_array().unwrap().iter().enumerate() {
+        for (j, p) in column.as_array().unwrap().iter().enumerate() {
+            close(net.pole(i, j).truncate(), vec3(p), 1e-12, &format!("pole {i} {j}"));
+        }
+    }
+    for sample in data["samples"].as_array().unwrap() {
+        let (u, v) = (number(&sample["u_fraction"]), number(&sample["v_fraction"]));
+        close(net.jet(u, v, (Lean::After, Lean::After)).p, vec3(&sample["point"]), 1e-12, "sample");
+    }
+}
+
+#[test]
+fn a_grid_passes_through_its_points() {
+    let h = |x: f64, y: f64| (x * 1.3).sin() * (y * 0.7).cos();
+    let xs = [0.0, 0.7, 1.1, 2.0, 3.2];
+    let ys = [0.0, 1.0, 1.6, 3.0];
+    let rows: Vec<Vec<DVec3>> = ys.iter().map(|&y| xs.iter().map(|&x| DVec3::new(x, y, h(x, y))).collect()).collect();
+    let (surface, notes) = lofting::surface::grid(&rows, Origin::NONE, &tolerance()).unwrap();
+    assert!(notes.is_empty());
+    let (us, vs) = surface.breaks();
+    let (us, vs) = ([&[0.0], us.as_slice(), &[1.0]].concat(), [&[0.0], vs.as_slice(), &[1.0]].concat());
+    for (j, v) in vs.iter().enumerate() {
+        for (i, u) in us.iter().enumerate() {
+            close(surface.point(*u, *v), rows[j][i], 1e-13, "grid point");
+        }
+    }
+    // Natural ends: nothing bends across the border.
+    assert!(surface.jet(0.0, 0.4).duu.length() < 1e-10 && surface.jet(0.3, 1.0).dvv.length() < 1e-10);
+    assert!(surface.kinks().0.is_empty() && surface.kinks().1.is_empty());
+    derivatives(&surface);
+}
+
+#[test]
+fn curves_in_any_order_and_direction_give_one_surface() {
+    let h = |x: f64, y: f64| 0.5 * (0.8 * x).sin() * (0.7 * y).cos();
+    let plan: [fn(f64) -> f64; 3] = [|_| 0.0, |w| 1.0 + 2.0 * w, |_| 4.0];
+    let psi = [0.0, 1.0, 2.0].map(|y| sampled(40, move |w| DVec3::new(4.0 * w, y, h(4.0 * w, y))));
+    let phi = plan.map(|x| sampled(40, move |w| DVec3::new(x(w), 2.0 * w, h(x(w), 2.0 * w))));
+    // Curves must share nodes: the crossings are made good by a loose tolerance.
+    let t = Tolerance::new(1e-3, 10.0);
+    let chains: Vec<Chain> = psi.iter().chain(&phi).map(Chain::of_curve).collect();
+    let surface = |chains: &[Chain]| {
+        let (flow, nodes) = of_chains(chains, &ChainFlow::default(), &t).unwrap();
+        assert!(nodes.len() == 9 && flow.poles == (None, None));
+        let settings = Settings { method: Method::Composite, reparam: Reparam::Smooth, origin: Origin::NONE };
+        build(&Grid { chains, flow: &flow, poles: (None, None) }, &settings, &t).unwrap().0
+    };
+    let original = surface(&chains);
+    let mut state = 7_u64;
+    let mut random = |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % n
+    };
+    for _ in 0..40 {
+        // The first curve and the first of the outer ones along u say where u and v begin; the rest may come anyhow.
+        let mut rest = chains[1..].to_vec();
+        for k in (1..rest.len()).rev() {
+            rest.swap(k, random(k + 1));
+        }
+        for chain in &mut rest {
+            if random(2) == 1 {
+                *chain = chain.reversed();
+            }
+        }
+        let shuffled = surface(&[vec![chains[0].clone()], rest].concat());
+        for (u, v) in [(0.1, 0.2), (0.5, 0.5), (0.77, 0.31), (0.9, 0.95), (0.0, 0.6), (1.0, 1.0)] {
+            close(shuffled.point(u, v), original.point(u, v), 1e-9, "point");
+            close(shuffled.normal(u, v), original.normal(u, v), 1e-7, "normal");
+        }
+    }
+}
+
+#[test]
+fn motions_and_flips_commute_with_everything() {
+    let (b, a) = figure();
+    let torus = {
+        let circle = circle(DVec3::new(3.0, 0.0, 0.0), 1.0, DVec3::Y, Origin::NONE).unwrap();
+        revolve(&Chain::of_curve(&circle), &Axis { about: DVec3::ZERO, direction: DVec3::Z }, 1.2, Origin::NONE, &tolerance()).unwrap()
+    };
+    let (fan, _) = spanned(&[quarter(DVec3::X, DVec3::Y), quarter(DVec3::Y, DVec3::Z), quarter(DVec3::X, DVec3::Z)], &ChainFlow::default(), Method::Composite);
+    let wall = extrude(&straight([0.0, 0.0, 0.0], [1.0, 2.0, 0.0]), DVec3::new(0.0, 0.3, 2.0), Origin::NONE, &tolerance()).unwrap();
+    let rotation = Motion::rotation(DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, -1.0).normalize(), 0.83);
+    let motions = [
+        rotation.then(&Motion::scaling(DVec3::new(0.0, 1.0, 0.0), 37.0)),
+        Motion::mirror(DVec3::new(0.0, 1.0, 0.5), DVec3::new(1.0, 1.0, 0.2).normalize()),
+        Motion::translation(DVec3::new(1e3, -2e3, 5.0)),
+    ];
+    for surface in [&a, &b, &torus, &fan, &wall] {
+        for motion in &motions {
+            let (moved, size) = (surface.moved(motion), surface.hull().diagonal() * motion.scale() + 2e3);
+            for (u, v) in [(0.0, 0.0), (0.2, 0.3), (0.05, 0.9), (0.4, 0.6)] {
+                let (j, m) = (surface.jet(u, v), moved.jet(u, v));
+                close(m.p, motion.point(j.p), 1e-13 * size, "point");
+                close(m.du, motion.vector(j.du), 1e-11 * size, "du");
+                close(m.duv, motion.vector(j.duv), 1e-9 * size, "duv");
+                let sign = if motion.mirrors() { -1.0 } else { 1.0 };
+                close(moved.normal(u, v), motion.vector(surface.normal(u, v)) * (sign / motion.scale()), 1e-9, "normal");
+            }
+            assert_eq!(surface.kinks(), moved.kinks());
+        }
+        let (flipped, twice) = (surface.flipped(), surface.flipped().flipped());
+        for (u, v) in [(0.1, 0.2), (0.3, 0.6)] {
+            let there = if surface.domain() == Domain::Triangle { (v, u) } else { (u, 1.0 - v) };
+            close(flipped.point(there.0, there.1), surface.point(u, v), 1e-13, "flipped point");
+            close(flipped.normal(there.0, there.1), -surface.normal(u, v), 1e-12, "flipped normal");
+            assert_eq!(twice.jet(u, v), surface.jet(u, v));
+        }
+        sides_lie_on_chains(surface);
+        sides_lie_on_chains(&flipped);
+    }
+}
+
+/// Points of the border are the points of the chain that the side names, at the fraction that it says.
+fn sides_lie_on_chains(surface: &Surface) {
+    for k in 0..surface.n_sides() {
+        let Side::Chain { chain, from, to } = surface.side(k) else { continue };
+        for i in 0..=10 {
+            let t = f64::from(i) / 10.0;
+            let (u, v) = match (surface.domain(), k) {
+                (_, 0) => (t, 0.0),
+                (Domain::Triangle, 1) => (1.0 - t, t),
+                (_, 1) => (1.0, t),
+                (Domain::Square, 2) => (t, 1.0),
+                _ => (0.0, t),
+            };
+            let fraction = surface.side_fraction(k, t);
+            close(surface.point(u, v), chain.point(fraction), 1e-12, &format!("side {k} at {t}"));
+            assert!((surface.side_parameter(k, fraction) - t).abs() < 1e-12);
+        }
+        assert!((surface.side_fraction(k, 0.0) - from).abs() < 1e-15 && (surface.side_fraction(k, 1.0) - to).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn closed_flows_have_a_seam() {
+    // A tube with four lines; one ring begins elsewhere and runs the other way.
+    let ring = |z: f64, start: f64, way: f64, r: f64| {
+        let p = DVec3::new(r * start.cos(), r * start.sin(), z);
+        Chain::of_curve(&arc_center(DVec3::new(0.0, 0.0, z), p, way * std::f64::consts::TAU, DVec3::Z, Origin::NONE).unwrap())
+    };
+    let quarter_turn = std::f64::consts::FRAC_PI_2;
+    let mut chains = vec![ring(0.0, 0.0, 1.0, 1.0), ring(2.0, 0.3, -1.0, 1.5)];
+    for k in 0..4 {
+        let (s, c) = (quarter_turn * f64::from(k) + 0.1).sin_cos();
+        chains.push(straight([c, s, 0.0], [1.5 * c, 1.5 * s, 2.0]));
+    }
+    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Composite);
+    assert!(notes.is_empty());
+    assert_eq!((surface.flow().as_str(), surface.closed()), ("quadrilateral closed in u", (true, false)));
+    for v in [0.0, 0.4, 1.0] {
+        let (a, b) = (surface.jet(0.0, v), surface.jet_lean(1.0, v, (Lean::Before, Lean::After)));
+        close(a.p, b.p, 1e-12, "seam");
+        close(a.du, b.du, 1e-9, "C1 across the seam");
+    }
+    for i in 0..=40 {
+        let p = surface.point(f64::from(i) / 40.0, 0.5);
+        assert!((p.truncate().length() - 1.25).abs() < 1e-12 && (p.z - 1.0).abs() < 1e-12);
+    }
+    sides_lie_on_chains(&surface);
+    derivatives(&surface);
+}
+
+#[test]
+fn ends_over_the_border_are_trimmed_with_a_note() {
+    let chains = [
+        straight([-0.5, 0.0, 0.0], [4.0, 0.0, 0.0]),
+        straight([4.0, 2.0, 0.0], [0.0, 2.0, 0.0]),
+        straight([0.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
+        straight([4.0, 0.0, 0.0], [4.0, 2.0, 0.0]),
+    ];
+    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Composite);
+    let codes: Vec<&str> = notes.iter().map(|n| n.code().0).collect();
+    assert_eq!(codes, ["N609"]);
+    close(surface.point(0.5, 0.0), DVec3::new(2.0, 0.0, 0.0), 1e-12, "half of what is left");
+}
+
+#[test]
+fn planes_between_curves() {
+    let t = tolerance();
+    let slab = |chains: &[Chain]| plane::bounded(chains, Origin::NONE, &t);
+    let code = |chains: &[Chain]| slab(chains).unwrap_err().code().0;
+    let p = |x: f64, y: f64| [x, y, 0.5];
+    let four = [straight(p(0.0, 0.0), p(4.0, 0.0)), straight(p(4.0, 3.0), p(4.0, 0.0)), straight(p(0.0, 2.0), p(4.0, 3.0)), straight(p(0.0, 2.0), p(0.0, 0.0))];
+    let (surface, _) = slab(&four).unwrap();
+    assert_eq!((surface.domain(), surface.flow().as_str()), (Domain::Square, "quadrilateral"));
+    close(surface.normal(0.3, 0.8), DVec3::Z, 1e-12, "normal by the sense of the first curve");
+    sides_lie_on_chains(&surface);
+    let triangle = slab(&[straight(p(0.0, 0.0), p(4.0, 0.0)), straight(p(0.0, 2.0), p(4.0, 0.0)), straight(p(0.0, 2.0), p(0.0, 0.0))]).unwrap().0;
+    assert_eq!(triangle.domain(), Domain::Triangle);
+    close(triangle.normal(0.2, 0.2), DVec3::Z, 1e-12, "normal");
+    sides_lie_on_chains(&triangle);
+    // One closed polyline with four corners is mapped on them; a disc and a hexagon are faces without a map.
+    let outline = |n: usize| {
+        let at = |k: usize| (std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
+        let points: Vec<DVec3> = (0..n).map(|k| DVec3::new(at(k).1, at(k).0, 0.0)).collect();
+        Chain::of_curve(&polyline(&points, true, Origin::NONE).unwrap())
+    };
+    assert_eq!(slab(&[outline(4)]).unwrap().0.domain(), Domain::Square);
+    assert_eq!(slab(&[outline(3)]).unwrap().0.domain(), Domain::Triangle);
+    let hexagon = slab(&[outline(6)]).unwrap().0;
+    assert_eq!((hexagon.domain(), hexagon.n_sides()), (Domain::Loop, 1));
+    let disc = Chain::of_curve(&circle(DVec3::ZERO, 2.0, DVec3::Z, Origin::NONE).unwrap());
+    assert_eq!(slab(&[disc.clone()]).unwrap().0.domain(), Domain::Loop);
+    // A half disc is ruled between its two sides.
+    let half = [straight([-2.0, 0.0, 0.0], [2.0, 0.0, 0.0]), disc.slice(0.0, 0.5, &t).unwrap()];
+    let half = slab(&half).unwrap().0;
+    assert!(matches!((half.side(1), half.side(3)), (Side::Pole(_), Side::Pole(_))));
+    close(half.normal(0.5, 0.5), DVec3::Z, 1e-12, "normal");
+    assert!(half.review(&t).is_empty());
+
+    let mut lifted = four.to_vec();
+    lifted[2] = straight([0.0, 2.0, 0.5], [4.0, 3.0, 0.9]);
+    lifted[1] = straight([4.0, 3.0, 0.9], p(4.0, 0.0));
+    assert_eq!(code(&lifted), "E655");
+    assert_eq!(code(&four[..3]), "E502");
+    let bow = [straight(p(0.0, 0.0), p(1.0, 1.0)), straight(p(1.0, 1.0), p(1.0, 0.0)), straight(p(1.0, 0.0), p(0.0, 1.0)), straight(p(0.0, 1.0), p(0.0, 0.0))];
+    assert_eq!(code(&bow), "E611");
+}
+
+#[test]
+fn ruled_surfaces_read_the_second_curve_the_shorter_way() {
+    let t = tolerance();
+    let (a, b) = (straight([0.0, 0.0, 0.0], [4.0, 0.0, 0.0]), straight([4.0, 3.0, 1.0], [0.0, 3.0, 0.0]));
+    let (surface, notes) = ruled(&a, &b, Origin::NONE, &t).unwrap();
+    assert!(notes.is_empty());
+    close(surface.point(0.25, 0.5), DVec3::new(1.0, 1.5, 0.125), 1e-14, "point");
+    sides_lie_on_chains(&surface);
+    derivatives(&surface);
+    assert_eq!((surface.chains().len(), surface.generated().len()), (2, 2));
+}
+
+#[test]
+fn sweeps_refuse_what_has_no_area() {
+    let t = tolerance();
+    let z = Axis { about: DVec3::ZERO, direction: DVec3::Z };
+    let turned = |profile: &Chain, angle: f64| revolve(profile, &z, angle, Origin::NONE, &t).map(|s| s.flow()).map_err(|f| f.code().0);
+    let slope = straight([1.0, 0.0, 0.0], [2.0, 0.0, 1.0]);
+    assert_eq!(turned(&slope, 1.0).unwrap(), "quadrilateral");
+    assert_eq!(turned(&slope, 0.0), Err("E411"));
+    assert_eq!(turned(&slope, 7.0), Err("E412"));
+    assert_eq!(turned(&straight([0.0, 0.0, 1.0], [0.0, 0.0, 3.0]), 1.0), Err("E622"));
+    assert_eq!(turned(&straight([-1.0, 0.0, 1.0], [1.0, 0.0, 3.0]), 1.0), Err("E623"));
+    assert_eq!(turned(&straight([0.0, 0.0, 1.0], [1.0, 0.0, 3.0]), 1.0).unwrap(), "degenerate trilateral");
+    let along = extrude(&slope, DVec3::new(1.0, 0.0, 1.0), Origin::NONE, &t).unwrap_err();
+    assert_eq!(along.code().0, "E624");
+    assert_eq!(axis_of(&straight([1.0, 1.0, 1.0], [1.0, 1.0, 5.0]), &t).unwrap().direction, DVec3::Z);
+    assert_eq!(axis_of(&quarter(DVec3::X, DVec3::Y), &t).unwrap_err().code().0, "E621");
+    for s in [revolve(&slope, &z, 1.0, Origin::NONE, &t).unwrap(), extrude(&slope, DVec3::Y, Origin::NONE, &t).unwrap()] {
+        sides_lie_on_chains(&s);
+        sides_lie_on_chains(&s.flipped());
+        derivatives(&s);
+    }
 }

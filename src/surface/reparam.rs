@@ -109,15 +109,18 @@ impl Map {
         for _ in 0..60 {
             let [value, slope, _] = self.at(x, false);
             let miss = (value - y) * sign;
+            if miss == 0.0 {
+                return x;
+            }
             if miss > 0.0 {
                 high = x;
             } else {
                 low = x;
             }
             let newton = x - miss / (slope * sign);
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if miss == 0.0 || (next - x).abs() <= EPSILON * 0.1 {
-                return next.clamp(low.min(x), high.max(x));
+            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            if (next - x).abs() <= f64::EPSILON * 0.5 {
+                return next;
             }
             x = next;
         }
