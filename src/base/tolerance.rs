@@ -41,6 +41,8 @@ pub const POLE_STEP: f64 = 1e-3;
 pub const SINGULAR: f64 = 1e-9;
 /// An end that misses a curve by at most this many tolerances gets a warning.
 pub const NEAR_MISS: f64 = 100.0;
+/// Curvature, as a share of the larger one, that a downhill step assumes where the function bends the other way.
+pub const LEAST_CURVATURE: f64 = 1e-3;
 
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;

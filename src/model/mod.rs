@@ -3,6 +3,8 @@
 pub mod atoms;
 pub mod glue;
 pub mod loops;
+pub mod measure;
+mod measure_quadrature;
 mod patches;
 pub mod shells;
 pub mod topology;

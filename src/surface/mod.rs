@@ -2,8 +2,11 @@
 
 mod blend;
 mod breaks;
+pub mod closest;
 pub mod coons;
 pub mod core;
+mod descent;
+mod extent;
 pub mod extrude;
 mod flow_words;
 pub mod interpolate;
@@ -15,11 +18,15 @@ mod review;
 pub mod revolve;
 mod ruled;
 mod shape;
+mod square;
 mod sweep;
 mod trilateral;
 mod weights;
 
+pub use breaks::chain_breaks;
+pub use closest::{Closest, Nearest, closest};
 pub use core::{Domain, Jet2, Side, Surface, SurfaceKind};
+pub use extent::bbox;
 pub use extrude::extrude;
 pub use interpolate::grid;
 pub use nurbs::{Net, NurbsSurface};

@@ -1,0 +1,137 @@
+//! Mass properties: area, volume, centroid and inertia of surfaces and shells, and boxes.
+//!
+//! Everything is an integral over (u, v) to [`MEASURE_ACCURACY`] of the sum of absolute values, split where a surface is
+//! less than analytic; volumes come from the divergence theorem over the faces of a closed shell. A plane is measured
+//! by its boundary, exactly also where its map folds over.
+
+use glam::{DMat3, DVec3};
+
+use super::measure_quadrature::{flat_integral, integral};
+use crate::base::bbox::Box3;
+use crate::base::par;
+use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox};
+
+/// A thin sheet of mass 1 per area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// Area, square model units.
+    pub area: f64,
+    /// Centre of the area.
+    pub centroid: DVec3,
+    /// Inertia about the centroid: Σ (|r|² 1 − r rᵀ) over the area, model units to the fourth power.
+    pub inertia: DMat3,
+    /// Estimated error of the area, relative.
+    pub error: f64,
+}
+
+/// A solid of mass 1 per volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solid {
+    /// Volume, cubic model units; positive when the normals point outwards.
+    pub volume: f64,
+    /// Centre of the volume.
+    pub centroid: DVec3,
+    /// Inertia about the centroid: Σ (|r|² 1 − r rᵀ) over the volume, model units to the fifth power.
+    pub inertia: DMat3,
+    /// Estimated error of the volume, relative.
+    pub error: f64,
+}
+
+/// Area of one surface, square model units; 0 for an unbounded plane's (it has none).
+pub fn area(surface: &Surface) -> f64 {
+    over(surface, DVec3::ZERO, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
+}
+
+/// Area, centroid and inertia of surfaces taken together.
+pub fn sheet(surfaces: &[Surface]) -> Sheet {
+    let about = center(surfaces);
+    let parts = par::map(surfaces.len(), |k| {
+        over(&surfaces[k], about, &|jet, r| {
+            let a = jet.du.cross(jet.dv).length();
+            [a, a * r.x, a * r.y, a * r.z, a * r.x * r.x, a * r.y * r.y, a * r.z * r.z, a * r.x * r.y, a * r.y * r.z, a * r.z * r.x]
+        })
+    });
+    let (sum, error) = total(&parts);
+    let (mass, centroid, inertia) = about_centroid(&sum, about);
+    Sheet { area: mass, centroid, inertia, error: relative(error[0], mass) }
+}
+
+/// Volume, centroid and inertia of what surfaces enclose; `true` uses a surface's other side. Normals must point outwards.
+///
+/// Means what it says for closed shells only. With normals inwards the volume is negative, the rest the same.
+pub fn solid(faces: &[(Surface, bool)]) -> Solid {
+    let surfaces: Vec<Surface> = faces.iter().map(|(surface, other)| if *other { surface.flipped() } else { surface.clone() }).collect();
+    let about = center(&surfaces);
+    let parts = par::map(surfaces.len(), |k| {
+        over(&surfaces[k], about, &|jet, r| {
+            // ∫ x² y dV = ½ ∮ … and so on: the divergence theorem with one primitive each.
+            let n = jet.du.cross(jet.dv);
+            let (x, y, z) = (r.x, r.y, r.z);
+            [
+                r.dot(n) / 3.0,
+                x * x * n.x / 2.0,
+                y * y * n.y / 2.0,
+                z * z * n.z / 2.0,
+                x * x * x * n.x / 3.0,
+                y * y * y * n.y / 3.0,
+                z * z * z * n.z / 3.0,
+                x * x * y * n.x / 2.0,
+                y * y * z * n.y / 2.0,
+                z * z * x * n.z / 2.0,
+            ]
+        })
+    });
+    let (sum, error) = total(&parts);
+    let (mass, centroid, inertia) = about_centroid(&sum, about);
+    Solid { volume: mass, centroid, inertia, error: relative(error[0], mass) }
+}
+
+/// The smallest box along the axes that holds surfaces; infinite for an unbounded plane.
+pub fn bounds(surfaces: &[Surface]) -> Box3 {
+    par::map(surfaces.len(), |k| bbox(&surfaces[k])).into_iter().fold(Box3::EMPTY, Box3::union)
+}
+
+/// A point near the surfaces, so that moments do not cancel.
+fn center(surfaces: &[Surface]) -> DVec3 {
+    let bounds = surfaces.iter().filter(|s| s.domain() != Domain::Unbounded).fold(Box3::EMPTY, |all, s| all.union(s.hull()));
+    if bounds.is_empty() { DVec3::ZERO } else { bounds.center() }
+}
+
+/// The integral of `f(jet, p − about)` over a surface, with its error estimate.
+fn over<const N: usize>(surface: &Surface, about: DVec3, f: &impl Fn(&Jet2, DVec3) -> [f64; N]) -> ([f64; N], [f64; N]) {
+    let at = |jet: &Jet2| f(jet, jet.p - about);
+    match (surface.domain(), surface.kind()) {
+        (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
+        (_, SurfaceKind::Plane) => flat_integral(surface, &at),
+        _ => integral(surface, &at),
+    }
+}
+
+fn total(parts: &[([f64; 10], [f64; 10])]) -> ([f64; 10], [f64; 10]) {
+    let mut sums = ([0.0; 10], [0.0; 10]);
+    for (value, error) in parts {
+        for k in 0..10 {
+            sums.0[k] += value[k];
+            sums.1[k] += error[k];
+        }
+    }
+    sums
+}
+
+fn relative(error: f64, value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { error / value.abs() }
+}
+
+/// Mass, centroid and inertia about it from the moments 1, x, y, z, xx, yy, zz, xy, yz, zx about a point.
+fn about_centroid(m: &[f64; 10], about: DVec3) -> (f64, DVec3, DMat3) {
+    let mass = m[0];
+    if mass == 0.0 {
+        return (0.0, about, DMat3::ZERO);
+    }
+    let c = DVec3::new(m[1], m[2], m[3]) / mass;
+    // Second moments about the centroid [Steiner].
+    let (xx, yy, zz) = (m[4] - mass * c.x * c.x, m[5] - mass * c.y * c.y, m[6] - mass * c.z * c.z);
+    let (xy, yz, zx) = (m[7] - mass * c.x * c.y, m[8] - mass * c.y * c.z, m[9] - mass * c.z * c.x);
+    let inertia = DMat3::from_cols(DVec3::new(yy + zz, -xy, -zx), DVec3::new(-xy, xx + zz, -yz), DVec3::new(-zx, -yz, xx + yy));
+    (mass, about + c, inertia)
+}

@@ -1,0 +1,187 @@
+//! Integrals over surfaces: Gauss–Legendre products of rising order, cell by cell, halved where that is not enough.
+
+use glam::DVec3;
+
+use crate::base::quadrature::gauss_legendre;
+use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::network::Chain;
+use crate::surface::{Domain, Jet2, Side, Surface};
+
+/// Orders of the rules tried one after the other on a cell.
+const ORDERS: [usize; 4] = [4, 7, 11, 16];
+/// A cell is halved at most so often in each direction.
+const DEEPEST: u32 = 12;
+/// Cells examined in all.
+const MOST_CELLS: usize = 1 << 17;
+
+/// Sums of N functions.
+type Sums<const N: usize> = [f64; N];
+
+/// A rectangle of the unit square.
+#[derive(Clone, Copy)]
+struct Cell {
+    x: (f64, f64),
+    y: (f64, f64),
+    depth: u32,
+}
+
+/// The integral of N functions of the jet over the unit square of a surface, with estimated errors.
+///
+/// A cell is done when two orders differ by no more than [`MEASURE_ACCURACY`] of the integrals of absolute values, shared
+/// out by the cells of the first division; errors are sums of these differences (of the lower order: on the safe side).
+pub fn integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+    let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
+    let (us, vs) = surface.breaks();
+    // A triangle's lines do not follow the square.
+    let (us, vs) = if surface.domain() == Domain::Triangle { (Vec::new(), vs) } else { (us, vs) };
+    let (us, vs) = ([&[0.0], us.as_slice(), &[1.0]].concat(), [&[0.0], vs.as_slice(), &[1.0]].concat());
+    let mut open: Vec<Cell> =
+        vs.windows(2).flat_map(|y| us.windows(2).map(move |x| Cell { x: (x[0], x[1]), y: (y[0], y[1]), depth: 0 })).collect();
+    let share = MEASURE_ACCURACY / open.len() as f64;
+    let first: Vec<(Sums<N>, Sums<N>)> = open.iter().map(|cell| product(surface, cell, &rules[0], f)).collect();
+    let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
+    let mut known: Vec<Option<Sums<N>>> = first.into_iter().map(|(value, _)| Some(value)).collect();
+    // The last cell is taken first: turn the list round so that sums run in one order.
+    open.reverse();
+    known.reverse();
+    let (mut sum, mut error, mut seen) = ([0.0; N], [0.0; N], 0);
+    while let (Some(cell), Some(start)) = (open.pop(), known.pop()) {
+        seen += 1;
+        let mut value = start.unwrap_or_else(|| product(surface, &cell, &rules[0], f).0);
+        let mut apart = [f64::INFINITY; N];
+        for rule in &rules[1..] {
+            let next = product(surface, &cell, rule, f).0;
+            apart = std::array::from_fn(|i| (next[i] - value[i]).abs());
+            value = next;
+            if small(&apart, &scale, share) {
+                break;
+            }
+        }
+        if small(&apart, &scale, share) || cell.depth == DEEPEST || seen + open.len() >= MOST_CELLS {
+            for i in 0..N {
+                sum[i] += value[i];
+                error[i] += apart[i];
+            }
+            continue;
+        }
+        let (x, y) = (0.5 * (cell.x.0 + cell.x.1), 0.5 * (cell.y.0 + cell.y.1));
+        for (low, high) in
+            [((cell.x.0, x), (cell.y.0, y)), ((x, cell.x.1), (cell.y.0, y)), ((cell.x.0, x), (y, cell.y.1)), ((x, cell.x.1), (y, cell.y.1))]
+        {
+            open.push(Cell { x: low, y: high, depth: cell.depth + 1 });
+            known.push(None);
+        }
+    }
+    (sum, error)
+}
+
+fn small<const N: usize>(apart: &Sums<N>, scale: &Sums<N>, share: f64) -> bool {
+    apart.iter().zip(scale).all(|(a, s)| *a <= share * s)
+}
+
+/// One rule on one cell: the integrals and those of the absolute values.
+fn product<const N: usize>(surface: &Surface, cell: &Cell, rule: &[(f64, f64)], f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+    let on = |(a, b): (f64, f64)| rule.iter().map(|(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x).collect::<Vec<f64>>();
+    let jets = surface.square_jets(&on(cell.x), &on(cell.y));
+    let area = 0.25 * (cell.x.1 - cell.x.0) * (cell.y.1 - cell.y.0);
+    let (mut sum, mut size) = ([0.0; N], [0.0; N]);
+    for (k, jet) in jets.iter().enumerate() {
+        let weight = area * rule[k % rule.len()].1 * rule[k / rule.len()].1;
+        for (i, value) in f(jet).into_iter().enumerate() {
+            sum[i] += weight * value;
+            size[i] += weight * value.abs();
+        }
+    }
+    (sum, size)
+}
+
+/// The boundary of a flat surface in walking order, each chain with the fractions it is run between.
+fn boundary(surface: &Surface) -> Vec<(Chain, f64, f64)> {
+    let n = surface.n_sides();
+    (0..n)
+        .filter_map(|k| match surface.side(k) {
+            // Sides run with ascending u or v: the walk takes the far ones backwards.
+            Side::Chain { chain, from, to } if surface.domain() == Domain::Loop || k < 2 => Some((chain, from, to)),
+            Side::Chain { chain, from, to } => Some((chain, to, from)),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
+///
+/// `f` gets jets with unit derivatives in the plane, their cross product the surface's normal.
+pub fn flat_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+    let walk = boundary(surface);
+    let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
+    let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
+    let runs: Vec<(usize, f64, f64)> = walk
+        .iter()
+        .enumerate()
+        .flat_map(|(k, (chain, from, to))| {
+            let mut stops = crate::surface::chain_breaks(chain);
+            stops.insert(0, 0.0);
+            stops.push(1.0);
+            if from > to {
+                stops.reverse();
+            }
+            stops.windows(2).map(|w| (k, w[0], w[1])).collect::<Vec<_>>()
+        })
+        .collect();
+    // The area vector says where the plane is and which side is up.
+    let vector = |rule: &[(f64, f64)]| {
+        runs.iter().fold(DVec3::ZERO, |sum, &(k, a, b)| {
+            rule.iter().fold(sum, |sum, (x, w)| {
+                let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
+                sum + (jet.p - origin).cross(jet.d1) * (0.25 * (b - a) * w)
+            })
+        })
+    };
+    let Some(normal) = crate::base::math::unit(vector(&rules[1]), 0.0) else { return ([0.0; N], [0.0; N]) };
+    let eu = crate::base::math::any_normal(normal);
+    let ev = normal.cross(eu);
+    let inner = gauss_legendre(ORDERS[0]);
+    // ∬ f da db = ∮ F db with F = ∫ f da from the origin's line.
+    let along = |p: DVec3| {
+        let (a, foot) = ((p - origin).dot(eu), p - eu * (p - origin).dot(eu));
+        inner.iter().fold([0.0; N], |sum, (x, w)| {
+            let jet = Jet2 { p: foot + eu * (0.5 * a * (1.0 + x)), du: eu, dv: ev, ..Jet2::default() };
+            let value = f(&jet);
+            std::array::from_fn(|i| sum[i] + 0.5 * a * w * value[i])
+        })
+    };
+    // Value and sum of absolute values.
+    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64)| {
+        rule.iter().fold(([0.0; N], [0.0; N]), |(mut sum, mut size), (x, w)| {
+            let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
+            let (value, step) = (along(jet.p), 0.5 * (b - a) * w * jet.d1.dot(ev));
+            for i in 0..N {
+                sum[i] += step * value[i];
+                size[i] += (step * value[i]).abs();
+            }
+            (sum, size)
+        })
+    };
+    let scale = runs.iter().fold([0.0; N], |scale, run| {
+        let size = round(&rules[0], *run).1;
+        std::array::from_fn(|i| scale[i] + size[i])
+    });
+    let share = MEASURE_ACCURACY / runs.len() as f64;
+    let (mut sum, mut error) = ([0.0; N], [0.0; N]);
+    let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
+    while let Some((run, depth)) = open.pop() {
+        let (rough, value) = (round(&rules[0], run).0, round(&rules[1], run).0);
+        let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
+        if depth == DEEPEST || small(&apart, &scale, share) {
+            for i in 0..N {
+                sum[i] += value[i];
+                error[i] += apart[i];
+            }
+        } else {
+            let middle = 0.5 * (run.1 + run.2);
+            open.push(((run.0, middle, run.2), depth + 1));
+            open.push(((run.0, run.1, middle), depth + 1));
+        }
+    }
+    (sum, error)
+}
