@@ -22,7 +22,6 @@ pub const FORMAT: Format = Format {
     encodings: &[Encoding::Text],
     elements: &[
         ("CROD", Shape::Line2),
-        ("CROD", Shape::Line3),
         ("CTRIA3", Shape::Triangle3),
         ("CTRIAR", Shape::Triangle3),
         ("CTRIA6", Shape::Triangle6),
@@ -70,7 +69,8 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     })?;
     let shapes = Shape::of_order(mesh.order);
     for section in &sections {
-        let card = FORMAT.element_name(deck.options, shapes[section.kind as usize]);
+        let shape = if section.kind == Kind::Line { Shape::Line2 } else { shapes[section.kind as usize] };
+        let card = FORMAT.element_name(deck.options, shape);
         let first = section.kind.first_number(mesh);
         write_records(out, section.elements.len(), |i, text| {
             let element = section.elements.start + i;

@@ -128,6 +128,31 @@ pub struct Format {
 /// All mesh formats.
 pub const FORMATS: &[Format] = &[stl::FORMAT, obj::FORMAT, ply::FORMAT, vtu::FORMAT, msh::FORMAT, inp::FORMAT, bdf::FORMAT];
 
+const fn element_count() -> usize {
+    let (mut n, mut k) = (0, 0);
+    while k < FORMATS.len() {
+        n += FORMATS[k].elements.len();
+        k += 1;
+    }
+    n
+}
+
+/// Element names of all formats: what `element:` may say.
+pub const ELEMENT_NAMES: [&str; element_count()] = {
+    let mut names = [""; element_count()];
+    let (mut n, mut k) = (0, 0);
+    while k < FORMATS.len() {
+        let mut i = 0;
+        while i < FORMATS[k].elements.len() {
+            names[n] = FORMATS[k].elements[i].0;
+            n += 1;
+            i += 1;
+        }
+        k += 1;
+    }
+    names
+};
+
 /// Formats of a later version, by ending.
 const LATER: &[(&str, &str)] =
     &[("glb", "glTF"), ("gltf", "glTF"), ("igs", "IGES"), ("iges", "IGES"), ("stp", "STEP"), ("step", "STEP"), ("html", "HTML")];

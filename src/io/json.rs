@@ -1,9 +1,11 @@
 //! JSON data in and out, as a plain tree.
 
+use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::io::{self, Write};
 
-use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::table::decode;
 use crate::base::fault::Malformed;
@@ -30,30 +32,33 @@ pub enum Json {
 /// Reads one JSON value. Errors: syntax, a key given twice, a number beyond an `f64`, deeper than 128, too many values.
 pub fn read(bytes: &[u8]) -> Result<Json, Malformed> {
     let text = decode(bytes)?;
-    let Tree(json) = serde_json::from_str(text).map_err(|e| {
+    let values = Cell::new(0);
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let json = Tree(&values).deserialize(&mut deserializer).and_then(|json| deserializer.end().map(|()| json));
+    json.map_err(|e| {
         let message = e.to_string();
         let what = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);
         Malformed { line: e.line() as u64, column: Some(e.column() as u64).filter(|c| *c > 0), what: what.to_owned() }
-    })?;
-    Ok(json)
+    })
 }
 
-/// A [`Json`] that serde fills.
-struct Tree(Json);
+/// Makes a [`Json`] and counts the values of the whole file.
+#[derive(Clone, Copy)]
+struct Tree<'a>(&'a Cell<usize>);
 
-impl<'de> Deserialize<'de> for Tree {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(TreeVisitor).map(Self)
+impl<'de> DeserializeSeed<'de> for Tree<'_> {
+    type Value = Json;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Json, D::Error> {
+        self.0.set(self.0.get() + 1);
+        if self.0.get() > limits::LIST_MEMBERS {
+            return Err(de::Error::custom(format!("the file has more than {} values", limits::LIST_MEMBERS)));
+        }
+        deserializer.deserialize_any(self)
     }
 }
 
-struct TreeVisitor;
-
-fn within_limit<E: de::Error>(n: usize) -> Result<(), E> {
-    if n >= limits::LIST_MEMBERS { Err(E::custom(format!("a list of more than {} members", limits::LIST_MEMBERS))) } else { Ok(()) }
-}
-
-impl<'de> Visitor<'de> for TreeVisitor {
+impl<'de> Visitor<'de> for Tree<'_> {
     type Value = Json;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -90,8 +95,7 @@ impl<'de> Visitor<'de> for TreeVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut access: A) -> Result<Json, A::Error> {
         let mut list = Vec::new();
-        while let Some(Tree(value)) = access.next_element()? {
-            within_limit(list.len())?;
+        while let Some(value) = access.next_element_seed(self)? {
             list.push(value);
         }
         Ok(Json::List(list))
@@ -99,13 +103,12 @@ impl<'de> Visitor<'de> for TreeVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, mut access: A) -> Result<Json, A::Error> {
         let mut record: Vec<(String, Json)> = Vec::new();
-        let mut known = std::collections::BTreeSet::new();
+        let mut known = BTreeSet::new();
         while let Some(key) = access.next_key::<String>()? {
-            within_limit(record.len())?;
             if !known.insert(key.clone()) {
                 return Err(de::Error::custom(format!("the key \"{key}\" is given twice")));
             }
-            let Tree(value) = access.next_value()?;
+            let value = access.next_value_seed(self)?;
             record.push((key, value));
         }
         Ok(Json::Record(record))
@@ -205,5 +208,6 @@ mod tests {
         check("[1,\n2", 2, "EOF");
         check(&"[".repeat(100_000), 1, "recursion limit");
         check("", 1, "EOF");
+        check("1 2", 1, "trailing");
     }
 }

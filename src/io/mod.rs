@@ -19,7 +19,7 @@ mod vtu;
 mod weld;
 
 pub use curves::{CURVE_FORMATS, CurveFormat, Drawing, Polyline, curve_format_for};
-pub use deck::{Deck, Encoding, FORMATS, Format, Loss, Options, Shape, extension, format_for, no_format};
+pub use deck::{Deck, ELEMENT_NAMES, Encoding, FORMATS, Format, Loss, Options, Shape, extension, format_for, no_format};
 pub use files::{FileError, Files, Memory};
 pub use json::Json;
 pub use obj_read::Obj;

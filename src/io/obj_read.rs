@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::weld::weld;
 use crate::base::fault::Malformed;
+use crate::base::limits;
 use crate::base::math::unit;
 use crate::base::text::{parse_real, push_count, push_real};
 use crate::base::triangulate::{PolygonFault, newell, polygon};
@@ -76,6 +77,14 @@ struct Element {
     group: usize,
 }
 
+/// Different words that are skipped before a file is no OBJ at all.
+const STRANGE_WORDS: usize = 32;
+
+/// At most 20 characters of a word, for a message.
+fn shortened(word: &str) -> String {
+    word.chars().take(20).collect()
+}
+
 #[derive(Default)]
 struct Scan {
     vertices: Vec<DVec3>,
@@ -83,9 +92,13 @@ struct Scan {
     polylines: Vec<Element>,
     polygons: Vec<Element>,
     names: Vec<String>,
+    /// Group of each name.
+    places: BTreeMap<String, usize>,
     group: usize,
     /// Words that were skipped: first line and how often.
     skipped: BTreeMap<String, (u64, usize)>,
+    /// Vertices and indices so far.
+    size: usize,
 }
 
 impl Scan {
@@ -108,15 +121,22 @@ impl Scan {
             }
             "g" | "o" => {
                 let name = words.collect::<Vec<_>>().join(" ");
-                self.group = self.names.iter().position(|known| *known == name).unwrap_or(self.names.len());
-                if self.group == self.names.len() {
-                    self.names.push(name);
-                }
                 // Group 0 is what stands before any name.
-                self.group += 1;
+                let next = self.names.len() + 1;
+                self.size += 1;
+                self.group = *self.places.entry(name).or_insert_with_key(|name| {
+                    self.names.push(name.clone());
+                    next
+                });
             }
             "vt" | "vn" | "vp" | "s" | "mg" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
-            _ => self.skipped.entry(keyword.to_owned()).or_insert((line, 0)).1 += 1,
+            _ if self.skipped.len() >= STRANGE_WORDS => {
+                return Err(Malformed::at(line, 1, format!("`{}` begins no line of an OBJ, and many before did not", shortened(keyword))));
+            }
+            _ => self.skipped.entry(shortened(keyword)).or_insert((line, 0)).1 += 1,
+        }
+        if self.size > limits::LIST_MEMBERS {
+            return Err(Malformed::line(line, format!("the file has more than {} vertices and indices", limits::LIST_MEMBERS)));
         }
         Ok(())
     }
@@ -132,7 +152,7 @@ impl Scan {
                         *place = x;
                     }
                 }
-                _ => return Err(Malformed::at(line, k as u64 + 2, format!("`{word}` is no coordinate"))),
+                _ => return Err(Malformed::at(line, k as u64 + 2, format!("`{}` is no coordinate", shortened(word)))),
             }
             n = k + 1;
         }
@@ -140,17 +160,18 @@ impl Scan {
             return Err(Malformed::line(line, format!("a vertex has three coordinates, got {n}")));
         }
         self.vertices.push(p.into());
+        self.size += 1;
         Ok(())
     }
 
     /// Vertex indices from 0; those beyond the vertices are found at the end, when all are known.
-    fn element<'w>(&self, words: impl Iterator<Item = &'w str>, line: u64, least: usize, what: &str) -> Result<Element, Malformed> {
+    fn element<'w>(&mut self, words: impl Iterator<Item = &'w str>, line: u64, least: usize, what: &str) -> Result<Element, Malformed> {
         let mut indices = Vec::new();
         for (k, word) in words.enumerate() {
             let bad = |why: String| Malformed::at(line, k as u64 + 2, why);
             let number: i64 = match word.split('/').next().unwrap_or("").parse() {
                 Ok(number) => number,
-                Err(_) => return Err(bad(format!("`{word}` is no vertex index"))),
+                Err(_) => return Err(bad(format!("`{}` is no vertex index", shortened(word)))),
             };
             let so_far = self.vertices.len() as i64;
             let index = if number < 0 { so_far + number } else { number - 1 };
@@ -166,6 +187,7 @@ impl Scan {
             let plural = if least == 1 { "index" } else { "indices" };
             return Err(Malformed::line(line, format!("{what} needs at least {least} vertex {plural}, got {}", indices.len())));
         }
+        self.size += indices.len();
         Ok(Element { indices, line, group: self.group })
     }
 

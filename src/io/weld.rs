@@ -6,13 +6,13 @@ use glam::DVec3;
 ///
 /// Points are equal when their bits are, zero of either sign being one.
 pub fn weld(points: &[DVec3]) -> (Vec<DVec3>, Vec<u32>) {
-    let mut order: Vec<([u64; 3], u32)> =
-        points.iter().enumerate().map(|(i, p)| ((*p + DVec3::ZERO).to_array().map(f64::to_bits), i as u32)).collect();
-    order.sort_unstable();
+    let bits = |i: u32| (points[i as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    order.sort_unstable_by_key(|i| (bits(*i), *i));
     let mut first = vec![0_u32; points.len()];
-    for run in order.chunk_by(|a, b| a.0 == b.0) {
-        for (_, i) in run {
-            first[*i as usize] = run[0].1;
+    for run in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
+        for i in run {
+            first[*i as usize] = run[0];
         }
     }
     let mut different = Vec::new();

@@ -12,9 +12,7 @@ pub const ENCODINGS: &[&str] = &["binary", "text"];
 /// Words of `units:` of an export.
 pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "in", "ft"];
 /// Shell elements of decks.
-pub const DECK_ELEMENTS: &[&str] = &[
-    "S3", "S3R", "S4", "S4R", "S6", "S8", "S8R", "STRI3", "STRI65", "M3D3", "M3D4", "M3D6", "M3D8", "CTRIA3", "CQUAD4", "CTRIA6", "CQUAD8",
-];
+pub const DECK_ELEMENTS: &[&str] = &crate::io::ELEMENT_NAMES;
 
 /// A key of a settings block.
 #[derive(Debug)]

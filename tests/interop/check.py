@@ -1,0 +1,92 @@
+"""python check.py LOFT WORK DECKS: runs everything and prints "N passed, N failed".
+
+LOFT is the program, WORK a scratch folder, DECKS a folder of files from `cargo test --test io`, each family with its
+facts in a JSON file.
+"""
+import glob
+import json
+import os
+import shutil
+import subprocess
+import sys
+import traceback
+
+import read_back
+import solve
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+class Tally:
+    """Counts what holds and says what does not."""
+
+    def __init__(self):
+        self.passed = self.failed = 0
+
+    def check(self, label, work):
+        try:
+            work()
+            self.passed += 1
+        except Exception as error:  # noqa: BLE001 - anything a foreign reader throws is a failed check
+            self.failed += 1
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            print(f"FAILED {label}: {type(error).__name__} {error} ({os.path.basename(where.filename)}:{where.lineno})")
+
+
+def run_loft(loft, model, folder, *settings):
+    """Runs a model into a folder of its own; the JSON report."""
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    done = subprocess.run([loft, "run", model, "-o", folder, "--json", *settings], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"loft run {model} ended with {done.returncode}: {done.stdout[-2000:]} {done.stderr[-2000:]}")
+    return json.loads(done.stdout)
+
+
+def facts_of(report):
+    """What the report says of its only mesh, in the words of read_back."""
+    mesh = report["meshes"][0]
+    return {
+        "nodes": mesh["nodes"],
+        "triangles": mesh["triangles"],
+        "quads": mesh["quads"],
+        "lines": None,
+        "order": mesh["order"],
+        "area": mesh["area"],
+        "groups": {group["name"]: {"nodes": group["nodes"], "elements": group["elements"]} for group in mesh["groups"]},
+    }
+
+
+def main():
+    loft, work, decks = (os.path.abspath(path) for path in sys.argv[1:4])
+    tally = Tally()
+    for path in sorted(glob.glob(os.path.join(decks, "*.json"))):
+        with open(path, encoding="utf-8") as file:
+            facts = json.load(file)
+        for deck in sorted(glob.glob(path[: -len(".json")] + "_*.*")):
+            for label, reader in read_back.readers(deck, facts):
+                tally.check(f"{os.path.basename(deck)} by {label}", reader)
+    for model in sorted(glob.glob(os.path.join(HERE, "models", "every_format.loft"))):
+        for elements in ["triangles", "quads"]:
+            for order in ["1", "2"]:
+                folder = os.path.join(work, f"every_format_{elements}_{order}")
+                report = {}
+                label = f"every_format {elements} {order}"
+                settings = ["--set", f"kind={elements}", "--set", f"degree={order}"]
+                tally.check(f"{label}: run", lambda: report.update(run_loft(loft, model, folder, *settings)))
+                if not report:
+                    continue
+                facts = facts_of(report)
+                written = sorted(os.listdir(folder))
+                tally.check(f"{label}: files", lambda: read_back.expect("files", len(written), 11))
+                for name in written:
+                    for reader_label, reader in read_back.readers(os.path.join(folder, name), facts):
+                        tally.check(f"{label} {name} by {reader_label}", reader)
+    for case in solve.CASES:
+        tally.check(f"CalculiX: {case.name}", lambda: case.run(lambda *a: run_loft(loft, *a), work))
+    print(f"{tally.passed} passed, {tally.failed} failed")
+    return 1 if tally.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
