@@ -99,6 +99,12 @@ impl Cx<'_> {
         Some((module.file, span))
     }
 
+    /// Says that no declaration is being evaluated any more: later faults are shown at their entities alone.
+    pub fn leave(&mut self) {
+        self.machine.site.module = super::value::ModuleId::MAIN;
+        self.machine.site.declaration = u32::MAX;
+    }
+
     /// A fault as a diagnostic; what has no place is shown at the call being made.
     pub fn diagnose(&self, fault: &Fault) -> Diagnostic {
         let site = self.machine.site;
@@ -109,8 +115,11 @@ impl Cx<'_> {
                 self.locate(fault, code, self.machine_span(code), &[])
             }
             _ => {
-                let report = fault.describe(self);
-                Diagnostic::from_report(report, |_| None)
+                let find = |subject| match subject {
+                    Subject::Entity(origin) => self.span_of(origin),
+                    _ => None,
+                };
+                Diagnostic::from_report(fault.describe(self), find)
             }
         }
     }

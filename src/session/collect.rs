@@ -10,8 +10,9 @@ use crate::lang::plans::{CheckResult, ReportTable};
 use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
-use crate::model::{Model, SurfaceId};
+use crate::model::{Model, SurfaceId, measure};
 use crate::network::{Chain, LinkId, Network};
+use crate::surface::Domain;
 
 use super::report::{
     Cell, CheckRow, Column, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow, SurfaceRow, Table,
@@ -81,7 +82,7 @@ pub fn surfaces(model: &Model) -> Vec<SurfaceRow> {
             patches: patches.len(),
             edges: model.edges_of(&patches).len(),
             vertices: model.vertices_of(&patches).len(),
-            area: None,
+            area: (named.surface.domain() != Domain::Unbounded).then(|| measure::area(&named.surface)),
         }
     };
     model.surfaces.iter().enumerate().map(row).collect()
@@ -97,11 +98,22 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance) -> Result<S
     let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
     let built = scene.shell(shell, tolerance, &mut Vec::new())?;
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
-    Ok(ShellRow { name: shell.name.to_string(), faces, closed: built.closed, ..ShellRow::default() })
+    let sides: Vec<_> = built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
+    Ok(ShellRow {
+        name: shell.name.to_string(),
+        faces,
+        closed: built.closed,
+        area: Some(measure::sheet(&shell.surfaces).area),
+        volume: built.closed.then(|| measure::solid(&sides).volume.abs()),
+        gap: None,
+        angle: None,
+    })
 }
 
 /// A mesh: counts, quality and groups.
-pub fn mesh(name: &str, mesh: &Mesh) -> MeshRow {
+pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance) -> MeshRow {
+    let quality = mesh.quality();
+    let degrees = crate::lang::units::degrees;
     let group = |g: &crate::mesh::Group| GroupRow {
         name: g.name.clone(),
         nodes: g.nodes.len(),
@@ -113,8 +125,16 @@ pub fn mesh(name: &str, mesh: &Mesh) -> MeshRow {
         triangles: mesh.triangles.len(),
         quads: mesh.quads.len(),
         order: mesh.order,
+        min_angle: quality.map(|q| degrees(q.min_angle)),
+        max_angle: quality.map(|q| degrees(q.max_angle)),
+        mean_quality: quality.map(|q| q.mean_quality),
+        min_quality: quality.map(|q| q.min_quality),
+        max_aspect: quality.map(|q| q.max_aspect),
+        area: quality.map(|q| q.area),
+        chord_error: mesh.chord_error(tolerance),
+        watertight: quality.map(|_| mesh.is_watertight()),
+        hash: Some(format!("{:016x}", mesh.hash())),
         groups: mesh.groups.iter().map(group).collect(),
-        ..MeshRow::default()
     }
 }
 

@@ -92,6 +92,7 @@ impl Run<'_> {
         self.report.units = self.cx.unit().name.to_owned();
         let parsed = clock();
         self.cx.evaluate_all();
+        self.cx.leave();
         self.collect();
         let evaluated = clock();
         if self.is_sound() || self.task.keep_going {
@@ -151,7 +152,7 @@ impl Run<'_> {
         for (name, value) in self.cx.mesh_values() {
             let mesh = self.cx.mesh(&value);
             if let Some(mesh) = self.take(mesh) {
-                self.report.meshes.push(collect::mesh(&name, &mesh));
+                self.report.meshes.push(collect::mesh(&name, &mesh, &tolerance));
             }
         }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();

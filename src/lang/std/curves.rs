@@ -169,7 +169,7 @@ builtins! {
     /// The angles are those of the parameter: a point lies at centre + major · cos + minor · sin.
     /// ```loft
     /// curve rim = ellipse(center: (0, 0, 0), major: (3m, 0, 0), minor: (0, 2m, 0))
-    /// curve vault = ellipse(center: (0, 0, 0), major: (3m, 0, 0), minor: (0, 0, 1m), angle: 180deg)
+    /// curve vault = ellipse(center: (0, 0, 0), major: (3m, 0, 0), minor: (0, 0, 1m), to: 180deg)
     /// ```
     fn ellipse(
         /// Centre.
@@ -180,10 +180,10 @@ builtins! {
         minor: Point,
         /// Where it begins, 0 at the end of `major`.
         from: Angle = "0deg",
-        /// How far it runs, at most 360deg; negative the other way.
-        angle: Angle = "360deg",
-    ) -> Chain = |cx, center, major, minor, from, angle| {
-        Ok(whole(build::ellipse(center.0, major.0, minor.0, from.0, angle.0, cx.origin())?))
+        /// Where it ends, at most 360deg from there; less than `from` runs the other way.
+        to: Angle = "360deg",
+    ) -> Chain = |cx, center, major, minor, from, to| {
+        Ok(whole(build::ellipse(center.0, major.0, minor.0, from.0, to.0 - from.0, cx.origin())?))
     };
 
     /// Conic section between two points with tangents towards an apex.

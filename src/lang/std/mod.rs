@@ -11,6 +11,8 @@ mod curves;
 mod data;
 pub mod kinds;
 mod lists;
+mod measures;
+mod mesh;
 mod network;
 mod numbers;
 mod surfaces;
@@ -93,7 +95,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
 ];
 
 /// All tables of fields.
-pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, data::FIELDS, network::FIELDS, topology::FIELDS];
+pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, data::FIELDS, network::FIELDS, topology::FIELDS, measures::FIELDS, mesh::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

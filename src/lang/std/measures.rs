@@ -1,0 +1,79 @@
+//! Areas, volumes, centroids and boxes.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::base::bbox::Box3;
+use crate::base::fault::{Fault, SurfaceFault, ValueFault};
+use crate::fields;
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::scene::Scene;
+use crate::lang::types::{Area, Point, Volume};
+use crate::lang::value::{MeshValue, ShellValue, Value};
+use crate::model::measure::{self, Solid};
+use crate::network::Chain;
+use crate::surface::Surface;
+
+/// `{min, max, size}` of a box.
+fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
+    let (min, max) = if bounds.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (bounds.min, bounds.max) };
+    cx.record([("min", Value::point(min)), ("max", Value::point(max)), ("size", Value::point(max - min))])
+}
+
+/// What a closed shell encloses; an open one encloses nothing.
+fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
+    let (module, tolerance) = (cx.module(), cx.tolerance()?);
+    let scene = Scene::of(cx, module, &shell.surfaces)?;
+    let mut said = Vec::new();
+    let built = scene.shell(shell, &tolerance, &mut said)?;
+    if !built.closed {
+        let open = said.into_iter().find_map(|fault| match fault {
+            Fault::Surface(inner) => match *inner {
+                SurfaceFault::ShellOpen { edges, length, at, .. } => Some((edges, length, at)),
+                _ => None,
+            },
+            _ => None,
+        });
+        let (edges, length, at) = open.unwrap_or((0, 0.0, DVec3::ZERO));
+        return Err(ValueFault::OpenShell { of: shell.origin, edges, length, at }.into());
+    }
+    let faces: Vec<(Surface, bool)> =
+        built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
+    Ok(measure::solid(&faces))
+}
+
+/// The smallest box of a curve: exact ends and, between them, where it turns back along an axis.
+fn box_of(chain: &Chain) -> Box3 {
+    chain.bbox()
+}
+
+fields! {
+    /// Area of a surface.
+    fn area(of: Surface) -> Area = |_, of| Ok(Area(measure::area(&of)));
+    /// Area of all surfaces of a shell.
+    fn area(of: Arc<ShellValue>) -> Area = |_, of| Ok(Area(measure::sheet(&of.surfaces).area));
+    /// Area of all faces of a mesh.
+    fn area(of: Arc<MeshValue>) -> Area = |cx, of| Ok(Area(cx.mesh(&of)?.quality().map_or(0.0, |q| q.area)));
+    /// Volume that a closed shell encloses.
+    fn volume(of: Arc<ShellValue>) -> Volume = |cx, of| Ok(Volume(solid(cx, &of)?.volume.abs()));
+    /// Centre of the area of a surface.
+    fn centroid(of: Surface) -> Point = |_, of| Ok(Point(measure::sheet(std::slice::from_ref(&of)).centroid));
+    /// Centre of the volume of a closed shell, of the area of an open one.
+    fn centroid(of: Arc<ShellValue>) -> Point = |cx, of| match solid(cx, &of) {
+        Ok(solid) => Ok(Point(solid.centroid)),
+        Err(Stop::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
+        Err(other) => Err(other),
+    };
+    /// The smallest box along the axes: `{min, max, size}`.
+    fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, box_of(&of)));
+    /// The smallest box along the axes: `{min, max, size}`.
+    fn bbox(of: Surface) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&[of])));
+    /// The smallest box along the axes: `{min, max, size}`.
+    fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&of.surfaces)));
+    /// The smallest box along the axes: `{min, max, size}`.
+    fn bbox(of: Arc<MeshValue>) -> Value = |cx, of| {
+        let mesh = cx.mesh(&of)?;
+        Ok(record_of(cx, Box3::of(mesh.nodes.iter().copied())))
+    };
+}
