@@ -69,6 +69,11 @@ impl Grid {
             return;
         }
         let width = nu - 1;
+        if self.straight == (true, true) {
+            // One call: the surface evaluates each of its curves once and shares the rows out itself.
+            self.rows(surface, 1, out);
+            return;
+        }
         par::chunks_mut(out, width * ROWS, |chunk, part| {
             let first = 1 + chunk * ROWS;
             self.rows(surface, first, part);

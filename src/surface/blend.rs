@@ -14,8 +14,12 @@ use super::breaks::tidy;
 use super::rail::{Lean, Rail};
 use super::weights::{Axis, Weights};
 use crate::base::bbox::Box3;
+use crate::base::par;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::{Jet, Motion};
+
+/// Rows of points made by one thread at a time.
+const ROWS: usize = 16;
 
 /// A surface blended from a grid of curves.
 #[derive(Clone, Debug)]
@@ -105,9 +109,12 @@ impl Blend {
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
         let columns = Columns::new(self, us);
         let rows = RowPoints::new(self, vs);
-        for (k, line) in out.chunks_exact_mut(us.len().max(1)).take(vs.len()).enumerate() {
-            self.grid_row(&columns, &rows, k, line);
-        }
+        let width = us.len().max(1);
+        par::chunks_mut(out, width * ROWS, |chunk, part| {
+            for (line, k) in part.chunks_exact_mut(width).zip(chunk * ROWS..vs.len()) {
+                self.grid_row(&columns, &rows, k, line);
+            }
+        });
     }
 
     fn grid_row(&self, columns: &Columns, rows: &RowPoints, k: usize, line: &mut [DVec3]) {
@@ -177,7 +184,7 @@ impl Blend {
         let inner = |axis: &Axis, rails: &[Rail]| {
             let kinks = rails.iter().filter_map(|rail| match rail {
                 Rail::Chain { kinks, .. } => Some(kinks.iter().map(|k| k.0)),
-                Rail::Point(_) => None,
+                _ => None,
             });
             tidy(axis.nodes.iter().copied().chain(kinks.flatten()).collect(), EPSILON)
         };
@@ -290,6 +297,87 @@ impl RowPoints {
         Self {
             weights: vs.iter().map(|&v| blend.v.weights(v, Lean::After)).collect(),
             along_v: blend.along_v.iter().map(|f| f.points(vs)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::weights::Rule;
+    use super::*;
+    use crate::base::math;
+
+    type Formula = fn(f64, f64) -> DVec3;
+
+    /// The grid of curves of a formula over its own parameters.
+    fn grid_of(f: Formula, us: &[f64], vs: &[f64], rule: Rule) -> Blend {
+        let along_v = us.iter().map(|&at| Rail::Formula { f, at, along_u: false }).collect();
+        let along_u = vs.iter().map(|&at| Rail::Formula { f, at, along_u: true }).collect();
+        Blend::new(Axis { nodes: us.to_vec(), rule }, Axis { nodes: vs.to_vec(), rule }, along_v, along_u)
+    }
+
+    fn check(f: Formula, samples: &[(f64, f64, [f64; 3], f64)]) {
+        let blend = grid_of(f, &[0.0, 0.4, 1.0], &[0.0, 0.5, 1.0], Rule::Lagrange);
+        for &(u, v, point, error) in samples {
+            let p = blend.jet(u, v, (Lean::After, Lean::After)).p;
+            assert!(p.distance(point.into()) < 1e-12, "{u} {v}: {p}");
+            assert!((p.distance(f(u, v)) - error).abs() < 1e-12, "{u} {v}");
+            let mut grid = [DVec3::ZERO];
+            blend.grid(&[u], &[v], &mut grid);
+            assert!(grid[0].distance(p) < 1e-15);
+        }
+    }
+
+    #[test]
+    fn lagrange_map_of_a_general_network() {
+        check(
+            |u, v| {
+                let (pi, half) = (std::f64::consts::PI, std::f64::consts::FRAC_PI_2);
+                DVec3::new(u + 0.1 * math::sin(3.0 * v), v + 0.05 * u * v, math::sin(pi * u) * math::cos(half * v) + 0.3 * u * u * v)
+            },
+            &[
+                (0.2, 0.3, [0.27833269096274826, 0.3029999999999998, 0.5281084892272703], 0.0007879946129708548),
+                (0.7, 0.8, [0.7675463180551151, 0.8280000000000003, 0.36705507386745634], 0.0005449261325436994),
+                (0.5, 0.25, [0.5681638760023334, 0.2562499999999999, 0.9424567234762948], 0.00017280903499194977),
+                (0.9, 0.1, [0.929552020666134, 0.10450000000000002, 0.33013784898283166], 0.0006253665929427665),
+                (0.4, 0.77, [0.47390052780594705, 0.7854, 0.3731345535226739], 5.551115123125783e-17),
+                (0.33, 0.5, [0.42974949866040546, 0.5082500000000001, 0.624971524146743], 1.1102230246251565e-16),
+            ],
+        );
+    }
+
+    #[test]
+    fn lagrange_map_is_exact_for_low_degree_in_one_direction() {
+        check(
+            |u, v| DVec3::new(u, v, u * u * math::powi(v, 5) + 3.0 * u * v - 2.0 * u * math::exp(v)),
+            &[
+                (0.2, 0.3, [0.19999999999999996, 0.3, -0.35984632303040126], 5.551115123125783e-17),
+                (0.7, 0.8, [0.7, 0.8000000000000003, -1.275194099889455], 3.1401849173675503e-16),
+                (0.5, 0.25, [0.5, 0.25, -0.9087812760627416], 2.220446049250313e-16),
+                (0.9, 0.1, [0.9000000000000001, 0.10000000000000002, -1.719299552536166], 2.486410087150353e-16),
+                (0.4, 0.77, [0.4, 0.77, -0.760504456515932], 0.0),
+                (0.33, 0.5, [0.33000000000000007, 0.5, -0.5897529136620847], 5.551115123125783e-17),
+            ],
+        );
+    }
+
+    #[test]
+    fn lagrange_swings_out_and_coons_stays() {
+        let f: Formula = |u, v| {
+            let bell = |x: f64| 1.0 / (1.0 + 25.0 * (2.0 * x - 1.0) * (2.0 * x - 1.0));
+            DVec3::new(u, v, bell(u) * bell(v))
+        };
+        let nodes: Vec<f64> = (0..7).map(|k| f64::from(k) / 6.0).collect();
+        let stations: Vec<f64> = (0..61).map(|k| f64::from(k) / 60.0).collect();
+        for (rule, error, low) in
+            [(Rule::Lagrange, 0.3710992524525961, -0.36854275706060013), (Rule::Cubic, 0.0024755120666331704, 0.0014792899408284025)]
+        {
+            let blend = grid_of(f, &nodes, &nodes, rule);
+            let mut points = vec![DVec3::ZERO; 61 * 61];
+            blend.grid(&stations, &stations, &mut points);
+            let off = points.iter().enumerate().map(|(k, p)| (p.z - f(stations[k % 61], stations[k / 61]).z).abs()).fold(0.0, f64::max);
+            let (least, most) = points.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.z), b.max(p.z)));
+            assert!((off - error).abs() < 1e-6 && (least - low).abs() < 1e-6 && (most - 1.0).abs() < 1e-6, "{off} {least} {most}");
         }
     }
 }

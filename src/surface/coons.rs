@@ -323,7 +323,7 @@ pub(super) fn borders(blend: &Blend) -> Vec<Border> {
             let side = Side::Chain { chain: chain.clone(), from: map.value(0.0), to: map.value(1.0) };
             Border { side, map: Some(map.clone()), turned: false }
         }
-        None => Border::straight(Side::Free),
+        _ => Border::straight(Side::Free),
     };
     vec![of(u.first()), of(v.last()), of(u.last()), of(v.first())]
 }

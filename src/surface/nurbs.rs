@@ -11,6 +11,7 @@ use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::fault::{CurveFault, Result, ValueFault};
 use crate::base::origin::Origin;
+use crate::base::par;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::Motion;
 use crate::geometry::nurbs::{MAX_DEGREE, projected, weighted};
@@ -27,6 +28,9 @@ pub struct NurbsSurface {
     /// Poles along u and along v.
     pub counts: (usize, usize),
 }
+
+/// Rows of points made by one thread at a time.
+const ROWS: usize = 16;
 
 /// Values and two derivatives of the basis functions that do not vanish on one span.
 struct Basis {
@@ -125,17 +129,20 @@ impl NurbsSurface {
     /// Points of the tensor grid, u fastest: the net is contracted once per row.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
         let columns: Vec<Basis> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, Lean::After)).collect();
-        let mut row = vec![DVec4::ZERO; self.counts.0];
-        for (line, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
-            let b = basis(&self.knots.1, self.degree.1, v, Lean::After);
-            for (i, q) in row.iter_mut().enumerate() {
-                *q = b.values().iter().enumerate().fold(DVec4::ZERO, |sum, (j, y)| sum + self.pole(i, b.first + j) * y[0]);
+        let width = us.len().max(1);
+        par::chunks_mut(out, width * ROWS, |chunk, part| {
+            let mut row = vec![DVec4::ZERO; self.counts.0];
+            for (line, &v) in part.chunks_exact_mut(width).zip(&vs[(chunk * ROWS).min(vs.len())..]) {
+                let b = basis(&self.knots.1, self.degree.1, v, Lean::After);
+                for (i, q) in row.iter_mut().enumerate() {
+                    *q = b.values().iter().enumerate().fold(DVec4::ZERO, |sum, (j, y)| sum + self.pole(i, b.first + j) * y[0]);
+                }
+                for (p, a) in line.iter_mut().zip(&columns) {
+                    let q = a.values().iter().zip(&row[a.first..]).fold(DVec4::ZERO, |sum, (x, q)| sum + *q * x[0]);
+                    *p = projected(q);
+                }
             }
-            for (p, a) in line.iter_mut().zip(&columns) {
-                let q = a.values().iter().zip(&row[a.first..]).fold(DVec4::ZERO, |sum, (x, q)| sum + *q * x[0]);
-                *p = projected(q);
-            }
-        }
+        });
     }
 
     /// Distinct knots inside, u and v.

@@ -37,6 +37,16 @@ pub enum Rail {
     },
     /// A degenerate curve.
     Point(DVec3),
+    /// A line of a formula at a constant u or v, with the formula's own parameter: points only.
+    #[cfg(test)]
+    Formula {
+        /// F(u, v).
+        f: fn(f64, f64) -> DVec3,
+        /// The constant parameter.
+        at: f64,
+        /// The constant parameter is v.
+        along_u: bool,
+    },
 }
 
 impl Rail {
@@ -49,6 +59,8 @@ impl Rail {
     pub fn jet(&self, x: f64, lean: Lean) -> Jet {
         match self {
             Self::Point(p) => Jet { p: *p, ..Jet::default() },
+            #[cfg(test)]
+            Self::Formula { .. } => Jet { p: self.point(x), ..Jet::default() },
             Self::Chain { chain, map, kinks } => {
                 let [mut f, d1, d2] = map.at(x, lean == Lean::Before);
                 // A kink line is the image of the kink up to rounding: hit the kink itself, or the side would be chance.
@@ -67,12 +79,20 @@ impl Rail {
         match self {
             Self::Point(p) => *p,
             Self::Chain { chain, map, .. } => chain.point(map.value(x)),
+            #[cfg(test)]
+            Self::Formula { f, at, along_u } => {
+                if *along_u {
+                    f(x, *at)
+                } else {
+                    f(*at, x)
+                }
+            }
         }
     }
 
     /// Points at many parameters in ascending or descending order.
     pub fn points(&self, xs: &[f64]) -> Vec<DVec3> {
-        let Self::Chain { chain, map, .. } = self else { return vec![self.point(0.0); xs.len()] };
+        let Self::Chain { chain, map, .. } = self else { return xs.iter().map(|&x| self.point(x)).collect() };
         let mut fractions: Vec<f64> = xs.iter().map(|&x| map.value(x)).collect();
         let mut points = vec![DVec3::ZERO; xs.len()];
         let falls = fractions.first() > fractions.last();
@@ -89,16 +109,16 @@ impl Rail {
     /// Arc length, model units; 0 for a pole.
     pub fn length(&self) -> f64 {
         match self {
-            Self::Point(_) => 0.0,
             Self::Chain { chain, .. } => chain.length(),
+            _ => 0.0,
         }
     }
 
     /// The chain, unless this is a pole.
     pub fn chain(&self) -> Option<&Chain> {
         match self {
-            Self::Point(_) => None,
             Self::Chain { chain, .. } => Some(chain),
+            _ => None,
         }
     }
 
@@ -130,6 +150,8 @@ impl Rail {
         match self {
             Self::Point(p) => Self::Point(motion.point(*p)),
             Self::Chain { chain, map, kinks } => Self::Chain { chain: chain.moved(motion), map: map.clone(), kinks: kinks.clone() },
+            #[cfg(test)]
+            Self::Formula { .. } => self.clone(),
         }
     }
 }

@@ -9,9 +9,13 @@ use super::breaks::{chain_breaks, tidy};
 use super::rail::{Lean, Rail};
 use crate::base::bbox::Box3;
 use crate::base::math;
+use crate::base::par;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::{Jet, Motion};
 use crate::network::Chain;
+
+/// Rows of points made by one thread at a time.
+const ROWS: usize = 16;
 
 /// How a profile moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,23 +109,26 @@ impl Sweep {
     /// Points of the tensor grid, u fastest: the profile is evaluated once per row, the turn once per column.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
         let profile = self.profile.points(vs);
-        let rows = out.chunks_exact_mut(us.len().max(1)).zip(profile);
-        match self.path {
-            Path::Straight { by } => rows.for_each(|(row, g)| row.iter_mut().zip(us).for_each(|(p, u)| *p = g + by * *u)),
-            Path::Turn { about, axis, angle } => {
-                let turns: Vec<Turned> = us.iter().map(|&u| Turned::new(axis, Self::angle_at(angle, u))).collect();
-                for (row, g) in rows {
-                    let arm = g - about;
-                    // What lies along the axis stays, the rest turns in its plane.
-                    let still = axis * axis.dot(arm);
-                    let (out_of, across) = (arm - still, axis.cross(arm));
-                    let foot = about + still;
-                    for (p, t) in row.iter_mut().zip(&turns) {
-                        *p = foot + out_of * t.cos + across * t.sin;
+        let width = us.len().max(1);
+        let turns: Vec<Turned> = match self.path {
+            Path::Straight { .. } => Vec::new(),
+            Path::Turn { axis, angle, .. } => us.iter().map(|&u| Turned::new(axis, Self::angle_at(angle, u))).collect(),
+        };
+        par::chunks_mut(out, width * ROWS, |chunk, part| {
+            for (row, g) in part.chunks_exact_mut(width).zip(&profile[(chunk * ROWS).min(vs.len())..]) {
+                match self.path {
+                    Path::Straight { by } => row.iter_mut().zip(us).for_each(|(p, u)| *p = *g + by * *u),
+                    Path::Turn { about, axis, .. } => {
+                        let arm = *g - about;
+                        // What lies along the axis stays, the rest turns in its plane.
+                        let still = axis * axis.dot(arm);
+                        let (out_of, across) = (arm - still, axis.cross(arm));
+                        let foot = about + still;
+                        row.iter_mut().zip(&turns).for_each(|(p, t)| *p = foot + out_of * t.cos + across * t.sin);
                     }
                 }
             }
-        }
+        });
     }
 
     /// Jets of the tensor grid, u fastest.
@@ -141,7 +148,7 @@ impl Sweep {
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         match &self.profile {
             Rail::Chain { kinks, .. } => (Vec::new(), kinks.iter().map(|k| k.0).collect()),
-            Rail::Point(_) => (Vec::new(), Vec::new()),
+            _ => (Vec::new(), Vec::new()),
         }
     }
 
