@@ -312,3 +312,266 @@ mod meetings {
         check(&helix, &outside, "");
     }
 }
+
+/// Facts found in the tests of the libraries verb and curvo; `data/peer-facts/README.md` tells more.
+mod facts {
+    use super::*;
+    use lofting::base::tolerance::Tolerance;
+    use lofting::geometry::{Hit, Motion, intersect};
+
+    fn curve(value: &Value) -> Curve {
+        if value["kind"].is_string() {
+            let mut points = points(&value["points"]);
+            if value["kind"].as_str().unwrap().starts_with("periodic") {
+                points.push(points[0]);
+                return centripetal(&points);
+            }
+            let path = build::polyline(&points, false, Origin::NONE).unwrap();
+            let turn = Motion::rotation(DVec3::ZERO, DVec3::Z, number(&value["rotate_radians"]));
+            return path.moved(&turn.then(&Motion::translation(point(&value["then_translate"]))));
+        }
+        let (poles, degree) = (points(&value["poles"]), value["degree"].as_u64().unwrap() as usize);
+        build::bspline(&poles, degree, Some(&numbers(&value["knots"])), false, Origin::NONE).unwrap()
+    }
+
+    /// The periodic C2 cubic with spans √|ΔP|; ours has |ΔP| and bulges further, past the corner of the second curve.
+    fn centripetal(points: &[DVec3]) -> Curve {
+        let spans: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1]).sqrt()).collect();
+        let slopes = lofting::geometry::spline::periodic_slopes(points, &spans);
+        let pieces: Vec<Curve> = (0..spans.len())
+            .map(|i| {
+                let (from, to, h) = (points[i], points[i + 1], spans[i] / 3.0);
+                build::bezier(&[from, from + slopes[i] * h, to - slopes[i + 1] * h, to], None, Origin::NONE).unwrap()
+            })
+            .collect();
+        build::composite(&pieces, Origin::NONE).unwrap()
+    }
+
+    #[test]
+    fn hold_where_they_touch_curves() {
+        let tolerance = Tolerance::new(1e-6, 10.0);
+        let mut counted = 0;
+        for fact in data("peer-facts/facts.json").as_array().unwrap() {
+            let label = fact["source"].as_str().unwrap();
+            let within = fact["tol"].as_f64().unwrap_or(1e-6);
+            match fact["op"].as_str().unwrap() {
+                "length" => close(curve(&fact["curve"]).length(), number(&fact["expect"]), within, label),
+                "point_at_arc_length" => {
+                    let c = curve(&fact["curve"]);
+                    let found = c.point(c.param_at_length(number(&fact["length"])));
+                    assert!(found.distance(point(&fact["expect"])) < 1e-12, "{label}");
+                }
+                "divide_equal_arc" => {
+                    let expected = numbers(&fact["expect_x"]);
+                    let found = curve(&fact["curve"]).points_along(expected.len());
+                    for (p, x) in found.iter().zip(&expected) {
+                        close(p.x, *x, 1e-12, label);
+                    }
+                    assert_eq!(found.len(), fact["n"].as_u64().unwrap() as usize + 1);
+                }
+                "intersect" | "intersect_count" => {
+                    let hits = intersect(&curve(&fact["a"]), &curve(&fact["b"]), &tolerance).unwrap();
+                    assert_eq!(hits.len(), fact["expect_count"].as_u64().unwrap() as usize, "{label}: {hits:?}");
+                    let expected = fact["expect"].as_array().map(|all| numbers(&all[0]));
+                    if let (Some(expected), Hit::Point { ta, tb, .. }) = (expected, hits[0]) {
+                        close(ta, expected[0], 1e-9, label);
+                        close(tb, expected[1], 1e-9, label);
+                    }
+                }
+                // Surfaces have their own tests.
+                "closest_on_surface" | "intersect_curve_surface" => continue,
+                other => panic!("{other}"),
+            }
+            counted += 1;
+        }
+        assert_eq!(counted, 11);
+    }
+}
+
+mod properties {
+    use super::*;
+    use lofting::base::predicates::orient;
+    use lofting::base::tolerance::Tolerance;
+    use lofting::geometry::{Hit, Motion, intersect};
+    use proptest::prelude::*;
+    use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+    /// Runs a property on the same random cases every time.
+    fn run<S: Strategy>(cases: u32, strategy: S, check: impl Fn(S::Value)) {
+        let config = Config { cases, failure_persistence: None, ..Config::default() };
+        let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+        let result = runner.run(&strategy, |value| {
+            check(value);
+            Ok(())
+        });
+        result.unwrap();
+    }
+
+    fn made(kind: usize, x: &[f64], plane: bool) -> Curve {
+        let p = |i: usize| DVec3::new(x[3 * i], x[3 * i + 1], if plane { 0.0 } else { x[3 * i + 2] });
+        let some: Vec<DVec3> = (0..6).map(p).collect();
+        let settings = |closed| Spline { start: Ends::Natural, end: Ends::Clamped(DVec3::X), closed };
+        let none = Origin::NONE;
+        match kind {
+            0 => build::line(p(0), p(1), none),
+            1 => build::arc_through(p(0), p(1), p(2), none),
+            2 => build::ellipse(p(0), DVec3::X * 0.9, DVec3::Y * (0.2 + x[4].abs()), x[5], 1.0 + 5.0 * x[6].abs(), none),
+            3 => build::spline(&some, &settings(false), none),
+            4 => build::spline(&some, &settings(true), none),
+            5 => build::bezier(&some[..4], None, none),
+            6 => build::bezier(&some, Some(&[1.0, 0.7, 1.6, 1.0, 0.9, 1.2]), none),
+            7 => build::bspline(&some, 3, None, false, none),
+            8 => build::bspline(&some, 2, None, true, none),
+            9 => build::polyline(&some, false, none),
+            10 => build::conic(p(0), p(1), p(2), 0.3 + 0.3 * x[9].abs(), Kind::Conic, none),
+            11 => build::composite(&[made(5, x, plane), build::line(p(3), p(4), none).unwrap()], none),
+            _ => build::helix(p(0), DVec3::Z, p(0) + DVec3::X * 0.5, 0.3, 1.0 + x[7].abs(), none),
+        }
+        .unwrap()
+    }
+
+    fn numbers_of(n: usize) -> impl Strategy<Value = Vec<f64>> {
+        proptest::collection::vec(-1.0..1.0_f64, n)
+    }
+
+    fn any_curve() -> impl Strategy<Value = Curve> {
+        (0..13_usize, numbers_of(18)).prop_map(|(kind, x)| made(kind, &x, false))
+    }
+
+    fn plane_curve() -> impl Strategy<Value = Curve> {
+        (0..12_usize, numbers_of(18)).prop_map(|(kind, x)| made(kind, &x, true))
+    }
+
+    fn motion() -> impl Strategy<Value = Motion> {
+        (numbers_of(7), -3.0..6.0_f64).prop_map(|(x, size)| {
+            let axis = DVec3::new(x[0], x[1], 1.5 + x[2]).normalize();
+            let turn = Motion::rotation(DVec3::ONE, axis, 3.0 * x[3]);
+            let scale = Motion::scaling(DVec3::ZERO, 10.0_f64.powf(size));
+            turn.then(&Motion::translation(DVec3::new(x[4], x[5], x[6]))).then(&scale)
+        })
+    }
+
+    #[test]
+    fn derivatives_are_difference_quotients() {
+        run(60, (any_curve(), 0.01..0.99_f64), |(curve, f)| {
+            let (a, b) = curve.domain();
+            let (t, h) = (a + (b - a) * f, 1e-6 * (b - a));
+            if curve.knots().iter().any(|k| (k - t).abs() < 2.0 * h) {
+                return;
+            }
+            let (before, here, after) = (curve.jet(t - h), curve.jet(t), curve.jet(t + h));
+            assert!(((after.p - before.p) / (2.0 * h)).distance(here.d1) < 1e-6 * (1.0 + here.d1.length() + here.d2.length()));
+            assert!(((after.d1 - before.d1) / (2.0 * h)).distance(here.d2) < 1e-3 * (1.0 + here.d2.length() / (b - a)));
+        });
+    }
+
+    #[test]
+    fn parts_reversal_and_lengths_agree() {
+        run(80, (any_curve(), 0.1..0.9_f64, 0.0..1.0_f64), |(curve, cut, f)| {
+            let (a, b) = curve.domain();
+            let m = a + (b - a) * cut;
+            let (left, right) = (curve.part(a, m), curve.part(m, b));
+            let length = curve.length();
+            assert!((left.length() + right.length() - length).abs() < 1e-11 * length);
+            assert!((curve.length_at(m) - left.length()).abs() < 1e-11 * length);
+            let both = build::composite(&[left, right], Origin::NONE).unwrap();
+            let back = curve.reversed();
+            let s = f * length;
+            let p = curve.point(curve.param_at_length(s));
+            assert!((curve.length_at(curve.param_at_length(s)) - s).abs() < 1e-12 * length);
+            assert!(both.point(both.param_at_length(s)).distance(p) < 1e-10);
+            assert!(back.point(back.param_at_length(length - s)).distance(p) < 1e-10);
+            assert!(back.reversed().point(m).distance(curve.point(m)) < 1e-12);
+            assert!(back.start().distance(curve.end()) < 1e-14 && back.end().distance(curve.start()) < 1e-14);
+        });
+    }
+
+    #[test]
+    fn spline_forms_keep_the_points() {
+        let tolerance = Tolerance::new(1e-7, 2.0);
+        run(40, (any_curve(), 0.0..1.0_f64), |(curve, f)| {
+            let nurbs = curve.to_nurbs(&tolerance).unwrap();
+            let form = build::nurbs(
+                &(0..nurbs.poles.len()).map(|i| nurbs.pole(i)).collect::<Vec<_>>(),
+                &nurbs.poles.iter().map(|q| q.w).collect::<Vec<_>>(),
+                &nurbs.knots,
+                nurbs.degree,
+                Origin::NONE,
+            )
+            .unwrap();
+            let p = form.point(form.domain().0 + (form.domain().1 - form.domain().0) * f);
+            assert!(lofting::geometry::closest(&curve, p).distance < 1e-7);
+            assert!(curve.bbox().union(form.bbox()).touches(&curve.bbox(), 0.0));
+        });
+    }
+
+    fn places(hits: &[Hit], a: &Curve) -> Vec<DVec3> {
+        let mut all: Vec<DVec3> = hits
+            .iter()
+            .flat_map(|hit| match *hit {
+                Hit::Point { at, .. } => vec![at],
+                Hit::Overlap { a: (from, to), .. } => vec![a.point(from), a.point(to)],
+            })
+            .collect();
+        all.sort_by(|p, q| lofting::base::math::compare_points(*p, *q));
+        all
+    }
+
+    #[test]
+    fn motions_and_scales_commute() {
+        let tolerance = Tolerance::new(1e-6, 3.0);
+        run(80, (plane_curve(), plane_curve(), motion()), |(a, b, motion)| {
+            let scale = motion.scale();
+            let (moved_a, moved_b) = (a.moved(&motion), b.moved(&motion));
+            assert!((moved_a.length() - a.length() * scale).abs() < 1e-11 * moved_a.length());
+            let here = intersect(&a, &b, &tolerance).unwrap();
+            let there = intersect(&moved_a, &moved_b, &Tolerance::new(1e-6 * scale, 3.0 * scale)).unwrap();
+            assert_eq!(here.len(), there.len(), "{here:?} {there:?}");
+            for (x, y) in here.iter().zip(&there) {
+                let (Hit::Point { ta, tb, .. }, Hit::Point { ta: ua, tb: ub, .. }) = (x, y) else { continue };
+                assert!(a.point(*ta).distance(a.point(*ua)) < 1e-8 && b.point(*tb).distance(b.point(*ub)) < 1e-8, "{x:?} {y:?}");
+            }
+        });
+    }
+
+    #[test]
+    fn meetings_do_not_depend_on_the_order() {
+        let tolerance = Tolerance::new(1e-6, 3.0);
+        run(150, (plane_curve(), plane_curve()), |(a, b)| {
+            let (there, back) = (intersect(&a, &b, &tolerance).unwrap(), intersect(&b, &a, &tolerance).unwrap());
+            let (p, q) = (places(&there, &a), places(&back, &b));
+            assert_eq!(p.len(), q.len(), "{there:?} {back:?}");
+            assert!(p.iter().zip(&q).all(|(p, q)| p.distance(*q) < 1e-7), "{there:?} {back:?}");
+            assert!(there.windows(2).all(|h| h[0].start() <= h[1].start()));
+        });
+    }
+
+    /// Every proper crossing of two fine polylines is near a meeting, and meetings lie on both curves.
+    #[test]
+    fn no_crossing_is_missed() {
+        let tolerance = Tolerance::new(1e-6, 3.0);
+        let sampled = |c: &Curve| {
+            let (a, b) = c.domain();
+            (0..=400).map(|i| c.point(a + (b - a) * f64::from(i) / 400.0).truncate()).collect::<Vec<_>>()
+        };
+        run(120, (plane_curve(), plane_curve()), |(a, b)| {
+            let hits = intersect(&a, &b, &tolerance).unwrap();
+            for hit in &hits {
+                if let Hit::Point { ta, tb, gap, .. } = hit {
+                    assert!(*gap <= 1e-6 && a.point(*ta).distance(b.point(*tb)) <= 1.001e-6);
+                }
+            }
+            let (p, q) = (sampled(&a), sampled(&b));
+            let places = places(&hits, &a);
+            for x in p.windows(2) {
+                for y in q.windows(2) {
+                    let apart = |u: glam::DVec2, v: glam::DVec2, w: &[glam::DVec2]| orient(u, v, w[0]) * orient(u, v, w[1]) < 0.0;
+                    if apart(x[0], x[1], y) && apart(y[0], y[1], x) {
+                        let near = places.iter().any(|h| h.truncate().distance(x[0]) < 0.05);
+                        assert!(near, "a crossing near {} is missed: {hits:?}", x[0]);
+                    }
+                }
+            }
+        });
+    }
+}

@@ -3,14 +3,12 @@
 use super::curve::{Curve, Jet};
 use crate::base::quadrature::{KRONROD, NODES, Panel, RUNNING, chebyshev, kronrod, running_integral};
 use crate::base::solve;
-use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY};
+use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY, LENGTH_FLOOR};
 
 /// A panel is halved at most this often.
 const DEPTH: u32 = 40;
 /// Newton corrections before the bracket's middle is taken.
 const ROUNDS: usize = 60;
-/// Absolute error that a panel may always have, model length units.
-const FLOOR: f64 = 1e-16;
 
 /// Lengths of one curve up to the ends of its panels, and the way inside each panel.
 #[derive(Clone, Debug)]
@@ -46,7 +44,7 @@ impl Lengths {
             while let Some((a, b, left)) = open.pop() {
                 let panel = kronrod(a, b, |t| jet(t).d1.length());
                 let done = table.s[table.s.len() - 1];
-                if panel.error <= LENGTH_ACCURACY * (done + panel.integral) + FLOOR {
+                if panel.error <= LENGTH_ACCURACY * (done + panel.integral) + LENGTH_FLOOR {
                     table.push(b, &panel);
                     continue;
                 }
