@@ -1,4 +1,5 @@
-//! Curves against numbers computed elsewhere.
+//! Curves against numbers computed elsewhere, and against properties that hold for all of them.
+#![allow(clippy::unwrap_used, clippy::panic)] // A test may fail by them.
 
 use std::path::Path;
 
@@ -446,7 +447,7 @@ mod properties {
         (numbers_of(7), -3.0..6.0_f64).prop_map(|(x, size)| {
             let axis = DVec3::new(x[0], x[1], 1.5 + x[2]).normalize();
             let turn = Motion::rotation(DVec3::ONE, axis, 3.0 * x[3]);
-            let scale = Motion::scaling(DVec3::ZERO, 10.0_f64.powf(size));
+            let scale = Motion::scaling(DVec3::ZERO, lofting::base::math::pow(10.0, size));
             turn.then(&Motion::translation(DVec3::new(x[4], x[5], x[6]))).then(&scale)
         })
     }

@@ -10,6 +10,8 @@ pub const CALL_DEPTH: usize = 1_000;
 pub const SOURCE_BYTES: u64 = 32 << 20;
 /// Bytes of one data file.
 pub const DATA_BYTES: u64 = 256 << 20;
+/// Largest coordinate or length of a curve, model units either way: its fourth power must not overflow.
+pub const COORDINATE: f64 = 1e50;
 /// Members of one list.
 pub const LIST_MEMBERS: usize = 10_000_000;
 /// Elements of one mesh.

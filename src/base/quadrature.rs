@@ -40,7 +40,7 @@ const WEIGHTS: [f64; 8] = [
     0.209_482_141_084_727_82,
 ];
 /// Gauss weights of the nodes 1, 3, 5, 7; the rest mirror them.
-const GAUSS_WEIGHTS: [f64; 4] = [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_93, 0.417_959_183_673_469_4];
+const GAUSS_WEIGHTS: [f64; 4] = [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
 
 /// One interval integrated by both rules.
 #[derive(Clone, Copy, Debug)]

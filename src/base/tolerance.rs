@@ -51,6 +51,8 @@ const DEFAULT_PARAMETER: f64 = 1e-9;
 const POINT_SHARE: f64 = 1e-6;
 /// What arithmetic may have done to a coordinate, as a share of the model's size.
 pub const ROUNDING_SHARE: f64 = 1e-12;
+/// The nearest pair of two curves is the nearest one to this share of its distance.
+pub const NEAREST_PAIR: f64 = 1e-6;
 /// Nearest points are the nearest ones to this share of their distance.
 pub const NEAREST: f64 = 1e-9;
 

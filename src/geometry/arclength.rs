@@ -92,7 +92,7 @@ impl Lengths {
     /// Arc length at a parameter of the domain.
     pub(crate) fn at(&self, t: f64) -> f64 {
         let last = self.t.len() - 1;
-        if !(t > self.t[0]) {
+        if t.is_nan() || t <= self.t[0] {
             return 0.0;
         }
         if t >= self.t[last] {
@@ -117,7 +117,7 @@ impl Lengths {
     /// Like [`Lengths::param`]; `panel` remembers the panel from call to call, so that a walk needs no search.
     pub(crate) fn param_near(&self, s: f64, panel: &mut usize) -> f64 {
         let last = self.s.len() - 1;
-        if !(s > 0.0) {
+        if s.is_nan() || s <= 0.0 {
             return self.t[0];
         }
         if s >= self.s[last] {

@@ -19,8 +19,8 @@ pub(crate) fn rates(piece: &Bezier, polynomial: bool) -> Rates {
     let mut directions = [DVec3::ZERO; MOST];
     if polynomial {
         let w = 1.0 / piece.poles[0].w;
-        for i in 0..p {
-            directions[i] = (piece.poles[i + 1] - piece.poles[i]).truncate() * (w * p as f64 / h);
+        for (direction, pair) in directions.iter_mut().zip(piece.poles.windows(2)) {
+            *direction = (pair[1] - pair[0]).truncate() * (w * p as f64 / h);
         }
         let bend = differences(&directions[..p]).map(DVec3::length).fold(0.0, f64::max) * (p - 1) as f64 / h;
         return Rates { turn: turning(&directions[..p], h), bend };
@@ -38,7 +38,7 @@ fn turning(d: &[DVec3], h: f64) -> f64 {
     let sum: DVec3 = d.iter().sum();
     let axis = sum.normalize_or_zero();
     let least = d.iter().map(|d| d.dot(axis)).fold(f64::INFINITY, f64::min);
-    if !(least > 0.0) {
+    if least.is_nan() || least <= 0.0 {
         return f64::INFINITY;
     }
     // All D lie within this slope of the axis.

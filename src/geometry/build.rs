@@ -13,6 +13,7 @@ use super::curve::{Curve, Kind, Shape};
 use super::helix::Helix;
 use super::nurbs::{MAX_DEGREE, Nurbs, weighted};
 use crate::base::fault::{CurveFault, KnotFault, Result, ValueFault};
+use crate::base::limits::COORDINATE;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL};
@@ -20,9 +21,20 @@ use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL};
 pub use super::offset_build::offset;
 pub use super::spline::{Ends, Spline, spline};
 
-/// E408 unless all numbers of a point or vector are finite.
+/// E408 unless all numbers of a point or vector are finite, E306 when one is beyond all measure.
 pub(super) fn finite(v: DVec3, argument: &'static str, of: Origin) -> Result<()> {
-    if v.is_finite() { Ok(()) } else { Err(CurveFault::NonFinite { of, argument, index: None }.into()) }
+    if !v.is_finite() {
+        return Err(CurveFault::NonFinite { of, argument, index: None }.into());
+    }
+    in_range(v, argument)
+}
+
+fn in_range(v: DVec3, argument: &'static str) -> Result<()> {
+    let largest = v.abs().max_element();
+    if largest <= COORDINATE {
+        return Ok(());
+    }
+    Err(ValueFault::OutsideRange { argument, found: format!("{largest:e}"), range: format!("within {COORDINATE:e} either way") }.into())
 }
 
 fn finite_number(x: f64, argument: &'static str, of: Origin) -> Result<()> {
@@ -32,7 +44,7 @@ fn finite_number(x: f64, argument: &'static str, of: Origin) -> Result<()> {
 pub(super) fn finite_points(points: &[DVec3], of: Origin) -> Result<()> {
     match points.iter().position(|p| !p.is_finite()) {
         Some(i) => Err(CurveFault::NonFinite { of, argument: "points", index: Some(i) }.into()),
-        None => Ok(()),
+        None => points.iter().try_for_each(|p| in_range(*p, "points")),
     }
 }
 

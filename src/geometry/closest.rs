@@ -8,13 +8,16 @@ use glam::DVec3;
 use super::arc::EllipticArc;
 use super::curve::{Curve, Shape};
 use super::intersect::newton::{approach, foot, segments};
-use super::pieces::{Node, Pieces, Rates, View, children};
+use super::pieces::{Node, Piece, Pieces, Rates, View, children};
 use crate::base::bbox::Box3;
 use crate::base::math;
-use crate::base::tolerance::{NEAREST, ROUNDING_SHARE};
+use crate::base::tolerance::{NEAREST, NEAREST_PAIR, ROUNDING_SHARE};
 
 /// Parts looked at before the best so far is taken; far beyond what curves need that are no circles about the point.
 const MOST_PARTS: usize = 200_000;
+
+/// Pairs of parts looked at at most; parallel curves, where all are equally near, would need them all.
+const MOST_PAIRS: usize = 20_000;
 
 /// The point of a curve nearest to a given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +35,15 @@ pub fn closest(curve: &Curve, p: DVec3) -> Closest {
     let pieces = curve.pieces();
     let start = curve.start();
     let rounding = ROUNDING_SHARE * (pieces.bounds(0).diagonal() + start.distance(p));
-    let mut search = Nearest { curve, pieces, p, rounding, best: (curve.domain().0, start, start.distance(p)), left: MOST_PARTS };
+    let mut best = (curve.domain().0, start, start.distance(p));
+    // A good first guess leaves little to look at.
+    for piece in &pieces.pieces {
+        let distance = piece.node.p.1.distance(p);
+        if distance < best.2 {
+            best = (pieces.sections[piece.section].to_common(piece.node.t.1), piece.node.p.1, distance);
+        }
+    }
+    let mut search = Nearest { curve, pieces, p, rounding, best, left: MOST_PARTS };
     search.walk(0, 0, pieces.pieces.len());
     let (t, point, distance) = search.best;
     Closest { t, point, distance }
@@ -117,11 +128,20 @@ fn on_circle(arc: &EllipticArc, p: DVec3) -> f64 {
 
 /// Globally nearest pair of points of two curves: parameters on both and the distance.
 ///
-/// Nearest to a billionth of the distance; 0 at the first crossing that is found.
+/// No other pair is nearer by more than a millionth of the distance; the pair itself is as exact as rounding allows.
 pub fn closest_pair(a: &Curve, b: &Curve) -> (f64, f64, f64) {
     let (pa, pb) = (a.pieces(), b.pieces());
     let rounding = ROUNDING_SHARE * pa.bounds(0).union(*pb.bounds(0)).diagonal();
     let mut best = (a.domain().0, b.domain().0, a.start().distance(b.start()));
+    for x in &pa.pieces {
+        for y in &pb.pieces {
+            let apart = x.node.p.1.distance(y.node.p.1);
+            if apart < best.2 {
+                let common = |pieces: &Pieces, piece: &Piece| pieces.sections[piece.section].to_common(piece.node.t.1);
+                best = (common(pa, x), common(pb, y), apart);
+            }
+        }
+    }
     let mut heap = BinaryHeap::new();
     for (i, x) in pa.pieces.iter().enumerate() {
         for (j, y) in pb.pieces.iter().enumerate() {
@@ -130,9 +150,9 @@ pub fn closest_pair(a: &Curve, b: &Curve) -> (f64, f64, f64) {
             }
         }
     }
-    for _ in 0..MOST_PARTS {
+    for _ in 0..MOST_PAIRS {
         let Some(pair) = heap.pop() else { break };
-        if pair.bound >= best.2 * (1.0 - NEAREST) - rounding {
+        if pair.bound >= best.2 * (1.0 - NEAREST_PAIR) - rounding {
             break;
         }
         let (x, y) = (&pa.pieces[pair.pieces.0], &pb.pieces[pair.pieces.1]);

@@ -30,7 +30,7 @@ impl Curve {
             let mut open = vec![(span[0], span[1])];
             while let Some((a, b)) = open.pop() {
                 let (from, to, h) = (self.jet(a), self.jet_before(b), b - a);
-                let poles = vec![from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
+                let poles = [from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
                 let cubic = Nurbs::bezier(a, b, poles.iter().map(|p| p.extend(1.0)).collect());
                 // The error of a Hermite cubic is a quartic bump; half the tolerance covers what samples miss of it.
                 let far = (1..8).any(|i| {

@@ -3,6 +3,7 @@
 //! [`search`] isolates meetings with guaranteed bounds and settles crossings, [`contact`] works out where curves run
 //! along each other, [`merge`] makes each meeting one hit.
 
+mod circles;
 mod contact;
 mod merge;
 pub(crate) mod newton;

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::circles::{common, one_circle};
 use super::newton::{Near, approach, foot, segments};
 use crate::base::math;
 use crate::base::tolerance::{NEWTON_STEP, NUDGE};
@@ -13,11 +14,14 @@ use crate::geometry::curve::Curve;
 use crate::geometry::pieces::{Node, Pieces, Rates, View, children};
 
 /// Pairs of parts looked at before giving up.
-const MOST_PAIRS: usize = 20_000_000;
+const MOST_PAIRS: usize = 4_000_000;
 /// A meeting this many tolerances before an end that touches as well is that end's.
 pub(super) const END_REACH: f64 = 64.0;
 /// Chords that diverge by no more than this many tolerances count as running along each other.
 const DIVERGENCE: f64 = 4.0;
+
+/// Parts that run along each other may differ in length by this factor.
+const UNLIKE: f64 = 2.0;
 
 /// A meeting at own parameters of two sections.
 #[derive(Clone, Copy, Debug)]
@@ -149,6 +153,12 @@ impl<'a> Search<'a> {
     pub(super) fn pair(&mut self, i: usize, j: usize) {
         let (x, y) = (&self.a.pieces.pieces[i], &self.b.pieces.pieces[j]);
         let (va, vb) = (self.a.view(x.section), self.b.view(y.section));
+        if let Some((m, n)) = one_circle(&va, &vb, self.point) {
+            if let Some((a, b)) = common(m, &x.node, n, &y.node) {
+                self.near.push(Rect { sections: (x.section, y.section), a, b });
+            }
+            return;
+        }
         let (pa, pb) = (Part { view: &va, rates: x.rates, section: x.section }, Part { view: &vb, rates: y.rates, section: y.section });
         self.meet(&pa, &x.node, &pb, &y.node);
     }
@@ -158,7 +168,8 @@ impl<'a> Search<'a> {
         let bulges = x.bulge + y.bulge;
         let (apart, s, t) = segments(x.p, y.p);
         let reach = bulges + self.point;
-        if apart > reach * reach {
+        // Also when the numbers have run out of range and compare with nothing.
+        if apart > reach * reach || apart.is_nan() || reach.is_nan() {
             return;
         }
         if self.looked_at > MOST_PAIRS {
@@ -175,13 +186,13 @@ impl<'a> Search<'a> {
                     return;
                 }
             }
-        } else if fine {
+        } else if fine && self.alike(x, y) {
             self.near.push(Rect { sections: (a.section, b.section), a: x.t, b: y.t });
             return;
         }
-        // The one that bulges more, or is longer where none does, is halved.
+        // The one that bulges more is halved, the longer one where both are straight enough.
         let length = |n: &Node| n.p.0.distance_squared(n.p.1);
-        let first = if x.bulge == y.bulge { length(x) >= length(y) } else { x.bulge > y.bulge };
+        let first = if fine || x.bulge == y.bulge { length(x) >= length(y) } else { x.bulge > y.bulge };
         match (first, x.can_split(), y.can_split()) {
             (true, true, _) | (false, true, false) => {
                 let [left, right] = x.halves(a.view, a.rates);
@@ -195,6 +206,13 @@ impl<'a> Search<'a> {
             }
             (_, false, false) => self.near.push(Rect { sections: (a.section, b.section), a: x.t, b: y.t }),
         }
+    }
+
+    /// Whether both parts are about equally long, so that one tells where on the other they run together.
+    fn alike(&self, x: &Node, y: &Node) -> bool {
+        let (p, q) = (x.p.0.distance_squared(x.p.1), y.p.0.distance_squared(y.p.1));
+        let longer = p.max(q);
+        longer <= UNLIKE * UNLIKE * p.min(q) || longer <= (END_REACH * self.point) * (END_REACH * self.point)
     }
 
     /// Sine of the angle between the axes when no tangents of the two parts can be parallel and the chords part by
