@@ -205,7 +205,8 @@ impl Cx<'_> {
         match misfit {
             Misfit::NotWhole => {
                 let found = self.show_inside(value);
-                self.error(code, "E306", format!("{subject} is {wanted}, got {found}"), span, "not a whole number in its range").stop()
+                let wanted = if ty.words().contains("count") { "a whole number, 0 or more" } else { "a whole number" };
+                self.error(code, "E306", format!("{subject} is {wanted}, got {found}"), span, "not one").stop()
             }
             Misfit::Choice => {
                 let (word, words) = (self.show(value), ty.choices().unwrap_or(&[]));

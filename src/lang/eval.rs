@@ -103,6 +103,8 @@ pub struct Machine {
     next_look: u64,
     pub(super) depth: u32,
     pub(super) in_within: bool,
+    /// Number of the walk through dependencies.
+    stamp: u32,
     /// Declarations that a reported cycle holds.
     pub(super) in_cycle: Vec<(ModuleId, u32)>,
     /// Stages being gathered, for the words of a cycle.
@@ -126,6 +128,7 @@ impl Default for Machine {
             next_look: STEPS_A_LOOK,
             depth: 0,
             in_within: false,
+            stamp: 0,
             in_cycle: Vec::new(),
             stages: 0,
             defaults: std::collections::BTreeMap::new(),
@@ -251,7 +254,8 @@ impl Cx<'_> {
     /// Evaluates a declaration with everything it depends on, dependencies first, so that long chains stay flat.
     pub(super) fn ensure_all(&mut self, module: ModuleId, declaration: u32) {
         let mut stack: Vec<(u32, usize)> = vec![(declaration, 0)];
-        let mut entered: Vec<u32> = Vec::new();
+        self.machine.stamp += 1;
+        let stamp = self.machine.stamp;
         let script = self.machine.at(module).script.clone();
         while let Some((index, from)) = stack.pop() {
             if !matches!(self.machine.at(module).states[index as usize], State::Waiting) {
@@ -265,13 +269,12 @@ impl Cx<'_> {
                 };
                 let found = self.machine.at(module).find(name)?;
                 let waits = matches!(self.machine.at(module).states[found as usize], State::Waiting);
-                (waits && found != index && entered.binary_search(&found).is_err()).then_some((k, found))
+                let fresh = self.machine.at(module).entered[found as usize] != stamp;
+                (waits && fresh && found != index).then_some((k, found))
             });
             match next {
                 Some((k, found)) => {
-                    if let Err(place) = entered.binary_search(&index) {
-                        entered.insert(place, index);
-                    }
+                    self.machine.at_mut(module).entered[index as usize] = stamp;
                     stack.push((index, k + 1));
                     stack.push((found, 0));
                 }
@@ -366,8 +369,10 @@ impl Cx<'_> {
         let from = self.machine.running.iter().position(|r| *r == (module, index)).unwrap_or(0);
         let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
         self.machine.in_cycle.extend(&members);
+        let least = (0..members.len()).min_by_key(|k| members[*k]).unwrap_or(0);
+        let members: Vec<(ModuleId, u32)> = members[least..].iter().chain(&members[..least]).copied().collect();
         let mut names: Vec<String> = members.iter().map(|&(m, d)| self.declaration_name(m, d)).collect();
-        names.push(self.declaration_name(module, index));
+        names.push(names[0].clone());
         let shown = if names.len() > 9 {
             format!("{} → … → {}", names[..4].join(" → "), names[names.len() - 1])
         } else {
@@ -382,11 +387,17 @@ impl Cx<'_> {
                 Some(Label { file: module.file, span: b.span, text: format!("`{}` is declared here", self.names.text(b.name)) })
             })
             .collect();
-        let site = self.machine.site;
-        let script = self.machine.at(site.module).script.clone();
-        let nodes = &script.declarations[site.declaration as usize].nodes;
-        let code = Code { nodes, module: site.module, declaration: site.declaration };
-        let span = self.machine_span(code);
+        // The report stands where the last member names the first one again.
+        let closing = members.last().copied().unwrap_or((module, index));
+        let script = self.machine.at(closing.0).script.clone();
+        let nodes = &script.declarations[closing.1 as usize].nodes;
+        let code = Code { nodes, module: closing.0, declaration: closing.1 };
+        let first = members.first().and_then(|f| bound(&self.machine.at(f.0).script.declarations[f.1 as usize])).map(|b| b.name);
+        let names_first = |node: &&Node| match node.expr {
+            Expr::Name(name) | Expr::Call { name, .. } | Expr::Field { name, .. } => Some(name) == first,
+            _ => false,
+        };
+        let span = nodes.iter().find(names_first).map_or(script.declarations[closing.1 as usize].span, |n| n.span);
         let through_all = self.machine.stages > 0;
         let draft =
             self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here").labels(labels);

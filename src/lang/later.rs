@@ -93,7 +93,10 @@ impl Cx<'_> {
             return Stop::Broken;
         }
         if let Some(declaration) = self.machine.at(code.module).find(name) {
-            let word = keyword_word(self.machine.at(code.module).script.declarations[declaration as usize].keyword);
+            let word = match self.machine.at(code.module).script.declarations[declaration as usize].keyword {
+                Keyword::Let => "value",
+                keyword => keyword_word(keyword),
+            };
             let message = format!("`{text}` is a {word}, not a function");
             return self.error(code, "E201", message, span, "cannot be called").stop();
         }

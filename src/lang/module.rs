@@ -77,6 +77,8 @@ pub(super) struct Module {
     broken: Vec<Name>,
     /// State of each declaration.
     pub states: Vec<State>,
+    /// Walk through dependencies that met a declaration last.
+    pub entered: Vec<u32>,
     /// Params set from outside.
     pub given: Vec<(Name, Given)>,
     pub parts: Stage<Arc<Parts>>,
@@ -116,6 +118,7 @@ impl Module {
             unit: super::units::MILLIMETRE,
             by_name,
             broken,
+            entered: vec![0; states.len()],
             states,
             given: Vec::new(),
             parts: Stage::Waiting,

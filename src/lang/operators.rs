@@ -185,6 +185,7 @@ impl Cx<'_> {
         if let Expr::Quantity(value, unit) = at.code.expr(at.a)
             && x.dim == Dim::LENGTH
             && matches!(whole, Some(2 | 3))
+            && !self.in_brackets(at.code, at.a, at.op_span)
         {
             let (number, n) = (super::units::number_text(*value), n.value);
             let text = format!("this is ({number}{unit})^{n}, not {number}{unit}{n}");
@@ -209,6 +210,13 @@ impl Cx<'_> {
             None => crate::base::math::pow(x.value, n.value),
         };
         self.finite(at, Quantity::new(value, dim))
+    }
+
+    /// Whether an operand stands in brackets of its own.
+    fn in_brackets(&self, code: Code<'_>, id: ExprId, op_span: Span) -> bool {
+        let file = self.machine.at(code.module).file;
+        let gap = Span { start: code.span(id).end, end: op_span.start };
+        self.sources.text(file, gap).contains(')') || self.source(code, id).starts_with('(')
     }
 
     fn range(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<Value, Stop> {
