@@ -34,7 +34,10 @@ fn new_shapes(n: usize) -> String {
 fn parsing(c: &mut Criterion) {
     let mut group = c.benchmark_group("parse");
     group.sample_size(10);
-    for (name, text) in [("200 000 declarations of two shapes", points_and_lines(100_000)), ("16 000 declarations, each of a new shape", new_shapes(16_000))] {
+    for (name, text) in [
+        ("200 000 declarations of two shapes", points_and_lines(100_000)),
+        ("16 000 declarations, each of a new shape", new_shapes(16_000)),
+    ] {
         group.throughput(criterion::Throughput::Bytes(text.len() as u64));
         group.bench_function(name, |b| {
             b.iter_batched_ref(Names::default, |names| parse(&text, FileId(0), names), BatchSize::PerIteration);

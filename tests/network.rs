@@ -151,7 +151,10 @@ fn figure_3_1_grows_in_stages() {
     for (k, input) in inputs(&curves).into_iter().enumerate() {
         let map = network.insert(input, &tolerance(), &Job::new(), &mut Vec::new()).unwrap();
         network.check().unwrap();
-        assert_eq!((network.nodes.len() as u64, network.links.len() as u64), (stages[k][0].as_u64().unwrap(), stages[k][1].as_u64().unwrap()));
+        assert_eq!(
+            (network.nodes.len() as u64, network.links.len() as u64),
+            (stages[k][0].as_u64().unwrap(), stages[k][1].as_u64().unwrap())
+        );
         // The old links are covered by new ones of the same curve, end to end.
         if k == 2 {
             assert_eq!(map.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2, 2, 1]);
@@ -230,11 +233,13 @@ fn motions_and_scales_keep_the_topology() {
 
 #[test]
 fn shared_runs_belong_to_the_first_by_name() {
-    let curves = [("b", line(p(0., 0., 0.), p(10., 0., 0.))), ("a", line(p(7., 0., 0.), p(2., 0., 0.))), ("x", line(p(4., -1., 0.), p(4., 1., 0.)))];
+    let curves =
+        [("b", line(p(0., 0., 0.), p(10., 0., 0.))), ("a", line(p(7., 0., 0.), p(2., 0., 0.))), ("x", line(p(4., -1., 0.), p(4., 1., 0.)))];
     let (network, sink) = network_with(inputs(&curves), &[], &tolerance());
     assert_eq!(codes(&sink), ["N512"]);
     assert_eq!((network.nodes.len(), network.links.len()), (7, 6));
-    let owners: Vec<&str> = network.curves[0].links.iter().map(|&(l, _)| network.curves[network.links[l.index()].curve.index()].name.as_str()).collect();
+    let owners: Vec<&str> =
+        network.curves[0].links.iter().map(|&(l, _)| network.curves[network.links[l.index()].curve.index()].name.as_str()).collect();
     assert_eq!(owners, ["b", "a", "a", "b"]);
     assert_eq!(network.curves[0].links.iter().map(|l| l.1).collect::<Vec<_>>(), [false, true, true, false]);
     assert_eq!(network.curves[1].links.len(), 2);
@@ -303,7 +308,8 @@ fn near_misses_are_told_with_their_distance() {
 
 #[test]
 fn clusters_wider_than_two_tolerances_are_refused() {
-    let curves: Vec<(String, Curve)> = (0..5).map(|k| (format!("c{k}"), line(p(8e-7 * f64::from(k), 0., 0.), p(f64::from(k) - 2., 5., 1.)))).collect();
+    let curves: Vec<(String, Curve)> =
+        (0..5).map(|k| (format!("c{k}"), line(p(8e-7 * f64::from(k), 0., 0.), p(f64::from(k) - 2., 5., 1.)))).collect();
     let inputs = curves.iter().map(|(name, curve)| Input { name: name.clone(), curve: curve.clone(), cuts: Vec::new() }).collect();
     let fault = Network::build(inputs, &[], &tolerance(), &Job::new(), &mut Vec::new()).unwrap_err();
     assert_eq!(fault.code().0, "E506");

@@ -56,7 +56,8 @@ fn declared(line: &str) -> Option<&str> {
 fn check(script: &str, files: &Memory) -> Result<(), String> {
     let job = Job::new();
     on_big_stack(|| {
-        let stages = Stages::default();
+        let clock = || 0.0;
+        let stages = Stages::new(&clock);
         let mut cx = Cx::new(files, &stages, &job);
         cx.load(&Entry { name: "spec.loft", path: "spec.loft", text: script, sets: &[] });
         cx.evaluate_all();

@@ -19,7 +19,7 @@ use crate::base::origin::Origin;
 /// evaluated first.
 const DECLARATION_DEPTH: usize = 500;
 /// Expressions inside each other over all calls; with the stack of [`on_big_stack`] that is safe.
-const EXPRESSION_DEPTH: u32 = 150_000;
+const EXPRESSION_DEPTH: u32 = 30_000;
 /// Steps between two looks at the stop flag.
 const STEPS_A_LOOK: u64 = 1 << 16;
 const STACK_BYTES: usize = 1 << 30;

@@ -182,16 +182,6 @@ impl Cx<'_> {
             return Err(self.error(at.code, "E211", format!("an exponent is a number, got {found}"), at.code.span(at.b), found).stop());
         }
         let whole = (n.value == n.value.trunc() && n.value.abs() <= 127.0).then_some(n.value as i8);
-        if let Expr::Quantity(value, unit) = at.code.expr(at.a)
-            && x.dim == Dim::LENGTH
-            && matches!(whole, Some(2 | 3))
-            && !self.in_brackets(at.code, at.a, at.op_span)
-        {
-            let (number, n) = (super::units::number_text(*value), n.value);
-            let text = format!("this is ({number}{unit})^{n}, not {number}{unit}{n}");
-            let draft = self.error(at.code, "W220", text, at.code.span(at.id), "the power takes the number too");
-            draft.help(format!("`{number}{unit}{n}` for {n}-dimensional units, or `({number}{unit})^{n}`")).say();
-        }
         let dim = match whole {
             _ if x.dim.is_none() => Some(Dim::NONE),
             Some(n) => x.dim.power(n),
@@ -210,13 +200,6 @@ impl Cx<'_> {
             None => crate::base::math::pow(x.value, n.value),
         };
         self.finite(at, Quantity::new(value, dim))
-    }
-
-    /// Whether an operand stands in brackets of its own.
-    fn in_brackets(&self, code: Code<'_>, id: ExprId, op_span: Span) -> bool {
-        let file = self.machine.at(code.module).file;
-        let gap = Span { start: code.span(id).end, end: op_span.start };
-        self.sources.text(file, gap).contains(')') || self.source(code, id).starts_with('(')
     }
 
     fn range(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<Value, Stop> {

@@ -356,6 +356,20 @@ quantities! {
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Angle(pub f64);
 
+/// An angle in degrees, as values hold it: for functions that are exact at round degrees.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Degrees(pub f64);
+
+impl FromValue for Degrees {
+    const TY: Ty = Ty::Quantity(Dim::ANGLE);
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Number(q) => Some(Self(q.value)),
+            _ => None,
+        }
+    }
+}
+
 impl FromValue for Angle {
     const TY: Ty = Ty::Quantity(Dim::ANGLE);
     fn from_value(value: Value) -> Option<Self> {

@@ -4,8 +4,8 @@ use crate::base::fault::ValueFault;
 use crate::base::math;
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::types::{Angle, Rest, dim_words};
-use crate::lang::units::{degrees, number_text};
+use crate::lang::types::{Angle, Degrees, Rest, dim_words};
+use crate::lang::units::{number_text, radians};
 use crate::lang::value::{Dim, Quantity, Value};
 
 /// All of one dimension, with it; a 0 fits any.
@@ -39,8 +39,8 @@ fn sin_cos_degrees(x: f64) -> (f64, f64) {
         210.0 | 330.0 => Some(-0.5),
         _ => None,
     };
-    let radians = turn.to_radians();
-    (sine(turn).unwrap_or_else(|| math::sin(radians)), sine((turn + 90.0).rem_euclid(360.0)).unwrap_or_else(|| math::cos(radians)))
+    let angle = radians(turn);
+    (sine(turn).unwrap_or_else(|| math::sin(angle)), sine((turn + 90.0).rem_euclid(360.0)).unwrap_or_else(|| math::cos(angle)))
 }
 
 /// The result of rounding, which asks for whole numbers: bare ones, or whole multiples of a step.
@@ -225,8 +225,8 @@ builtins! {
     /// ```
     fn sin(
         /// An angle with its unit.
-        angle: Angle,
-    ) -> f64 = |_, angle| Ok(sin_cos_degrees(degrees(angle.0)).0);
+        angle: Degrees,
+    ) -> f64 = |_, angle| Ok(sin_cos_degrees(angle.0).0);
 
     /// Cosine of an angle; exact where it is 0, ½ or 1.
     ///
@@ -235,8 +235,8 @@ builtins! {
     /// ```
     fn cos(
         /// An angle with its unit.
-        angle: Angle,
-    ) -> f64 = |_, angle| Ok(sin_cos_degrees(degrees(angle.0)).1);
+        angle: Degrees,
+    ) -> f64 = |_, angle| Ok(sin_cos_degrees(angle.0).1);
 
     /// Tangent of an angle; not finite at 90 degrees.
     ///
@@ -245,13 +245,13 @@ builtins! {
     /// ```
     fn tan(
         /// An angle with its unit.
-        angle: Angle,
+        angle: Degrees,
     ) -> f64 = |_, angle| {
-        let (sine, cosine) = sin_cos_degrees(degrees(angle.0));
+        let (sine, cosine) = sin_cos_degrees(angle.0);
         if cosine == 0.0 {
-            return Err(outside("angle", degrees(angle.0), "an angle that has a tangent"));
+            return Err(outside("angle", angle.0, "an angle that has a tangent"));
         }
-        Ok(if sine == 0.0 { 0.0 } else { math::tan(angle.0) })
+        Ok(if sine == 0.0 { 0.0 } else { math::tan(radians(angle.0)) })
     };
 
     /// The angle between -90 and 90 degrees that has this sine.
