@@ -7,7 +7,10 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::{Curve, Kind, Motion, build};
 use lofting::network::detect::detect;
-use lofting::network::{Chain, Flow, FlowFault, FlowOptions, Input, Network, NodeList, Run};
+use lofting::network::{Chain, ChainFlow, Flow, FlowFault, FlowOptions, Input, Network, NodeList, Run, meet, meet_once, of_chains};
+
+#[path = "../benches/shared/nets.rs"]
+mod nets;
 use serde_json::Value;
 
 const O: Origin = Origin::NONE;
@@ -470,4 +473,186 @@ fn a_flow_depends_on_its_first_curve_alone() {
         assert_eq!(rows, curves[..3]);
         assert_eq!(columns, curves[3..]);
     }
+}
+
+fn chains(curves: &[Curve]) -> Vec<Chain> {
+    curves.iter().map(Chain::of_curve).collect()
+}
+
+fn flow(chains: &[Chain]) -> Flow {
+    of_chains(chains, &ChainFlow::default(), &tolerance()).unwrap().0
+}
+
+#[test]
+fn crossings_carry_raw_fractions_and_flags() {
+    let numbers = reference("parameter_maps")["grid_parameters"].clone();
+    let mut curves = vec![line(p(0., 0., 0.), p(4., 0., 0.)), line(p(0., 1., 0.), p(4., 1., 0.)), line(p(4., 2., 0.), p(0., 2., 0.))];
+    curves.push(line(p(0., 0., 0.), p(0., 2., 0.)));
+    // The middle curve passes the three at x = 1, 2 and 3.
+    curves.push(build::polyline(&[p(1., 0., 0.), p(2., 1., 0.), p(3., 2., 0.)], false, O).unwrap());
+    curves.push(line(p(4., 2., 0.), p(4., 0., 0.)));
+    let flow = flow(&chains(&curves));
+    assert_eq!((flow.phrase().as_str(), flow.orders()), ("quadrilateral", (2, 2)));
+    for (n, member) in flow.along_u.iter().enumerate() {
+        assert!((member.crossings[1] - number(&numbers["raw_s_1n"][n])).abs() < 1e-12);
+        assert_eq!(u64::from(member.reversed), numbers["Q"][n].as_u64().unwrap());
+    }
+    assert_eq!(flow.along_v.iter().map(|m| (m.curve, m.reversed)).collect::<Vec<_>>(), [(3, false), (4, false), (5, true)]);
+    assert!(flow.overhangs.is_empty());
+}
+
+#[test]
+fn the_surfaces_of_figure_2_2_are_quadrilateral() {
+    let c = chains(&structure().into_iter().map(|(_, c)| c).collect::<Vec<_>>());
+    let t = tolerance();
+    let join = |parts: &[Chain]| Chain::join(parts, O, &t).unwrap();
+    let arc_at = meet_once(&c[7], &c[0], &t).unwrap().fa;
+    let c6_at = meet_once(&c[5], &c[0], &t).unwrap().fa;
+    let upper_arc = c[7].slice(arc_at, 1.0, &t).unwrap();
+    let (lower_c6, upper_c6) = (c[5].slice(0.0, c6_at, &t).unwrap(), c[5].slice(c6_at, 1.0, &t).unwrap());
+    let b = [
+        c[0].clone(),
+        join(&[c[1].clone(), c[2].clone()]),
+        join(&[c[3].clone(), c[4].clone()]),
+        upper_arc,
+        join(&[upper_c6, c[6].clone()]),
+    ];
+    let found = flow(&b);
+    assert_eq!((found.phrase().as_str(), found.orders()), ("quadrilateral", (2, 1)));
+    assert!((found.along_u[0].crossings[1] - 0.5).abs() < 1e-12);
+    let lower_arc = c[7].slice(0.0, arc_at, &t).unwrap();
+    let a = [c[0].slice(0.5, 1.0, &t).unwrap(), c[9].clone(), lower_c6, join(&[lower_arc.reversed(), c[8].clone()])];
+    assert_eq!(flow(&a).phrase(), "quadrilateral");
+}
+
+#[test]
+fn boundaries_that_miss_say_by_how_much() {
+    let square = |gap: f64| {
+        chains(&[
+            line(p(0., 0., 0.), p(4., 0., 0.)),
+            line(p(4., 0., 0.), p(4., 4., 0.)),
+            line(p(4., 4., 0.), p(0., 4., 0.)),
+            line(p(0., 4., 0.), p(gap, 0., 0.)),
+        ])
+    };
+    assert!(of_chains(&square(0.0), &ChainFlow::default(), &tolerance()).is_ok());
+    // Along the first curve the gap closes by itself: the curve only overhangs.
+    let overhang = flow(&square(0.3));
+    assert_eq!(overhang.overhangs.len(), 1);
+    assert!((overhang.overhangs[0].piece.1 - 0.075).abs() < 1e-12);
+    let fault = of_chains(&square(-0.3), &ChainFlow::default(), &tolerance()).unwrap_err();
+    assert_eq!(fault.code().0, "E501");
+    assert!(fault.to_string().contains("miss each other by 0.300000 at (0.000000, 0.000000, 0.000000)"), "{fault}");
+    // Two corners open.
+    let mut loose = square(-0.3);
+    loose[1] = Chain::of_curve(&line(p(4.2, 0., 0.), p(4., 4., 0.)));
+    assert_eq!(of_chains(&loose, &ChainFlow::default(), &tolerance()).unwrap_err().code().0, "E501");
+    // An inner curve that ends short of a border.
+    let mut short = square(0.0);
+    short.push(Chain::of_curve(&line(p(2., 0., 0.), p(2., 3.7, 0.))));
+    let fault = of_chains(&short, &ChainFlow::default(), &tolerance()).unwrap_err();
+    assert_eq!(fault.code().0, "E602");
+    assert!(fault.to_string().contains("0.3"), "{fault}");
+}
+
+#[test]
+fn overhanging_ends_are_trimmed_to_the_border() {
+    let hash = chains(&[
+        line(p(-1., 0., 0.), p(5., 0., 0.)),
+        line(p(-1., 4., 0.), p(5., 4., 0.)),
+        line(p(0., -1., 0.), p(0., 5., 0.)),
+        line(p(4., -1., 0.), p(4., 5., 0.)),
+    ]);
+    let flow = flow(&hash);
+    assert_eq!((flow.phrase().as_str(), flow.overhangs.len()), ("quadrilateral", 8));
+}
+
+#[test]
+fn rings_run_the_same_way_whatever_was_drawn() {
+    let z = p(0., 0., 1.);
+    let low = build::circle(DVec3::ZERO, 2.0, z, O).unwrap();
+    let seam = line(p(2., 0., 0.), p(2., 0., 5.));
+    for (normal, reversed) in [(z, false), (-z, true)] {
+        let high = build::circle_start(p(0., 0., 5.), p(0., 2., 5.), normal, O).unwrap();
+        let flow = flow(&chains(&[low.clone(), high, seam.clone()]));
+        assert_eq!((flow.phrase().as_str(), flow.orders()), ("quadrilateral closed in u", (1, 1)));
+        assert_eq!(flow.along_u.iter().map(|m| m.reversed).collect::<Vec<_>>(), [false, reversed]);
+        let other_seam = line(p(-2., 0., 5.), p(-2., 0., 0.));
+        let high = build::circle_start(p(0., 0., 5.), p(0., 2., 5.), normal, O).unwrap();
+        let flow = self::flow(&chains(&[low.clone(), seam.clone(), other_seam, high]));
+        assert_eq!(flow.along_u.iter().map(|m| m.reversed).collect::<Vec<_>>(), [false, reversed]);
+        assert_eq!(flow.along_v.iter().map(|m| m.reversed).collect::<Vec<_>>(), [false, true]);
+    }
+}
+
+#[test]
+fn a_named_pole_must_be_one() {
+    let arc = |a: DVec3, b: DVec3| build::arc_center(DVec3::ZERO, a, std::f64::consts::FRAC_PI_2, a.cross(b), O).unwrap();
+    let (x, y, z) = (p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.));
+    let octant = chains(&[arc(x, y), arc(y, z), arc(z, x)]);
+    assert_eq!(flow(&octant).phrase(), "uniform trilateral");
+    let with_pole = |pole| of_chains(&octant, &ChainFlow { pole: Some(pole), ..ChainFlow::default() }, &tolerance());
+    let (found, nodes) = with_pole(z).unwrap();
+    assert_eq!(found.phrase(), "degenerate trilateral");
+    assert!(nodes[found.poles.0.unwrap()].distance(z) < 1e-12);
+    // The pole is v = 0: the arc from y to z runs against +v, the one from z to x with it.
+    assert_eq!(found.along_v.iter().map(|m| (m.curve, m.reversed)).collect::<Vec<_>>(), [(2, false), (1, true)]);
+    assert_eq!(with_pole(p(0.5, 0.5, 0.5)).unwrap_err().code().0, "E601");
+}
+
+#[test]
+fn meetings_are_ordered_and_each_node_is_one() {
+    let t = tolerance();
+    let circle = Chain::of_curve(&build::circle(DVec3::ZERO, 2.0, p(0., 0., 1.), O).unwrap());
+    let chord = Chain::of_curve(&line(p(3., 0., 0.), p(-3., 0., 0.)));
+    let found = meet(&chord, &circle, &t).unwrap();
+    assert_eq!(found.iter().map(|m| m.fb).collect::<Vec<_>>(), [0.0, 0.5]);
+    assert!(found[0].fa < found[1].fa && found.iter().all(|m| !m.tangent));
+    assert_eq!(meet_once(&chord, &circle, &t).unwrap_err().code().0, "E508");
+    let tangent = Chain::of_curve(&line(p(-3., 2., 0.), p(3., 2., 0.)));
+    let touch = meet_once(&tangent, &circle, &t).unwrap();
+    assert!(touch.tangent && touch.point.distance(p(0., 2., 0.)) < 1e-6);
+    let far = Chain::of_curve(&line(p(-3., 2.5, 0.), p(3., 2.5, 0.)));
+    let fault = meet_once(&far, &circle, &t).unwrap_err();
+    assert_eq!(fault.code().0, "E507");
+    assert!(fault.to_string().ends_with("0.500000 apart"), "{fault}");
+    let over = Chain::of_curve(&line(p(2., 2., 0.), p(9., 2., 0.)));
+    assert_eq!(meet_once(&tangent, &over, &t).unwrap_err().code().0, "E509");
+    // A corner of a chain that lies on another curve is one meeting, at the corner.
+    let corner =
+        Chain::join(&[Chain::of_curve(&line(p(-1., 0., 0.), p(0., 2., 0.))), Chain::of_curve(&line(p(0., 2., 0.), p(1., 0., 0.)))], O, &t)
+            .unwrap();
+    let found = meet_once(&corner, &tangent, &t).unwrap();
+    assert_eq!(found.point, p(0., 2., 0.));
+}
+
+#[test]
+fn runs_of_one_curve_meet_where_they_join() {
+    let t = tolerance();
+    let circle = Chain::of_curve(&build::circle(DVec3::ZERO, 2.0, p(0., 0., 1.), O).unwrap());
+    let (a, b) = (circle.slice(0.875, 0.25, &t).unwrap(), circle.slice(0.25, 0.5, &t).unwrap());
+    let joint = meet_once(&a, &b, &t).unwrap();
+    assert!(joint.point.distance(p(0., 2., 0.)) < 1e-12 && joint.fa == 1.0 && joint.fb == 0.0);
+    let c = circle.slice(0.125, 0.375, &t).unwrap();
+    assert_eq!(meet_once(&a, &c, &t).unwrap_err().code().0, "E509");
+    assert_eq!(meet(&a, &c, &t).unwrap().len(), 1);
+    assert!(meet(&b, &circle.slice(0.625, 0.75, &t).unwrap(), &t).unwrap().is_empty());
+}
+
+#[test]
+fn networks_of_known_size_are_counted_exactly() {
+    let cases: [(fn(usize) -> Vec<Input>, usize, (usize, usize)); 5] = [
+        (nets::planar, 30, (372, 654)),
+        (nets::planar, 100, (4_027, 7_754)),
+        (nets::ruled, 10, (310, 530)),
+        (nets::ruled, 33, (2_921, 5_545)),
+        (nets::row, 2_000, (2_001, 2_000)),
+    ];
+    for (make, n, expected) in cases {
+        let (network, sink) = network_with(make(n), &[], &Tolerance::new(1e-4, 200.0));
+        assert_eq!((network.nodes.len(), network.links.len()), expected, "{n}");
+        assert!(codes(&sink).iter().all(|c| *c == "W514"));
+    }
+    let (scattered, _) = network_with(nets::scattered(1_000), &[], &Tolerance::new(1e-7, 1414.0));
+    assert_eq!(scattered.links.len() + 2_000, 1_000 + 2 * scattered.nodes.len() - 2_000, "each crossing adds a node and two links");
 }

@@ -208,6 +208,10 @@ fn ambiguous(curves: &[NetCurve], group: &[(u32, u32)], sites: &[DVec3], marks: 
 pub fn settle(net: &NetCurve, mut row: Vec<Station>, stations: &Stations, closed: bool, tolerance: &Tolerance) -> Vec<Station> {
     let length = net.curve.length();
     row.sort_unstable_by(|a, b| a.s.total_cmp(&b.s).then(a.node.cmp(&b.node)));
+    let repeats = row.windows(2).any(|w| w[0].node == w[1].node) || (closed && row.len() > 1 && row[0].node == row[row.len() - 1].node);
+    if !repeats {
+        return row;
+    }
     // A passage is one when it is no longer than a node is wide, or stays at the node in the middle.
     let stays = |from: f64, to: f64, node: u32| {
         to - from <= 4.0 * tolerance.point || {
@@ -290,29 +294,31 @@ fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Shared) -
         net.stations.push(stations.rows[k][0].s + net.curve.length());
     }
     let mut links: Vec<Link> = Vec::with_capacity(2 * nodes.len());
-    let mut link_of: Vec<Vec<LinkId>> = curves.iter().map(|net| Vec::with_capacity(net.nodes.len() - 1)).collect();
-    for (k, net) in curves.iter().enumerate() {
+    for k in 0..curves.len() {
+        let mut runs = std::mem::take(&mut curves[k].links);
+        runs.clear();
+        let net = &curves[k];
         for i in 0..net.nodes.len() - 1 {
             if shared.owner(k, i) != (k, i) {
-                link_of[k].push(LinkId(NONE));
+                runs.push((LinkId(NONE), false));
                 continue;
             }
-            let link = LinkId::at(links.len());
-            link_of[k].push(link);
-            let ends = (net.nodes[i], net.nodes[i + 1]);
+            let (link, ends) = (LinkId::at(links.len()), (net.nodes[i], net.nodes[i + 1]));
+            runs.push((link, false));
             links.push(Link { curve: CurveId::at(k), s: (net.stations[i], net.stations[i + 1]), nodes: ends });
             nodes[ends.0.index()].ends.push((link, false));
             nodes[ends.1.index()].ends.push((link, true));
         }
-    }
-    for k in 0..curves.len() {
-        let runs: Vec<(LinkId, bool)> = (0..link_of[k].len())
-            .map(|i| match shared.owner(k, i) {
-                own if own == (k, i) => (link_of[k][i], false),
-                (owner, j) => (link_of[owner][j], runs_against(curves, (k, i), (owner, j))),
-            })
-            .collect();
         curves[k].links = runs;
+    }
+    // What others own has its number only now.
+    for k in 0..curves.len() {
+        for i in 0..curves[k].links.len() {
+            let (owner, j) = shared.owner(k, i);
+            if (owner, j) != (k, i) {
+                curves[k].links[i] = (curves[owner].links[j].0, runs_against(curves, (k, i), (owner, j)));
+            }
+        }
     }
     (nodes, links, shared.notes)
 }

@@ -29,7 +29,6 @@ pub struct ChainFlow {
 struct Mark {
     chain: usize,
     f: f64,
-    point: DVec3,
     node: usize,
 }
 
@@ -67,7 +66,7 @@ pub fn node_lists(chains: &[Chain], tolerance: &Tolerance) -> Result<(Vec<DVec3>
             nodes.push(point);
             nodes.len() - 1
         });
-        marks.push(Mark { chain, f, point, node });
+        marks.push(Mark { chain, f, node });
         node
     };
     for (k, chain) in chains.iter().enumerate() {

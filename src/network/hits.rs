@@ -61,6 +61,10 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
         for &(a, b) in chunk {
             let (a, b) = if rank[a as usize] <= rank[b as usize] { (a, b) } else { (b, a) };
             let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
+            if let Some((s, at)) = corner(first, second) {
+                contacts.push(Contact { curves: [a, b], s, at, to: None });
+                continue;
+            }
             let hits = if a == b { self_intersect(first, tolerance)? } else { intersect(first, second, tolerance)? };
             contacts.extend(hits.into_iter().map(|hit| contact([a, b], [first, second], hit)));
         }
@@ -79,6 +83,15 @@ pub fn ranks(curves: &[NetCurve]) -> Vec<u32> {
         rank[k as usize] = place as u32;
     }
     rank
+}
+
+/// Two straight curves with a common end that part at a right angle or more: they can meet nowhere else.
+fn corner(a: &Curve, b: &Curve) -> Option<([f64; 2], DVec3)> {
+    let (&Shape::Line(a0, a1), &Shape::Line(b0, b1)) = (a.shape(), b.shape()) else { return None };
+    let ends = [(a0, a1, b0, b1), (a0, a1, b1, b0), (a1, a0, b0, b1), (a1, a0, b1, b0)];
+    let (p, far_a, _, far_b) = ends.into_iter().find(|(p, _, q, _)| p == q)?;
+    let s = |curve: &Curve, start: DVec3| if start == p { 0.0 } else { curve.length() };
+    ((far_a - p).dot(far_b - p) <= 0.0).then(|| ([s(a, a0), s(b, b0)], p))
 }
 
 fn contact(curves: [u32; 2], [a, b]: [&Curve; 2], hit: Hit) -> Contact {
