@@ -88,6 +88,28 @@ impl BoxTree {
         pairs
     }
 
+    /// Calls `found` with each pair of an item of this tree and one of another whose boxes come within `margin` of each
+    /// other along every axis, in no particular order.
+    pub fn pairs_with(&self, other: &Self, margin: f64, mut found: impl FnMut(usize, usize)) {
+        let (Some(top), Some(other_top)) = (self.levels.len().checked_sub(1), other.levels.len().checked_sub(1)) else { return };
+        let mut stack: Vec<(usize, usize, usize, usize)> = Vec::new();
+        for a in 0..self.levels[top].len() {
+            stack.extend((0..other.levels[other_top].len()).map(|b| (top, a, other_top, b)));
+        }
+        while let Some((level, a, other_level, b)) = stack.pop() {
+            if !self.levels[level][a].touches(&other.levels[other_level][b], margin) {
+                continue;
+            }
+            if level == 0 && other_level == 0 {
+                found(self.items[a] as usize, other.items[b] as usize);
+            } else if level >= other_level {
+                stack.extend(self.children(level, a).map(|c| (level - 1, c, other_level, b)));
+            } else {
+                stack.extend(other.children(other_level, b).map(|c| (level, a, other_level - 1, c)));
+            }
+        }
+    }
+
     fn children(&self, level: usize, k: usize) -> std::ops::Range<usize> {
         k * FAN..((k + 1) * FAN).min(self.levels[level - 1].len())
     }
@@ -143,6 +165,16 @@ mod tests {
             }
             assert_eq!(tree.pairs(margin), all, "{n}");
         }
+    }
+
+    #[test]
+    fn pairs_of_two_trees_are_those_of_comparing_all() {
+        let (first, second, margin) = (boxes(300), boxes(77), 0.02);
+        let mut pairs = Vec::new();
+        BoxTree::build(&first).pairs_with(&BoxTree::build(&second), margin, |a, b| pairs.push((a, b)));
+        pairs.sort_unstable();
+        let all = (0..300).flat_map(|a| (0..77).map(move |b| (a, b)));
+        assert_eq!(pairs, all.filter(|&(a, b)| first[a].touches(&second[b], margin)).collect::<Vec<_>>());
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::graph::NetCurve;
+use super::graph::{NetCurve, NodeId};
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::fault::{CurveEnd, Fault, NetworkFault};
@@ -33,21 +33,27 @@ pub fn near_misses(curves: &[NetCurve], one: Option<usize>, tolerance: &Toleranc
         found
     })
     .concat();
+    let ends = ends(curves, one, tolerance);
+    let groups: Vec<&[(NodeId, End)]> = ends.chunk_by(|a, b| a.0 == b.0).collect();
+    let boxes: Vec<Box3> = groups.iter().map(|group| Box3::of(group.iter().map(|(_, end)| end.at))).collect();
     let tree = BoxTree::build(&stretches.iter().map(|s| s.0).collect::<Vec<_>>());
-    let found = par::map(chunks, |i| {
-        let (mut near, mut found) = (Vec::new(), Vec::new());
-        for (k, last) in range(i).flat_map(|k| [(k, false), (k, true)]) {
-            let Some(at) = open_end(&curves[k], last, tolerance) else { continue };
-            near.clear();
-            tree.query(&Box3::of([at]), reach, |stretch| near.push(stretches[stretch].1));
-            near.sort_unstable();
-            near.dedup();
-            found.extend(near.iter().filter_map(|&other| miss(curves, (k, last, at), other, one, tolerance)));
+    let mut near: Vec<(usize, usize)> = Vec::new();
+    BoxTree::build(&boxes).pairs_with(&tree, reach, |group, stretch| {
+        // A curve that passes through the node is not missed.
+        let other = stretches[stretch].1;
+        if !curves[other].nodes.contains(&groups[group][0].0) {
+            near.push((group, other));
         }
-        found
+    });
+    near.sort_unstable();
+    near.dedup();
+    let found = par::map(near.len(), |i| {
+        let (group, other) = near[i];
+        groups[group].iter().filter_map(|(_, end)| miss(curves, *end, other, one, tolerance)).collect::<Vec<_>>()
     });
     // Two ends that miss each other are one miss.
     let mut all: Vec<Miss> = found.into_iter().flatten().collect();
+    all.sort_by_key(|m| (m.curve, m.last, m.other));
     let mutual = |m: &Miss| m.other_end.is_some_and(|last| m.curve > m.other || (m.curve == m.other && m.last && !last));
     let keys: Vec<(usize, bool, usize, Option<bool>)> = all.iter().map(|m| (m.curve, m.last, m.other, m.other_end)).collect();
     all.retain(|m| !(mutual(m) && m.other_end.is_some_and(|last| keys.contains(&(m.other, last, m.curve, Some(m.last))))));
@@ -79,13 +85,37 @@ fn stretches(net: &NetCurve, size: f64, mut found: impl FnMut(Box3)) {
     }
 }
 
-fn open_end(net: &NetCurve, last: bool, tolerance: &Tolerance) -> Option<DVec3> {
-    let open = net.nodes.first() != net.nodes.last() || !net.curve.is_closed(tolerance);
-    open.then(|| if last { net.curve.end() } else { net.curve.start() })
+/// An end of an open curve.
+#[derive(Clone, Copy)]
+struct End {
+    curve: usize,
+    last: bool,
+    at: DVec3,
+}
+
+/// All ends of open curves by node; when one curve is given, those of others too: they may miss it.
+fn ends(curves: &[NetCurve], one: Option<usize>, tolerance: &Tolerance) -> Vec<(NodeId, End)> {
+    let bbox = one.map(|k| curves[k].curve.bbox());
+    let mut ends: Vec<(NodeId, End)> = Vec::with_capacity(2 * curves.len());
+    for (k, net) in curves.iter().enumerate() {
+        let (first, last) = (net.nodes[0], net.nodes[net.nodes.len() - 1]);
+        if first == last && net.curve.is_closed(tolerance) {
+            continue;
+        }
+        for (node, last, at) in [(first, false, net.curve.start()), (last, true, net.curve.end())] {
+            let wanted = one == Some(k) || bbox.is_none_or(|bbox| bbox.touches(&Box3::of([at]), NEAR_MISS * tolerance.point));
+            if wanted {
+                ends.push((node, End { curve: k, last, at }));
+            }
+        }
+    }
+    ends.sort_unstable_by_key(|(node, end)| (*node, end.curve, end.last));
+    ends
 }
 
 /// Whether an end of one curve misses another one, and by how much.
-fn miss(curves: &[NetCurve], (k, last, at): (usize, bool, DVec3), other: usize, one: Option<usize>, tolerance: &Tolerance) -> Option<Miss> {
+fn miss(curves: &[NetCurve], end: End, other: usize, one: Option<usize>, tolerance: &Tolerance) -> Option<Miss> {
+    let End { curve: k, last, at } = end;
     let (net, target, reach) = (&curves[k], &curves[other], NEAR_MISS * tolerance.point);
     if other == k || one.is_some_and(|one| one != k && one != other) {
         return None;
