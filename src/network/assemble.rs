@@ -294,22 +294,19 @@ fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Shared) -
         net.stations.push(stations.rows[k][0].s + net.curve.length());
     }
     let mut links: Vec<Link> = Vec::with_capacity(2 * nodes.len());
-    for k in 0..curves.len() {
-        let mut runs = std::mem::take(&mut curves[k].links);
-        runs.clear();
-        let net = &curves[k];
+    for (k, net) in curves.iter_mut().enumerate() {
+        net.links.clear();
         for i in 0..net.nodes.len() - 1 {
             if shared.owner(k, i) != (k, i) {
-                runs.push((LinkId(NONE), false));
+                net.links.push((LinkId(NONE), false));
                 continue;
             }
             let (link, ends) = (LinkId::at(links.len()), (net.nodes[i], net.nodes[i + 1]));
-            runs.push((link, false));
+            net.links.push((link, false));
             links.push(Link { curve: CurveId::at(k), s: (net.stations[i], net.stations[i + 1]), nodes: ends });
             nodes[ends.0.index()].ends.push((link, false));
             nodes[ends.1.index()].ends.push((link, true));
         }
-        curves[k].links = runs;
     }
     // What others own has its number only now.
     for k in 0..curves.len() {

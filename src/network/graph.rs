@@ -119,7 +119,7 @@ impl Network {
         let notes = next.assemble(tolerance)?;
         sink.extend(notes.into_iter().filter(|note| concerns(note, own)));
         sink.extend(near_misses(&next.curves, Some(one), tolerance));
-        let map = self.map_to(&next, |k| Some(k));
+        let map = self.map_to(&next, Some);
         *self = next;
         Ok(map)
     }
@@ -151,8 +151,7 @@ impl Network {
     fn admit(&mut self, input: Input, tolerance: &Tolerance) -> Result<()> {
         let Input { name, curve, cuts } = input;
         let length = curve.length();
-        // A NaN is not above the tolerance either.
-        if !(length > tolerance.point) {
+        if length.is_nan() || length <= tolerance.point {
             return Err(NetworkFault::NoLength { of: curve.origin(), at: curve.start(), length, tolerance: tolerance.point }.into());
         }
         self.curves.push(NetCurve { name, curve, cuts, links: Vec::new(), nodes: Vec::new(), stations: Vec::new() });
