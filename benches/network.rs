@@ -22,12 +22,15 @@ fn counts(network: &Network) -> (usize, usize) {
     (network.nodes.len(), network.links.len())
 }
 
+/// Name, maker, size, nodes and links where known, diagonal.
+type Case = (&'static str, fn(usize) -> Vec<Input>, usize, (usize, usize), f64);
+
 fn networks(c: &mut Criterion) {
     // One thread: the wall time is the CPU time.
     lofting::base::par::set_threads(1);
     let mut group = c.benchmark_group("network");
     group.sample_size(10);
-    let cases: [(&str, fn(usize) -> Vec<Input>, usize, (usize, usize), f64); 8] = [
+    let cases: [Case; 8] = [
         ("planar", nets::planar, 30, (372, 654), 141.0),
         ("planar", nets::planar, 100, (4_027, 7_754), 141.0),
         ("planar", nets::planar, 300, (34_464, 68_028), 141.0),

@@ -1,4 +1,5 @@
 //! The curve network and chains against reference numbers, and what must never change them.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, its helpers too")]
 
 use glam::DVec3;
 use lofting::base::fault::Fault;
@@ -641,7 +642,8 @@ fn runs_of_one_curve_meet_where_they_join() {
 
 #[test]
 fn networks_of_known_size_are_counted_exactly() {
-    let cases: [(fn(usize) -> Vec<Input>, usize, (usize, usize)); 5] = [
+    type Case = (fn(usize) -> Vec<Input>, usize, (usize, usize));
+    let cases: [Case; 5] = [
         (nets::planar, 30, (372, 654)),
         (nets::planar, 100, (4_027, 7_754)),
         (nets::ruled, 10, (310, 530)),
