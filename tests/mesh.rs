@@ -58,7 +58,8 @@ struct Scene {
 
 impl Scene {
     fn new(curves: &[Curve], surfaces: Vec<Surface>) -> Self {
-        let inputs = curves.iter().enumerate().map(|(k, c)| NetInput { name: format!("c{}", k + 1), curve: c.clone(), cuts: Vec::new() }).collect();
+        let inputs =
+            curves.iter().enumerate().map(|(k, c)| NetInput { name: format!("c{}", k + 1), curve: c.clone(), cuts: Vec::new() }).collect();
         let network = Network::build(inputs, &[], &tolerance(), &Job::new(), &mut Vec::new()).unwrap();
         network.check().unwrap();
         let named = surfaces.into_iter().enumerate().map(|(k, surface)| Named { name: format!("s{}", k + 1), surface }).collect();
@@ -116,7 +117,12 @@ fn check_mesh(mesh: &Mesh) {
     }
     let mut seen = vec![false; mesh.nodes.len()];
     cells(mesh).iter().flatten().chain(mesh.lines.iter().flatten()).chain(&mesh.points).for_each(|n| seen[*n as usize] = true);
-    mesh.triangle_mids.iter().flatten().chain(mesh.quad_mids.iter().flatten()).chain(&mesh.line_mids).for_each(|n| seen[*n as usize] = true);
+    mesh.triangle_mids
+        .iter()
+        .flatten()
+        .chain(mesh.quad_mids.iter().flatten())
+        .chain(&mesh.line_mids)
+        .for_each(|n| seen[*n as usize] = true);
     assert!(seen.iter().all(|s| *s), "a node belongs to nothing");
     // No two nodes in one place.
     let mut order: Vec<usize> = (0..mesh.nodes.len()).collect();
@@ -294,7 +300,10 @@ fn strips_pass_a_count_on_and_refuse_two() {
     plan.elements = Elements::Quads;
     plan.size = Some((0.1, Origin::NONE));
     assert_eq!(scene.sound(&plan).quads.len(), 100);
-    let count = |k: usize, n: u32, origin: u32| Rule { count: Some((n, Origin(origin))), ..Rule::on(Target::Chain(chain(&curves[k])), Origin(origin)) };
+    let count = |k: usize, n: u32, origin: u32| Rule {
+        count: Some((n, Origin(origin))),
+        ..Rule::on(Target::Chain(chain(&curves[k])), Origin(origin))
+    };
     plan.rules = vec![count(0, 4, 1)];
     assert_eq!(scene.sound(&plan).quads.len(), 40);
     plan.rules.push(count(2, 6, 2));
@@ -310,7 +319,8 @@ fn bias_grows_along_the_curve_and_stays_there() {
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     let mut plan = scene.plan();
     plan.elements = Elements::Quads;
-    plan.rules = vec![Rule { count: Some((10, Origin(1))), bias: Some((3.0, Origin(1))), ..Rule::on(Target::Chain(chain(&curves[0])), Origin(1)) }];
+    plan.rules =
+        vec![Rule { count: Some((10, Origin(1))), bias: Some((3.0, Origin(1))), ..Rule::on(Target::Chain(chain(&curves[0])), Origin(1)) }];
     let mesh = scene.sound(&plan);
     let on = |y: f64| {
         let mut xs: Vec<f64> = mesh.nodes.iter().filter(|n| (n.y - y).abs() < 1e-12).map(|n| n.x).collect();
@@ -340,14 +350,139 @@ fn revolved_surfaces_close_and_have_one_node_a_pole() {
     let mut plan = scene.plan();
     plan.elements = Elements::Quads;
     assert_eq!(scene.mesh(&plan).unwrap_err().code().0, "E704");
+    // A tube round the axis: seams are welded, rings have at least three steps.
+    let profile = straight(p(1., 0., 0.), p(1., 0., 3.));
+    let tube = revolve(&chain(&profile), &axis, std::f64::consts::TAU, Origin::NONE, &tolerance()).unwrap();
+    let scene = Scene::new(&[profile], vec![tube]);
+    assert_eq!(counts(&scene), (1, 3, 2));
+    let mut plan = scene.plan();
+    plan.elements = Elements::Quads;
+    plan.size = Some((50.0, Origin::NONE));
+    let mesh = scene.sound(&plan);
+    assert_eq!((mesh.quads.len(), edges_of(&mesh)), (3, (6, 0)));
+    plan.angle_error = Some((15.0_f64.to_radians(), Origin(1)));
+    assert_eq!(scene.sound(&plan).quads.len(), 24);
+    plan.angle_error = None;
+    plan.chord_error = Some((0.0005, Origin(1)));
+    // Radius 100 with error 0.05 takes 100 steps.
+    assert_eq!(scene.sound(&plan).quads.len(), 100);
     let ring = circle(p(0., 0., 0.), 1.0, DVec3::Z, Origin::NONE).unwrap();
-    drop(ring);
+    plan.rules = vec![Rule { count: Some((40, Origin(2))), ..Rule::on(Target::Chain(chain(&ring)), Origin(2)) }];
+    let fault = scene.mesh(&plan).map(|m| m.1.iter().map(|f| f.code().0).collect::<Vec<_>>());
+    assert!(matches!(&fault, Ok(codes) if codes == &["W701"]), "that circle is not in the network: {fault:?}");
+}
+
+#[test]
+fn a_ball_of_two_lunes_is_a_closed_shell() {
+    let (n, s) = (p(0., 0., 1.), p(0., 0., -1.));
+    let meridian = |m: DVec3| arc_through(s, n, m, Origin::NONE).unwrap();
+    let curves = [meridian(p(1., 0., 0.)), meridian(p(-1., 0., 0.))];
+    let axis = axis_of(&chain(&straight(s, n)), &tolerance()).unwrap();
+    let half = |k: usize| revolve(&chain(&curves[k]), &axis, std::f64::consts::PI, Origin(k as u32 + 1), &tolerance()).unwrap();
+    let scene = Scene::new(&curves, vec![half(0), half(1)]);
+    let request = ShellRequest { name: "ball".to_owned(), surfaces: vec![SurfaceId(0), SurfaceId(1)], origin: Origin::NONE };
+    let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).unwrap();
+    assert!(shell.closed);
+    let mut plan = scene.plan();
+    plan.surfaces = shell.surfaces;
+    plan.size = Some((0.3, Origin::NONE));
+    let mesh = scene.sound(&plan);
+    assert!(edges_of(&mesh) == (0, 2) && mesh.is_watertight());
+}
+
+#[test]
+fn shells_refuse_three_faces_at_an_edge_and_apart_ones() {
+    let (a, b) = (p(0., 0., 0.), p(1., 0., 0.));
+    let spine = straight(a, b);
+    let mut curves = vec![spine.clone()];
+    let mut surfaces = Vec::new();
+    for out in [p(0., 1., 0.), p(0., -1., 0.), p(0., 0., 1.)] {
+        let own = [straight(a, a + out), straight(b, b + out), straight(a + out, b + out)];
+        surfaces.push(coons_of(&[chain(&spine), chain(&own[2]), chain(&own[0]), chain(&own[1])]));
+        curves.extend(own);
+    }
+    let far = square(p(5., 5., 5.), 1.0);
+    surfaces.push(coons_of(&far.each_ref().map(chain)));
+    curves.extend(far);
+    let scene = Scene::new(&curves, surfaces);
+    let shell = |list: &[u32]| {
+        let request = ShellRequest { name: "s".to_owned(), surfaces: list.iter().map(|k| SurfaceId(*k)).collect(), origin: Origin::NONE };
+        scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).map(|s| s.surfaces).map_err(|f| f.code().0)
+    };
+    assert_eq!(shell(&[0, 1, 2]), Err("E617"));
+    assert_eq!(shell(&[0, 3]), Err("E618"));
+    assert!(shell(&[0, 1]).is_ok() && shell(&[1, 2]).is_ok());
+}
+
+#[test]
+fn rules_that_decide_nothing_or_twice_are_warned_of() {
+    let curves = square(p(0., 0., 0.), 1.0);
+    let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
+    let mut plan = scene.plan();
+    plan.size = Some((0.1, Origin::NONE));
+    let size = |k: usize, size: f64, origin: u32| Rule {
+        size: Some((size, Origin(origin))),
+        ..Rule::on(Target::Chain(chain(&curves[k])), Origin(origin))
+    };
+    let codes = |plan: &Plan| scene.mesh(plan).unwrap().1.iter().map(|f| f.code().0).collect::<Vec<_>>();
+    plan.rules = vec![size(0, 0.05, 1)];
+    assert_eq!(codes(&plan), Vec::<&str>::new());
+    plan.rules = vec![size(0, 0.5, 1)];
+    assert_eq!(codes(&plan), ["W701"], "the opposite side wants more");
+    plan.rules = vec![size(0, 0.5, 1), size(0, 0.05, 2)];
+    assert_eq!(codes(&plan), ["W706"]);
+    plan.chord_error = Some((0.01, Origin(9)));
+    plan.rules = vec![Rule { count: Some((1, Origin(1))), ..Rule::on(Target::Surface(SurfaceId(0)), Origin(1)) }];
+    assert_eq!(scene.sound(&plan).triangles.len(), 2, "one count for each side");
+}
+
+#[test]
+fn written_counts_too_coarse_for_a_limit_name_both() {
+    let arch = |y: f64| arc_through(p(0., y, 0.), p(4., y, 0.), p(2., y, 1.), Origin::NONE).unwrap();
+    let curves = [arch(0.0), straight(p(4., 0., 0.), p(4., 5., 0.)), arch(5.0), straight(p(0., 0., 0.), p(0., 5., 0.))];
+    let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
+    let mut plan = scene.plan();
+    plan.chord_error = Some((0.01, Origin(7)));
+    plan.rules = vec![Rule { count: Some((3, Origin(8))), ..Rule::on(Target::Chain(chain(&curves[0])), Origin(8)) }];
+    let fault = scene.mesh(&plan).unwrap_err();
+    let report = lofting::base::fault::Describe::describe(&fault, &Plain);
+    assert_eq!(report.code.0, "E703");
+    assert!(report.labels.len() == 2 && report.help.as_deref() == Some("count: 11"), "{report:?}");
+    plan.rules[0].count = Some((11, Origin(8)));
+    assert!(scene.sound(&plan).chord_error(&tolerance()).unwrap() <= 0.01);
+}
+
+#[test]
+fn measured_error_keeps_the_setting_on_many_surfaces() {
+    let mut state = 12345_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    for round in 0..12 {
+        let mut bump = |q: DVec3| q + p(0.3 * random(), 0.3 * random(), 1.2 * random());
+        let corners = [p(0., 0., 0.), p(4., 0., 0.), p(4., 4., 0.), p(0., 4., 0.)].map(&mut bump);
+        let mut side = |a: usize, b: usize| {
+            let (a, b) = (corners[a], corners[b]);
+            curved(&[a, bump(a.lerp(b, 0.3)), bump(a.lerp(b, 0.7)), b])
+        };
+        let curves = [side(0, 1), side(1, 2), side(3, 2), side(0, 3)];
+        let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
+        let mut plan = scene.plan();
+        plan.chord_error = Some((0.02, Origin::NONE));
+        plan.size = Some((2.0, Origin::NONE));
+        plan.elements = if round % 2 == 0 { Elements::Triangles } else { Elements::Mixed };
+        let mesh = scene.sound(&plan);
+        let measured = mesh.chord_error(&tolerance()).unwrap();
+        assert!(measured <= 0.02, "round {round}: {measured}");
+    }
 }
 
 #[test]
 fn area_converges_with_size_and_measured_error_keeps_the_setting() {
     let arch = |y: f64, h: f64| arc_through(p(0., y, 0.), p(4., y, 0.), p(2., y, h), Origin::NONE).unwrap();
-    let curves = [arch(0.0, 1.0), curved(&[p(4., 0., 0.), p(4.3, 2., 0.4), p(4., 5., 0.)]), arch(5.0, 1.6), straight(p(0., 0., 0.), p(0., 5., 0.))];
+    let curves =
+        [arch(0.0, 1.0), curved(&[p(4., 0., 0.), p(4.3, 2., 0.4), p(4., 5., 0.)]), arch(5.0, 1.6), straight(p(0., 0., 0.), p(0., 5., 0.))];
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     let mut areas = Vec::new();
     for size in [1.0, 0.5, 0.25, 0.125] {
@@ -383,11 +518,25 @@ fn trilateral_faces_take_triangles_or_three_blocks_of_quads() {
         plan.order = order;
         plan.size = Some((0.2, Origin::NONE));
         let mesh = scene.sound(&plan);
-        assert_eq!(mesh.triangles.len(), 64);
-        assert_eq!(edges_of(&mesh), (24, 1));
+        let longest = |mesh: &Mesh| mesh.edge_lengths().into_iter().fold(0.0, f64::max);
+        let (free, euler) = edges_of(&mesh);
+        assert_eq!((mesh.triangles.len(), euler), ((free / 3) * (free / 3), 1));
+        assert!(longest(&mesh) <= 0.2 * 1.05 && longest(&mesh) > 0.15, "{}", longest(&mesh));
         plan.elements = Elements::Quads;
         let mesh = scene.sound(&plan);
-        assert!(mesh.triangles.is_empty() && edges_of(&mesh) == (24, 1), "{} quads", mesh.quads.len());
+        assert!(mesh.triangles.is_empty() && edges_of(&mesh).1 == 1, "{} quads", mesh.quads.len());
+        assert!(longest(&mesh) <= 0.2 * 1.05, "{}", longest(&mesh));
+        assert!(mesh.quality().unwrap().min_quality > 0.3);
+        for (mids, corners) in mesh.quad_mids.iter().zip(&mesh.quads) {
+            for k in 0..4 {
+                let [m, a, b] = [mids[k], corners[k], corners[(k + 1) % 4]].map(|n| mesh.nodes[n as usize]);
+                let edge = a.distance(b);
+                assert!(
+                    m.distance((a + b) * 0.5) < 0.15 * edge && m != (a + b) * 0.5,
+                    "a mid node lies on the surface, between its corners"
+                );
+            }
+        }
     }
 }
 
@@ -403,12 +552,13 @@ fn curves_and_points_share_nodes_with_faces() {
     plan.points = vec![p(0.4, 1.0, 0.0), p(5.0, 5.0, 5.0)];
     plan.order = 2;
     let mesh = scene.sound(&plan);
-    assert_eq!(mesh.lines.len(), 4 + 8);
+    // The point cuts the opposite side into 0.4 and 0.6: 2 + 3 steps, which the strip passes on.
+    assert_eq!(mesh.lines.len(), 5 + 8);
     assert_eq!(mesh.points.len(), 2);
     assert!(mesh.nodes[mesh.points[0] as usize].distance(p(0.4, 1.0, 0.0)) < 1e-12);
-    assert_eq!(mesh.line_mids.len(), 12);
+    assert_eq!(mesh.line_mids.len(), 13);
     let in_faces = mesh.lines.iter().filter(|l| cells(&mesh).iter().any(|c| l.iter().all(|n| c.contains(n))));
-    assert_eq!(in_faces.count(), 4);
+    assert_eq!(in_faces.count(), 5);
     plan.points = vec![p(0.5, 0.5, 0.0)];
     assert_eq!(scene.mesh(&plan).unwrap_err().code().0, "E230");
 }

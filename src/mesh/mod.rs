@@ -34,5 +34,5 @@ pub mod trilateral;
 pub use build::{Built, Input, build};
 pub use data::{FaceRange, Group, Mesh};
 pub use explain::Explanation;
-pub use quality::Quality;
 pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
+pub use quality::Quality;

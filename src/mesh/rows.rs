@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::edges::Limits;
 use crate::base::math::angle_between;
+use crate::base::tolerance::WHOLE_NUMBER;
 use crate::surface::{Domain, Surface};
 
 /// Cells of the sample grid in each direction.
@@ -163,30 +164,22 @@ impl Sample {
 
     /// The middle of a cell is off by the bends of both directions: raises the one that adds more until their sum is kept.
     fn balance(&self, a: &mut Wish, b: &mut Wish, chord: f64, cells: f64) {
-        let share = |wish: &Wish| (cells / wish.least.max(wish.size).max(1.0)).powi_two() / 8.0;
+        let steps = |wish: &Wish| (wish.least.max(wish.size).max(1.0) - WHOLE_NUMBER).ceil();
         for _ in 0..CELLS {
+            let share = |wish: &Wish| cells * cells / (8.0 * steps(wish) * steps(wish));
             let (fu, fv) = (share(a), share(b));
-            let worst =
-                self.curvatures().map(|(_, _, uu, vv)| (uu * fu, vv * fv)).max_by(|x, y| (x.0 + x.1).abs().total_cmp(&(y.0 + y.1).abs()));
-            let Some((du, dv)) = worst else { return };
-            let total = (du + dv).abs();
-            if total <= chord {
+            let sums = self.curvatures().map(|(_, _, uu, vv)| (uu * fu, vv * fv));
+            let Some((du, dv)) = sums.max_by(|x, y| (x.0 + x.1).abs().total_cmp(&(y.0 + y.1).abs())) else {
+                return;
+            };
+            if (du + dv).abs() <= chord {
                 return;
             }
             let (wish, other, own) = if du.abs() >= dv.abs() { (&mut *a, dv.abs(), du.abs()) } else { (&mut *b, du.abs(), dv.abs()) };
             // What is left for the larger one when the smaller stays; at least half.
             let left = (chord - other).max(0.5 * chord);
-            wish.least = wish.least.max(wish.size).max(1.0) * (own / left).sqrt().max(1.0 + 1.0 / cells);
+            let now = steps(wish);
+            wish.least = (now * (own / left).sqrt()).max(now + 1.0);
         }
-    }
-}
-
-trait Square {
-    fn powi_two(self) -> Self;
-}
-
-impl Square for f64 {
-    fn powi_two(self) -> Self {
-        self * self
     }
 }
