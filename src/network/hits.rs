@@ -52,14 +52,13 @@ fn may_meet_itself(curve: &Curve) -> bool {
 }
 
 fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
-    let rank = ranks(curves);
     job.expect(pairs.len() as u64);
     let chunks = par::try_map(pairs.len().div_ceil(CHUNK), |k| {
         job.go_on()?;
         let chunk = &pairs[k * CHUNK..((k + 1) * CHUNK).min(pairs.len())];
         let mut contacts = Vec::with_capacity(chunk.len());
         for &(a, b) in chunk {
-            let (a, b) = if rank[a as usize] <= rank[b as usize] { (a, b) } else { (b, a) };
+            let (a, b) = if curves[a as usize].name <= curves[b as usize].name { (a, b) } else { (b, a) };
             let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
             if let Some((s, at)) = corner(first, second) {
                 contacts.push(Contact { curves: [a, b], s, at, to: None });
