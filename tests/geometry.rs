@@ -576,3 +576,90 @@ mod properties {
         });
     }
 }
+
+/// What each mistake is told as.
+mod mistakes {
+    use super::*;
+    use lofting::base::fault::{Describe, Fault, Plain};
+    use lofting::base::tolerance::Tolerance;
+
+    const NONE: Origin = Origin::NONE;
+
+    fn at(x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, 0.0)
+    }
+
+    fn check<T: std::fmt::Debug>(result: Result<T, Fault>, code: &str, words: &[&str]) {
+        let report = result.unwrap_err().describe(&Plain);
+        assert_eq!(report.code.0, code, "{report:?}");
+        let all = format!("{} {:?} {:?}", report.message, report.help, report.labels);
+        for word in words {
+            assert!(all.contains(word), "no {word} in {all}");
+        }
+    }
+
+    #[test]
+    fn say_what_and_where() {
+        let open = Spline { start: Ends::Natural, end: Ends::Natural, closed: false };
+        let closed = Spline { closed: true, ..open };
+        let three = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)];
+        check(build::line(at(1.0, 2.0), at(1.0, 2.0), NONE), "E401", &["no length"]);
+        check(build::bezier(&[at(1.0, 2.0); 3], None, NONE), "E401", &[]);
+        check(build::spline(&three[..1], &open, NONE), "E402", &["a spline needs at least 2 points, got 1"]);
+        check(build::spline(&three[..2], &closed, NONE), "E402", &["a closed spline needs at least 3 points, got 2"]);
+        check(
+            build::polyline(&[at(0.0, 0.0), three[1], three[1]], false, NONE),
+            "E403",
+            &["points 1 and 2", "(1.000000", "leave point 2 out"],
+        );
+        check(
+            build::spline(&[three[0], three[1], three[2], three[0]], &closed, NONE),
+            "E403",
+            &["points 3 and 0", "leave the last point out"],
+        );
+        check(build::arc_through(at(0.0, 0.0), at(2.0, 0.0), at(1.0, 0.0), NONE), "E404", &["lie on a line", "line((0"]);
+        for rho in [0.0, 1.0, -0.2, f64::NAN] {
+            check(build::conic(three[0], three[1], three[2], rho, Kind::Conic, NONE), "E405", &["rho"]);
+        }
+        let knots = |k: &[f64]| build::bspline(&three, 2, Some(k), false, NONE);
+        check(knots(&[0.0, 0.0, 0.0, 1.0, 0.5, 1.0]), "E406", &["knot 4", "below the 1 before"]);
+        check(knots(&[0.0, 0.0, 0.0, 1.0, 1.0]), "E406", &["3 points of degree 2 need 6 knots, got 5"]);
+        check(knots(&[0.0; 6]), "E406", &["no domain"]);
+        check(build::bspline(&three, 1, Some(&[0.0, 0.5, 0.5, 0.5, 1.0]), false, NONE), "E406", &[]);
+        let ones = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        check(build::nurbs(&three, &[1.0, -2.0, 1.0], &ones, 2, NONE), "E407", &["weight 1", "-2"]);
+        check(build::nurbs(&three, &[1.0, 1.0], &ones, 2, NONE), "E306", &["as many as points, 3"]);
+        check(build::line(at(f64::NAN, 0.0), at(1.0, 0.0), NONE), "E408", &["`a`"]);
+        check(build::spline(&[three[0], at(0.0, f64::INFINITY)], &open, NONE), "E408", &["number 1 of `points`"]);
+        check(build::line(at(1e308, 0.0), at(1.0, 0.0), NONE), "E306", &["`a`", "1e308"]);
+        check(build::arc_center(three[0], three[1], 1.0, DVec3::ZERO, NONE), "E409", &["normal"]);
+        check(build::arc_center(three[0], three[1], 1.0, DVec3::new(1.0, 0.0, 1.0), NONE), "E306", &["normal", "45.000°"]);
+        check(build::spline(&three, &Spline { start: Ends::Clamped(DVec3::ZERO), ..open }, NONE), "E409", &["start"]);
+        check(build::helix(three[0], DVec3::Z, DVec3::Z, 1.0, 1.0, NONE), "E409", &["away from the axis"]);
+        check(build::arc_center(three[0], three[1], 0.0, DVec3::Z, NONE), "E411", &["angle"]);
+        check(build::arc_center(three[0], three[1], 7.0, DVec3::Z, NONE), "E412", &["401.0705°", "360deg"]);
+        check(build::circle(three[0], -1.0, DVec3::Z, NONE), "E306", &["radius", "-1"]);
+        check(build::bezier(&[at(0.0, 0.0); 11], None, NONE), "E306", &["11", "bspline"]);
+    }
+
+    #[test]
+    fn checks_with_a_tolerance() {
+        let tolerance = Tolerance::new(1e-3, 10.0);
+        let short = build::line(at(0.0, 0.0), at(5e-4, 0.0), NONE).unwrap();
+        check(short.check(&tolerance), "E401", &["0.000500", "0.001000"]);
+        let close = build::polyline(&[at(0.0, 0.0), at(1.0, 0.0), at(1.0, 5e-4), at(2.0, 0.0)], false, NONE).unwrap();
+        check(close.check(&tolerance), "E403", &["points 1 and 2", "0.000500 apart"]);
+        close.check(&Tolerance::new(1e-4, 10.0)).unwrap();
+    }
+
+    #[test]
+    fn whole_turns_are_exact() {
+        let circle = build::circle(at(1.0, 0.0), 2.0, DVec3::Z, NONE).unwrap();
+        assert_eq!((circle.start(), circle.end()), (at(3.0, 0.0), at(3.0, 0.0)));
+        let side = build::circle(at(0.0, 0.0), 2.0, DVec3::X, NONE).unwrap();
+        assert_eq!(side.start(), at(0.0, 2.0));
+        let square = build::polyline(&[at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)], true, NONE).unwrap();
+        assert_eq!(square.kinks(&Tolerance::new(1e-6, 1.0)).len(), 3);
+        assert!(circle.kinks(&Tolerance::new(1e-6, 1.0)).is_empty());
+    }
+}
