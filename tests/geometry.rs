@@ -131,6 +131,26 @@ fn arc_rule() {
     }
 }
 
+/// The length that SciPy's adaptive quadrature gives for its own natural spline through the same points.
+#[test]
+fn length_of_a_spline_elsewhere() {
+    use lofting::base::math::{cos, sin};
+    let points: Vec<DVec3> = (0..40)
+        .map(|i| {
+            let a = 1.8 * std::f64::consts::PI * f64::from(i) / 39.0;
+            DVec3::new(50.0 + 40.0 * cos(a) * (1.0 + 0.2 * cos(5.0 * a)), 50.0 + 40.0 * sin(a), 10.0 * sin(3.0 * a))
+        })
+        .collect();
+    let curve = build::spline(&points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: false }, Origin::NONE).unwrap();
+    close(curve.length(), 270.145_192_417_000_7, 1e-12, "length");
+    let (mut params, lengths) = (Vec::new(), [200.0, 10.0, -1.0, 10.5, 300.0]);
+    curve.params_at_lengths(&lengths, &mut params);
+    for (t, s) in params.iter().zip(lengths) {
+        assert_eq!(*t, curve.param_at_length(s));
+        close(curve.length_at(*t), s.clamp(0.0, curve.length()), 1e-12, "inverse");
+    }
+}
+
 #[test]
 fn a_link_of_the_helix() {
     let maps = data("reference/parameter_maps.json");
@@ -502,7 +522,12 @@ mod properties {
             .unwrap();
             let p = form.point(form.domain().0 + (form.domain().1 - form.domain().0) * f);
             assert!(lofting::geometry::closest(&curve, p).distance < 1e-7);
-            assert!(curve.bbox().union(form.bbox()).touches(&curve.bbox(), 0.0));
+            let (bounds, slack) = (curve.bbox(), DVec3::splat(1e-7));
+            assert!((bounds.min - slack).cmple(p).all() && p.cmple(bounds.max + slack).all(), "{p} outside {bounds:?}");
+            if matches!(curve.kind(), Kind::Arc | Kind::Ellipse) {
+                let exact = lofting::base::bbox::Box3::of(curve.points_along(4000));
+                assert!((exact.min - bounds.min).abs().max_element() < 1e-5 && (exact.max - bounds.max).abs().max_element() < 1e-5);
+            }
         });
     }
 
@@ -661,5 +686,10 @@ mod mistakes {
         let square = build::polyline(&[at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)], true, NONE).unwrap();
         assert_eq!(square.kinks(&Tolerance::new(1e-6, 1.0)).len(), 3);
         assert!(circle.kinks(&Tolerance::new(1e-6, 1.0)).is_empty());
+        let five: Vec<DVec3> = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 3.0), (0.0, 1.0)].map(|(x, y)| at(x, y)).to_vec();
+        for degree in 2..5 {
+            let ring = build::bspline(&five, degree, None, true, NONE).unwrap();
+            assert!(ring.start().distance(ring.end()) < 1e-14 && ring.kinks(&Tolerance::new(1e-6, 1.0)).is_empty(), "{degree}");
+        }
     }
 }

@@ -104,7 +104,10 @@ impl<'a> Search<'a> {
             let corner = match pieces.get(k + 1) {
                 Some(next) if next.section != piece.section => {
                     let (before, after) = (self.a.view(piece.section), self.a.view(next.section));
-                    math::angle_between(before.jet(piece.node.t.1).d1, after.jet(next.node.t.0).d1)
+                    let (arriving, leaving) = (before.jet(piece.node.t.1).d1, after.jet(next.node.t.0).d1);
+                    // Where the curve stands still it may turn back.
+                    let still = arriving == DVec3::ZERO || leaving == DVec3::ZERO;
+                    if still { std::f64::consts::PI } else { math::angle_between(arriving, leaving) }
                 }
                 _ => 0.0,
             };
