@@ -9,6 +9,7 @@ use super::strips::Stretch;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::par;
+use crate::base::tolerance::WHOLE_NUMBER;
 use crate::model::SurfaceId;
 use crate::model::atoms::Use;
 use crate::network::Chain;
@@ -307,7 +308,8 @@ impl Sizing {
     }
 }
 
-/// Least counts that keep a stretch from closing on itself: 3 for a ring, 2 for two stretches with the same ends.
+/// Least counts that keep stretches from falling on each other: 3 for a ring; of several with the same ends the shortest may
+/// be one step, as a blunt trailing edge is, and the others take 2.
 fn shapes(layout: &Layout) -> Vec<u32> {
     let ends = |k: usize| {
         let (a, b) = layout.pieces.atoms[k].ends;
@@ -318,14 +320,15 @@ fn shapes(layout: &Layout) -> Vec<u32> {
     order.sort_by_key(|k| (ends(*k), *k));
     let mut least = vec![1; n];
     for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
-        for &k in group {
-            let (a, b) = ends(k);
-            least[k] = if a == b {
-                3
-            } else if group.len() > 1 {
-                2
-            } else {
-                1
+        let length = |k: &usize| layout.pieces.atoms[*k].length();
+        let shortest = group.iter().map(length).fold(f64::INFINITY, f64::min);
+        let alike = group.iter().filter(|k| length(k) <= shortest * (1.0 + WHOLE_NUMBER)).count();
+        for k in group {
+            let (a, b) = ends(*k);
+            least[*k] = match () {
+                () if a == b => 3,
+                () if group.len() == 1 || (alike == 1 && length(k) == shortest) => 1,
+                () => 2,
             };
         }
     }

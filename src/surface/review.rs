@@ -37,7 +37,8 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     if let Some(k) = (0..jets.len()).find(|&k| singular(k)) {
         found.push(SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p }.into());
     }
-    // A fold turns the normal by more than a right angle between neighbours of one smooth piece.
+    // A fold turns the normal by more than a right angle between neighbours of one smooth piece, however near they come;
+    // a sharp bend, the nose of an airfoil, does so only between samples that lie apart.
     let (kink_u, kink_v) = surface.kinks();
     let parted = |a: f64, b: f64, lines: &[f64]| lines.iter().any(|&x| a < x && x < b);
     let turn = |a: usize, b: usize| match (normals[a], normals[b]) {
@@ -52,6 +53,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
         for other in [right, up].into_iter().flatten() {
             if let Some(angle) = turn(k, other)
                 && worst.is_none_or(|(largest, _)| angle > largest)
+                && folds_between(surface, place(k), place(other), tolerance)
             {
                 worst = Some((angle, other));
             }
@@ -61,6 +63,24 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
         found.push(SurfaceFault::PatchFolded { surface: surface.origin(), uv: place(k), at: jets[k].p, turn }.into());
     }
     found
+}
+
+/// Whether the normal jumps over a right angle between two places: halved towards the jump until it is found or dissolves.
+fn folds_between(surface: &Surface, mut a: (f64, f64), mut b: (f64, f64), tolerance: &Tolerance) -> bool {
+    let normal = |at: (f64, f64)| unit_normal(&surface.jet(at.0, at.1));
+    let (Some(mut from), Some(mut to)) = (normal(a), normal(b)) else { return false };
+    while (b.0 - a.0).abs().max((b.1 - a.1).abs()) > tolerance.parameter {
+        let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
+        let Some(between) = normal(middle) else { return true };
+        if from.dot(between) < 0.0 {
+            (b, to) = (middle, between);
+        } else if between.dot(to) < 0.0 {
+            (a, from) = (middle, between);
+        } else {
+            return false;
+        }
+    }
+    true
 }
 
 /// Sample parameters inside every cell, cells narrower than a point of the parameter left out.

@@ -199,6 +199,15 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .at(*says, format!("asks for at least {needed}"))
                 .help(format!("count: {needed}"))
         }
+        F::CountTooFew { count, needed, at } => {
+            Report::new("E703", format!("{} would fall on each other at {}", steps(count.0), say.point(*at)))
+                .at(count.1, steps(count.0))
+                .note("a closed curve takes at least 3 steps; of two curves with the same ends the longer takes at least 2")
+                .help(format!("count: {needed}"))
+        }
+        F::MethodLater { of, method } => {
+            Report::new("E230", format!("`method: {method}` is not in this version")).at(*of, "asked for here").help("method: mapped")
+        }
         F::CountBelowLinks { count, links } => Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
             .at(count.1, steps(count.0))
             .help(format!("count: {links}")),
@@ -273,7 +282,15 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "folds there")
         .help("add a curve across the fold, or divide the surface in two"),
-        // The function above answered for all others.
-        other => Report::new("E999", format!("a fault without words: {other:?}")),
+        // Answered by the table above; listed so that a new fault cannot be forgotten.
+        F::RuleUnused { .. }
+        | F::CountsDiffer { .. }
+        | F::SidesDoNotClose { .. }
+        | F::CountTooCoarse { .. }
+        | F::CountTooFew { .. }
+        | F::MethodLater { .. }
+        | F::CountBelowLinks { .. }
+        | F::RuleOverridden { .. }
+        | F::NotReached { .. } => Report::new("E999", "a fault that another table has words for"),
     }
 }
