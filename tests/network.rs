@@ -658,3 +658,29 @@ fn networks_of_known_size_are_counted_exactly() {
     let (scattered, _) = network_with(nets::scattered(1_000), &[], &Tolerance::new(1e-7, 1414.0));
     assert_eq!(scattered.links.len() + 2_000, 1_000 + 2 * scattered.nodes.len() - 2_000, "each crossing adds a node and two links");
 }
+
+#[test]
+fn derivatives_of_chains_are_by_arc_length() {
+    let ellipse = build::ellipse(p(5., 1., 0.), p(6., 0., 0.), p(0., 2., 0.), 0.0, 2.0, O).unwrap();
+    let spline = build::spline(&[ellipse.end(), p(3., 5., 1.), p(1., 6., 2.), p(0., 9., 0.)], &SPLINE, O).unwrap();
+    let arc = build::arc_through(p(20., 0., 0.), ellipse.start(), p(15., 4., 0.), O).unwrap();
+    let parts = [Chain::of_curve(&arc), Chain::of_curve(&ellipse.reversed()).reversed(), Chain::of_curve(&spline)];
+    let chain = Chain::join(&parts, O, &tolerance()).unwrap();
+    for chain in [chain.clone(), chain.reversed()] {
+        let (h, length) = (1e-5, chain.length());
+        for k in 1..60 {
+            let f = f64::from(k) / 60.0;
+            if chain.joints().iter().any(|j| (j - f).abs() <= h) {
+                continue;
+            }
+            let (jet, before, after) = (chain.jet(f), chain.jet(f - h), chain.jet(f + h));
+            assert!((jet.d1.length() / length - 1.0).abs() < 1e-12, "constant speed at {f}");
+            assert!(jet.d1.distance((after.p - before.p) / (2.0 * h)) < 1e-6 * length, "first derivative at {f}");
+            assert!(jet.d2.distance((after.d1 - before.d1) / (2.0 * h)) < 1e-4 * length * length, "second derivative at {f}");
+        }
+        for &joint in &chain.joints()[1..3] {
+            let before = chain.jet(joint - 1e-9);
+            assert!(chain.jet_before(joint).d1.distance(before.d1) < 1e-6 * length);
+        }
+    }
+}
