@@ -19,8 +19,6 @@ pub struct Local {
 pub struct Minimum {
     /// Place in the unit square.
     pub place: (f64, f64),
-    /// Value there.
-    pub value: f64,
 }
 
 /// Steps of one descent.
@@ -61,7 +59,7 @@ pub fn descend(surface: &Surface, start: (f64, f64), f: impl Fn(&Jet2) -> Local)
             }
         }
     }
-    Minimum { place, value: here.value }
+    Minimum { place }
 }
 
 /// Whether a variable may move: not at a border it is pushed against.

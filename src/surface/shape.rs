@@ -16,6 +16,7 @@ use crate::geometry::Motion;
 
 /// The exact shape of a surface over its own u and v.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "one per surface, and that behind an Arc")]
 pub enum Shape {
     /// Blended from a grid of curves.
     Blend(Blend),

@@ -68,21 +68,6 @@ impl Sweep {
         Self { profile, path }
     }
 
-    /// The way it moves.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The profile.
-    pub fn profile(&self) -> Option<&Chain> {
-        self.profile.chain()
-    }
-
-    /// The profile.
-    pub fn rail_mut(&mut self) -> &mut Rail {
-        &mut self.profile
-    }
-
     /// The angle at a parameter; a whole turn comes back to the first column to the last bit.
     fn angle_at(angle: f64, u: f64) -> f64 {
         if u == 1.0 && angle.abs() == std::f64::consts::TAU { 0.0 } else { u * angle }
