@@ -2,7 +2,7 @@
 //! what its comments expect.
 //!
 //! `// => 40mm` after a declaration is its value as text; `// error: E602 "share no node"` (or `warning:`, `note:`) is a
-//! report whose first label stands on that line and whose sentence holds the quoted words. A report that nothing
+//! report with a label on that line whose sentence holds the quoted words. A report that nothing
 //! expects fails, and so does an expectation that nothing meets. A fence ```` ```csv offsets.csv ```` (any word, then a
 //! name) is a file beside the fences that follow it.
 
@@ -12,7 +12,7 @@ use lofting::base::fault::Severity;
 use lofting::base::job::Job;
 use lofting::io::Memory;
 use lofting::lang::cx::Cx;
-use lofting::lang::diag::{Diagnostic, FileId};
+use lofting::lang::diag::{Diagnostic, FileId, Label};
 use lofting::lang::diag_render::render_all;
 use lofting::lang::eval::on_big_stack;
 use lofting::lang::run::Entry;
@@ -80,8 +80,9 @@ fn check(script: &str, files: &Memory) -> Result<(), String> {
                 }
                 Some(Expected::Report { severity, code, words }) => {
                     let fits = |d: &Diagnostic| {
-                        let line = d.labels.first().and_then(|l| cx.sources.place(l.file, l.span.start).filter(|_| l.file == FileId(0)));
-                        d.severity() == severity && d.code.0 == code && d.message.contains(&words) && line.is_some_and(|p| p.line == i + 1)
+                        let on_line =
+                            |l: &Label| l.file == FileId(0) && cx.sources.place(l.file, l.span.start).is_some_and(|p| p.line == i + 1);
+                        d.severity() == severity && d.code.0 == code && d.message.contains(&words) && d.labels.iter().any(on_line)
                     };
                     match (0..found.len()).find(|k| !met[*k] && fits(&found[*k])) {
                         Some(k) => met[k] = true,
@@ -170,7 +171,7 @@ fn the_specification_holds() {
     let mut wrong = Vec::new();
     let n: usize = paths.iter().map(|p| check_file(p, &mut wrong)).sum();
     assert_clean(&wrong);
-    assert!(n > 60, "only {n} blocks were found");
+    assert!(n > 50, "only {n} blocks were found");
 }
 
 #[test]

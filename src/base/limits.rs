@@ -16,6 +16,8 @@ pub const COORDINATE: f64 = 1e50;
 pub const LIST_MEMBERS: usize = 10_000_000;
 /// Elements of one mesh.
 pub const MESH_ELEMENTS: u64 = 100_000_000;
+/// Lists inside each other.
+pub const LIST_NESTING: usize = 1_000;
 /// Evaluation steps of one run.
 pub const EVALUATION_STEPS: u64 = 1_000_000_000;
 /// Reports printed in full in one run.

@@ -43,13 +43,20 @@ impl Cx<'_> {
             Expr::Call { name, name_span, of, args } => self.call(code, id, (*name, *name_span), *of, args),
             Expr::Field { of, name, name_span } => self.field(code, id, *of, (*name, *name_span)),
             Expr::Index { of, index } => self.index(code, id, *of, *index),
-            Expr::List(items) => self.items(code, items).map(Value::list),
+            Expr::List(items) => {
+                let items = self.items(code, items)?;
+                self.shallow(code, id, items)
+            }
             Expr::Comprehension { clauses, body } => {
                 let mut out = Vec::new();
                 self.comprehension(code, id, clauses, *body, &mut out)?;
-                Ok(Value::list(out))
+                self.shallow(code, id, out)
             }
-            Expr::Record(fields) => self.record_literal(code, fields),
+            Expr::Record(fields) => {
+                let record = self.record_literal(code, fields)?;
+                self.shallow(code, id, vec![record.clone()])?;
+                Ok(record)
+            }
             Expr::Within { of, tolerance } => self.within(code, *of, *tolerance).map(|c| Value::Bool(c.holds)),
             Expr::If { condition, then, otherwise } => {
                 let chosen = if self.condition(code, *condition)? { *then } else { *otherwise };
@@ -247,6 +254,20 @@ impl Cx<'_> {
         }
     }
 
+    /// A list, unless lists inside it stand deeper than the limit: what walks them must not overflow the stack.
+    fn shallow(&mut self, code: Code<'_>, id: ExprId, items: Vec<Value>) -> Result<Value, Stop> {
+        let list = Value::list(items);
+        let mut level = inner(&list);
+        for _ in 0..limits::LIST_NESTING {
+            match level.and_then(|values| values.iter().rev().take(INNER_LOOKED_AT).find_map(inner)) {
+                Some(values) => level = Some(values),
+                None => return Ok(list),
+            }
+        }
+        let draft = self.error(code, "E217", "lists inside each other too deep", code.span(id), "one more here");
+        Err(draft.help(format!("the limit is {} lists inside each other", limits::LIST_NESTING)).stop())
+    }
+
     #[cold]
     pub(super) fn too_long(&mut self, code: Code<'_>, id: ExprId, what: &str) -> Stop {
         self.error(code, "E217", format!("{what} has too many members"), code.span(id), "made here")
@@ -297,5 +318,17 @@ impl Cx<'_> {
     /// Model units in one unit of the script: what a bare number is multiplied by where a length is wanted.
     pub(super) fn bare_unit(&self, module: ModuleId) -> f64 {
         units::convert(1.0, self.machine.at(module).unit, self.unit, 1)
+    }
+}
+
+/// Members of a list that are looked at for further lists.
+const INNER_LOOKED_AT: usize = 16;
+
+/// Members of a list, values of a record.
+fn inner(value: &Value) -> Option<&[Value]> {
+    match value {
+        Value::List(items) => Some(items.as_slice()),
+        Value::Record(record) => Some(record.values.as_slice()),
+        _ => None,
     }
 }

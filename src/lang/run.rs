@@ -248,9 +248,7 @@ impl Cx<'_> {
                     diagnostic.notes.push(note);
                 }
             }
-            let same = |d: &Diagnostic| {
-                d.code == diagnostic.code && d.place() == diagnostic.place() && d.labels.first() == diagnostic.labels.first()
-            };
+            let same = |d: &Diagnostic| d.code == diagnostic.code && d.labels == diagnostic.labels;
             match out.iter_mut().rev().take(64).find(|(d, _)| same(d)) {
                 Some(found) => found.1 += 1,
                 None => out.push((diagnostic, 0)),

@@ -36,8 +36,9 @@ fields! {
     fn min_angle(of: Arc<MeshValue>) -> Angle = |cx, of| Ok(Angle(quality(cx, &of)?.min_angle));
     /// The largest corner angle of all elements.
     fn max_angle(of: Arc<MeshValue>) -> Angle = |cx, of| Ok(Angle(quality(cx, &of)?.max_angle));
-    /// Mean quality of the elements, 1 at best: of a triangle twice the ratio of inscribed to circumscribed radius, of a
-    /// quad the least sine of its corners.
+    /// Mean quality of the elements, 1 at best.
+    ///
+    /// Of a triangle twice the ratio of inscribed to circumscribed radius, of a quad the least sine of its corners.
     fn quality(of: Arc<MeshValue>) -> f64 = |cx, of| Ok(quality(cx, &of)?.mean_quality);
     /// The least quality of all elements.
     fn min_quality(of: Arc<MeshValue>) -> f64 = |cx, of| Ok(quality(cx, &of)?.min_quality);
@@ -49,7 +50,9 @@ fields! {
         let mesh = cx.mesh(&of)?;
         mesh.chord_error(&tolerance).map(Length).ok_or_else(|| ValueFault::NoFaces { mesh: mesh.name.clone() }.into())
     };
-    /// Whether a mesh is a closed skin: each edge is used by two faces, in opposite senses.
+    /// Whether a mesh is a closed skin.
+    ///
+    /// Each edge is then used by two faces, in opposite senses.
     fn watertight(of: Arc<MeshValue>) -> bool = |cx, of| Ok(cx.mesh(&of)?.is_watertight());
     /// Lengths of all edges, each once.
     fn edge_lengths(of: Arc<MeshValue>) -> Vec<Length> = |cx, of| Ok(cx.mesh(&of)?.edge_lengths().into_iter().map(Length).collect());

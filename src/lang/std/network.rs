@@ -85,7 +85,7 @@ builtins! {
     /// curve a = circle(center: (0, 0, 0), radius: 1m)
     /// curve b = line((-2m, 0, 0), (2m, 0, 0))
     /// let east = nearest(meet(a, b), (1m, 0, 0))
-    /// let top = nearest(a, (0, 3m, 0)) // => (0, 1000, 0)mm
+    /// let top = nearest(a, (0, 3m, 0)) // => (0mm, 1000mm, 0mm)
     /// ```
     fn nearest(
         /// Points or nodes to choose from, or a curve.

@@ -284,7 +284,7 @@ builtins! {
         x: f64,
     ) -> Angle = |_, x| Ok(Angle(math::atan(x)));
 
-    /// The angle of the point (x, y) seen from the origin, between -180 and 180 degrees.
+    /// Angle of the point (x, y) seen from the origin, -180 to 180 degrees.
     ///
     /// ```loft
     /// let a = atan2(1m, -1m) // => 135deg
@@ -328,7 +328,7 @@ builtins! {
         (_, Some(b)) => Err(outside("base", b, "more than 0 and not 1")),
     };
 
-    /// The ratio of a circle's circumference to its diameter; `pi` alone means the same.
+    /// Circumference of a circle over its diameter; `pi` alone means the same.
     ///
     /// ```loft
     /// let a = pi * 2mm // => 6.283185307179586mm

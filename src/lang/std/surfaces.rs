@@ -137,7 +137,7 @@ builtins! {
         over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method: Method::Composite })
     };
 
-    /// Transfinite surface through a grid of curves: one polynomial blend over the whole grid.
+    /// Transfinite surface through a grid of curves: one blend over the whole grid.
     ///
     /// With more than three curves one way it may swing between them; `coons` does not.
     /// ```loft
