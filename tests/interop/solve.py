@@ -54,6 +54,51 @@ U
 """
 
 
+SHEET = """*INCLUDE, INPUT={deck}
+*MATERIAL, NAME=steel
+*ELASTIC
+2.1e11, 0.3
+*SHELL SECTION, ELSET=left, MATERIAL=steel
+0.1
+*SHELL SECTION, ELSET=right_1, MATERIAL=steel
+0.1
+*SOLID SECTION, ELSET=rim, MATERIAL=steel
+0.01
+*BOUNDARY
+rim_lines, 1, 6
+*STEP
+*STATIC
+*DLOAD
+left, P, 1000.
+s___all, P, 10.
+*NODE PRINT, NSET=corners
+U
+*END STEP
+"""
+
+
+def calculix(folder):
+    """Solves job.inp of a folder; displacements by node."""
+    if shutil.which("ccx") is None:
+        raise RuntimeError("CalculiX (ccx) is not installed")
+    done = subprocess.run(["ccx", "-i", "job"], cwd=folder, capture_output=True, text=True, timeout=300)
+    if done.returncode != 0 or "*ERROR" in done.stdout:
+        raise AssertionError(f"CalculiX ends with {done.returncode}: {done.stdout[-600:]}")
+    return displacements(os.path.join(folder, "job.dat"))
+
+
+def takes_every_set(deck, work):
+    """The sheet of `cargo test --test io`, with shells, trusses and all its sets in use: two corners held, two moved."""
+    folder = os.path.join(work, "solve_" + os.path.basename(deck).replace(".", "_"))
+    os.makedirs(folder, exist_ok=True)
+    shutil.copy(deck, os.path.join(folder, "sheet.inp"))
+    with open(os.path.join(folder, "job.inp"), "w", encoding="ascii") as file:
+        file.write(SHEET.replace("{deck}", "sheet.inp"))
+    moved = [max(map(abs, u)) > 1e-9 for _, u in sorted(calculix(folder).items())]
+    if moved != [False, False, True, True]:
+        raise AssertionError(f"corners that move: {moved}")
+
+
 def node_set(deck, name):
     """Nodes of a set of a deck."""
     nodes, inside = set(), False
@@ -83,8 +128,6 @@ class Case:
         self.deck, self.wrapper, self.wanted = deck, wrapper, wanted
 
     def run(self, run_loft, work):
-        if shutil.which("ccx") is None:
-            raise RuntimeError("CalculiX (ccx) is not installed")
         folder = os.path.join(work, "solve_" + self.name.replace(" ", "_"))
         run_loft(self.model, folder, *self.settings)
         deck = os.path.join(folder, self.deck)
@@ -94,10 +137,7 @@ class Case:
             text = text.replace("{anchor}", str(min(node_set(deck, "crown") & node_set(deck, "diaphragms"))))
         with open(os.path.join(folder, "job.inp"), "w", encoding="ascii") as file:
             file.write(text.replace("{deck}", self.deck))
-        done = subprocess.run(["ccx", "-i", "job"], cwd=folder, capture_output=True, text=True, timeout=300)
-        if done.returncode != 0 or "*ERROR" in done.stdout:
-            raise AssertionError(f"CalculiX ends with {done.returncode}: {done.stdout[-600:]}")
-        sunk = max(-z for _, _, z in displacements(os.path.join(folder, "job.dat")).values())
+        sunk = max(-z for _, _, z in calculix(folder).values())
         if not abs(sunk - self.wanted) <= SHARE * self.wanted:
             raise AssertionError(f"sinks by {sunk:.6g}, expected {self.wanted:.6g}")
 
