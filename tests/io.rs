@@ -177,11 +177,11 @@ fn what_a_format_cannot_hold_is_said() {
     assert_eq!((count("a.vtu", Encoding::Binary), count("a.msh", Encoding::Text), count("a.inp", Encoding::Text)), (0, 0, 0));
 }
 
+/// Sum of the areas of triangles and quads, a quad as its two triangles.
 fn area(mesh: &Mesh) -> f64 {
-    let p = |n: &u32| mesh.nodes[*n as usize];
-    let triangles = mesh.triangles.iter().map(|t| newell(&t.iter().map(p).collect::<Vec<_>>()).length() / 2.0);
-    let quads = mesh.quads.iter().map(|q| newell(&q.iter().map(p).collect::<Vec<_>>()).length() / 2.0);
-    triangles.chain(quads).sum()
+    let half = |[a, b, c]: [u32; 3]| newell(&[a, b, c].map(|n| mesh.nodes[n as usize])).length() / 2.0;
+    let quads = mesh.quads.iter().map(|[a, b, c, d]| half([*a, *b, *c]) + half([*a, *c, *d]));
+    mesh.triangles.iter().map(|t| half(*t)).chain(quads).sum()
 }
 
 #[test]

@@ -38,8 +38,7 @@ ROOF = """*INCLUDE, INPUT={deck}
 4.32e8, 0.
 *DENSITY
 360.
-*SHELL SECTION, ELSET=vault, MATERIAL=concrete
-0.25
+{sections}
 *BOUNDARY
 diaphragms, 1, 1
 diaphragms, 3, 3
@@ -47,7 +46,7 @@ anchor, 2, 2
 *STEP
 *STATIC
 *DLOAD
-vault, GRAV, 1., 0., 0., -1.
+{weights}
 *NODE PRINT, NSET=eaves
 U
 *END STEP
@@ -111,6 +110,13 @@ def node_set(deck, name):
     return nodes
 
 
+def element_sets(deck):
+    """Sets that the element cards of a deck fill, one per surface."""
+    with open(deck, encoding="ascii") as file:
+        cards = [line.strip() for line in file if line.startswith("*ELEMENT")]
+    return sorted({card.rsplit("ELSET=", 1)[1] for card in cards if "ELSET=" in card})
+
+
 def displacements(path):
     """Displacement (x, y, z) by node, from what CalculiX prints."""
     found = {}
@@ -135,6 +141,9 @@ class Case:
         if "{anchor}" in text:
             # One node that keeps the roof from sliding along its axis, where nothing pulls.
             text = text.replace("{anchor}", str(min(node_set(deck, "crown") & node_set(deck, "diaphragms"))))
+            surfaces = element_sets(deck)
+            text = text.replace("{sections}", "\n".join(f"*SHELL SECTION, ELSET={name}, MATERIAL=concrete\n0.25" for name in surfaces))
+            text = text.replace("{weights}", "\n".join(f"{name}, GRAV, 1., 0., 0., -1." for name in surfaces))
         with open(os.path.join(folder, "job.inp"), "w", encoding="ascii") as file:
             file.write(text.replace("{deck}", self.deck))
         sunk = max(-z for _, _, z in calculix(folder).values())
