@@ -79,10 +79,7 @@ impl Files for Memory {
             }
         }
         let name = parts.join("/");
-        if self.lock().contains_key(&name) {
-            return Ok(name);
-        }
-        Err(FileError::Missing { similar: similar(&name, self.lock().keys().map(String::as_str)) })
+        if self.lock().contains_key(&name) { Ok(name) } else { Err(FileError::Missing { similar: Vec::new() }) }
     }
 
     fn read(&self, resolved: &str, limit: u64) -> Result<Vec<u8>, FileError> {
@@ -99,50 +96,16 @@ impl Files for Memory {
     }
 }
 
-/// Up to three of `names` that look like `name`, best first: few letters differ, or the words of the name in another order.
-pub fn similar<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let words = |name: &str| {
-        let mut words: Vec<String> = name.to_lowercase().split(['_', '-', '.', ' ', '/']).map(str::to_owned).collect();
-        words.sort();
-        words
-    };
-    let wanted = words(name);
-    let mut found: Vec<(usize, &str)> = names
-        .filter_map(|other| {
-            let distance = if words(other) == wanted { 1 } else { letters_apart(&name.to_lowercase(), &other.to_lowercase()) };
-            (distance <= 1 + name.chars().count() / 4).then_some((distance, other))
-        })
-        .collect();
-    found.sort();
-    found.into_iter().take(3).map(|(_, name)| name.to_owned()).collect()
-}
-
-/// Letters to insert, drop or change (Levenshtein).
-fn letters_apart(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let change = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn memory_resolves_reads_and_suggests() {
+    fn memory_resolves_reads_and_writes() {
         let files = Memory::new().with("a/main.loft", "x").with("a/data/offsets_bow.csv", "1,2");
         assert_eq!(files.resolve("a/main.loft", "data/../data/offsets_bow.csv").as_deref(), Ok("a/data/offsets_bow.csv"));
         assert_eq!(files.resolve("a/main.loft", "../../x"), Err(FileError::Outside));
-        let missing = FileError::Missing { similar: vec!["a/data/offsets_bow.csv".to_owned()] };
+        let missing = FileError::Missing { similar: Vec::new() };
         assert_eq!(files.resolve("a/main.loft", "data/bow_offsets.csv"), Err(missing));
         assert_eq!(files.read("a/main.loft", 0), Err(FileError::TooLarge(1)));
         assert_eq!(files.write("out", &mut |out| out.write_all(b"123")), Ok(3));

@@ -47,24 +47,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let grid = Grid { deck, mesh, cells: counts.iter().sum::<usize>() + mesh.points.len(), connections };
     let text = deck.is_text(FORMAT.encoding);
 
-    let mut arrays: Vec<(&str, Vec<Array>)> = vec![
-        ("Points", vec![Array::new("Points", "Float64", 3, Content::Points)]),
-        (
-            "Cells",
-            vec![
-                Array::new("connectivity", "Int32", 1, Content::Connectivity),
-                Array::new("offsets", "Int32", 1, Content::Offsets),
-                Array::new("types", "UInt8", 1, Content::Types),
-            ],
-        ),
-    ];
-    let of_sets = |cells: bool| -> Vec<Array> {
-        let chosen = sets.iter().filter(|set| (set.group.dimension() > 0) == cells);
-        chosen.map(|set| Array::new(&set.name, "UInt8", 1, if cells { Content::Cells(set) } else { Content::Nodes(set) })).collect()
-    };
-    arrays.push(("CellData", of_sets(true)));
-    arrays.push(("PointData", of_sets(false)));
-
+    let arrays = arrays(&sets);
     writeln!(out, "<?xml version=\"1.0\"?>\n<!-- made by loft, lengths in {} -->", deck.unit)?;
     writeln!(out, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">")?;
     writeln!(out, "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", mesh.nodes.len(), grid.cells)?;
@@ -104,6 +87,25 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     }
     writeln!(out, "</VTKFile>")?;
     Ok(losses)
+}
+
+/// All arrays by section, in the order of the file.
+fn arrays<'a>(sets: &'a [Set<'a>]) -> Vec<(&'static str, Vec<Array<'a>>)> {
+    let cells = |set: &&Set| set.group.dimension() > 0;
+    let array = |set: &'a Set<'a>, content| Array::new(&set.name, "UInt8", 1, content);
+    vec![
+        ("Points", vec![Array::new("Points", "Float64", 3, Content::Points)]),
+        (
+            "Cells",
+            vec![
+                Array::new("connectivity", "Int32", 1, Content::Connectivity),
+                Array::new("offsets", "Int32", 1, Content::Offsets),
+                Array::new("types", "UInt8", 1, Content::Types),
+            ],
+        ),
+        ("CellData", sets.iter().filter(cells).map(|set| array(set, Content::Cells(set))).collect()),
+        ("PointData", sets.iter().filter(|set| !cells(set)).map(|set| array(set, Content::Nodes(set))).collect()),
+    ]
 }
 
 struct Array<'a> {
