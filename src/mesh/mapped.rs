@@ -71,9 +71,7 @@ impl Frame {
         if self.poles[0] && j == 0 || self.poles[1] && i + 1 == nu {
             // The side a–b or b–c is one point.
             Cell::Triangle(if self.poles[0] && j == 0 { [a, c, d] } else { [a, b, d] })
-        } else if self.poles[2] && j + 1 == nv {
-            Cell::Triangle([a, b, c])
-        } else if self.poles[3] && i == 0 {
+        } else if self.poles[2] && j + 1 == nv || self.poles[3] && i == 0 {
             Cell::Triangle([a, b, c])
         } else {
             Cell::Quad([a, b, c, d])

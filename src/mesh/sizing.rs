@@ -139,10 +139,10 @@ impl Sizing {
                 }
                 let says = [rule.size.is_some(), rule.elements.is_some(), rule.method.is_some()];
                 for (k, key) in ["size", "elements", "method"].into_iter().enumerate() {
-                    if says[k] {
-                        if let Some(old) = last[k].replace(index) {
-                            self.overridden.push((old, index, key));
-                        }
+                    if says[k]
+                        && let Some(old) = last[k].replace(index)
+                    {
+                        self.overridden.push((old, index, key));
                     }
                 }
             }

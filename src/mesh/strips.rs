@@ -327,14 +327,14 @@ impl<'a> Solver<'a> {
         let written = || maps.iter().flat_map(|m| m.keys()).filter_map(|s| self.strips[*s].fixed.map(|f| f.1)).collect();
         let fail = Conflict::ThreeSides { relation, counts, written: written() };
         let total: i64 = sums.iter().sum();
-        for k in 0..3 {
-            if 2 * sums[k] >= total {
+        for (k, sum) in sums.iter().enumerate() {
+            if 2 * sum >= total {
                 let mut net: BTreeMap<usize, i64> = BTreeMap::new();
                 for (o, map) in maps.iter().enumerate() {
                     map.iter().for_each(|(s, c)| *net.entry(*s).or_insert(0) += if o == k { -c } else { *c });
                 }
                 let rising: Vec<(usize, i64)> = net.into_iter().filter(|(_, c)| *c > 0).collect();
-                self.lift(relation, &rising, 2 * sums[k] - total + 1).map_err(|_| fail)?;
+                self.lift(relation, &rising, 2 * sum - total + 1).map_err(|_| fail)?;
                 return Ok(true);
             }
         }

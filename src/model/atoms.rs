@@ -71,6 +71,9 @@ pub struct Part {
     pub rank: u8,
 }
 
+/// An atom with its probes.
+type Known = (usize, [DVec3; 3]);
+
 /// Cuts tracks at each other's ends and at anchors that lie on them, and joins the pieces that lie on each other.
 ///
 /// `anchors` are points that give their place to the junctions they hit: vertices, nodes, declared points.
@@ -90,7 +93,7 @@ pub fn atoms(parts: &[Part], anchors: &[DVec3], tolerance: &Tolerance) -> Atoms 
     }
     let stations = par::map(parts.len(), |n| stations(&parts[n], &junctions, tolerance));
     let mut result = Atoms { junctions, ..Atoms::default() };
-    let mut known: BTreeMap<(usize, usize), Vec<(usize, [DVec3; 3])>> = BTreeMap::new();
+    let mut known: BTreeMap<(usize, usize), Vec<Known>> = BTreeMap::new();
     let mut order: Vec<usize> = (0..parts.len()).collect();
     order.sort_by_key(|n| (parts[*n].rank, *n));
     result.of_track = vec![Vec::new(); parts.len()];

@@ -104,7 +104,7 @@ impl Trace {
             }
             let newton = x - miss / slope;
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if next == x || high - low < f64::EPSILON {
+            if next == x || (high - low).abs() < f64::EPSILON {
                 break;
             }
             x = next;
