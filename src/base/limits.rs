@@ -4,6 +4,8 @@
 pub const NESTED_BRACKETS: usize = 256;
 /// Prefix or right-associative operators in a row.
 pub const OPERATORS_IN_A_ROW: usize = 64;
+/// Operators, fields and indices that hang on each other: how tall the tree of an expression may grow.
+pub const EXPRESSION_HEIGHT: usize = 4_000;
 /// Function calls inside each other.
 pub const CALL_DEPTH: usize = 1_000;
 /// Bytes of one script.

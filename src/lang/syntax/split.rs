@@ -9,7 +9,7 @@ use super::ast::Span;
 use super::mistake::Mistake;
 use super::scan::Tokens;
 use super::token::Kind;
-use crate::base::limits::{NESTED_BRACKETS, OPERATORS_IN_A_ROW};
+use crate::base::limits::{EXPRESSION_HEIGHT, NESTED_BRACKETS, OPERATORS_IN_A_ROW};
 
 /// The tokens of one declaration, or of something that begins like none.
 #[derive(Debug)]
@@ -19,11 +19,15 @@ pub(crate) struct Piece {
     pub broken: bool,
 }
 
-/// An open bracket and how many prefix operators and `if`s wait inside it.
+/// An open bracket, how many prefix operators and `if`s wait inside it, and how tall the trees of its items are: of the
+/// one at hand, and of the tallest one before it.
+#[derive(Default)]
 struct Open {
     token: usize,
     prefixes: usize,
     choices: usize,
+    height: usize,
+    tallest: usize,
 }
 
 struct Splitter<'a> {
@@ -44,7 +48,7 @@ struct Splitter<'a> {
 pub(crate) fn split(tokens: &Tokens) -> (Vec<Piece>, Vec<Mistake>) {
     let mut splitter = Splitter {
         tokens,
-        open: vec![Open { token: 0, prefixes: 0, choices: 0 }],
+        open: vec![Open::default()],
         start: 0,
         broken: false,
         waiting: 0,
@@ -130,7 +134,12 @@ impl Splitter<'_> {
     fn step(&mut self, at: usize) {
         let kind = self.tokens.kinds[at];
         match kind {
+            Kind::OpenSquare if at > self.start && self.tokens.kinds[at - 1].ends_operand() => {
+                self.grow(at, 0);
+                self.enter(at);
+            }
             Kind::OpenRound | Kind::LineRound | Kind::OpenSquare | Kind::LineSquare | Kind::OpenCurly | Kind::TextHead => self.enter(at),
+            Kind::Dot => self.grow(at, 0),
             Kind::CloseRound | Kind::CloseSquare | Kind::CloseCurly | Kind::TextTail => self.leave(at),
             Kind::TextMid => {
                 self.leave(at);
@@ -142,13 +151,16 @@ impl Splitter<'_> {
             Kind::Let if at > self.start => self.wait(at, false),
             Kind::Comma | Kind::Colon => self.rest(true),
             Kind::For => self.rest(true),
-            _ if kind.is_infix() => self.rest(false),
+            _ if kind.is_infix() => {
+                self.grow(at, 0);
+                self.rest(false);
+            }
             _ => {}
         }
     }
 
     fn enter(&mut self, at: usize) {
-        self.open.push(Open { token: at, prefixes: 0, choices: 0 });
+        self.open.push(Open { token: at, ..Open::default() });
         if self.open.len() == NESTED_BRACKETS + 2 {
             self.deep(at, "brackets", NESTED_BRACKETS);
         }
@@ -173,8 +185,19 @@ impl Splitter<'_> {
         self.waiting -= inner.prefixes;
         inner.prefixes = 0;
         if all {
+            inner.tallest = inner.tallest.max(inner.height);
+            inner.height = 0;
             self.waiting -= inner.choices;
             inner.choices = 0;
+        }
+    }
+
+    /// The tree of the item at hand grows by one, and is taller than `inner`, a bracket in it.
+    fn grow(&mut self, at: usize, inner: usize) {
+        let Some(item) = self.open.last_mut() else { return };
+        item.height = (item.height + usize::from(inner == 0)).max(inner);
+        if item.height > EXPRESSION_HEIGHT {
+            self.deep(at, "operators on each other", EXPRESSION_HEIGHT);
         }
     }
 
@@ -186,9 +209,10 @@ impl Splitter<'_> {
         self.broken = true;
     }
 
-    fn pop(&mut self) {
+    fn pop(&mut self, at: usize) {
         if let Some(open) = self.open.pop() {
             self.waiting -= open.prefixes + open.choices;
+            self.grow(at, open.height.max(open.tallest) + 1);
         }
     }
 
@@ -215,7 +239,7 @@ impl Splitter<'_> {
             self.broken = true;
         }
         for _ in 0..=unclosed {
-            self.pop();
+            self.pop(at);
         }
     }
 
@@ -267,7 +291,7 @@ impl Splitter<'_> {
         self.too_deep = false;
         self.waiting = 0;
         self.open.truncate(1);
-        self.open[0] = Open { token: end, prefixes: 0, choices: 0 };
+        self.open[0] = Open { token: end, ..Open::default() };
     }
 }
 
