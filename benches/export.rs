@@ -3,6 +3,8 @@
 //! `cargo bench --bench export -- --once DIR` writes each file once into DIR and prints CPU seconds, as the peers'
 //! script `benches/peers/p7_export.py` does.
 
+#![allow(clippy::print_stdout)]
+
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;

@@ -1,9 +1,12 @@
 //! Files: what is written reads back, what is read is what the file's own facts say, and no bytes break a reader.
 
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use lofting::base::math;
 use lofting::base::origin::Origin;
 use lofting::base::par;
 use lofting::base::triangulate::newell;
@@ -16,7 +19,7 @@ use proptest::prelude::*;
 /// the lower rim as line elements of the curve `rim`; groups of faces, lines and nodes.
 fn sheet(nx: u32, ny: u32, quads: bool, order: u8) -> Mesh {
     let at = |i: u32, j: u32| j * (nx + 1) + i;
-    let point = |x: f64, y: f64| DVec3::new(x, y / 3.0, (x * 0.7).sin() * (y * 0.4).cos());
+    let point = |x: f64, y: f64| DVec3::new(x, y / 3.0, math::sin(x * 0.7) * math::cos(y * 0.4));
     let mut mesh = Mesh { name: "sheet".into(), order, ..Mesh::default() };
     mesh.nodes = (0..=ny).flat_map(|j| (0..=nx).map(move |i| point(f64::from(i), f64::from(j)))).collect();
     mesh.lines = (0..nx).map(|i| [at(i, 0), at(i + 1, 0)]).collect();

@@ -48,7 +48,7 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<[usize; 3]>, PolygonFault> {
     let bounds = Box3::of(points.iter().copied());
     let scaled: Vec<DVec3> = points.iter().map(|p| (*p - bounds.center()) / bounds.diagonal()).collect();
     let normal = newell(&scaled);
-    if points.len() < 3 || !(normal.length() > PARALLEL) {
+    if points.len() < 3 || normal.is_nan() || normal.length() <= PARALLEL {
         return Err(PolygonFault::NoArea);
     }
     if points.len() == 3 {
