@@ -300,25 +300,25 @@ fn zero_dim(ty: Ty) -> Option<Dim> {
 
 /// Types that a value has or has not, without conversion.
 fn plain(ty: Ty, value: &Value) -> bool {
-    match (ty, value) {
+    matches!(
+        (ty, value),
         (Ty::Bool, Value::Bool(_))
-        | (Ty::Text, Value::Text(_))
-        | (Ty::Word, Value::Word(_))
-        | (Ty::Link, Value::Link(..))
-        | (Ty::Edge, Value::Edge(..))
-        | (Ty::Vertex, Value::Vertex(..))
-        | (Ty::Patch, Value::Patch(..))
-        | (Ty::Surface, Value::Surface(_))
-        | (Ty::Shell, Value::Shell(_))
-        | (Ty::Mesh, Value::Mesh(_))
-        | (Ty::Plane, Value::Plane(_))
-        | (Ty::Record, Value::Record(_))
-        | (Ty::Range, Value::Range(..))
-        | (Ty::Table, Value::Table(_))
-        | (Ty::Module, Value::Module(_))
-        | (Ty::Network, Value::Network(_)) => true,
-        _ => false,
-    }
+            | (Ty::Text, Value::Text(_))
+            | (Ty::Word, Value::Word(_))
+            | (Ty::Link, Value::Link(..))
+            | (Ty::Edge, Value::Edge(..))
+            | (Ty::Vertex, Value::Vertex(..))
+            | (Ty::Patch, Value::Patch(..))
+            | (Ty::Surface, Value::Surface(_))
+            | (Ty::Shell, Value::Shell(_))
+            | (Ty::Mesh, Value::Mesh(_))
+            | (Ty::Plane, Value::Plane(_))
+            | (Ty::Record, Value::Record(_))
+            | (Ty::Range, Value::Range(..))
+            | (Ty::Table, Value::Table(_))
+            | (Ty::Module, Value::Module(_))
+            | (Ty::Network, Value::Network(_))
+    )
 }
 
 /// Whether a field of this type's values is meant: the kind decides, without conversion but those of points.

@@ -13,6 +13,9 @@ use super::value::{ModuleId, Value};
 use crate::base::origin::Origin;
 use crate::network::Chain;
 
+/// Makes one member of a family, told its indices.
+type Make<'m, C> = &'m mut dyn FnMut(&mut C, [u32; 2]) -> Result<Value, Stop>;
+
 impl Cx<'_> {
     /// Evaluates a declaration.
     pub(super) fn declare(&mut self, code: Code<'_>, declaration: &Declaration) -> Result<Value, Stop> {
@@ -36,23 +39,11 @@ impl Cx<'_> {
     }
 
     /// Evaluates the members of a family, or the one thing when there is no `for`.
-    pub(super) fn family(
-        &mut self,
-        code: Code<'_>,
-        family: &[For],
-        make: &mut dyn FnMut(&mut Self, [u32; 2]) -> Result<Value, Stop>,
-    ) -> Result<Value, Stop> {
+    pub(super) fn family(&mut self, code: Code<'_>, family: &[For], make: Make<'_, Self>) -> Result<Value, Stop> {
         self.members(code, family, [NO_MEMBER; 2], 0, make)
     }
 
-    fn members(
-        &mut self,
-        code: Code<'_>,
-        family: &[For],
-        member: [u32; 2],
-        level: usize,
-        make: &mut dyn FnMut(&mut Self, [u32; 2]) -> Result<Value, Stop>,
-    ) -> Result<Value, Stop> {
+    fn members(&mut self, code: Code<'_>, family: &[For], member: [u32; 2], level: usize, make: Make<'_, Self>) -> Result<Value, Stop> {
         let Some((f, rest)) = family.split_first() else {
             self.machine.site.member = member;
             return make(self, member);

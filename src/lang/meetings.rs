@@ -16,7 +16,7 @@ pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop
     if !(has_geometry(a) && has_geometry(b)) {
         let found = if has_geometry(a) { cx.kind(b) } else { cx.kind(a) };
         let argument = if has_geometry(a) { "b" } else { "a" };
-        return Err(ValueFault::WrongKind { argument, found, wanted: "a curve".into() }.into());
+        return Err(ValueFault::WrongKind { argument, found, wanted: "a curve" }.into());
     }
     if !(is_curve(a) && is_curve(b)) {
         let what = format!("`&` of {} and {}", cx.kind(a), cx.kind(b));

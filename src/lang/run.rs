@@ -8,7 +8,7 @@ use super::eval::Code;
 use super::module::{State, bound};
 use super::plans::{CheckResult, ExportSpec, ReportTable};
 use super::stages;
-use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword};
+use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword, Node};
 use super::types::Ty;
 use super::units;
 use super::value::{Dim, ModuleId, Value};
@@ -204,20 +204,18 @@ impl Cx<'_> {
         let n = script.declarations.len();
         let mut stale: Vec<bool> = script.declarations.iter().map(|d| d.keyword == Keyword::Curve).collect();
         loop {
-            let before = stale.iter().filter(|s| **s).count();
-            for i in 0..n {
-                stale[i] = stale[i]
-                    || script.declarations[i].nodes.iter().any(|node| match node.expr {
-                        Expr::Name(name) | Expr::Call { name, .. } => self.machine.at(module).find(name).is_some_and(|d| stale[d as usize]),
-                        _ => false,
-                    });
-            }
-            if stale.iter().filter(|s| **s).count() == before {
+            let names_stale = |node: &Node| match node.expr {
+                Expr::Name(name) | Expr::Call { name, .. } => self.machine.at(module).find(name).is_some_and(|d| stale[d as usize]),
+                _ => false,
+            };
+            let next: Vec<bool> = (0..n).map(|i| stale[i] || script.declarations[i].nodes.iter().any(names_stale)).collect();
+            if next == stale {
                 break;
             }
+            stale = next;
         }
-        for i in 0..n {
-            let again = stale[i] && script.declarations[i].keyword != Keyword::Curve;
+        for (i, named) in stale.into_iter().enumerate() {
+            let again = named && script.declarations[i].keyword != Keyword::Curve;
             if again && matches!(self.machine.at(module).states[i], State::Done(_)) {
                 self.machine.at_mut(module).states[i] = State::Waiting;
                 let owner = Some((module, i as u32));

@@ -21,6 +21,11 @@ use crate::network::Network;
 /// Geometry that the network and the surface model are built from.
 const GEOMETRY: &[Keyword] = &[Keyword::Point, Keyword::Curve, Keyword::ModelingCurve, Keyword::Surface];
 
+/// Told declaration, keyword, indices, name and value of each member.
+type Member<'m> = &'m mut dyn FnMut(u32, Keyword, [u32; 2], Arc<str>, &Value);
+/// Declaration, indices, name and value of a member.
+type Found<T> = (u32, [u32; 2], Arc<str>, T);
+
 /// Evaluates all declarations of these keywords; the first that failed is the reason to stop.
 fn all(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<(), Stop> {
     let script = cx.machine.at(module).script.clone();
@@ -59,12 +64,7 @@ fn walk(value: &Value, levels: usize, member: [u32; 2], level: usize, out: &mut 
 }
 
 /// Calls `out` for each evaluated member of each declaration with one of these keywords.
-pub(super) fn each_member(
-    module: &Module,
-    names: &Names,
-    keywords: &[Keyword],
-    out: &mut dyn FnMut(u32, Keyword, [u32; 2], Arc<str>, &Value),
-) {
+pub(super) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], out: Member<'_>) {
     for (i, declaration) in module.script.declarations.iter().enumerate() {
         if !keywords.contains(&declaration.keyword) {
             continue;
@@ -83,7 +83,7 @@ pub(super) fn each_member(
 /// What is evaluated so far of a script's geometry.
 pub(super) fn gather(cx: &mut Cx, module: ModuleId) -> Parts {
     let mut parts = Parts::default();
-    let mut points: Vec<(u32, [u32; 2], Arc<str>, DVec3)> = Vec::new();
+    let mut points: Vec<Found<DVec3>> = Vec::new();
     each_member(cx.machine.at(module), &cx.names, GEOMETRY, &mut |i, keyword, member, name, value| match (keyword, value) {
         (Keyword::Point, Value::Vector(p, _)) => points.push((i, member, name, *p)),
         (Keyword::Curve, Value::Curve(c)) => parts.curves.push(Declared { name, origin: c.origin(), value: c.clone() }),
@@ -112,7 +112,7 @@ pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
 /// The declared groups of a script with what they hold.
 pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
     all(cx, module, &[Keyword::Group])?;
-    let mut found: Vec<(u32, [u32; 2], Arc<str>, Vec<Value>)> = Vec::new();
+    let mut found: Vec<Found<Vec<Value>>> = Vec::new();
     each_member(cx.machine.at(module), &cx.names, &[Keyword::Group], &mut |i, _, member, name, value| {
         if let Value::List(items) = value {
             found.push((i, member, name, items.to_vec()));

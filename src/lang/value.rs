@@ -258,6 +258,11 @@ impl Value {
         }
     }
 
+    /// Whether it is a list, range or row without members.
+    pub fn is_empty(&self) -> bool {
+        self.len() == Some(0)
+    }
+
     /// The member at a place of a list, range or row.
     pub fn item(&self, i: usize) -> Option<Self> {
         match self {

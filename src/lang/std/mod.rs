@@ -141,6 +141,7 @@ macro_rules! builtin_table {
                 default: $crate::optional_default!($($default)?),
             } ),* ],
             call: |cx, args| {
+                #[allow(unused_mut)]
                 let mut args = args.into_iter();
                 $( let $p = $crate::lang::std::take::<$ty>(&mut args)?; )*
                 let _ = args;
