@@ -1,6 +1,6 @@
 //! `loft doc [NAME]`.
 
-use clap::{Arg, ArgMatches};
+use clap::{Arg, ArgAction, ArgMatches};
 
 use super::{Command, Exit, Terminal};
 use crate::session::reference;
@@ -9,11 +9,15 @@ use crate::session::reference;
 pub const COMMAND: Command = Command { name: "doc", about: "The reference of the language", arguments, run };
 
 fn arguments(command: clap::Command) -> clap::Command {
-    command.arg(Arg::new("name").value_name("NAME").help("A word of the language; without one, all words in a line each"))
+    let markdown = Arg::new("markdown").long("markdown").action(ArgAction::SetTrue).conflicts_with("name");
+    command
+        .arg(Arg::new("name").value_name("NAME").help("A word of the language; without one, all words in a line each"))
+        .arg(markdown.help("The whole reference as a Markdown page"))
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     match matches.get_one::<String>("name") {
+        None if matches.get_flag("markdown") => terminal.print(&reference::manual()),
         None => terminal.print(&reference::overview()),
         Some(name) => match reference::entry(name) {
             Ok(text) => terminal.print(&text),

@@ -19,6 +19,7 @@ pub mod nurbs_edit;
 pub mod offset;
 mod offset_build;
 mod pieces;
+mod rebuilt;
 pub mod spline;
 
 pub use build::{Ends, Spline};

@@ -35,11 +35,50 @@ pub fn entry(name: &str) -> Result<String, Vec<&'static str>> {
 /// A word for a terminal.
 fn text_of(builtin: &Builtin) -> String {
     let mut out = format!("{}\n\n", builtin.signature());
-    let indented = builtin.docs.trim().lines().filter(|line| !line.trim_start().starts_with("```"));
-    indented.for_each(|line| out.push_str(&format!("  {}\n", line.trim_end()).replace("  \n", "\n")));
+    for line in builtin.docs.trim().lines().filter(|line| !line.trim_start().starts_with("```")) {
+        let line = format!("  {}", line.strip_prefix(' ').unwrap_or(line));
+        out.push_str(line.trim_end());
+        out.push('\n');
+    }
     for param in builtin.params.iter().filter(|p| !p.docs.trim().is_empty()) {
         let default = param.default.map(|d| format!(" [default: {d}]")).unwrap_or_default();
         out.push_str(&format!("\n  {}: {}\n      {}{default}\n", param.name, param.ty.signature(), param.docs.trim()));
+    }
+    out
+}
+
+/// The reference manual in Markdown: `docs/guide/reference.md`.
+pub fn manual() -> String {
+    let mut out = String::from(
+        "# Reference\n\nEvery function and field of the language, from the declarations that the interpreter uses \
+         (`loft doc --markdown` prints this page).\n\n## Functions\n",
+    );
+    let mut functions: Vec<&Builtin> = builtins().collect();
+    functions.sort_by_key(|b| b.name);
+    functions.iter().for_each(|b| out.push_str(&manual_entry(b)));
+    out.push_str("\n## Fields\n\nWritten `x.name` or `name(x)`.\n\n| field | of | gives | |\n|---|---|---|---|\n");
+    let mut all: Vec<&Builtin> = fields().collect();
+    all.sort_by_key(|b| (b.name, b.params.first().map(|p| p.ty.signature()).unwrap_or_default()));
+    for field in all {
+        let of = field.params.first().map(|p| p.ty.signature()).unwrap_or_default();
+        let cell = |text: &str| text.replace('|', "\\|");
+        let docs: Vec<&str> = field.docs.trim().lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+        let row = format!("| `{}` | {} | {} | {} |\n", field.name, cell(&of), cell(&field.returns.signature()), cell(&docs.join(" ")));
+        out.push_str(&row);
+    }
+    out
+}
+
+fn manual_entry(builtin: &Builtin) -> String {
+    let docs: Vec<&str> = builtin.docs.lines().map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end()).collect();
+    let mut out = format!("\n### `{}`\n\n```text\n{}\n```\n\n{}\n", builtin.name, builtin.signature(), docs.join("\n").trim());
+    let params: Vec<_> = builtin.params.iter().filter(|p| !p.docs.trim().is_empty()).collect();
+    if !params.is_empty() {
+        out.push('\n');
+    }
+    for param in params {
+        let words: Vec<&str> = param.docs.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        out.push_str(&format!("- `{}`: {}\n", param.name, words.join(" ")));
     }
     out
 }

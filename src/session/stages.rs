@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, Say};
+use crate::base::fault::{CurveEnd, Fault, Say};
 use crate::base::origin::Origin;
 use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
 use crate::lang::plans::MeshSpec;
@@ -15,6 +15,7 @@ use crate::model::Model;
 use crate::model::topology::Named;
 use crate::network::chain::same_curve;
 use crate::network::graph::Input;
+use crate::network::snap::{SnapEnd, snap};
 use crate::network::{Chain, Network};
 
 use super::plan;
@@ -57,8 +58,36 @@ impl<'c> Stages<'c> {
 }
 
 impl Pipeline for Stages<'_> {
-    fn snap(&self, _cx: &mut Cx, _parts: &mut Parts, _distance: f64, _origin: Origin) -> Result<(), Stop> {
-        Err(Stop::Bug("snap"))
+    fn snap(&self, cx: &mut Cx, parts: &mut Parts, distance: f64, _origin: Origin) -> Result<(), Stop> {
+        let tolerance = cx.tolerance()?;
+        let (mut ends, mut owners) = (Vec::new(), Vec::new());
+        for (k, declared) in parts.curves.iter().enumerate() {
+            let Some(curve) = declared.value.whole_curve().filter(|c| !c.is_closed(&tolerance)) else { continue };
+            let movable = curve.has_movable_ends(&tolerance);
+            for (last, at) in [(false, curve.start()), (true, curve.end())] {
+                ends.push(SnapEnd { end: CurveEnd { of: declared.origin, last, at }, movable });
+                owners.push(k);
+            }
+        }
+        let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
+        let mut sink = Vec::new();
+        let moves = snap(&ends, &points, distance, &tolerance, &mut sink)?;
+        say_all(cx, &sink);
+        let mut places: Vec<DVec3> = ends.iter().map(|e| e.end.at).collect();
+        let mut moved = vec![false; owners.len()];
+        for m in &moves {
+            places[m.end] = m.to;
+            moved[m.end] = true;
+        }
+        for pair in (0..ends.len()).step_by(2) {
+            if moved[pair] || moved[pair + 1] {
+                let declared = &mut parts.curves[owners[pair]];
+                if let Some(curve) = declared.value.whole_curve() {
+                    declared.value = Chain::of_curve(&curve.with_ends(places[pair], places[pair + 1])?);
+                }
+            }
+        }
+        Ok(())
     }
 
     fn network(&self, cx: &mut Cx, _module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop> {

@@ -33,7 +33,7 @@ check "no slivers": fine.min_angle >= 60deg
 check "nothing lost": fine.area == vault.area within 0.5%
 
 export fine to "model.inp"
-export fine to "model.stl"
+export fine to "model.vtu"
 "#;
 
 /// Name of the script in its folder.

@@ -1,0 +1,380 @@
+//! The commands as a user runs them: transcripts in `tests/cli/*.md`, and runs that write files in folders of their own.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+#[test]
+fn transcripts() {
+    trycmd::TestCases::new().case("tests/cli/*.md");
+}
+
+/// A folder that goes when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("loft-cli-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+    fn with(self, name: &str, text: impl AsRef<[u8]>) -> Self {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+        self
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+    fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+    /// All files below it with their bytes, in order of their paths.
+    fn files(&self) -> Vec<(String, Vec<u8>)> {
+        let mut found = Vec::new();
+        let mut folders = vec![self.0.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap().flatten() {
+                if entry.path().is_dir() {
+                    folders.push(entry.path());
+                } else {
+                    let name = entry.path().strip_prefix(&self.0).unwrap().to_string_lossy().into_owned();
+                    found.push((name, fs::read(entry.path()).unwrap()));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+    fn names(&self) -> Vec<String> {
+        self.files().into_iter().map(|(name, _)| name).collect()
+    }
+    fn loft(&self, arguments: &[&str]) -> Run {
+        run(&self.0, arguments, None)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+struct Run {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+impl Run {
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|e| panic!("{e}\n{}\n{}", self.out, self.err))
+    }
+}
+
+fn run(folder: &Path, arguments: &[&str], input: Option<&[u8]>) -> Run {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_loft"));
+    command.args(arguments).current_dir(folder).env_remove("NO_COLOR");
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    // A program that ends before it has read everything closes the pipe.
+    let _ = child.stdin.take().unwrap().write_all(input.unwrap_or_default());
+    let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Run { status: status.code().unwrap_or(-1), out: text(stdout), err: text(stderr) }
+}
+
+const PLATE: &str = r#"units m
+param width = 4m in 1m to 20m
+param n: count = 4
+curve south = line((0, 0), (width, 0))
+curve east = line((width, 0), (width, 3))
+curve north = line((width, 3), (0, 3))
+curve west = line((0, 3), (0, 0))
+surface plate = coons(south, east, north, west)
+mesh m of plate { elements: quads  size: 1m  on south { count: n } }
+check "area": m.area == plate.area within 1e-9%
+export m to "plate.stl"
+export m to "deck/plate.inp"
+export [for i in 0..2: {i: i, x: i * width}] to "rows.csv"
+export south, east to "edges.obj"
+"#;
+
+/// The curves of figure 2.2 of the 1990 paper with its two surfaces.
+const FIGURE: &str = r#"units m
+curve c1 = line((0, 0, 0), (8, 0, 0))
+curve c2 = line((0, 6, 0), (4, 6, 2))
+curve c3 = line((4, 6, 2), (8, 6, 0))
+curve c4 = line((0, 0, 0), (0, 3, 1.5))
+curve c5 = line((0, 3, 1.5), (0, 6, 0))
+curve c6 = line((8, -6, -3), (8, 3, 1.5))
+curve c7 = line((8, 3, 1.5), (8, 6, 0))
+curve c8 = arc((4, -2, -4), (4, 6, 2), through: (4, 0, 0))
+curve c9 = line((4, -2, -4), (4, -5, -6))
+curve c10 = line((4, -5, -6), (8, -6, -3))
+surface B = transfinite(u: [c1, c2 + c3], v: [c4 + c5, c8[c1..], c6[c1..] + c7])
+surface A = transfinite(u: [c1[c8..], c10], v: [-c8[..c1] + c9, -c6[..c1]])
+check B.at(0.25, 0.25) == (2.0m, 1.336889741548617m, 0.8237571625565923m) within 1e-9m
+check B.at(0.6, 0.9) == (4.8m, 5.349625821917142m, 1.7040216674395747m) within 1e-9m
+check A.at(0.5, 0.75) == (6.0m, -3.90174643594872m, -3.5594976239658127m) within 1e-9m
+"#;
+
+#[test]
+fn the_figure_of_the_paper_has_its_counts() {
+    let folder = Folder::new("figure").with("figure.loft", FIGURE);
+    let run = folder.loft(&["run", "figure.loft", "--json"]);
+    let report = run.json();
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert_eq!(report["network"], serde_json::json!({ "curves": 10, "links": 13, "nodes": 11 }));
+    assert_eq!(report["modeling"].as_array().unwrap().len(), 9);
+    assert_eq!(report["topology"], serde_json::json!({ "patches": 6, "edges": 18, "vertices": 13, "shells": 0 }));
+    assert!(report["checks"].as_array().unwrap().iter().all(|c| c["pass"] == true));
+}
+
+#[test]
+fn a_run_writes_its_files_and_tells_about_them() {
+    let folder = Folder::new("run").with("plate.loft", PLATE);
+    let run = folder.loft(&["run", "plate.loft", "-o", "out"]);
+    assert_eq!((run.status, run.err.as_str()), (0, ""), "{}", run.out);
+    assert_eq!(folder.names(), ["out/deck/plate.inp", "out/edges.obj", "out/plate.stl", "out/rows.csv", "plate.loft"]);
+    assert_eq!(folder.read("out/plate.stl").len(), 84 + 50 * 24);
+    assert_eq!(String::from_utf8(folder.read("out/rows.csv")).unwrap(), "i,x\n0,0m\n1,4m\n");
+    for part in ["4 curves, 4 links, 4 nodes", "plate    coons  quadrilateral", "pass  area", "wrote plate.stl  1.3 kB"] {
+        assert!(run.out.contains(part), "{part} is missing in\n{}", run.out);
+    }
+}
+
+#[test]
+fn outputs_go_beside_the_script_by_default() {
+    let folder = Folder::new("beside").with("models/plate.loft", PLATE);
+    assert_eq!(folder.loft(&["run", "models/plate.loft"]).status, 0);
+    assert!(folder.path("models/plate.stl").exists());
+}
+
+#[test]
+fn check_writes_nothing_but_finds_the_same() {
+    let folder = Folder::new("check").with("plate.loft", PLATE);
+    let (checked, ran) = (folder.loft(&["check", "plate.loft", "--json"]), folder.loft(&["run", "plate.loft", "--json", "-o", "out"]));
+    assert_eq!((checked.status, ran.status), (0, 0));
+    assert_eq!(checked.json()["meshes"], ran.json()["meshes"]);
+    assert_eq!(checked.json()["outputs"], serde_json::json!([]));
+    let bad = folder.with("bad.loft", PLATE.replace("plate.stl", "plate.xyz"));
+    let run = bad.loft(&["check", "plate.loft", "bad.loft"]);
+    assert_eq!(run.status, 1);
+    assert!(run.err.contains("E804"), "{}", run.err);
+    assert!(!bad.path("plate.stl").exists());
+}
+
+#[test]
+fn the_json_report_has_its_keys_in_order() {
+    let folder = Folder::new("json").with("plate.loft", PLATE);
+    let run = folder.loft(&["run", "plate.loft", "--json", "-o", "out"]);
+    let report = run.json();
+    let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ");
+    assert_eq!(
+        keys(&report),
+        "loft model units ok network modeling curves surfaces topology shells meshes checks reports outputs diagnostics timings"
+    );
+    assert_eq!(keys(&report["surfaces"][0]), "name kind flow patches edges vertices area");
+    assert_eq!(
+        keys(&report["meshes"][0]),
+        "name nodes triangles quads order min_angle max_angle mean_quality min_quality max_aspect area chord_error watertight hash groups"
+    );
+    assert_eq!(keys(&report["checks"][0]), "label pass line left right");
+    assert_eq!((report["checks"][0]["line"].as_u64(), report["meshes"][0]["quads"].as_u64()), (Some(10), Some(12)));
+    assert_eq!(report["outputs"][0], serde_json::json!({ "path": "plate.stl", "bytes": 1284 }));
+    assert_eq!(keys(&report["timings"]), "parse evaluate mesh write");
+    assert!(run.out.contains("\"area\": 12,"), "numbers are shortest: {}", run.out);
+}
+
+#[test]
+fn diagnostics_count_characters_from_one() {
+    let folder = Folder::new("places").with("model.loft", "units m\n/* 지붕 */ let a = widht + 1m\n");
+    let run = folder.loft(&["run", "model.loft", "--json"]);
+    assert_eq!(run.status, 1);
+    let label = &run.json()["diagnostics"][0]["labels"][0];
+    assert_eq!((label["file"].as_str(), label["line"].as_u64()), (Some("model.loft"), Some(2)));
+    assert_eq!((label["column"].as_u64(), label["length"].as_u64()), (Some(18), Some(5)), "{label}");
+}
+
+#[test]
+fn params_are_set_from_outside() {
+    let folder = Folder::new("set").with("plate.loft", PLATE);
+    let run = folder.loft(&["run", "plate.loft", "--json", "--set", "width=8m", "--set", "n=8", "-o", "out"]);
+    assert_eq!((run.status, run.json()["surfaces"][0]["area"].as_f64()), (0, Some(24.0)));
+    let far = folder.loft(&["run", "plate.loft", "--set", "width=80m"]);
+    assert_eq!(far.status, 1);
+    assert!(far.err.contains("E218"), "{}", far.err);
+    let unknown = folder.loft(&["run", "plate.loft", "--set", "widht=8m"]);
+    assert!(unknown.err.contains("E219") && unknown.err.contains("width"), "{}", unknown.err);
+    assert_eq!(folder.loft(&["run", "plate.loft", "--set", "width"]).status, 2);
+}
+
+#[test]
+fn a_table_runs_each_row_and_one_failure_stops_no_other() {
+    let table = "name,width,n\nshort,2m,2\nwide,80m,4\n,6m,6\n";
+    let folder = Folder::new("table").with("plate.loft", PLATE).with("sizes.csv", table);
+    let run = folder.loft(&["run", "plate.loft", "--table", "sizes.csv", "-o", "out"]);
+    assert_eq!(run.status, 1);
+    let last: Vec<&str> = run.out.trim_end().lines().rev().take(3).collect();
+    assert!(last[2].starts_with("short  fine") && last[1].starts_with("wide   FAILED") && last[0].starts_with("003    fine"), "{last:?}");
+    let stl: Vec<String> = folder.names().into_iter().filter(|n| n.ends_with(".stl")).collect();
+    assert_eq!(stl, ["out/003/plate.stl", "out/short/plate.stl"]);
+    let cases = folder.loft(&["check", "plate.loft", "--table", "sizes.csv", "--json"]).json();
+    let names: Vec<&str> = cases["cases"].as_array().unwrap().iter().map(|c| c["case"].as_str().unwrap()).collect();
+    assert_eq!((cases["loft"].as_u64(), names), (Some(1), vec!["short", "wide", "003"]));
+    assert_eq!(cases["cases"][0]["surfaces"][0]["area"].as_f64(), Some(6.0));
+}
+
+#[test]
+fn standard_input_is_a_script() {
+    let folder = Folder::new("stdin");
+    let ran = run(&folder.0, &["run", "-", "-o", "out"], Some(PLATE.as_bytes()));
+    assert_eq!(ran.status, 0, "{}", ran.err);
+    assert!(folder.path("out/plate.stl").exists());
+    let broken = run(&folder.0, &["run", "-"], Some(b"curve a = lin((0,0),(1,0))"));
+    assert!(broken.status == 1 && broken.err.contains("<stdin>"), "{}", broken.err);
+}
+
+#[test]
+fn a_failed_run_leaves_old_outputs_whole() {
+    let folder = Folder::new("atomic").with("plate.loft", PLATE);
+    assert_eq!(folder.loft(&["run", "plate.loft"]).status, 0);
+    let before = folder.files();
+    let failing = format!("{}check \"never\": 1 > 2\n", PLATE.replace("width = 4m", "width = 5m"));
+    let folder = folder.with("plate.loft", &failing);
+    let run = folder.loft(&["run", "plate.loft"]);
+    assert_eq!(run.status, 1);
+    assert!(run.err.contains("E901") && run.out.contains("FAIL  never"), "{}{}", run.err, run.out);
+    let outputs = |files: Vec<(String, Vec<u8>)>| files.into_iter().filter(|(n, _)| n != "plate.loft").collect::<Vec<_>>();
+    assert!(outputs(before.clone()) == outputs(folder.files()), "no output changed and nothing was left over");
+    assert_eq!(folder.loft(&["run", "plate.loft", "--keep-going"]).status, 1);
+    assert!(outputs(before) != outputs(folder.files()), "--keep-going writes what is sound");
+}
+
+#[test]
+fn strict_makes_warnings_errors() {
+    let text = PLATE.replace("export m to \"plate.stl\"", "group sides of east, west\nexport m to \"plate.stl\"");
+    let folder = Folder::new("strict").with("plate.loft", text);
+    let run = folder.loft(&["run", "plate.loft", "-o", "a"]);
+    assert!(run.status == 0 && run.err.contains("W806"), "{}", run.err);
+    assert_eq!(folder.loft(&["run", "plate.loft", "-o", "b", "--strict"]).status, 1);
+    assert!(folder.path("a/plate.stl").exists() && !folder.path("b/plate.stl").exists());
+}
+
+#[test]
+fn outputs_and_imports_stay_inside_their_folders() {
+    let outside = Folder::new("outside").with("secret.csv", "x,y\n1,2\n3,4\n");
+    let secret = outside.path("secret.csv");
+    let import = |path: &str| format!("import {path:?} as t\nlet n = len(t.rows)\ncheck n == 2\n");
+    let folder = Folder::new("inside")
+        .with("abs.loft", import(secret.to_str().unwrap()))
+        .with("up.loft", import("../x.csv"))
+        .with("link.loft", import("link.csv"))
+        .with("out.loft", PLATE.replace("plate.stl", "../plate.stl"));
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(&secret, folder.path("link.csv")).unwrap();
+    for script in ["abs.loft", "up.loft", "link.loft", "out.loft"] {
+        let run = folder.loft(&["run", script]);
+        assert_eq!(run.status, 1, "{script}");
+        assert!(run.err.contains("E802"), "{script}: {}", run.err);
+    }
+    assert!(!folder.path("../plate.stl").exists());
+    let allowed = folder.loft(&["run", "link.loft", "--allow", outside.0.to_str().unwrap()]);
+    assert_eq!(allowed.status, 0, "{}", allowed.err);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_linked_folder_is_no_way_out() {
+    let outside = Folder::new("linked");
+    let folder = Folder::new("linking").with("plate.loft", PLATE);
+    std::os::unix::fs::symlink(&outside.0, folder.path("deck")).unwrap();
+    let run = folder.loft(&["run", "plate.loft"]);
+    assert!(run.status == 1 && run.err.contains("E802"), "{}", run.err);
+    assert_eq!(outside.names(), Vec::<String>::new());
+    assert!(!folder.path("plate.stl").exists());
+}
+
+#[test]
+fn a_missing_import_names_what_is_there() {
+    let folder =
+        Folder::new("similar").with("m.loft", "import \"bow_offsets.csv\" as t\nlet n = t.rows\n").with("offsets_bow.csv", "1,2\n");
+    let run = folder.loft(&["run", "m.loft"]);
+    assert!(run.status == 1 && run.err.contains("E801") && run.err.contains("offsets_bow.csv"), "{}", run.err);
+}
+
+#[test]
+fn bytes_do_not_depend_on_threads_or_runs() {
+    let folder = Folder::new("bytes").with("plate.loft", PLATE).with("figure.loft", FIGURE);
+    let outputs = |threads: &str, out: &str| {
+        let run = folder.loft(&["run", "plate.loft", "--threads", threads, "-o", out, "--json"]);
+        let figure = folder.loft(&["run", "figure.loft", "--threads", threads, "--json"]);
+        let without_timings = |run: &Run| run.out.split("\"timings\"").next().unwrap().to_owned();
+        let files: Vec<Vec<u8>> = ["plate.stl", "deck/plate.inp", "edges.obj"].iter().map(|f| folder.read(&format!("{out}/{f}"))).collect();
+        (without_timings(&run), without_timings(&figure), files)
+    };
+    let first = outputs("1", "a");
+    for (threads, out) in [("1", "b"), ("2", "c"), ("8", "d")] {
+        assert!(outputs(threads, out) == first, "{threads} threads");
+    }
+}
+
+#[test]
+fn colours_are_asked_for() {
+    let folder = Folder::new("colour").with("m.loft", "check 1 > 2\n");
+    assert!(!folder.loft(&["run", "m.loft"]).err.contains('\u{1b}'));
+    assert!(folder.loft(&["--color", "always", "run", "m.loft"]).err.contains('\u{1b}'));
+}
+
+#[test]
+fn a_new_model_runs() {
+    let folder = Folder::new("new");
+    assert_eq!(folder.loft(&["new", "hall"]).status, 0);
+    let run = folder.loft(&["run", "hall/model.loft"]);
+    assert_eq!((run.status, run.err.as_str()), (0, ""));
+    assert_eq!(folder.names(), ["hall/model.inp", "hall/model.loft", "hall/model.vtu"]);
+    let again = folder.loft(&["new", "hall"]);
+    assert!(again.status == 1 && again.err.contains("there is a model.loft already"), "{}", again.err);
+}
+
+#[test]
+fn curves_go_to_csv_and_svg() {
+    let text = "curve a = arc((0, 0), (2m, 0), through: (1m, 1m))\nexport a to \"a.csv\" { units: m }\nexport a to \"a.svg\"\n";
+    let folder = Folder::new("curves").with("m.loft", text);
+    let run = folder.loft(&["run", "m.loft"]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    let csv = String::from_utf8(folder.read("a.csv")).unwrap();
+    assert!(csv.starts_with("curve,x [m],y [m],z [m]\na,0,0,0\n") && csv.lines().count() > 30, "{csv}");
+}
+
+#[test]
+fn measured_ends_are_snapped_and_told() {
+    let text = PLATE.replace("curve east = line((width, 0)", "snap 10mm\ncurve east = spline([(width + 4mm, 0), (width, 1)").replace("(width, 3))\n", "(width, 3)])\n");
+    let folder = Folder::new("snap").with("plate.loft", text);
+    let run = folder.loft(&["run", "plate.loft", "-v", "-o", "out"]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert!(run.err.contains("N513") && run.out.contains("4 curves, 4 links, 4 nodes"), "{}{}", run.err, run.out);
+}
+
+#[test]
+fn text_that_is_none_is_told() {
+    let folder = Folder::new("utf8").with("m.loft", [b'l', b'e', b't', 0xFF]);
+    let run = folder.loft(&["run", "m.loft"]);
+    assert!(run.status == 1 && run.err.contains("UTF-8"), "{}", run.err);
+    let missing = folder.loft(&["run", "n.loft"]);
+    assert!(missing.status == 2 && missing.err.contains("there is a \"m.loft\""), "{}", missing.err);
+}
+
+#[test]
+fn the_reference_manual_is_current() {
+    let folder = Folder::new("reference");
+    let manual = folder.loft(&["doc", "--markdown"]).out;
+    let kept = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/reference.md")).unwrap();
+    assert!(manual == kept, "docs/guide/reference.md is not current: loft doc --markdown > docs/guide/reference.md");
+}
