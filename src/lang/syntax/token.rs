@@ -195,30 +195,6 @@ impl Kind {
         self >= Self::Units
     }
 
-    /// Whether an operand can begin with it.
-    pub(crate) fn starts_operand(self) -> bool {
-        matches!(
-            self,
-            Self::Name
-                | Self::Number
-                | Self::Quantity
-                | Self::Text
-                | Self::TextHead
-                | Self::OpenRound
-                | Self::LineRound
-                | Self::OpenSquare
-                | Self::LineSquare
-                | Self::OpenCurly
-                | Self::Minus
-                | Self::Not
-                | Self::If
-                | Self::Let
-                | Self::True
-                | Self::False
-                | Self::None
-        )
-    }
-
     /// Whether an operand can end with it.
     pub(crate) fn ends_operand(self) -> bool {
         matches!(
