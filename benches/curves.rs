@@ -1,6 +1,7 @@
 //! Curves: meetings of many planar curves, and parameters at given arc lengths.
 //!
 //! The same problems are posed to other programs by `benches/peers/curves.py`.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;

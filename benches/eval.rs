@@ -1,4 +1,5 @@
 //! Evaluation: a comprehension that adds numbers, calls of a script's function, many declarations.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lofting::base::job::Job;

@@ -1,4 +1,5 @@
 //! Mapped meshes: a Coons face between two arcs and two splines, as `benches/peers/p1_gmsh.py` meshes it.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;

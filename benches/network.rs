@@ -1,5 +1,6 @@
 //! Networks from curves, counts checked: planar and spatial ones with tens of thousands of crossings, rows of lines,
 //! one curve inserted among five thousand. Beside the peers: `benches/peers/network.py`.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 #[path = "shared/nets.rs"]
 mod nets;

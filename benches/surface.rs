@@ -1,4 +1,5 @@
 //! Rows of points on surfaces: what a mapped mesh asks for.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use std::hint::black_box;
 

@@ -1,6 +1,7 @@
 //! Text to tree: 100 000 points and 100 000 lines of two shapes, and a script where every shape is new.
 //!
 //! The peer is `benches/peers/p6_startup.py`.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use std::fmt::Write as _;
 

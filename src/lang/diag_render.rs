@@ -162,9 +162,12 @@ fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usiz
     text.push_str(&format!("{pad}{}\n", paint.frame("╰────")));
 }
 
+/// From and to within a line, with the words.
+type Mark = (usize, usize, String);
+
 /// The lines that carry labels, in order. A label over several lines marks what it covers of its first one.
 fn rows(source: &SourceFile, labels: &[&Label]) -> Vec<Row> {
-    let mut by_line: Vec<(usize, Vec<(usize, usize, String)>)> = Vec::new();
+    let mut by_line: Vec<(usize, Vec<Mark>)> = Vec::new();
     for label in labels {
         let start = source.boundary(label.span.start) as usize;
         let index = source.place(label.span.start).line - 1;
@@ -234,11 +237,11 @@ fn drawn(row: &Row) -> Vec<String> {
         let Some((_, rest)) = line.split_once(if lines.is_empty() { '│' } else { '·' }) else { break };
         lines.push(rest.strip_prefix(' ').unwrap_or(rest).to_owned());
     }
-    if let [_, marks, label] = lines.as_mut_slice() {
-        if let Some((_, words)) = label.split_once("╰── ") {
-            *marks = format!("{} {words}", marks.trim_end());
-            lines.truncate(2);
-        }
+    if let [_, marks, label] = lines.as_mut_slice()
+        && let Some((_, words)) = label.split_once("╰── ")
+    {
+        *marks = format!("{} {words}", marks.trim_end());
+        lines.truncate(2);
     }
     lines
 }

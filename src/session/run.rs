@@ -103,7 +103,7 @@ impl Run<'_> {
 
     /// No errors so far, under `--strict` no warnings either.
     fn is_sound(&self) -> bool {
-        !self.cx.has_errors() && !(self.task.strict && self.cx.has_warnings()) && self.bug.is_none()
+        !(self.cx.has_errors() || self.task.strict && self.cx.has_warnings() || self.bug.is_some())
     }
 
     /// The result, or `None` when it was reported why there is none.
