@@ -71,8 +71,13 @@ impl Scene {
         Ok(built)
     }
 
-    /// The modeling curve an edge runs along; `None` for an edge that no link carries.
+    /// The modeling curve an edge runs along; `None` for an edge that no chain carries.
     pub fn edge_chain(&self, edge: &Edge, tolerance: &Tolerance) -> Result<Option<Chain>, Stop> {
+        if let EdgeCurve::Run { chain, span } = &edge.curve {
+            let length = chain.length();
+            let whole = span.0 <= tolerance.point && span.1 >= length - tolerance.point;
+            return Ok(Some(if whole { chain.clone() } else { chain.slice(span.0 / length, span.1 / length, tolerance)? }));
+        }
         let EdgeCurve::Links { links, span } = &edge.curve else { return Ok(None) };
         let chains = links.iter().map(|(link, against)| {
             let chain = self.network.link_chain(*link);
