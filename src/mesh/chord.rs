@@ -1,8 +1,8 @@
 //! The distance between mesh and surface, measured at 25 points a triangle.
 //!
 //! The points are those of a triangle divided in six along each side, corners left out. Each has a place on the surface by
-//! linear interpolation of (u, v). What is off along the normal there is nearly the distance; only points that could be
-//! the farthest are followed to their foot.
+//! linear interpolation of (u, v). What is off along the normal there is nearly the distance (the error falls with the
+//! square of the size); of each row the triangles that seem farthest are followed to their feet.
 
 use glam::DVec3;
 
@@ -16,8 +16,10 @@ use crate::surface::Surface;
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
-/// How much farther than the farthest a point must seem to be followed.
-const WORTH: f64 = 1.000_5;
+/// Share of what the farthest triangle of a row seems to be off from which on others are followed too.
+const WORTH: f64 = 0.5;
+/// Triangles of a row that are followed at most.
+const FOLLOWED: usize = 64;
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
 pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
@@ -39,16 +41,15 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
                 Shape::Grid(_) => Vec::new(),
             };
             let ids = ids(shape, frame);
-            let mut best = 0.0;
+            let mut farthest = Vec::new();
             each_cell(shape, |corners| {
                 let halves: &[[usize; 3]] = if corners.len() == 4 { &[[0, 1, 2], [0, 2, 3]] } else { &[[0, 1, 2]] };
                 for half in halves {
                     let c = half.map(|k| corners[k]);
-                    let (places, points) = (c.map(|n| uv[n]), c.map(|n| nodes[ids[n] as usize]));
-                    best = measure_triangle(surface, places, points, best, tolerance);
+                    farthest.push(of_triangle(surface, c.map(|n| uv[n]), c.map(|n| nodes[ids[n] as usize])));
                 }
             });
-            best
+            follow(surface, farthest, tolerance)
         }
     }
 }
@@ -102,8 +103,8 @@ struct GridRow<'a> {
 
 impl GridRow<'_> {
     fn measure(&self, j: usize, nu: usize, triangles: &[[u32; 3]]) -> f64 {
-        let mut best = 0.0;
         let fine = self.fine_points(j, nu);
+        let mut farthest = Vec::with_capacity(2 * nu);
         let mut next = triangles.iter();
         for i in 0..nu {
             let places = [self.grid.uv(i, j), self.grid.uv(i + 1, j), self.grid.uv(i + 1, j + 1), self.grid.uv(i, j + 1)];
@@ -127,13 +128,13 @@ impl GridRow<'_> {
             };
             for half in halves {
                 let cell = Cell { places, points, half: *half };
-                best = match &fine {
-                    Some(fine) if degenerate.is_none() => self.measure_fine(&cell, fine, i, nu, best),
-                    _ => measure_triangle(self.surface, half.map(|k| places[k]), half.map(|k| points[k]), best, self.tolerance),
-                };
+                farthest.push(match &fine {
+                    Some(fine) if degenerate.is_none() => cell.farthest(fine, i, nu),
+                    _ => of_triangle(self.surface, half.map(|k| places[k]), half.map(|k| points[k])),
+                });
             }
         }
-        best
+        follow(self.surface, farthest, self.tolerance)
     }
 
     /// Surface points at sixths of the cells of a row, when they form a tensor grid.
@@ -157,37 +158,52 @@ impl GridRow<'_> {
         self.surface.grid(&us, &vs, &mut points);
         Some(points)
     }
-
-    fn measure_fine(&self, cell: &Cell, fine: &[DVec3], i: usize, nu: usize, mut best: f64) -> f64 {
-        let width = nu * SIX + 1;
-        // Corners of the cell in sixths.
-        let corner = [(0, 0), (SIX, 0), (SIX, SIX), (0, SIX)];
-        let [a, b, c] = cell.half.map(|k| corner[k]);
-        let [pa, pb, pc] = cell.half.map(|k| cell.points[k]);
-        let normal = (pb - pa).cross(pc - pa).normalize_or_zero();
-        for (wa, wb, wc) in weights() {
-            let x = (a.0 * wa + b.0 * wb + c.0 * wc) / SIX;
-            let y = (a.1 * wa + b.1 * wb + c.1 * wc) / SIX;
-            let p = (pa * wa as f64 + pb * wb as f64 + pc * wc as f64) / SIX as f64;
-            let there = fine[y * width + i * SIX + x];
-            let seems = if normal == DVec3::ZERO { p.distance(there) } else { (p - there).dot(normal).abs() };
-            if seems > best * WORTH && seems > self.tolerance.rounding {
-                let (s, t) = (x as f64 / SIX as f64, y as f64 / SIX as f64);
-                let at = |f: &dyn Fn((f64, f64)) -> f64| {
-                    let [q0, q1, _, q3] = cell.places;
-                    f(q0) + (f(q1) - f(q0)) * s + (f(q3) - f(q0)) * t
-                };
-                best = f64::max(best, foot_distance(self.surface, p, (at(&|q| q.0), at(&|q| q.1))));
-            }
-        }
-        best
-    }
 }
 
+/// Half a cell of a grid.
 struct Cell {
     places: [(f64, f64); 4],
     points: [DVec3; 4],
     half: [usize; 3],
+}
+
+impl Cell {
+    /// The farthest of its points by surface points at sixths of the row's cells.
+    fn farthest(&self, fine: &[DVec3], i: usize, nu: usize) -> Seen {
+        let width = nu * SIX + 1;
+        // Corners of the cell in sixths.
+        let corner = [(0, 0), (SIX, 0), (SIX, SIX), (0, SIX)];
+        let [a, b, c] = self.half.map(|k| corner[k]);
+        let [pa, pb, pc] = self.half.map(|k| self.points[k]);
+        let normal = (pb - pa).cross(pc - pa).normalize_or_zero();
+        let mut seen = Seen { seems: -1.0, p: pa, uv: self.places[0] };
+        for (wa, wb, wc) in weights() {
+            let x = (a.0 * wa + b.0 * wb + c.0 * wc) / SIX;
+            let y = (a.1 * wa + b.1 * wb + c.1 * wc) / SIX;
+            let p = (pa * wa as f64 + pb * wb as f64 + pc * wc as f64) / SIX as f64;
+            let seems = off(p, fine[y * width + i * SIX + x], normal);
+            if seems > seen.seems {
+                let (s, t) = (x as f64 / SIX as f64, y as f64 / SIX as f64);
+                let [q0, q1, _, q3] = self.places;
+                let uv = (q0.0 + (q1.0 - q0.0) * s + (q3.0 - q0.0) * t, q0.1 + (q1.1 - q0.1) * s + (q3.1 - q0.1) * t);
+                seen = Seen { seems, p, uv };
+            }
+        }
+        seen
+    }
+}
+
+/// The point of a triangle that seems farthest from the surface: by how much, where, and near which (u, v).
+#[derive(Clone, Copy)]
+struct Seen {
+    seems: f64,
+    p: DVec3,
+    uv: (f64, f64),
+}
+
+/// How far a point is from the surface point beside it, along the normal of its triangle.
+fn off(p: DVec3, there: DVec3, normal: DVec3) -> f64 {
+    if normal == DVec3::ZERO { p.distance(there) } else { (p - there).dot(normal).abs() }
 }
 
 /// The 25 points as weights in sixths.
@@ -195,22 +211,27 @@ fn weights() -> impl Iterator<Item = (usize, usize, usize)> {
     (0..=SIX).flat_map(|b| (0..=SIX - b).map(move |c| (SIX - b - c, b, c))).filter(|(a, b, c)| *a != SIX && *b != SIX && *c != SIX)
 }
 
-fn foot_distance(surface: &Surface, p: DVec3, guess: (f64, f64)) -> f64 {
-    foot::nearest(surface, p, guess, (0.0, 1.0), (0.0, 1.0)).0
-}
-
-/// The farthest of the 25 points of a triangle, or `best` when that is farther.
-fn measure_triangle(surface: &Surface, uv: [(f64, f64); 3], points: [DVec3; 3], mut best: f64, tolerance: &Tolerance) -> f64 {
+/// The farthest of the 25 points of a triangle.
+fn of_triangle(surface: &Surface, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Seen {
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or_zero();
+    let mut seen = Seen { seems: -1.0, p: points[0], uv: uv[0] };
     for (a, b, c) in weights() {
         let w = [a, b, c].map(|n| n as f64 / SIX as f64);
         let at = (uv[0].0 * w[0] + uv[1].0 * w[1] + uv[2].0 * w[2], uv[0].1 * w[0] + uv[1].1 * w[1] + uv[2].1 * w[2]);
         let p = points[0] * w[0] + points[1] * w[1] + points[2] * w[2];
-        let there = surface.point(at.0, at.1);
-        let seems = if normal == DVec3::ZERO { p.distance(there) } else { (p - there).dot(normal).abs() };
-        if seems > best * WORTH && seems > tolerance.rounding {
-            best = f64::max(best, foot_distance(surface, p, at));
+        let seems = off(p, surface.point(at.0, at.1), normal);
+        if seems > seen.seems {
+            seen = Seen { seems, p, uv: at };
         }
     }
-    best
+    seen
+}
+
+/// Follows the triangles that seem farthest to their feet: the distance of the farthest.
+fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
+    farthest.retain(|s| s.seems > tolerance.rounding);
+    farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
+    let least = farthest.first().map_or(0.0, |s| s.seems * WORTH);
+    let worth = farthest.iter().enumerate().take_while(|(k, s)| *k < FOLLOWED && s.seems >= least);
+    worth.fold(0.0, |best, (_, s)| f64::max(best, foot::nearest(surface, s.p, s.uv, (0.0, 1.0), (0.0, 1.0)).0))
 }
