@@ -39,18 +39,19 @@ const DOORS: &[(&str, &[&str])] = &[
 ];
 
 /// What floors 0 to 7 never touch: the disk, the environment, the clock, threads of their own.
-const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "std::thread", "println!", "eprintln!"];
+const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "eprintln!"];
 
-/// Lines a floor may have, tests included; raising one is a change of its own with the reason.
+/// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
+/// fault of the kernel, and `lang` the grammar's tree, the evaluator and all builtins with their documentation.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 3_000),
+    ("base", 4_500),
     ("geometry", 5_500),
     ("network", 3_500),
     ("surface", 5_500),
     ("model", 2_500),
     ("mesh", 6_500),
     ("io", 6_000),
-    ("lang", 11_000),
+    ("lang", 15_000),
     ("session", 3_000),
     ("cli", 3_500),
 ];
@@ -146,7 +147,8 @@ fn lower_floors_do_no_input_or_output() {
     let mut found = Vec::new();
     for source in sources().iter().filter(|s| level(&s.floor).is_some_and(|l| l < 8)) {
         for (number, line) in code_lines(&source.text) {
-            for word in OUTSIDE {
+            let threads = (source.path != "src/base/par.rs").then_some(&"std::thread");
+            for word in OUTSIDE.iter().chain(threads) {
                 if line.contains(word) {
                     found.push(format!("{}:{number}: {word}", source.path));
                 }

@@ -51,3 +51,26 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
     }
     items.chunks_mut(size).enumerate().for_each(|(k, part)| f(k, part));
 }
+
+/// Runs `work` on a thread of its own with a stack of so many bytes; on this one when no thread can be had.
+///
+/// A panic of the work goes on in the caller.
+pub fn on_stack<T: Send>(bytes: usize, work: impl FnOnce() -> T + Send) -> T {
+    let mut work = Some(work);
+    let mut result = None;
+    let started = std::thread::scope(|scope| {
+        let (work, result) = (&mut work, &mut result);
+        let body = move || *result = work.take().map(|w| w());
+        match std::thread::Builder::new().stack_size(bytes).spawn_scoped(scope, body) {
+            Ok(handle) => handle.join(),
+            Err(_) => Ok(()),
+        }
+    });
+    if let Err(panic) = started {
+        std::panic::resume_unwind(panic);
+    }
+    match result {
+        Some(value) => value,
+        None => work.take().expect("the work is taken only by a thread that ran")(),
+    }
+}

@@ -26,23 +26,7 @@ const STACK_BYTES: usize = 1 << 30;
 
 /// Runs `work` on a thread whose stack holds the deepest legal recursion; on this one when no thread can be had.
 pub fn on_big_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let mut work = Some(work);
-    let mut result = None;
-    let started = std::thread::scope(|scope| {
-        let (work, result) = (&mut work, &mut result);
-        let body = move || *result = work.take().map(|w| w());
-        match std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, body) {
-            Ok(handle) => handle.join(),
-            Err(_) => Ok(()),
-        }
-    });
-    if let Err(panic) = started {
-        std::panic::resume_unwind(panic);
-    }
-    match result {
-        Some(value) => value,
-        None => work.take().expect("the work is taken only by a thread that ran")(),
-    }
+    crate::base::par::on_stack(STACK_BYTES, work)
 }
 
 /// Code of one declaration: its arena and where it stands.

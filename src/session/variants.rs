@@ -89,7 +89,7 @@ mod tests {
         let said = |text: &str| rows(text.as_bytes(), &[]).unwrap_err();
         assert_eq!(said("name,n\na/b,1\n"), "line 2: \"a/b\" cannot name an output folder");
         assert_eq!(said("name,n\nA,1\na,2\n"), "line 3: there is a case \"a\" already");
-        assert_eq!(said("n,n\n1,2\n"), "the column \"n\" stands there twice");
+        assert_eq!(said("n,n\n1,2\n"), "line 1: two columns are called `n`: 1 and 2");
         assert_eq!(rows(b"n\n1\n", &[("n".into(), "2".into())]).unwrap_err(), "`n` is set by the table and by --set");
     }
 }
