@@ -68,6 +68,7 @@ pub fn assemble(input: &Input, request: &Request, job: &Job) -> Result<Part> {
         let (counts, strip) = strips::solve(&unknown, &relations.list, MOST).map_err(|c| relations.fault(input, &layout, &sizing, &c))?;
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
+        refuse_too_many(input, &layout, &relations, &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
         let prepared = prepare(input, &layout, &nodes, &relations, &counts)?;
         let mesh = fill(input, &layout, &nodes, &prepared, job)?;
@@ -106,8 +107,8 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
     if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
 }
 
-/// Charts and ids of all faces; checks how many elements there will be.
-fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
+/// E217 before anything is allocated for more elements than a mesh may have.
+fn refuse_too_many(input: &Input, layout: &Layout, relations: &Relations, counts: &[u32]) -> Result<()> {
     let mut total: u64 = 0;
     for (face, rows) in layout.faces.iter().zip(&relations.of_face) {
         let n = |k: usize| u64::from(counts[rows[k]]);
@@ -120,6 +121,11 @@ fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, relations: &Relations,
     if total > MESH_ELEMENTS {
         return Err(faces::too_many(&input.plan.name, total));
     }
+    Ok(())
+}
+
+/// Charts and ids of all faces.
+fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
     let mut prepared = par::try_map(layout.faces.len(), |f| {
         let rows: Vec<u32> = relations.of_face[f].iter().map(|r| counts[*r]).collect();
         faces::prepare(input, layout, nodes, &layout.faces[f], &rows)
