@@ -83,7 +83,15 @@ fn case(model: &Model, disk: &Disk, sets: &[(String, String)], options: &Options
     interrupt::protect(disk.staging());
     let started = Instant::now();
     let clock = move || started.elapsed().as_secs_f64();
-    let task = Task { name: model.name, text: &model.text, sets, strict: options.strict, keep_going: options.keep_going, clock: &clock };
+    let task = Task {
+        name: model.name,
+        text: &model.text,
+        sets,
+        strict: options.strict,
+        keep_going: options.keep_going,
+        full: options.json || options.verbose,
+        clock: &clock,
+    };
     guarded(|| run::run(&task, disk, job))
 }
 

@@ -110,8 +110,12 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance) -> Result<S
     })
 }
 
-/// A mesh: counts, quality and groups.
-pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance) -> MeshRow {
+/// Elements up to which a mesh is measured in all ways for the summary table.
+pub const QUICK_ELEMENTS: usize = 200_000;
+
+/// A mesh: counts, quality and groups; chord error and hash only when `full` or quick.
+pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, full: bool) -> MeshRow {
+    let full = full || mesh.triangles.len() + mesh.quads.len() <= QUICK_ELEMENTS;
     let quality = mesh.quality();
     let degrees = crate::lang::units::degrees;
     let group = |g: &crate::mesh::Group| GroupRow {
@@ -131,9 +135,9 @@ pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance) -> MeshRow {
         min_quality: quality.map(|q| q.min_quality),
         max_aspect: quality.map(|q| q.max_aspect),
         area: quality.map(|q| q.area),
-        chord_error: mesh.chord_error(tolerance),
+        chord_error: if full { mesh.chord_error(tolerance) } else { None },
         watertight: quality.map(|_| mesh.is_watertight()),
-        hash: Some(format!("{:016x}", mesh.hash())),
+        hash: full.then(|| format!("{:016x}", mesh.hash())),
         groups: mesh.groups.iter().map(group).collect(),
     }
 }

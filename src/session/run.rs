@@ -26,6 +26,8 @@ pub struct Task<'a> {
     pub strict: bool,
     /// What is sound is written although something failed.
     pub keep_going: bool,
+    /// Every number of the JSON report; without it the costly ones of meshes over [`collect::QUICK_ELEMENTS`] are left out.
+    pub full: bool,
     /// Seconds since some moment.
     pub clock: &'a (dyn Fn() -> f64 + Sync),
 }
@@ -152,7 +154,7 @@ impl Run<'_> {
         for (name, value) in self.cx.mesh_values() {
             let mesh = self.cx.mesh(&value);
             if let Some(mesh) = self.take(mesh) {
-                self.report.meshes.push(collect::mesh(&name, &mesh, &tolerance));
+                self.report.meshes.push(collect::mesh(&name, &mesh, &tolerance, self.task.full));
             }
         }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();
