@@ -1,6 +1,6 @@
 //! Mass properties: area, volume, centroid and inertia of surfaces and shells, and boxes.
 //!
-//! Everything is an integral over (u, v) to [`MEASURE_ACCURACY`] of the sum of absolute values, split where a surface is
+//! Everything is an integral over (u, v) to `MEASURE_ACCURACY` of the sum of absolute values, split where a surface is
 //! less than analytic; volumes come from the divergence theorem over the faces of a closed shell. A plane is measured
 //! by its boundary, exactly also where its map folds over.
 

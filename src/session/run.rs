@@ -26,7 +26,7 @@ pub struct Task<'a> {
     pub strict: bool,
     /// What is sound is written although something failed.
     pub keep_going: bool,
-    /// Every number of the JSON report; without it the costly ones of meshes over [`collect::QUICK_ELEMENTS`] are left out.
+    /// Every number of the JSON report; without it the costly ones of meshes over 200 000 elements are left out.
     pub full: bool,
     /// Seconds since some moment.
     pub clock: &'a (dyn Fn() -> f64 + Sync),

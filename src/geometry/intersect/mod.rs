@@ -1,7 +1,7 @@
 //! Where curves meet in space.
 //!
-//! [`search`] isolates meetings with guaranteed bounds and settles crossings, [`contact`] works out where curves run
-//! along each other, [`merge`] makes each meeting one hit.
+//! `search` isolates meetings with guaranteed bounds and settles crossings, `contact` works out where curves run
+//! along each other, `merge` makes each meeting one hit.
 
 mod circles;
 mod contact;
