@@ -302,12 +302,25 @@ fn near_misses_are_told_with_their_distance() {
         let curves = [("a", line(p(0., 0., 0.), p(1., y, 0.))), ("b", line(p(1. + gap, -1., 0.), p(1. + gap, 1., 0.)))];
         network_with(inputs(&curves), &[], &tolerance()).1
     };
-    assert_eq!(codes(&miss(5e-5, 0.0)), ["W514"]);
-    assert!(miss(5e-5, 0.0)[0].to_string().contains("misses another by 0.000050"), "{}", miss(5e-5, 0.0)[0]);
-    assert_eq!(codes(&miss(5e-5, 1.0)), ["W514"]);
+    assert_eq!(codes(&miss(5e-6, 0.0)), ["W514"]);
+    assert!(miss(5e-6, 0.0)[0].to_string().contains("misses another by 0.000005"), "{}", miss(5e-6, 0.0)[0]);
+    assert_eq!(codes(&miss(5e-6, 1.0)), ["W514"]);
     assert!(miss(5e-7, 0.0).is_empty());
-    assert!(miss(5e-4, 0.0).is_empty());
-    assert!(miss(-5e-5, 0.0).is_empty(), "an overhang is not a miss");
+    assert!(miss(5e-5, 0.0).is_empty());
+    assert!(miss(-5e-6, 0.0).is_empty(), "an overhang is not a miss");
+}
+
+#[test]
+fn only_free_ends_of_curves_longer_than_the_reach_miss() {
+    let faults = |curves: &[(&str, Curve)]| network_with(inputs(curves), &[], &tolerance()).1;
+    let wall = ("wall", line(p(1. + 5e-6, -1., 0.), p(1. + 5e-6, 1., 0.)));
+    let to_wall = ("a", line(p(0., 0., 0.), p(1., 0., 0.)));
+    assert_eq!(codes(&faults(&[to_wall.clone(), wall.clone()])), ["W514"]);
+    let joined = ("b", line(p(1., 0., 0.), p(0., 1., 0.)));
+    assert!(faults(&[to_wall.clone(), joined, wall.clone()]).is_empty(), "the end is joined to a neighbour");
+    let short = |x: f64| ("b", line(p(1. + 5e-6, x, 0.), p(1. + 5e-6, x + 5e-6, 0.)));
+    assert!(faults(&[to_wall, short(0.0)]).is_empty(), "too short to be missed");
+    assert!(faults(&[short(0.0), ("c", line(p(1. + 1e-5, -1., 0.), p(1. + 1e-5, 1., 0.)))]).is_empty(), "too short to miss");
 }
 
 #[test]

@@ -41,8 +41,8 @@ pub const POLE_REACH: f64 = 1e-6;
 pub const POLE_STEP: f64 = 1e-3;
 /// |U_u × U_v| below this share of the largest |U_u|·|U_v| is singular.
 pub const SINGULAR: f64 = 1e-9;
-/// An end that misses a curve by at most this many tolerances gets a warning.
-pub const NEAR_MISS: f64 = 100.0;
+/// A free end that misses a curve by at most this many tolerances gets a warning.
+pub const NEAR_MISS: f64 = 10.0;
 /// Curvature, as a share of the larger one, that a downhill step assumes where the function bends the other way.
 pub const LEAST_CURVATURE: f64 = 1e-3;
 

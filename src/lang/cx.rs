@@ -166,6 +166,12 @@ impl<'w> Cx<'w> {
         self.sink.push(diagnostic);
     }
 
+    /// Says a note or a warning with a further line.
+    pub fn say_with(&mut self, fault: &Fault, line: String) {
+        let diagnostic = self.diagnose(fault).note(line);
+        self.sink.push(diagnostic);
+    }
+
     /// Counts control points of a surface made without the tolerance into the box that decides its default.
     ///
     /// Curves that builtins return are counted without being asked.

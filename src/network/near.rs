@@ -1,4 +1,7 @@
-//! Near misses: ends that end beside a curve by little more than the tolerance (W514).
+//! Near misses: free ends that end beside a curve by little more than the tolerance (W514).
+//!
+//! An end that meets something at its node is joined: it is free to pass close to others, as neighbours of a dense
+//! polygon do. A curve shorter than the search distance misses nothing and is not missed.
 //!
 //! Curves are cut into stretches whose boxes follow from arc length alone: a stretch of length h between points d
 //! apart stays within √(h² − d²)/2 of their segment. A tree of these boxes leaves few curves to measure.
@@ -19,21 +22,24 @@ const STRETCHES: f64 = 24.0;
 /// Curves handed to a thread at once.
 const CHUNK: usize = 512;
 
-/// W514 for ends that miss a curve by up to [`NEAR_MISS`] tolerances, in order of curves; of one curve when it is given.
+/// W514 for free ends that miss a curve by up to [`NEAR_MISS`] tolerances, in order of curves; of one curve when it is given.
 pub fn near_misses(curves: &[NetCurve], one: Option<usize>, tolerance: &Tolerance) -> Vec<Fault> {
     let reach = NEAR_MISS * tolerance.point;
+    let ends = ends(curves, one, tolerance);
+    if ends.is_empty() {
+        return Vec::new();
+    }
     let size = curves.iter().fold(Box3::EMPTY, |all, c| all.union(c.curve.bbox())).diagonal();
     let chunks = curves.len().div_ceil(CHUNK);
     let range = |i: usize| i * CHUNK..((i + 1) * CHUNK).min(curves.len());
     let stretches = par::map(chunks, |i| {
         let mut found = Vec::with_capacity(CHUNK);
-        for k in range(i) {
+        for k in range(i).filter(|&k| curves[k].curve.length() >= reach) {
             stretches(&curves[k], size, |bbox| found.push((bbox, k)));
         }
         found
     })
     .concat();
-    let ends = ends(curves, one, tolerance);
     let groups: Vec<&[(NodeId, End)]> = ends.chunk_by(|a, b| a.0 == b.0).collect();
     let boxes: Vec<Box3> = groups.iter().map(|group| Box3::of(group.iter().map(|(_, end)| end.at))).collect();
     let tree = BoxTree::build(&stretches.iter().map(|s| s.0).collect::<Vec<_>>());
@@ -93,24 +99,39 @@ struct End {
     at: DVec3,
 }
 
-/// All ends of open curves by node; when one curve is given, those of others too: they may miss it.
+/// All free ends of open curves by node; when one curve is given, those of others too: they may miss it.
 fn ends(curves: &[NetCurve], one: Option<usize>, tolerance: &Tolerance) -> Vec<(NodeId, End)> {
+    let reach = NEAR_MISS * tolerance.point;
     let bbox = one.map(|k| curves[k].curve.bbox());
-    let mut ends: Vec<(NodeId, End)> = Vec::with_capacity(2 * curves.len());
+    let meets = meets(curves);
+    let mut ends: Vec<(NodeId, End)> = Vec::new();
     for (k, net) in curves.iter().enumerate() {
         let (first, last) = (net.nodes[0], net.nodes[net.nodes.len() - 1]);
-        if first == last && net.curve.is_closed(tolerance) {
+        // An end that comes back to its own start is joined to it.
+        if first == last || net.curve.length() < reach {
             continue;
         }
         for (node, last, at) in [(first, false, net.curve.start()), (last, true, net.curve.end())] {
-            let wanted = one == Some(k) || bbox.is_none_or(|bbox| bbox.touches(&Box3::of([at]), NEAR_MISS * tolerance.point));
-            if wanted {
+            let free = meets[node.index()] <= 1;
+            if free && (one == Some(k) || bbox.is_none_or(|bbox| bbox.touches(&Box3::of([at]), reach))) {
                 ends.push((node, End { curve: k, last, at }));
             }
         }
     }
     ends.sort_unstable_by_key(|(node, end)| (*node, end.curve, end.last));
     ends
+}
+
+/// How often curves come to each node.
+fn meets(curves: &[NetCurve]) -> Vec<u32> {
+    let mut meets: Vec<u32> = Vec::new();
+    for node in curves.iter().flat_map(|net| &net.nodes) {
+        if node.index() >= meets.len() {
+            meets.resize(node.index() + 1, 0);
+        }
+        meets[node.index()] += 1;
+    }
+    meets
 }
 
 /// Whether an end of one curve misses another one, and by how much.

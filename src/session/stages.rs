@@ -20,6 +20,9 @@ use crate::network::{Chain, Network};
 
 use super::plan;
 
+/// Reports of one kind that are said in words at most, per stage.
+const SAID: usize = 1000;
+
 /// The pipeline of a session; remembers how things were found and how long meshes took.
 pub struct Stages<'c> {
     clock: &'c (dyn Fn() -> f64 + Sync),
@@ -121,8 +124,30 @@ impl Pipeline for Stages<'_> {
     }
 }
 
+/// Says notes and warnings; of a kind that comes in thousands the first [`SAID`] in words, the rest as a count.
 fn say_all(cx: &mut Cx, sink: &[Fault]) {
-    sink.iter().for_each(|fault| cx.say(fault));
+    let mut kinds: Vec<(&Fault, usize)> = Vec::new();
+    let kind_of: Vec<usize> = sink
+        .iter()
+        .map(|fault| {
+            let kind = kinds.iter().position(|(first, _)| first.same_kind(fault)).unwrap_or(kinds.len());
+            if kind == kinds.len() {
+                kinds.push((fault, 0));
+            }
+            kinds[kind].1 += 1;
+            kind
+        })
+        .collect();
+    let mut said = vec![0; kinds.len()];
+    for (fault, kind) in sink.iter().zip(kind_of) {
+        said[kind] += 1;
+        let rest = kinds[kind].1.saturating_sub(SAID);
+        match said[kind] {
+            SAID if rest > 0 => cx.say_with(fault, format!("and {rest} more of this kind")),
+            n if n <= SAID => cx.say(fault),
+            _ => {}
+        }
+    }
 }
 
 /// Curves found again by their shape: curves that are one share their ends.

@@ -14,6 +14,7 @@ mod surface;
 mod values;
 
 use std::fmt;
+use std::mem::discriminant;
 
 use glam::DVec3;
 
@@ -191,6 +192,22 @@ impl Fault {
     /// Code of `diagnostics.md`.
     pub fn code(&self) -> Code {
         self.describe(&Plain).code
+    }
+
+    /// Whether both are the same variant of one family; told without describing either.
+    pub fn same_kind(&self, other: &Self) -> bool {
+        fn same<T>(a: &T, b: &T) -> bool {
+            discriminant(a) == discriminant(b)
+        }
+        match (self, other) {
+            (Self::Value(a), Self::Value(b)) => same(&**a, &**b),
+            (Self::Curve(a), Self::Curve(b)) => same(&**a, &**b),
+            (Self::Network(a), Self::Network(b)) => same(&**a, &**b),
+            (Self::Surface(a), Self::Surface(b)) => same(&**a, &**b),
+            (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
+            (Self::File(a), Self::File(b)) => same(&**a, &**b),
+            _ => same(self, other),
+        }
     }
 }
 
