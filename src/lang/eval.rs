@@ -84,6 +84,8 @@ pub struct Machine {
     pub(super) running: Vec<(ModuleId, u32)>,
     pub(super) words: Vec<Word>,
     pub(super) steps: u64,
+    /// Members of lists made so far.
+    pub(super) members_made: usize,
     next_look: u64,
     pub(super) depth: u32,
     pub(super) in_within: bool,
@@ -109,6 +111,7 @@ impl Default for Machine {
             running: Vec::new(),
             words: Vec::new(),
             steps: 0,
+            members_made: 0,
             next_look: STEPS_A_LOOK,
             depth: 0,
             in_within: false,

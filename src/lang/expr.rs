@@ -219,6 +219,7 @@ impl Cx<'_> {
                 if out.len() >= limits::LIST_MEMBERS {
                     return Err(self.too_long(code, id, "this list"));
                 }
+                self.made(code, id, 1)?;
                 let value = self.eval(code, body)?;
                 out.push(value);
                 Ok(())
@@ -232,6 +233,7 @@ impl Cx<'_> {
             Some((Clause::For(f), rest)) => {
                 let list = self.list_of(code, f)?;
                 if let (true, Some(n)) = (rest.is_empty(), list.len()) {
+                    self.has_room(code, id, n.saturating_mul(members_of_each(code, body)))?;
                     out.reserve(n.min(limits::LIST_MEMBERS));
                 }
                 self.each(f.name, &list, |cx, _| cx.comprehension(code, id, rest, body, out))
@@ -266,6 +268,27 @@ impl Cx<'_> {
         }
         let draft = self.error(code, "E217", "lists inside each other too deep", code.span(id), "one more here");
         Err(draft.help(format!("the limit is {} lists inside each other", limits::LIST_NESTING)).stop())
+    }
+
+    /// Counts members of lists that are made; fails when a run makes too many.
+    #[inline]
+    pub(super) fn made(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Stop> {
+        self.has_room(code, id, n)?;
+        self.machine.members_made += n;
+        Ok(())
+    }
+
+    /// Fails before `n` more members are made than a run may make.
+    #[inline]
+    fn has_room(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Stop> {
+        if n <= limits::MEMBERS_MADE - self.machine.members_made { Ok(()) } else { Err(self.no_room(code, id)) }
+    }
+
+    #[cold]
+    fn no_room(&mut self, code: Code<'_>, id: ExprId) -> Stop {
+        self.error(code, "E217", "the lists of this run have too many members together", code.span(id), "more than fit")
+            .help("the limit is 5 x 10^7 members in one run")
+            .stop()
     }
 
     #[cold]
@@ -331,4 +354,23 @@ fn inner(value: &Value) -> Option<&[Value]> {
         Value::Record(record) => Some(record.values.as_slice()),
         _ => None,
     }
+}
+
+/// Members that each evaluation of an expression makes, as far as its text tells: those of `[for i in 0..1000: …]`, and 1
+/// for what is not known.
+fn members_of_each(code: Code<'_>, id: ExprId) -> usize {
+    let expr = |id: ExprId| code.nodes.get(id.index()).map(|node| &node.expr);
+    let mut members: usize = 1;
+    let mut body = id;
+    while let Some(Expr::Comprehension { clauses, body: inner }) = expr(body) {
+        for clause in clauses.iter() {
+            let Clause::For(f) = clause else { return members };
+            let Some(Expr::Binary { op: super::syntax::ast::Binary::Run, a: from, b: to, .. }) = expr(f.list) else { return members };
+            let (Some(Expr::Number(from)), Some(Expr::Number(to))) = (expr(*from), expr(*to)) else { return members };
+            // A cast to whole numbers saturates.
+            members = members.saturating_mul((to - from).max(0.0) as usize);
+        }
+        body = *inner;
+    }
+    members
 }

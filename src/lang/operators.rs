@@ -121,6 +121,7 @@ impl Cx<'_> {
                 if a.len() + b.len() > limits::LIST_MEMBERS {
                     return Err(self.too_long(at.code, at.id, "this list"));
                 }
+                self.made(at.code, at.id, a.len() + b.len())?;
                 self.steps(a.len() + b.len())?;
                 Ok(Value::list(a.iter().chain(b.iter()).cloned().collect()))
             }
