@@ -333,6 +333,41 @@ fn bytes_do_not_depend_on_threads_or_runs() {
 }
 
 #[test]
+fn the_examples_give_the_same_bytes_on_any_number_of_threads() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let folder = Folder::new("same");
+    let mut seen = 0;
+    for name in ["barrel_vault", "canopy", "greenhouse", "porch", "tank", "wing"] {
+        let outputs = |threads: &str, out: &str| {
+            let to = folder.path(&format!("{name}/{out}"));
+            let model = format!("{name}.loft");
+            let run = run(&examples, &["run", &model, "--threads", threads, "-o", to.to_str().unwrap(), "--json"], None);
+            assert_eq!(run.status, 0, "{name}: {}", run.err);
+            let files: Vec<_> = folder
+                .files()
+                .into_iter()
+                .filter_map(|(file, bytes)| Some((file.strip_prefix(&format!("{name}/{out}/"))?.to_owned(), bytes)))
+                .collect();
+            (run.out.split("\"timings\"").next().unwrap().replace(&format!("{name}/{out}/"), ""), files)
+        };
+        let first = outputs("1", "a");
+        seen += first.1.len();
+        for (threads, out) in [("1", "b"), ("2", "c"), ("8", "d")] {
+            assert!(outputs(threads, out) == first, "{name} on {threads} threads, run {out}");
+        }
+    }
+    assert!(seen >= 6, "{seen} files");
+}
+
+#[test]
+fn the_flow_that_was_found_is_told() {
+    let folder = Folder::new("flow").with("plate.loft", PLATE).with("figure.loft", FIGURE);
+    let run = folder.loft(&["run", "plate.loft", "-v", "-o", "out"]);
+    assert!(run.err.contains("surface plate: coons, quadrilateral; along u: south, north; along v: west, east\n"), "{}", run.err);
+    assert!(!folder.loft(&["run", "plate.loft", "-o", "out"]).err.contains("along u"));
+}
+
+#[test]
 fn colours_are_asked_for() {
     let folder = Folder::new("colour").with("m.loft", "check 1 > 2\n");
     assert!(!folder.loft(&["run", "m.loft"]).err.contains('\u{1b}'));

@@ -200,3 +200,32 @@ pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> DiagnosticRow {
         labels: found.labels.iter().map(label).collect(),
     }
 }
+
+/// What was found of each surface: its flow, the curves along u and v in order, poles and which way it closes.
+pub fn flows(cx: &Cx, model: &Model) -> Vec<String> {
+    let words = |family: &[Option<&Chain>]| {
+        let word = |chain: &Option<&Chain>| {
+            chain.map_or_else(
+                || "a pole".to_owned(),
+                |c| Some(cx.name(c.origin())).filter(|n| !n.is_empty()).unwrap_or_else(|| "a curve".to_owned()),
+            )
+        };
+        family.iter().map(word).collect::<Vec<_>>().join(", ")
+    };
+    let line = |named: &crate::model::topology::Named| {
+        let surface = &named.surface;
+        let mut parts = vec![surface.flow()];
+        let (along_u, along_v) = surface.families();
+        for (way, family) in [("along u", along_u), ("along v", along_v)] {
+            if !family.is_empty() {
+                parts.push(format!("{way}: {}", words(&family)));
+            }
+        }
+        parts.retain(|part| !part.is_empty());
+        if parts.is_empty() {
+            parts.push("no flow".to_owned());
+        }
+        format!("surface {}: {}, {}", named.name, surface.kind().name(), parts.join("; "))
+    };
+    model.surfaces.iter().map(line).collect()
+}

@@ -62,7 +62,7 @@ impl Outcome {
 /// Runs it.
 pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
     let stages = Stages::new(task.clock);
-    let mut run = Run { cx: Cx::new(disk, &stages, job), task, disk, report: Report::default(), bug: None };
+    let mut run = Run { cx: Cx::new(disk, &stages, job), task, disk, report: Report::default(), bug: None, flows: Vec::new() };
     run.report.loft = VERSION;
     run.report.model = task.name.to_owned();
     match std::str::from_utf8(task.text) {
@@ -82,6 +82,8 @@ struct Run<'r> {
     disk: &'r Disk,
     report: Report,
     bug: Option<&'static str>,
+    /// The flow found for each surface, a line each.
+    flows: Vec<String>,
 }
 
 impl Run<'_> {
@@ -148,6 +150,7 @@ impl Run<'_> {
         let model = self.cx.model(main);
         if let Some(model) = self.take(model) {
             self.report.surfaces = collect::surfaces(&model);
+            self.flows = collect::flows(&self.cx, &model);
             self.report.topology = collect::topology(&model, 0);
         }
         self.shells(&tolerance);
@@ -218,6 +221,14 @@ impl Run<'_> {
         timings.mesh = stages.mesh_seconds();
         timings.evaluate = (timings.evaluate - timings.mesh).max(0.0);
         let sources = std::mem::take(&mut self.cx.sources);
-        Outcome { report: self.report, diagnostics, sources, notes: stages.notes(), tolerance, interrupted, bug }
+        Outcome {
+            report: self.report,
+            diagnostics,
+            sources,
+            notes: self.flows.into_iter().chain(stages.notes()).collect(),
+            tolerance,
+            interrupted,
+            bug,
+        }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::rail::Lean;
+use super::rail::Rail;
 use super::reparam::Map;
 use super::shape::Shape;
 use crate::base::bbox::Box3;
@@ -185,6 +186,16 @@ impl Surface {
     /// Phrase of its flow (math notes §7), for example "quadrilateral"; empty where there is none.
     pub fn flow(&self) -> String {
         self.0.flow.clone()
+    }
+
+    /// The curves that a flow put along u (ascending v) and along v (ascending u), `None` for a pole, in the parameters it
+    /// found; empty for surfaces that no curves were sorted for.
+    pub fn families(&self) -> (Vec<Option<&Chain>>, Vec<Option<&Chain>>) {
+        match &self.0.shape {
+            Shape::Blend(blend) => (blend.along_u().iter().map(Rail::chain).collect(), blend.along_v().iter().map(Rail::chain).collect()),
+            Shape::Trilateral(sides) => sides.families(),
+            _ => (Vec::new(), Vec::new()),
+        }
     }
 
     /// Square, triangle for a uniform trilateral, or a plane without a map.

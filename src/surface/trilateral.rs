@@ -26,6 +26,12 @@ pub struct Trilateral {
 struct Term([DVec3; 6]);
 
 impl Trilateral {
+    /// The side along u, and those along v: u = 0 and the slant.
+    pub fn families(&self) -> (Vec<Option<&crate::network::Chain>>, Vec<Option<&crate::network::Chain>>) {
+        let [bottom, slant, left] = &self.sides;
+        (vec![bottom.chain()], vec![left.chain(), slant.chain()])
+    }
+
     /// From the sides V0→V1, V1→V2 and V0→V2.
     pub fn new(sides: [Rail; 3]) -> Self {
         let end = |k: usize, x: f64| sides[k].point(x);
