@@ -92,14 +92,6 @@ impl Scene {
     }
 }
 
-impl Cx<'_> {
-    /// Whether an entity is construction geometry: made by a `let`.
-    pub fn is_construction(&self, origin: crate::base::origin::Origin) -> bool {
-        let _ = origin;
-        false
-    }
-}
-
 /// Whether two surfaces are one: `Some(false)`, or `Some(true)` when `other` is the other side of it.
 fn side_of(surface: &Surface, other: &Surface) -> Option<bool> {
     if surface.origin() != other.origin() {

@@ -172,8 +172,8 @@ impl Shapes {
     }
 }
 
-/// What goes into the network: declared curves, then nameless ones that declared surfaces stand on, with cuts where
-/// runs of modeling curves end.
+/// What goes into the network: declared curves, then nameless and `let` ones that declared surfaces stand on, with cuts
+/// where runs of modeling curves end. Other `let` curves are construction geometry and stay out.
 fn inputs(cx: &Cx, parts: &Parts) -> Vec<Input> {
     let whole = |c: &crate::lang::cx::Declared<Chain>| {
         let curve = c.value.whole_curve().cloned().or_else(|| c.value.runs().first().map(|run| run.curve.clone()))?;
@@ -194,7 +194,7 @@ fn inputs(cx: &Cx, parts: &Parts) -> Vec<Input> {
             let found = shapes.find(&run.curve, &inputs);
             let index = match found {
                 Some(index) => index,
-                None if !joins || cx.is_construction(run.curve.origin()) => continue,
+                None if !joins => continue,
                 None => {
                     let name = unique(&mut names, cx.name(run.curve.origin()));
                     inputs.push(Input { name, curve: run.curve.clone(), cuts: Vec::new() });
