@@ -57,7 +57,10 @@ impl Model {
             sink.push(SurfaceFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
         }
         let surfaces = request.surfaces.iter().map(|s| (*s, sides[s.index()].unwrap_or(false))).collect();
-        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces, closed: free.is_empty() })
+        let mut free: Vec<_> =
+            free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.atoms[*a].length()))).collect();
+        free.sort_by(|a, b| b.2.total_cmp(&a.2));
+        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces, closed: free.is_empty(), free })
     }
 
     /// Edges of some surfaces, cut into atoms.

@@ -108,6 +108,8 @@ pub struct Shell {
     pub surfaces: Vec<(SurfaceId, bool)>,
     /// No edge is free.
     pub closed: bool,
+    /// Free edges: surface, middle, length; the longest first.
+    pub free: Vec<(SurfaceId, DVec3, f64)>,
 }
 
 /// A named surface of the model.

@@ -47,17 +47,6 @@ pub enum ValueFault {
         /// The surface.
         of: Origin,
     },
-    /// E211: the volume of a shell with free edges.
-    OpenShell {
-        /// The shell.
-        of: Origin,
-        /// How many free edges.
-        edges: usize,
-        /// Their length.
-        length: f64,
-        /// Middle of the longest one.
-        at: DVec3,
-    },
     /// E211: the shape of elements of a mesh that has no known faces.
     NoFaces {
         /// Name of the mesh.
@@ -130,12 +119,6 @@ impl Describe for ValueFault {
                 let message = format!("{} is construction geometry and has no patches", say.quoted(*of, "this surface"));
                 let report = Report::new("E211", message).label(Subject::Call, "asked for here").at(*of, "made here");
                 report.help("bind it with `surface`: then it joins the model")
-            }
-            Self::OpenShell { of, edges, length, at } => {
-                let edges = if *edges == 1 { "1 free edge".to_owned() } else { format!("{edges} free edges") };
-                let message = format!("{} is open and encloses no volume: {edges}, {}", say.quoted(*of, "this shell"), say.length(*length));
-                let report = Report::new("E211", message).label(Subject::Call, "the volume is asked for here");
-                report.note(format!("the longest free edge has its middle at {}", say.point(*at)))
             }
             Self::NoFaces { mesh } => {
                 Report::new("E211", format!("`{mesh}` has no faces on surfaces")).label(Subject::Call, "asked for here")

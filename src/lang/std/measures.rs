@@ -5,12 +5,13 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{Fault, SurfaceFault, ValueFault};
+use crate::base::fault::SurfaceFault;
 use crate::fields;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Area, Point, Volume};
 use crate::lang::value::{MeshValue, ShellValue, Value};
+use crate::model::SurfaceId;
 use crate::model::measure::{self, Solid};
 use crate::network::Chain;
 use crate::surface::Surface;
@@ -25,18 +26,11 @@ fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
 fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
     let (module, tolerance) = (cx.module(), cx.tolerance()?);
     let scene = Scene::of(cx, module, &shell.surfaces)?;
-    let mut said = Vec::new();
-    let built = scene.shell(shell, &tolerance, &mut said)?;
+    let built = scene.shell(shell, &tolerance, &mut Vec::new())?;
     if !built.closed {
-        let open = said.into_iter().find_map(|fault| match fault {
-            Fault::Surface(inner) => match *inner {
-                SurfaceFault::ShellOpen { edges, length, at, .. } => Some((edges, length, at)),
-                _ => None,
-            },
-            _ => None,
-        });
-        let (edges, length, at) = open.unwrap_or((0, 0.0, DVec3::ZERO));
-        return Err(ValueFault::OpenShell { of: shell.origin, edges, length, at }.into());
+        let edge = |(id, at, length): &(SurfaceId, DVec3, f64)| (scene.model.surfaces[id.index()].surface.origin(), *at, *length);
+        let free = built.free.iter().map(edge).collect();
+        return Err(SurfaceFault::ShellNotClosed { shell: shell.origin, wanted: "volume", free }.into());
     }
     let faces: Vec<(Surface, bool)> =
         built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
