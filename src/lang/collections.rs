@@ -80,9 +80,9 @@ impl Cx<'_> {
             let things = gather.take(cx.things(code, things, keyword));
             match keyword {
                 Keyword::Shell => {
-                    let settings = gather.take(cx.settings(code, "shell", settings::SHELL, settings));
+                    gather.take(cx.settings(code, "shell", settings::SHELL, settings));
                     gather.done()?;
-                    let (things, settings) = (things.unwrap_or_default(), settings.unwrap_or_default());
+                    let things = things.unwrap_or_default();
                     let mut surfaces = Vec::with_capacity(things.len());
                     for (thing, _) in things {
                         match thing {
@@ -91,8 +91,7 @@ impl Cx<'_> {
                             _ => return Err(Stop::Bug("a shell of something else")),
                         }
                     }
-                    let snap = said(&settings, "snap", number);
-                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap })))
+                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces })))
                 }
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));

@@ -26,7 +26,7 @@ const FUNCTIONS: &[&str] = &[
     "deviation",
 ];
 
-const SETTINGS: &[&str] = &["min_size", "growth", "smooth"];
+const SETTINGS: &[&str] = &["min_size", "growth", "smooth", "snap"];
 
 const ENDINGS: &[&str] = &["igs", "iges", "stp", "step"];
 
@@ -35,7 +35,7 @@ pub(super) fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name)
 }
 
-/// Whether a later version has a mesh setting of this name.
+/// Whether a later version has a setting of a mesh or shell of this name.
 pub(super) fn is_setting(name: &str) -> bool {
     SETTINGS.contains(&name)
 }

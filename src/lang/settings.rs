@@ -47,8 +47,8 @@ pub const ON: &[Setting] = &[
     Setting { key: "method", docs: "How these faces are meshed.", ty: Ty::Choice(METHODS) },
 ];
 
-/// `shell s of … { … }`.
-pub const SHELL: &[Setting] = &[Setting { key: "snap", docs: "Distance within which edges are glued.", ty: LENGTH }];
+/// `shell s of … { … }`: none in this version; `snap` belongs to faces that come with borders of their own.
+pub const SHELL: &[Setting] = &[];
 
 /// `export x to "…" { … }`.
 pub const EXPORT: &[Setting] = &[

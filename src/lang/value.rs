@@ -135,8 +135,6 @@ pub struct ShellValue {
     pub origin: Origin,
     /// Its surfaces.
     pub surfaces: Vec<Surface>,
-    /// `snap:` distance within which edges are glued, model units.
-    pub snap: Option<(f64, Origin)>,
 }
 
 /// A mesh: of a `mesh` declaration, or data (imported, moved).

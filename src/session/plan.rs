@@ -1,6 +1,6 @@
 //! From what a `mesh` declaration says to a plan for the mesher: values become surfaces, chains and points.
 
-use crate::base::fault::{Fault, Say, ValueFault};
+use crate::base::fault::{Fault, MeshFault, Say, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Stop};
@@ -32,11 +32,13 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     }
     settings(&mut plan, spec);
     for rule in &spec.rules {
+        let first = plan.rules.len();
         for (value, origin) in &rule.things {
             for target in finder.targets(value, *origin)? {
                 plan.rules.push(rule_on(rule, target));
             }
         }
+        idle_settings(rule, &plan.rules[first..], sink);
     }
     for group in &cx.groups(module)? {
         let mut members = Vec::new();
@@ -59,6 +61,27 @@ fn settings(plan: &mut Plan, spec: &MeshSpec) {
     plan.order = spec.order.map_or(1, |said| said.0);
     plan.method = spec.method.map_or(Method::Auto, |said| said.0);
     plan.conforming = spec.conforming.is_none_or(|said| said.0);
+}
+
+/// W701 for settings that say nothing about what their rule speaks of: steps of a face, elements of a curve.
+fn idle_settings(spec: &RuleSpec, rules: &[Rule], sink: &mut Vec<Fault>) {
+    let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_)));
+    let curves = rules.iter().any(|rule| matches!(rule.target, Target::Chain(_)));
+    let of_curves = [("count", spec.count.map(|s| s.1)), ("bias", spec.bias.map(|s| s.1))];
+    let of_faces = [("elements", spec.elements.map(|s| s.1)), ("method", spec.method.map(|s| s.1))];
+    let mut idle = |settings: [(&str, Option<Origin>); 2], what: &str| {
+        for (key, rule) in settings {
+            if let Some(rule) = rule {
+                sink.push(MeshFault::RuleUnused { rule, why: format!("`{key}` is for {what}, and there is none here") }.into());
+            }
+        }
+    };
+    if faces && !curves {
+        idle(of_curves, "curves");
+    }
+    if curves && !faces {
+        idle(of_faces, "faces");
+    }
 }
 
 fn rule_on(spec: &RuleSpec, target: Target) -> Rule {
