@@ -63,7 +63,11 @@ fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Model<
         Some(path) => read_limited(path, limits::SOURCE_BYTES + 1),
         None => read_stream(std::io::stdin().lock(), limits::SOURCE_BYTES + 1),
     };
-    let text = text.map_err(cannot)?;
+    let text = match text {
+        // The parser has the words for a script that is too large (E110), and looks at its size only.
+        Err(FileError::TooLarge(bytes)) => vec![b'\n'; bytes.min(limits::DATA_BYTES) as usize],
+        other => other.map_err(cannot)?,
+    };
     let disk = Disk::new(path, options.out.as_deref(), &options.allow, outputs).map_err(|error| error.to_string())?;
     Ok(Model { name, text, disk })
 }

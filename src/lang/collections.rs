@@ -239,7 +239,7 @@ impl Cx<'_> {
 
     #[cold]
     fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Stop {
-        if word == "mesh" && later::is_setting(key) {
+        if later::is_setting(word, key) {
             return self.not_yet(code, &format!("`{key}`"), span);
         }
         let near = nearest(key, table.iter().map(|s| s.key)).map(str::to_owned);

@@ -26,7 +26,7 @@ const FUNCTIONS: &[&str] = &[
     "deviation",
 ];
 
-const SETTINGS: &[&str] = &["min_size", "growth", "smooth", "snap"];
+const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];
 
 const ENDINGS: &[&str] = &["igs", "iges", "stp", "step"];
 
@@ -35,9 +35,9 @@ pub(super) fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name)
 }
 
-/// Whether a later version has a setting of a mesh or shell of this name.
-pub(super) fn is_setting(name: &str) -> bool {
-    SETTINGS.contains(&name)
+/// Whether a later version has a setting of this name for what the word declares.
+pub(super) fn is_setting(word: &str, name: &str) -> bool {
+    SETTINGS.contains(&(word, name))
 }
 
 /// Whether a later version reads files with this ending.
