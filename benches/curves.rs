@@ -9,38 +9,13 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::{Curve, Ends, Hit, Spline, build, intersect};
 
-/// Reproducible numbers in [0, 1).
-struct Lcg(u64);
+#[allow(dead_code, reason = "the benchmark of networks uses the rest")]
+#[path = "shared/nets.rs"]
+mod nets;
 
-impl Lcg {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// Lines, arcs and cubic Bézier curves across a square of side 100, in turn from side to side and from bottom to top.
+/// The curves of the planar network.
 fn planar(count: usize) -> Vec<Curve> {
-    let mut random = Lcg(7);
-    (0..count)
-        .map(|k| {
-            let (a, b) = (100.0 * random.next(), 100.0 * random.next());
-            let (c, d) = (16.0 * random.next() - 8.0, 16.0 * random.next() - 8.0);
-            let at = |s: f64, t: f64| if (k / 3) % 2 == 0 { DVec3::new(s, t, 0.0) } else { DVec3::new(t, s, 0.0) };
-            match k % 3 {
-                0 => build::line(at(0.0, a), at(100.0, b), Origin::NONE),
-                1 => {
-                    let rise = c + if c >= 0.0 { 1.0 } else { -1.0 };
-                    build::arc_through(at(0.0, a), at(100.0, b), at(50.0, 0.5 * (a + b) + rise), Origin::NONE)
-                }
-                _ => {
-                    let poles = [at(0.0, a), at(33.0, a + (b - a) / 3.0 + 2.0 * c), at(66.0, b - (b - a) / 3.0 + 2.0 * d), at(100.0, b)];
-                    build::bezier(&poles, None, Origin::NONE)
-                }
-            }
-            .expect("the generator makes sound curves")
-        })
-        .collect()
+    nets::planar(count).into_iter().map(|input| input.curve).collect()
 }
 
 fn meetings(curves: &[Curve], tolerance: &Tolerance) -> usize {

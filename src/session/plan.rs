@@ -27,14 +27,14 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let finder = Finder { scene: &scene, tolerance };
     let mut plan = Plan::of(&spec.name, Vec::new());
     plan.origin = spec.origin;
-    for (value, origin) in &spec.things {
-        finder.add(cx, &mut plan, value, *origin, sink)?;
+    for (value, _) in &spec.things {
+        finder.add(cx, &mut plan, value, sink)?;
     }
     settings(&mut plan, spec);
     for rule in &spec.rules {
         let first = plan.rules.len();
-        for (value, origin) in &rule.things {
-            for target in finder.targets(value, *origin)? {
+        for (value, _) in &rule.things {
+            for target in finder.targets(value)? {
                 plan.rules.push(rule_on(rule, target));
             }
         }
@@ -45,7 +45,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         for value in &group.value {
             // What the mesh does not hold is no part of its groups.
             if surfaces_of(value).iter().all(|s| scene.find(s).is_some()) {
-                members.extend(finder.targets(value, group.origin)?);
+                members.extend(finder.targets(value)?);
             }
         }
         plan.groups.push(GroupRequest { name: group.name.to_string(), members });
@@ -100,7 +100,7 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 
 impl Finder<'_> {
     /// Adds a thing of the `of` list.
-    fn add(&self, cx: &Cx, plan: &mut Plan, value: &Value, origin: Origin, sink: &mut Vec<Fault>) -> Result<(), Stop> {
+    fn add(&self, cx: &Cx, plan: &mut Plan, value: &Value, sink: &mut Vec<Fault>) -> Result<(), Stop> {
         match value {
             Value::Surface(surface) => plan.surfaces.extend(self.scene.find_all([surface])?),
             Value::Shell(shell) => {
@@ -112,7 +112,7 @@ impl Finder<'_> {
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),
             Value::Node(p) | Value::Vector(p, _) => plan.points.push(*p),
             Value::Link(..) | Value::Edge(..) | Value::Vertex(..) => {
-                for target in self.targets(value, origin)? {
+                for target in self.targets(value)? {
                     match target {
                         Target::Chain(chain) => plan.curves.push((cx.name(chain.origin()), chain)),
                         Target::Point(p) => plan.points.push(p),
@@ -126,8 +126,7 @@ impl Finder<'_> {
     }
 
     /// What a rule or a group speaks of.
-    fn targets(&self, value: &Value, origin: Origin) -> Result<Vec<Target>, Stop> {
-        let _ = origin;
+    fn targets(&self, value: &Value) -> Result<Vec<Target>, Stop> {
         Ok(match value {
             Value::Surface(surface) => self.scene.find_all([surface])?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
             Value::Shell(shell) => self.scene.find_all(&shell.surfaces)?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
