@@ -367,6 +367,29 @@ fn the_flow_that_was_found_is_told() {
     assert!(!folder.loft(&["run", "plate.loft", "-o", "out"]).err.contains("along u"));
 }
 
+/// Near misses by the thousand: of each kind the first 1000 are told one by one, and text and JSON count the rest exactly.
+#[test]
+fn thousands_of_warnings_are_counted_to_the_last() {
+    const PAIRS: usize = 1300;
+    let pair = |i: usize| format!("curve a{i} = line(({i}, 0), ({i}, 1))\ncurve b{i} = line(({i}, 1.002), ({i}, 2))\n");
+    let apart: String = (0..PAIRS).map(pair).collect();
+    let family = format!("curve a for i in 0..{PAIRS} = line((i, 0), (i, 1))\ncurve b for i in 0..{PAIRS} = line((i, 1.002), (i, 2))\n");
+    let head = "units m\ntolerance 1mm\n";
+    let folder = Folder::new("warnings").with("apart.loft", format!("{head}{apart}")).with("family.loft", format!("{head}{family}"));
+    for script in ["apart.loft", "family.loft"] {
+        let report = folder.loft(&["check", script, "--json"]).json();
+        let said = report["diagnostics"].as_array().unwrap();
+        let more: usize =
+            said.iter().filter_map(|row| row["message"].as_str()?.split_once(" more like this one")?.0.parse::<usize>().ok()).sum();
+        let told = said.iter().filter(|row| !row["message"].as_str().unwrap().contains(" more like this one")).count();
+        assert!(said.iter().all(|row| row["code"] == "W514"), "{said:?}");
+        assert_eq!((said.len(), told + more), (1001, PAIRS), "{script}");
+        let run = folder.loft(&["check", script]);
+        let last = run.err.trim_end().lines().last().unwrap_or("").to_owned();
+        assert_eq!(last, format!("… and {} more warnings", PAIRS - 20), "{script}");
+    }
+}
+
 #[test]
 fn colours_are_asked_for() {
     let folder = Folder::new("colour").with("m.loft", "check 1 > 2\n");

@@ -24,5 +24,7 @@ pub const MESH_ELEMENTS: u64 = 100_000_000;
 pub const LIST_NESTING: usize = 1_000;
 /// Evaluation steps of one run.
 pub const EVALUATION_STEPS: u64 = 1_000_000_000;
+/// Reports of one code that one declaration or stage says one by one; further ones are counted.
+pub const REPORTS_OF_A_KIND: usize = 1_000;
 /// Reports printed in full in one run.
 pub const REPORTS_SHOWN: usize = 20;

@@ -209,7 +209,7 @@ pub fn cases(cases: &Cases, color: bool) -> String {
     let mut grid = Grid::new(&["case", "result", ">checks", ">failed", ">errors", ">warnings", ">nodes", ">elements", ">area", ">outputs"]);
     for case in &cases.cases {
         let report = &case.report;
-        let said = |severity: &str| report.diagnostics.iter().filter(|d| d.severity == severity).count();
+        let said = |severity: &str| report.diagnostics.iter().filter(|d| d.severity == severity).map(|d| d.count).sum();
         let nonzero = |n: usize| if n == 0 { String::new() } else { n.to_string() };
         let areas: Vec<f64> = report.surfaces.iter().filter_map(|s| s.area).collect();
         let area = (!areas.is_empty()).then(|| areas.iter().sum());

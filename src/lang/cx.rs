@@ -14,6 +14,7 @@ use super::value::{MeshValue, ModuleId, Record, ShellValue, Value};
 use crate::base::bbox::Box3;
 use crate::base::fault::Fault;
 use crate::base::job::Job;
+use crate::base::limits::REPORTS_OF_A_KIND;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::io::Files;
@@ -21,6 +22,9 @@ use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
+
+/// Reports back to which a new one is looked for, so that equal ones are counted.
+pub(super) const SAID_JUST_NOW: usize = 64;
 
 /// Why an evaluation gives no value.
 #[derive(Clone, Debug)]
@@ -162,14 +166,27 @@ impl<'w> Cx<'w> {
 
     /// Says a note or a warning; the letter of the code decides which.
     pub fn say(&mut self, fault: &Fault) {
-        let diagnostic = self.diagnose(fault);
-        self.sink.push(diagnostic);
+        self.say_counted(fault, 0);
     }
 
-    /// Says a note or a warning with a further line.
-    pub fn say_with(&mut self, fault: &Fault, line: String) {
-        let diagnostic = self.diagnose(fault).note(line);
-        self.sink.push(diagnostic);
+    /// Says a note or a warning that stands for `more` further ones. What was said just before is counted, not kept, so that
+    /// a loop that says the same a million times holds one report; of one code a thousand are kept at most.
+    pub fn say_counted(&mut self, fault: &Fault, more: usize) {
+        let mut diagnostic = self.diagnose(fault);
+        diagnostic.more = more;
+        match self.sink.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
+            Some(found) => found.more += 1 + more,
+            None => self.keep(diagnostic),
+        }
+    }
+
+    fn keep(&mut self, diagnostic: Diagnostic) {
+        let of_this = |d: &&mut Diagnostic| d.code == diagnostic.code;
+        let kept = if self.sink.len() < REPORTS_OF_A_KIND { 0 } else { self.sink.iter_mut().filter(of_this).count() };
+        match self.sink.iter_mut().rev().find(of_this) {
+            Some(last) if kept >= REPORTS_OF_A_KIND => last.more += 1 + diagnostic.more,
+            _ => self.sink.push(diagnostic),
+        }
     }
 
     /// Counts control points of a surface made without the tolerance into the box that decides its default.

@@ -34,6 +34,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Further lines: call chain, what was not built.
     pub notes: Vec<String>,
+    /// How many further reports like it this one stands for.
+    pub more: usize,
 }
 
 impl Diagnostic {
@@ -45,12 +47,13 @@ impl Diagnostic {
             labels: vec![Label { file, span, text: label.into() }],
             help: None,
             notes: Vec::new(),
+            more: 0,
         }
     }
 
     /// A report that no place in a script belongs to.
     pub fn without_place(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new() }
+        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), more: 0 }
     }
 
     /// The one bridge from the kernel: `find` turns subjects into places, `say` speaks of entities and quantities as
@@ -74,7 +77,7 @@ impl Diagnostic {
         if labels.is_empty() {
             labels.extend(find(Subject::Call).map(|(file, span)| Label { file, span, text: "here".to_owned() }));
         }
-        Self { code, message, labels, help, notes }
+        Self { code, message, labels, help, notes, more: 0 }
     }
 
     /// With one more label.
@@ -93,6 +96,11 @@ impl Diagnostic {
     pub fn note(mut self, text: impl Into<String>) -> Self {
         self.notes.push(text.into());
         self
+    }
+
+    /// Whether it says the same as another: one code, one set of places. Numbers in the words may differ.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.code == other.code && self.labels == other.labels
     }
 
     /// How bad it is.

@@ -61,7 +61,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, colours: bool) -> Stri
 /// `2 errors, 1 warning` of several reports.
 fn counted(found: &[&Diagnostic]) -> String {
     let count = |severity, one: &str| {
-        let n = found.iter().filter(|d| d.severity() == severity).count();
+        let n: usize = found.iter().filter(|d| d.severity() == severity).map(|d| 1 + d.more).sum();
         (n > 0).then(|| format!("{n} more {one}{}", if n == 1 { "" } else { "s" }))
     };
     let parts = [count(Severity::Error, "error"), count(Severity::Warning, "warning"), count(Severity::Note, "note")];
@@ -89,6 +89,10 @@ fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, 
     for note in &diagnostic.notes {
         tail(&mut text, &paint.word("note:"), note);
     }
+    let more = diagnostic.more + same.iter().map(|d| 1 + d.more).sum::<usize>();
+    if same.is_empty() && more > 0 {
+        tail(&mut text, &paint.word("note:"), &format!("and {more} more like this one"));
+    }
     if !same.is_empty() {
         let mut places: Vec<String> = Vec::new();
         for other in same.iter().take(8) {
@@ -96,10 +100,10 @@ fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, 
             let place = label.and_then(|l| Some((sources.get(l.file)?, sources.place(l.file, l.span.start)?)));
             places.extend(place.map(|(file, p)| format!("{}:{}:{}", file.name, p.line, p.column)));
         }
-        let more = if same.len() > 8 { ", …" } else { "" };
-        let times = if same.len() == 1 { "once more".to_owned() } else { format!("{} times more", same.len()) };
+        let etc = if more > 8 { ", …" } else { "" };
+        let times = if more == 1 { "once more".to_owned() } else { format!("{more} times more") };
         let colon = if places.is_empty() { "" } else { ": " };
-        tail(&mut text, &paint.word("note:"), &format!("the same {times}{colon}{}{more}", places.join(", ")));
+        tail(&mut text, &paint.word("note:"), &format!("the same {times}{colon}{}{etc}", places.join(", ")));
     }
     text
 }
@@ -405,6 +409,22 @@ E101 × this `(` is never closed
         assert!(shown.contains("  note: the same once more: hall.loft:2:1\n"));
         let found: Vec<Diagnostic> = (0..25).map(|n| one(n, format!("message {n}"))).collect();
         assert!(render_all(&found, &sources(&text), false).ends_with("\n… and 5 more errors\n"));
+    }
+
+    #[test]
+    fn reports_that_stand_for_others_are_counted_as_many() {
+        let one = |n: u32, more: usize| {
+            let mut report = Diagnostic::new("W514", format!("message {}", n.min(25)), FileId(0), at(2 * n, 2 * n + 1), "here");
+            report.more = more;
+            report
+        };
+        let shown = |found: &[Diagnostic]| render_all(found, &sources(&"a\n".repeat(100)), false);
+        assert!(shown(&[one(0, 12_345)]).contains("  note: and 12345 more like this one\n"));
+        assert!(
+            shown(&[one(30, 5), one(31, 3), one(32, 0)]).contains("  note: the same 10 times more: hall.loft:32:1, hall.loft:33:1, …\n")
+        );
+        let found: Vec<Diagnostic> = (0..28).map(|n| one(n, if n == 26 { 1000 } else { 0 })).collect();
+        assert!(shown(&found).ends_with("\n… and 1008 more warnings\n"));
     }
 
     #[test]

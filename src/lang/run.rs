@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, SAID_JUST_NOW, Stop};
 use super::diag::{self, Diagnostic};
 use super::eval::Code;
 use super::module::{State, bound};
@@ -234,7 +234,7 @@ impl Cx<'_> {
         self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
         let skipped = self.skipped();
         let filed = std::mem::take(&mut self.machine.filed);
-        let mut out: Vec<(Diagnostic, usize)> = Vec::with_capacity(filed.len());
+        let mut out: Vec<Diagnostic> = Vec::with_capacity(filed.len());
         let mut noted: Vec<(ModuleId, u32)> = Vec::new();
         for (owner, mut diagnostic) in filed {
             if let Some(owner) = owner
@@ -246,21 +246,11 @@ impl Cx<'_> {
                     diagnostic.notes.push(note);
                 }
             }
-            let same = |d: &Diagnostic| d.code == diagnostic.code && d.labels == diagnostic.labels;
-            match out.iter_mut().rev().take(64).find(|(d, _)| same(d)) {
-                Some(found) => found.1 += 1,
-                None => out.push((diagnostic, 0)),
+            match out.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
+                Some(found) => found.more += 1 + diagnostic.more,
+                None => out.push(diagnostic),
             }
         }
-        let mut out: Vec<Diagnostic> = out
-            .into_iter()
-            .map(|(mut d, more)| {
-                if more > 0 {
-                    d.notes.push(format!("{} like this one here", more + 1));
-                }
-                d
-            })
-            .collect();
         diag::sort(&mut out);
         out
     }

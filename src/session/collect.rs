@@ -176,8 +176,8 @@ pub fn cell(value: &Value) -> Cell {
     }
 }
 
-/// A diagnostic with places as editors count.
-pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> DiagnosticRow {
+/// A diagnostic with places as editors count; where it stands for further ones, a row behind it says how many.
+pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> Vec<DiagnosticRow> {
     let label = |label: &crate::lang::diag::Label| {
         let place = sources.place(label.file, label.span.start);
         LabelRow {
@@ -188,7 +188,7 @@ pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> DiagnosticRow {
             text: label.text.clone(),
         }
     };
-    DiagnosticRow {
+    let row = DiagnosticRow {
         code: found.code.0,
         severity: match found.severity() {
             Severity::Error => "error",
@@ -198,7 +198,11 @@ pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> DiagnosticRow {
         message: found.message.clone(),
         help: found.help.clone(),
         labels: found.labels.iter().map(label).collect(),
-    }
+        count: 1,
+    };
+    let message = format!("{} more like this one: {}", found.more, found.message);
+    let counted = (found.more > 0).then(|| DiagnosticRow { message, count: found.more, ..row.clone() });
+    std::iter::once(row).chain(counted).collect()
 }
 
 /// What was found of each surface: its flow, the curves along u and v in order, poles and which way it closes.

@@ -222,6 +222,9 @@ pub struct DiagnosticRow {
     pub help: Option<String>,
     /// Places, the foremost first.
     pub labels: Vec<LabelRow>,
+    /// How many reports the row stands for: 1, or what its message counts.
+    #[serde(skip)]
+    pub count: usize,
 }
 
 /// A place that a diagnostic speaks of; counts characters from 1.

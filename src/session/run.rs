@@ -215,7 +215,7 @@ impl Run<'_> {
         }
         let bug = diagnostics.iter().any(|d| d.code.0 == "E999") && !interrupted;
         self.report.ok = ok;
-        self.report.diagnostics = diagnostics.iter().map(|d| collect::diagnostic(d, &self.cx.sources)).collect();
+        self.report.diagnostics = diagnostics.iter().flat_map(|d| collect::diagnostic(d, &self.cx.sources)).collect();
         let tolerance = self.cx.tolerance_used().map(|t| t.point);
         let timings = &mut self.report.timings;
         timings.mesh = stages.mesh_seconds();

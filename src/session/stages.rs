@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use crate::base::fault::{CurveEnd, Fault, Say};
+use crate::base::limits::REPORTS_OF_A_KIND;
 use crate::base::origin::Origin;
 use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
 use crate::lang::plans::MeshSpec;
@@ -19,9 +20,6 @@ use crate::network::snap::{SnapEnd, snap};
 use crate::network::{Chain, Network};
 
 use super::plan;
-
-/// Reports of one kind that are said in words at most, per stage.
-const SAID: usize = 1000;
 
 /// The pipeline of a session; remembers how things were found and how long meshes took.
 pub struct Stages<'c> {
@@ -124,7 +122,7 @@ impl Pipeline for Stages<'_> {
     }
 }
 
-/// Says notes and warnings; of a kind that comes in thousands the first [`SAID`] in words, the rest as a count.
+/// Says notes and warnings; of a kind that comes in thousands the first [`REPORTS_OF_A_KIND`] in words, the rest as a count.
 fn say_all(cx: &mut Cx, sink: &[Fault]) {
     let mut kinds: Vec<(&Fault, usize)> = Vec::new();
     let kind_of: Vec<usize> = sink
@@ -141,10 +139,10 @@ fn say_all(cx: &mut Cx, sink: &[Fault]) {
     let mut said = vec![0; kinds.len()];
     for (fault, kind) in sink.iter().zip(kind_of) {
         said[kind] += 1;
-        let rest = kinds[kind].1.saturating_sub(SAID);
+        let rest = kinds[kind].1.saturating_sub(REPORTS_OF_A_KIND);
         match said[kind] {
-            SAID if rest > 0 => cx.say_with(fault, format!("and {rest} more of this kind")),
-            n if n <= SAID => cx.say(fault),
+            REPORTS_OF_A_KIND => cx.say_counted(fault, rest),
+            n if n < REPORTS_OF_A_KIND => cx.say(fault),
             _ => {}
         }
     }
