@@ -200,6 +200,17 @@ fn the_json_report_has_its_keys_in_order() {
 }
 
 #[test]
+fn the_json_report_tells_how_the_faces_of_shells_join() {
+    let script = "units m\ncurve c = line((0, 0, 0), (4, 0, 0))\nsurface a = extrude(c, by: (0, 1, 0))\n\
+        surface b = extrude(c, by: (0, -sqrt(3), 1))\nshell roof of a, b\nshell one of a\n";
+    let folder = Folder::new("joins").with("roof.loft", script);
+    let shells = folder.loft(&["check", "roof.loft", "--json"]).json()["shells"].clone();
+    assert_eq!(shells[0]["gap"].as_f64(), Some(0.0), "{shells}");
+    assert!((shells[0]["angle"].as_f64().unwrap() - 30.0).abs() < 1e-9, "{shells}");
+    assert!(shells[1]["gap"].is_null() && shells[1]["angle"].is_null(), "no inner edge: {shells}");
+}
+
+#[test]
 fn diagnostics_count_characters_from_one() {
     let folder = Folder::new("places").with("model.loft", "units m\n/* 지붕 */ let a = widht + 1m\n");
     let run = folder.loft(&["run", "model.loft", "--json"]);

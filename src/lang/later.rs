@@ -20,7 +20,6 @@ const FUNCTIONS: &[&str] = &[
     "blend",
     "join",
     "hydrostatics",
-    "connection",
     "iso",
     "project",
     "deviation",

@@ -1,6 +1,7 @@
 //! Floor 4: patches, edges, vertices, loops and shells cut and glued from surfaces.
 
 pub mod atoms;
+pub mod contact;
 pub mod glue;
 pub mod loops;
 pub mod measure;
@@ -10,6 +11,7 @@ pub mod shells;
 pub mod topology;
 pub mod trace;
 
+pub use contact::{Apart, Contact, Spread};
 pub use loops::Loop;
 pub use shells::ShellRequest;
 pub use topology::{Edge, EdgeCurve, EdgeId, Model, Patch, PatchId, Shell, SurfaceId, Vertex, VertexId};

@@ -14,14 +14,14 @@ use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 
 /// Edges of a shell as tracks, and their atoms.
-struct Joins {
-    parts: Vec<Part>,
-    pieces: Atoms,
+pub(super) struct Joins {
+    pub parts: Vec<Part>,
+    pub pieces: Atoms,
 }
 
 impl Joins {
     /// The point in the middle of an atom.
-    fn middle(&self, atom: usize) -> DVec3 {
+    pub fn middle(&self, atom: usize) -> DVec3 {
         let atom = &self.pieces.atoms[atom];
         self.parts[atom.track].track.point(0.5 * (atom.s.0 + atom.s.1))
     }
@@ -64,7 +64,7 @@ impl Model {
     }
 
     /// Edges of some surfaces, cut into atoms.
-    fn joins(&self, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
+    pub(super) fn joins(&self, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
         let edges: Vec<EdgeId> = (0..self.edges.len())
             .map(EdgeId::at)
             .filter(|e| self.edges[e.index()].users.iter().any(|(p, _)| members.contains(&self.patches[p.index()].surface)))
@@ -146,19 +146,11 @@ impl Model {
         }
     }
 
-    /// E618 with the nearest vertices of the joined part and of a surface apart from it.
+    /// E618 with where the joined part and a surface apart from it come nearest.
     fn not_connected(&self, request: &ShellRequest, sides: &[Option<bool>], apart: SurfaceId) -> Fault {
-        let corners = |wanted: &dyn Fn(SurfaceId) -> bool| -> Vec<(DVec3, SurfaceId)> {
-            let users = |e: &super::topology::Edge| e.users.iter().map(|(p, _)| self.patches[p.index()].surface).find(|s| wanted(*s));
-            let of_edge =
-                |e: &super::topology::Edge| users(e).map(|s| [e.vertices.0, e.vertices.1].map(|v| (self.vertices[v.index()].point, s)));
-            self.edges.iter().filter_map(of_edge).flatten().collect()
-        };
-        let joined = corners(&|s| request.surfaces.contains(&s) && sides[s.index()].is_some());
-        let others = corners(&|s| s == apart);
-        let pairs = joined.iter().flat_map(|a| others.iter().map(move |b| (a, b)));
-        let nearest = pairs.min_by(|x, y| x.0.0.distance(x.1.0).total_cmp(&y.0.0.distance(y.1.0)));
-        let (a, gap, at) = nearest.map_or((apart, 0.0, DVec3::ZERO), |(a, b)| (a.1, a.0.distance(b.0), b.0));
+        let joined: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| sides[s.index()].is_some()).collect();
+        let found = self.apart(&joined, &[apart]);
+        let (a, gap, at) = found.map_or((apart, 0.0, DVec3::ZERO), |f| (f.surfaces.0, f.gap, f.at));
         SurfaceFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(apart), gap, at }.into()
     }
 }

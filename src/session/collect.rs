@@ -93,20 +93,22 @@ pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
     TopologyCounts { patches: model.patches.len(), edges: model.edges.len(), vertices: model.vertices.len(), shells }
 }
 
-/// A shell: how it is closed, and what it measures.
-pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance) -> Result<ShellRow, Stop> {
+/// A shell: how it is closed, and what it measures; how its faces join only when `full`.
+pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool) -> Result<ShellRow, Stop> {
     let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
     let built = scene.shell(shell, tolerance, &mut Vec::new())?;
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
     let sides: Vec<_> = built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
+    let members = built.surfaces.iter().map(|(id, _)| *id).collect();
+    let contacts = if full { scene.model.contacts(&members, (&scene.network, tolerance), |_, _| true) } else { Vec::new() };
     Ok(ShellRow {
         name: shell.name.to_string(),
         faces,
         closed: built.closed,
         area: Some(measure::sheet(&shell.surfaces).area),
         volume: built.closed.then(|| measure::solid(&sides).volume.abs()),
-        gap: None,
-        angle: None,
+        gap: contacts.iter().map(|c| c.gap.max).reduce(f64::max),
+        angle: contacts.iter().filter_map(|c| c.angle).map(|a| crate::lang::units::degrees(a.max)).reduce(f64::max),
     })
 }
 

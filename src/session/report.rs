@@ -115,7 +115,7 @@ pub struct ShellRow {
     pub area: Option<f64>,
     /// Only of a closed shell.
     pub volume: Option<f64>,
-    /// Largest distance between the faces of an inner edge; `None` without inner edges.
+    /// Largest distance between the faces of an inner edge; `None` without inner edges and where no JSON report was asked for.
     pub gap: Option<f64>,
     /// Largest angle between the normals of the faces of an inner edge, degrees; `None` without inner edges.
     pub angle: Option<f64>,

@@ -167,7 +167,7 @@ impl Run<'_> {
     fn shells(&mut self, tolerance: &Tolerance) {
         let shells = self.cx.shells(ModuleId::MAIN);
         for shell in self.take(shells).unwrap_or_default() {
-            let row = collect::shell(&mut self.cx, &shell.value, tolerance);
+            let row = collect::shell(&mut self.cx, &shell.value, tolerance, self.task.full);
             if let Some(row) = self.take(row) {
                 self.report.shells.push(row);
             }

@@ -60,6 +60,34 @@ one_of! {
 }
 
 one_of! {
+    /// Faces that may join: of a surface, a shell, or several of them.
+    Faces {
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+        /// A shell.
+        Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
+        /// Several.
+        Several(Vec<Value>) = Ty::List(&Ty::OneOf(&[Ty::Surface, Ty::Shell])), Value::List(items) => Self::Several(items.to_vec());
+    }
+}
+
+impl Faces {
+    /// The surfaces they lie on, in order.
+    pub fn surfaces(self) -> Vec<Surface> {
+        let of = |value: Value| match value {
+            Value::Surface(s) => vec![s],
+            Value::Shell(s) => s.surfaces.clone(),
+            _ => Vec::new(),
+        };
+        match self {
+            Self::Surface(s) => vec![s],
+            Self::Shell(s) => s.surfaces.clone(),
+            Self::Several(values) => values.into_iter().flat_map(of).collect(),
+        }
+    }
+}
+
+one_of! {
     /// What an edge of a surface is asked for by.
     EdgeKey {
         /// A curve it lies on.

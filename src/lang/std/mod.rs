@@ -9,6 +9,7 @@ use super::value::Value;
 
 mod curves;
 mod data;
+mod joins;
 pub mod kinds;
 mod lists;
 mod measures;
@@ -92,10 +93,12 @@ pub const BUILTINS: &[&[Builtin]] = &[
     surfaces::BUILTINS,
     transforms::BUILTINS,
     topology::BUILTINS,
+    joins::BUILTINS,
 ];
 
 /// All tables of fields.
-pub const FIELDS: &[&[Builtin]] = &[vectors::FIELDS, data::FIELDS, network::FIELDS, topology::FIELDS, measures::FIELDS, mesh::FIELDS];
+pub const FIELDS: &[&[Builtin]] =
+    &[vectors::FIELDS, data::FIELDS, network::FIELDS, topology::FIELDS, joins::FIELDS, measures::FIELDS, mesh::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

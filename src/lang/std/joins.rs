@@ -1,0 +1,134 @@
+//! How faces join along the edges they share.
+
+use std::collections::BTreeSet;
+
+use super::kinds::{EdgeOf, Faces};
+use crate::base::bbox::Box3;
+use crate::base::fault::{Say, SurfaceFault, ValueFault};
+use crate::base::tolerance::Tolerance;
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::scene::Scene;
+use crate::lang::types::{Angle, Length};
+use crate::lang::value::Value;
+use crate::model::{Contact, SurfaceId};
+use crate::surface::Surface;
+use crate::{builtins, fields};
+
+/// The stretches that faces of two lists share; without a second list all that the first one's share.
+fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), tolerance: &Tolerance) -> Result<Vec<Contact>, Stop> {
+    let places = |list: &[Surface]| Ok::<_, Stop>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
+    let ours = places(a)?;
+    let theirs = b.map(places).transpose()?;
+    let members: BTreeSet<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
+    let of = |face: crate::model::PatchId| scene.model.patches[face.index()].surface;
+    let contacts = scene.model.contacts(&members, (&scene.network, tolerance), |one, other| match &theirs {
+        None => true,
+        Some(theirs) => {
+            let (one, other) = (of(one.0), of(other.0));
+            ours.contains(&one) && theirs.contains(&other) || ours.contains(&other) && theirs.contains(&one)
+        }
+    });
+    if let (true, Some(theirs)) = (contacts.is_empty(), theirs) {
+        let found = scene.model.apart(&ours, &theirs);
+        let origin = |id: SurfaceId| scene.model.surfaces[id.index()].surface.origin();
+        let (first, last) = found.map_or((ours.first().copied(), theirs.first().copied()), |f| (Some(f.surfaces.0), Some(f.surfaces.1)));
+        let (a, b) = (first.map(origin).unwrap_or_default(), last.map(origin).unwrap_or_default());
+        let (gap, at) = found.map_or((0.0, glam::DVec3::ZERO), |f| (f.gap, f.at));
+        return Err(SurfaceFault::NotAdjacent { a, b, gap, at }.into());
+    }
+    Ok(contacts)
+}
+
+/// A stretch as a record.
+fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Tolerance) -> Value {
+    let name = |cx: &Cx, face: crate::model::PatchId| {
+        let surface = scene.model.patches[face.index()].surface;
+        Value::text(&cx.name(scene.model.surfaces[surface.index()].surface.origin()))
+    };
+    let (a, b) = (name(cx, contact.faces.0), name(cx, contact.faces.1));
+    let angle = |pick: fn(&crate::model::Spread) -> f64| contact.angle.as_ref().map_or(Value::None, |s| Value::angle(pick(s)));
+    let g1 = contact.angle.map_or(Value::None, |s| Value::Bool(s.max <= tolerance.angle));
+    cx.record([
+        ("a", a),
+        ("b", b),
+        ("length", Value::length(contact.length)),
+        ("mid", Value::point(contact.middle)),
+        ("gap_min", Value::length(contact.gap.min)),
+        ("gap_max", Value::length(contact.gap.max)),
+        ("gap_mean", Value::length(contact.gap.mean)),
+        ("gap_at", Value::point(contact.gap.at)),
+        ("angle_min", angle(|s| s.min)),
+        ("angle_max", angle(|s| s.max)),
+        ("angle_mean", angle(|s| s.mean)),
+        ("angle_at", contact.angle.map_or(Value::None, |s| Value::point(s.at))),
+        ("c0", Value::Bool(contact.gap.max <= tolerance.point)),
+        ("g1", g1),
+    ])
+}
+
+/// The stretches along which an edge of the model joins two faces.
+fn along(cx: &mut Cx, edge: EdgeOf) -> Result<Vec<Contact>, Stop> {
+    let tolerance = cx.tolerance()?;
+    let (model, network) = (cx.model(edge.0)?, cx.network(edge.0)?);
+    const SAMPLES: u32 = 32;
+    let (track, length) = (model.track(edge.1, &network), model.edges[edge.1.index()].length);
+    let around = Box3::of((0..=SAMPLES).map(|k| track.point(length * f64::from(k) / f64::from(SAMPLES))));
+    // No point of the edge is farther from a sample than half a step.
+    let reach = tolerance.point + length / f64::from(SAMPLES);
+    let near = |n: &usize| model.surfaces[*n].surface.hull().touches(&around, reach);
+    let members = (0..model.surfaces.len()).filter(near).map(SurfaceId::at).collect();
+    Ok(model.contacts(&members, (&network, &tolerance), |a, b| a.1 == edge.1 || b.1 == edge.1))
+}
+
+builtins! {
+    /// How the faces of two surfaces join along the edges they share.
+    ///
+    /// One record for each stretch that they share.     /// `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
+    /// 0 to 90 degrees whatever their sides; of each the least, the largest, the mean and the place of the largest. They are
+    /// taken at 200 or more equally spaced points and refined round the extremes. `c0` says that the gap stays within
+    /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are told.
+    /// Faces that share no edge are E618; `within:` takes borders that are so far apart for shared ones.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
+    /// let join = connection(wall, slab)[0]
+    /// let angle = join.angle_max // => 90deg
+    /// report connection(wall, slab)
+    /// ```
+    fn connection(
+        /// A surface, a shell, or several.
+        a: Faces,
+        /// What it joins; left out, the inner edges of `a` are told.
+        b: Option<Faces>,
+        /// Largest distance of borders that count as shared; the model's tolerance when left out.
+        within: Option<Length>,
+    ) -> Vec<Value> = |cx, a, b, within| {
+        let (module, tolerance) = (cx.module(), cx.tolerance()?);
+        let near = match within {
+            None => tolerance,
+            Some(d) if d.0 >= tolerance.point => Tolerance { point: d.0, ..tolerance },
+            Some(d) => {
+                let (found, range) = (cx.length(d.0), format!("at least the tolerance, {}", cx.length(tolerance.point)));
+                return Err(ValueFault::OutsideRange { argument: "within", found, range }.into());
+            }
+        };
+        let (a, b) = (a.surfaces(), b.map(Faces::surfaces));
+        let scene = Scene::of(cx, module, a.iter().chain(b.iter().flatten()))?;
+        let contacts = shared(&scene, (&a, b.as_deref()), &near)?;
+        Ok(contacts.iter().map(|contact| record_of(cx, &scene, contact, &tolerance)).collect())
+    };
+}
+
+fields! {
+    /// How far the borders of the faces at an edge are apart at most.
+    ///
+    /// `none` where only one face is.
+    fn gap(of: EdgeOf) -> Option<Length> = |cx, of| Ok(along(cx, of)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length));
+    /// Largest angle between the normals of the faces at an edge.
+    ///
+    /// From 0 to 90 degrees, whatever their sides; `none` where only one face is.
+    fn angle(of: EdgeOf) -> Option<Angle> = |cx, of| {
+        Ok(along(cx, of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
+    };
+}

@@ -1,0 +1,243 @@
+//! How faces join along the edges they share: gap and angle of the normals [math notes §13.3].
+//!
+//! Each stretch that two faces share is walked in equal steps along the first face's own border, at least 200 and 20 a
+//! span; round the least and the largest value found the walk is refined. So a bump narrower than a step may be missed.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+
+use super::loops::Loop;
+use super::shells::Joins;
+use super::topology::{EdgeId, Model, Patch, PatchId, SurfaceId};
+use crate::base::math::angle_between;
+use crate::base::par;
+use crate::base::solve::lowest;
+use crate::base::tolerance::{NEAREST, Tolerance};
+use crate::network::Network;
+use crate::surface::{Lean, Surface};
+
+/// Steps of a stretch, at the least.
+const STEPS: usize = 200;
+/// Steps of each span of it, at the least.
+const STEPS_A_SPAN: usize = 20;
+/// Projections before a foot point is taken as it is.
+const ROUNDS: usize = 20;
+
+/// Values met along a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// The least.
+    pub min: f64,
+    /// The largest.
+    pub max: f64,
+    /// The mean by arc length.
+    pub mean: f64,
+    /// Where the largest is.
+    pub at: DVec3,
+}
+
+/// A stretch of border that two faces share.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// The faces; the same one twice at a seam.
+    pub faces: (PatchId, PatchId),
+    /// The edge of the first face; the second one's may be another where a long side meets several shorter ones.
+    pub edges: (EdgeId, EdgeId),
+    /// Arc length, model units.
+    pub length: f64,
+    /// Halfway along it.
+    pub middle: DVec3,
+    /// Distance of the first face's border from the second one's, model units.
+    pub gap: Spread,
+    /// Angle between the normals of the faces, whatever their sides, 0 to a right angle, radians; `None` where a face has
+    /// no normal anywhere on the stretch.
+    pub angle: Option<Spread>,
+}
+
+/// A face's side of a stretch: a part of a piece of its loop.
+struct Border<'a> {
+    surface: &'a Surface,
+    patch: &'a Patch,
+    face: PatchId,
+    edge: EdgeId,
+    around: &'a Loop,
+    piece: usize,
+    /// Arc lengths on the piece at the atom's start and end.
+    ends: (f64, f64),
+}
+
+impl Border<'_> {
+    /// Arc length on the piece at a share of the atom.
+    fn station(&self, f: f64) -> f64 {
+        self.ends.0 + (self.ends.1 - self.ends.0) * f
+    }
+
+    fn jet(&self, s: f64) -> Place {
+        self.around.pieces[self.piece].at(s)
+    }
+
+    /// Arc length of the nearest point of the border near a place.
+    fn foot(&self, p: DVec3, near: f64) -> f64 {
+        foot(|s| self.jet(s), p, near, (self.ends.0.min(self.ends.1), self.ends.0.max(self.ends.1))).0
+    }
+
+    /// The face's unit normal at (u, v) on its border, from inside.
+    fn normal(&self, (u, v): (f64, f64)) -> DVec3 {
+        let lean = |x: f64, (low, high): (f64, f64)| if x - low > high - x { Lean::Before } else { Lean::After };
+        self.surface.normal_lean(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
+    }
+
+    /// Spans of the surface along the stretch.
+    fn spans(&self) -> usize {
+        let ((a, _, _), (b, _, _)) = (self.jet(self.ends.0), self.jet(self.ends.1));
+        let (us, vs) = self.surface.breaks();
+        let inside = |list: &[f64], a: f64, b: f64| list.iter().filter(|x| (**x - a) * (**x - b) < 0.0).count();
+        1 + inside(&us, a.0, b.0) + inside(&vs, a.1, b.1)
+    }
+}
+
+impl Model {
+    /// Stretches that faces of some surfaces share, in order of their edges; those of which `wanted` says so, told both
+    /// faces and edges. `tolerance.point` says how far borders may be apart and still be shared.
+    pub fn contacts(
+        &self,
+        members: &BTreeSet<SurfaceId>,
+        (network, tolerance): (&Network, &Tolerance),
+        wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
+    ) -> Vec<Contact> {
+        let (edges, joins) = self.joins(members, network, tolerance);
+        let faces: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
+        let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
+        let mut borders: Vec<Vec<Border>> = joins.pieces.atoms.iter().map(|_| Vec::new()).collect();
+        for (face, around) in faces.iter().zip(&loops) {
+            let patch = &self.patches[face.index()];
+            let surface = &self.surfaces[patch.surface.index()].surface;
+            for (piece, entry) in around.pieces.iter().enumerate() {
+                let Some((edge, against)) = entry.edge else { continue };
+                let Ok(place) = edges.binary_search(&edge) else { continue };
+                let share = entry.length() / joins.parts[place].track.length();
+                for part in &joins.pieces.of_track[place] {
+                    let on = |s: f64| if against { entry.length() - s * share } else { s * share };
+                    let ends = if part.against { (on(part.s.1), on(part.s.0)) } else { (on(part.s.0), on(part.s.1)) };
+                    borders[part.atom].push(Border { surface, patch, face: *face, edge, around, piece, ends });
+                }
+            }
+        }
+        let found = par::map(borders.len(), |atom| match borders[atom].as_slice() {
+            [a, b] if wanted((a.face, a.edge), (b.face, b.edge)) => Some(contact(a, b, &joins, atom)),
+            _ => None,
+        });
+        found.into_iter().flatten().collect()
+    }
+}
+
+/// Two borders that do not touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// The surfaces.
+    pub surfaces: (SurfaceId, SurfaceId),
+    /// Smallest distance found, model units.
+    pub gap: f64,
+    /// Where that is, on the second surface.
+    pub at: DVec3,
+}
+
+impl Model {
+    /// Where borders of some surfaces come nearest to those of others, from samples and projections: the distance is never
+    /// below the true one. `None` without borders.
+    pub fn apart(&self, some: &[SurfaceId], others: &[SurfaceId]) -> Option<Apart> {
+        const SAMPLES: u32 = 48;
+        let loops = |list: &[SurfaceId]| -> Vec<(SurfaceId, Loop)> {
+            list.iter().flat_map(|s| self.patches_of(*s).map(|p| (*s, self.loop_of(p)))).collect()
+        };
+        let (ours, theirs) = (loops(some), loops(others));
+        let samples = |list: &[(SurfaceId, Loop)]| -> Vec<(usize, usize, f64, DVec3)> {
+            let pieces = list.iter().enumerate().flat_map(|(l, (_, around))| (0..around.pieces.len()).map(move |p| (l, p)));
+            let at = |k: u32, l: usize, p: usize| {
+                let s = list[l].1.pieces[p].length() * f64::from(k) / f64::from(SAMPLES);
+                (l, p, s, list[l].1.pieces[p].at(s).1)
+            };
+            pieces.flat_map(|(l, p)| (0..=SAMPLES).map(move |k| at(k, l, p))).collect()
+        };
+        let (a, b) = (samples(&ours), samples(&theirs));
+        let pairs = a.iter().flat_map(|x| b.iter().map(move |y| (x, y)));
+        let (x, y) = pairs.min_by(|p, q| p.0.3.distance_squared(p.1.3).total_cmp(&q.0.3.distance_squared(q.1.3)))?;
+        let (first, second) = (&ours[x.0].1.pieces[x.1], &theirs[y.0].1.pieces[y.1]);
+        let (mut s, mut t) = (x.2, y.2);
+        for _ in 0..ROUNDS {
+            (s, _) = foot(|s| first.at(s), second.at(t).1, s, (0.0, first.length()));
+            (t, _) = foot(|t| second.at(t), first.at(s).1, t, (0.0, second.length()));
+        }
+        let at = second.at(t).1;
+        Some(Apart { surfaces: (ours[x.0].0, theirs[y.0].0), gap: first.at(s).1.distance(at), at })
+    }
+}
+
+/// A place on a border by its arc length: (u, v), point and unit tangent.
+type Place = ((f64, f64), DVec3, DVec3);
+
+/// Arc length and distance of the point of a border nearest to a point, near a place, by projection on the tangent.
+fn foot(jet: impl Fn(f64) -> Place, p: DVec3, near: f64, (low, high): (f64, f64)) -> (f64, f64) {
+    let (mut best, mut s) = ((near, f64::INFINITY), near);
+    for _ in 0..ROUNDS {
+        let (_, q, tangent) = jet(s);
+        let distance = q.distance(p);
+        if distance >= best.1 {
+            break;
+        }
+        best = (s, distance);
+        s = (s + (p - q).dot(tangent)).clamp(low, high);
+    }
+    best
+}
+
+/// Walks the stretch that two borders share.
+fn contact(a: &Border, b: &Border, joins: &Joins, atom: usize) -> Contact {
+    let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
+    let at = |f: f64| {
+        let (uv, p, _) = a.jet(a.station(f));
+        let (other, q, _) = b.jet(b.foot(p, b.station(f)));
+        (p, q, a.normal(uv), b.normal(other))
+    };
+    let gap = |f: f64| {
+        let (p, q, ..) = at(f);
+        p.distance(q)
+    };
+    let angle = |f: f64| {
+        let (_, _, m, n) = at(f);
+        if m == DVec3::ZERO || n == DVec3::ZERO {
+            return f64::NAN;
+        }
+        let turn = angle_between(m, n);
+        turn.min(std::f64::consts::PI - turn)
+    };
+    let point = |f: f64| at(f).0;
+    Contact {
+        faces: (a.face, b.face),
+        edges: (a.edge, b.edge),
+        length: joins.pieces.atoms[atom].length(),
+        middle: joins.middle(atom),
+        gap: spread(steps, gap, point).unwrap_or(Spread { min: 0.0, max: 0.0, mean: 0.0, at: point(0.5) }),
+        angle: spread(steps, angle, point),
+    }
+}
+
+/// Least, largest and mean of a function over 0…1; places where it is not a number are left out.
+fn spread(steps: usize, value: impl Fn(f64) -> f64, point: impl Fn(f64) -> DVec3) -> Option<Spread> {
+    let place = |k: usize| k as f64 / steps as f64;
+    let values: Vec<f64> = (0..=steps).map(|k| value(place(k))).collect();
+    let known = || values.iter().enumerate().filter(|(_, x)| !x.is_nan());
+    let least = known().min_by(|a, b| a.1.total_cmp(b.1))?.0;
+    let most = known().max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(&a.0)))?.0;
+    let refined = |k: usize, sign: f64| {
+        let around = (place(k.saturating_sub(1)), place((k + 1).min(steps)));
+        let f = lowest(around.0, around.1, NEAREST, |f| sign * value(f));
+        if sign * value(f) < sign * values[k] { f } else { place(k) }
+    };
+    let (low, high) = (refined(least, 1.0), refined(most, -1.0));
+    // Trapezoids: the ends count half.
+    let weight = |k: usize| if k == 0 || k == steps { 0.5 } else { 1.0 };
+    let (sum, whole) = known().fold((0.0, 0.0), |(sum, whole), (k, x)| (sum + weight(k) * x, whole + weight(k)));
+    Some(Spread { min: value(low), max: value(high), mean: sum / whole, at: point(high) })
+}
