@@ -141,6 +141,11 @@ impl Curve {
         &self.0.shape
     }
 
+    /// Whether two values are one and the same: made once and copied, not only alike.
+    pub fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
     /// The expression that made it.
     pub fn origin(&self) -> Origin {
         self.0.origin

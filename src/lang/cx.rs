@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::diag::{Diagnostic, Sources};
 use super::eval::Machine;
+use super::memory::Memory;
 use super::names::Names;
 use super::origins::Origins;
 use super::plans::{MeshSpec, ReportTable};
@@ -122,6 +123,8 @@ pub struct Cx<'w> {
     pub(super) seen: Box3,
     pub(super) sink: Vec<Diagnostic>,
     pub(super) machine: Machine,
+    /// What earlier runs found; `None` in a run that keeps nothing.
+    pub(super) memory: Option<Memory>,
 }
 
 impl<'w> Cx<'w> {
@@ -139,6 +142,7 @@ impl<'w> Cx<'w> {
             seen: Box3::EMPTY,
             sink: Vec::new(),
             machine: Machine::default(),
+            memory: None,
         }
     }
 

@@ -108,7 +108,7 @@ impl Cx<'_> {
     /// Whether an entity was made by the right side itself, so that its origin is the declaration's already.
     fn is_own(&self, origin: Origin, code: Code<'_>, value: ExprId, member: [u32; 2]) -> bool {
         let own = Place { module: code.module, declaration: code.declaration, member, expr: Some(value), caller: Origin::NONE };
-        self.origins.place(origin) == Some(&own)
+        self.origins.place(origin) == Some(own)
     }
 
     /// Names and types of a function; its body is looked at when it is called.

@@ -4,13 +4,16 @@ use std::sync::Arc;
 
 use super::cx::{Cx, Stop};
 use super::diag::{Diagnostic, Label};
+use super::memory::Asked;
 use super::module::{Module, State, bound};
 use super::names::Name;
 use super::origins::{NO_MEMBER, Origins, Place};
 use super::plans::MeshSpec;
+use super::recall::Start;
 use super::std::Builtin;
-use super::syntax::ast::{Declaration, Expr, ExprId, Node, Span};
+use super::syntax::ast::{Declaration, Expr, ExprId, Keyword, Node, Span};
 use super::value::{ModuleId, Value};
+use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity};
 use crate::base::limits;
 use crate::base::origin::Origin;
@@ -97,6 +100,8 @@ pub struct Machine {
     pub(super) stages: u32,
     pub(super) defaults: std::collections::BTreeMap<(usize, usize), Value>,
     pub(super) filed: Vec<(Option<(ModuleId, u32)>, Diagnostic)>,
+    /// What the declaration being evaluated asked for beside values.
+    pub(super) asked: Asked,
 }
 
 impl Default for Machine {
@@ -120,6 +125,7 @@ impl Default for Machine {
             stages: 0,
             defaults: std::collections::BTreeMap::new(),
             filed: Vec::new(),
+            asked: Asked::default(),
         }
     }
 }
@@ -274,9 +280,14 @@ impl Cx<'_> {
 
     /// The value of a declaration, evaluated on first use.
     pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
+        if matches!(self.machine.at(module).states[index as usize], State::Waiting) && !self.recall(module, index) {
+            return self.evaluate(module, index);
+        }
+        let asked = self.machine.at(module).asked[index as usize];
+        self.machine.asked.join(asked);
         match &self.machine.at(module).states[index as usize] {
             State::Done(value) => Ok(value.clone()),
-            State::Waiting => self.evaluate(module, index),
+            State::Waiting => Err(Stop::Bug("a declaration that was neither evaluated nor taken over")),
             State::Failed => Err(Stop::Skipped(module, index)),
             State::Skipped(m, d) => Err(Stop::Skipped(*m, *d)),
             State::Suspended => Err(Stop::NotYet),
@@ -299,6 +310,9 @@ impl Cx<'_> {
         let calls = std::mem::take(&mut self.machine.calls);
         let sink = std::mem::take(&mut self.sink);
         let depth = self.machine.depth;
+        let start = self.start(module);
+        let asked = std::mem::take(&mut self.machine.asked);
+        let seen = std::mem::replace(&mut self.seen, Box3::EMPTY);
 
         let code = Code { nodes: &declaration.nodes, module, declaration: index };
         let mut result = self.declare(code, declaration);
@@ -323,9 +337,7 @@ impl Cx<'_> {
             Err(Stop::Broken) => State::Broken,
             Err(_) => State::Failed,
         };
-        if !matches!(state, State::Suspended) {
-            self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
-        }
+        let waits = matches!(state, State::Suspended);
         let answer = match &state {
             State::Done(_) => result,
             State::Failed => Err(Stop::Skipped(module, index)),
@@ -334,7 +346,26 @@ impl Cx<'_> {
             _ => Err(Stop::Broken),
         };
         self.machine.at_mut(module).states[index as usize] = state;
+        self.put_back(module, index, start, (asked, seen, &said));
+        if !waits {
+            self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
+        }
         answer
+    }
+
+    /// Ends what was counted for a declaration, keeps it for the next run, and goes on counting for the one around it.
+    fn put_back(&mut self, module: ModuleId, index: u32, start: Start, (around, seen, said): (Asked, Box3, &[Diagnostic])) {
+        let mut asked = std::mem::replace(&mut self.machine.asked, around);
+        asked.fleeting |= self.machine.at(module).snaps;
+        let own_seen = std::mem::replace(&mut self.seen, seen);
+        self.seen = self.seen.union(own_seen);
+        self.remember(module, index, start, asked, (own_seen, said));
+        // Meshes are numbered anew in each run, so what holds one is not kept.
+        asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
+        self.machine.at_mut(module).asked[index as usize] = asked;
+        self.machine.asked.join(asked);
+        self.machine.asked.members += self.machine.members_made - start.members;
+        self.machine.asked.steps += self.machine.steps - start.steps;
     }
 
     /// Turns a fault that reached a declaration into its diagnostic.

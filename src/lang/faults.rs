@@ -19,7 +19,7 @@ const NAME_CHARACTERS: usize = 40;
 impl Say for Cx<'_> {
     fn name(&self, origin: Origin) -> String {
         let Some(place) = self.origins.place(origin) else { return String::new() };
-        let outer = self.outermost(*place);
+        let outer = self.outermost(place);
         let module = self.machine.at(outer.module);
         let declaration = &module.script.declarations[outer.declaration as usize];
         let is_root = match outer.expr {
@@ -78,7 +78,7 @@ impl Cx<'_> {
     /// The call of the declaration's own expression that led to a place.
     fn outermost(&self, mut place: Place) -> Place {
         while let Some(caller) = self.origins.place(place.caller) {
-            place = *caller;
+            place = caller;
         }
         place
     }

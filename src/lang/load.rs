@@ -16,13 +16,15 @@ use crate::io::FileError;
 
 impl Cx<'_> {
     /// Adds a script as a module: parsed, its units known, its names bound once.
-    pub(super) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>) -> ModuleId {
+    pub(super) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, label: String) -> ModuleId {
         let file = self.sources.add(name, &*text);
         let (script, mistakes) = super::syntax::parse(&text, file, &mut self.names);
         self.machine.filed.extend(mistakes.into_iter().map(|d| (None, d)));
         let (module, twice) = Module::new(file, path.into(), Arc::new(script), self.names.len());
         let id = ModuleId::at(self.machine.modules.len());
         self.machine.modules.push(module);
+        self.settle_in(id, &label);
+        self.machine.at_mut(id).label = label;
         self.set_unit(id);
         let script = self.machine.at(id).script.clone();
         for (first, second) in twice {
@@ -92,11 +94,11 @@ impl Cx<'_> {
             let what = "it is not UTF-8 text".to_owned();
             return Err(FileFault::CannotRead { of: origin, path: written, similar: Vec::new(), why: what }.into());
         };
-        let id = self.add_module(&written, &resolved, text.into());
         let label = self.names.text(bound.name).to_owned();
         let parent = self.machine.at(code.module).label.clone();
+        let label = if parent.is_empty() { label } else { format!("{parent}.{label}") };
+        let id = self.add_module(&written, &resolved, text.into(), label);
         let module = self.machine.at_mut(id);
-        module.label = if parent.is_empty() { label } else { format!("{parent}.{label}") };
         module.parent = Some((code.module, code.declaration));
         let file = self.machine.at(code.module).file;
         for (name, span, value) in given {

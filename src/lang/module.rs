@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use super::cx::Parts;
 use super::diag::FileId;
+use super::memory::{Asked, Keys};
 use super::names::Name;
 use super::plans::{CheckResult, ExportSpec, MeshSpec, ReportTable};
-use super::syntax::ast::{Bound, Declaration, DeclarationKind, Script};
+use super::syntax::ast::{Bound, Declaration, DeclarationKind, Keyword, Script};
 use super::units::LengthUnit;
 use super::value::{ModuleId, Value};
+use crate::base::digest::Digest;
 use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::network::Network;
@@ -81,6 +83,14 @@ pub(super) struct Module {
     pub entered: Vec<u32>,
     /// Params set from outside.
     pub given: Vec<(Name, Given)>,
+    /// Tokens of each declaration as a digest, in a run with a memory.
+    pub tokens: Vec<Digest>,
+    /// Keys of the declarations, made when first asked for.
+    pub keys: Option<Keys>,
+    /// What each declaration asked for beside values.
+    pub asked: Vec<Asked>,
+    /// It has a `snap`: what is evaluated may be replaced, so nothing of it is kept.
+    pub snaps: bool,
     pub parts: Stage<Arc<Parts>>,
     pub network: Stage<Arc<Network>>,
     pub model: Stage<Arc<Model>>,
@@ -109,6 +119,7 @@ impl Module {
         }
         let mut broken: Vec<Name> = script.broken.iter().map(|b| b.name).collect();
         broken.sort_unstable();
+        let snaps = script.declarations.iter().any(|d| d.keyword == Keyword::Snap);
         let module = Self {
             file,
             path,
@@ -119,8 +130,12 @@ impl Module {
             by_name,
             broken,
             entered: vec![0; states.len()],
+            asked: vec![Asked::default(); states.len()],
             states,
             given: Vec::new(),
+            tokens: Vec::new(),
+            keys: None,
+            snaps,
             parts: Stage::Waiting,
             network: Stage::Waiting,
             model: Stage::Waiting,

@@ -22,21 +22,69 @@ pub struct Place {
     pub caller: Origin,
 }
 
-/// All origins of a run.
+/// A declaration that keeps its identity from one run to the next, wherever it stands in its script.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Home(pub u32);
+
+#[derive(Clone, Copy, Debug)]
+struct Stored {
+    home: Home,
+    member: [u32; 2],
+    expr: Option<ExprId>,
+    caller: Origin,
+}
+
+/// All origins of a run, and of the runs before it whose entities are kept.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
-    places: Vec<Place>,
+    places: Vec<Stored>,
+    /// Where each home stands in this run; `None` while it is in no script.
+    standing: Vec<Option<(ModuleId, u32)>>,
+    /// Homes of the declarations of each script.
+    homes: Vec<Vec<Home>>,
 }
 
 impl Origins {
+    /// A home that no declaration had before.
+    pub(super) fn new_home(&mut self) -> Home {
+        self.standing.push(None);
+        Home(self.standing.len() as u32 - 1)
+    }
+
+    /// Says which home each declaration of the next script has.
+    pub(super) fn enter(&mut self, module: ModuleId, homes: Vec<Home>) {
+        for (declaration, home) in homes.iter().enumerate() {
+            self.standing[home.0 as usize] = Some((module, declaration as u32));
+        }
+        if self.homes.len() <= module.index() {
+            self.homes.resize_with(module.index() + 1, Vec::new);
+        }
+        self.homes[module.index()] = homes;
+    }
+
+    /// Forgets where declarations stand; entities keep their origins.
+    pub(super) fn leave(&mut self) {
+        self.standing.fill(None);
+        self.homes.clear();
+    }
+
+    /// Number of origins.
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
     /// A new origin.
     pub fn add(&mut self, place: Place) -> Origin {
-        self.places.push(place);
+        let Place { module, declaration, member, expr, caller } = place;
+        let Some(&home) = self.homes.get(module.index()).and_then(|of| of.get(declaration as usize)) else { return Origin::NONE };
+        self.places.push(Stored { home, member, expr, caller });
         Origin(u32::try_from(self.places.len()).unwrap_or(0))
     }
 
-    /// The entry of an origin.
-    pub fn place(&self, origin: Origin) -> Option<&Place> {
-        self.places.get((origin.0 as usize).wrapping_sub(1))
+    /// The entry of an origin; `None` when its declaration is no longer there.
+    pub fn place(&self, origin: Origin) -> Option<Place> {
+        let Stored { home, member, expr, caller } = *self.places.get((origin.0 as usize).wrapping_sub(1))?;
+        let (module, declaration) = self.standing[home.0 as usize]?;
+        Some(Place { module, declaration, member, expr, caller })
     }
 }

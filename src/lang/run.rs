@@ -35,7 +35,7 @@ pub struct Entry<'e> {
 impl Cx<'_> {
     /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
     pub fn load(&mut self, entry: &Entry) {
-        let main = self.add_module(entry.name, entry.path, entry.text.into());
+        let main = self.add_module(entry.name, entry.path, entry.text.into(), String::new());
         self.unit = self.machine.at(main).unit;
         self.give_all(main, entry.sets);
     }
@@ -61,6 +61,12 @@ impl Cx<'_> {
         let mut m = 0;
         while m < self.machine.modules.len() {
             let module = ModuleId::at(m);
+            // Scripts get their numbers in order of writing, whatever asks for them first.
+            for i in self.heads(module, Keyword::Use) {
+                if matches!(self.machine.at(module).states[i as usize], State::Waiting) {
+                    self.ensure_all(module, i);
+                }
+            }
             for i in 0..self.machine.at(module).states.len() {
                 if self.job.go_on().is_err() {
                     return;

@@ -98,7 +98,15 @@ pub(super) fn gather(cx: &mut Cx, module: ModuleId) -> Parts {
     parts
 }
 
+/// Notes that what is being evaluated depends on everything that a script declares.
+fn asks(cx: &mut Cx, module: ModuleId) {
+    let own = cx.machine.running.last().is_none_or(|r| r.0 == module);
+    cx.machine.asked.world = true;
+    cx.machine.asked.fleeting |= !own;
+}
+
 pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
+    asks(cx, module);
     if let Stage::Done(parts) = &cx.machine.at(module).parts {
         return Ok(parts.clone());
     }
@@ -111,6 +119,7 @@ pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
 
 /// The declared groups of a script with what they hold.
 pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
+    asks(cx, module);
     all(cx, module, &[Keyword::Group])?;
     let mut found: Vec<Found<Vec<Value>>> = Vec::new();
     each_member(cx.machine.at(module), &cx.names, &[Keyword::Group], &mut |i, _, member, name, value| {
@@ -127,6 +136,7 @@ pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<V
 
 /// The declared shells of a script.
 pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
+    asks(cx, module);
     all(cx, module, &[Keyword::Shell])?;
     let mut found = Vec::new();
     each_member(cx.machine.at(module), &cx.names, &[Keyword::Shell], &mut |_, _, _, name, value| {
@@ -150,7 +160,11 @@ fn once<T: Clone>(
         Some(Stage::Running) | None => return Err(Stop::Bug("a stage that needs itself")),
         Some(stage) => *stage = Stage::Running,
     }
+    // What a stage says is its own, whichever declaration asked first.
+    let sink = std::mem::take(&mut cx.sink);
     let made = make(cx);
+    let said = std::mem::replace(&mut cx.sink, sink);
+    cx.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     let (stage, result) = match made {
         Ok(made) => (Stage::Done(made.clone()), Ok(made)),
         Err(Stop::Fault(Fault::Interrupted)) => (Stage::Failed, Err(Stop::Broken)),
@@ -185,6 +199,7 @@ pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
         MeshValue::Data(mesh, _) => Ok(mesh.clone()),
         MeshValue::Declared { module, index } => {
             let (module, index) = (*module, *index as usize);
+            cx.machine.asked.fleeting = true;
             cx.tolerance()?;
             let Some(spec) = cx.machine.at(module).meshes.get(index).cloned() else {
                 return Err(Stop::Bug("a mesh that was not declared"));

@@ -130,6 +130,15 @@ impl Chain {
         self.0.length
     }
 
+    /// Whether two chains run over the same stretches of the same curves, made once and copied.
+    pub fn is(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Run, &Run)| a.curve.is(&b.curve) && a.s0.to_bits() == b.s0.to_bits() && a.s1.to_bits() == b.s1.to_bits();
+        Arc::ptr_eq(&self.0, &other.0)
+            || (self.0.origin == other.0.origin
+                && self.0.runs.len() == other.0.runs.len()
+                && self.0.runs.iter().zip(&other.0.runs).all(same))
+    }
+
     /// The expression that made it.
     pub fn origin(&self) -> Origin {
         self.0.origin

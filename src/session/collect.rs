@@ -12,7 +12,7 @@ use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
 use crate::model::{Model, SurfaceId, measure};
 use crate::network::{Chain, LinkId, Network};
-use crate::surface::Domain;
+use crate::surface::{Domain, Surface};
 
 use super::report::{
     Cell, CheckRow, Column, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow, SurfaceRow, Table,
@@ -70,8 +70,8 @@ fn identity(chain: &Chain, network: &Network, tolerance: &Tolerance) -> (Vec<[u6
     }
 }
 
-/// Declared surfaces.
-pub fn surfaces(model: &Model) -> Vec<SurfaceRow> {
+/// Declared surfaces; `area` measures one.
+pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> f64) -> Vec<SurfaceRow> {
     let row = |(n, named): (usize, &crate::model::topology::Named)| {
         let patches: Vec<_> = model.patches_of(SurfaceId::at(n)).collect();
         let flow = named.surface.flow();
@@ -82,7 +82,7 @@ pub fn surfaces(model: &Model) -> Vec<SurfaceRow> {
             patches: patches.len(),
             edges: model.edges_of(&patches).len(),
             vertices: model.vertices_of(&patches).len(),
-            area: (named.surface.domain() != Domain::Unbounded).then(|| measure::area(&named.surface)),
+            area: (named.surface.domain() != Domain::Unbounded).then(|| area(&named.surface)),
         }
     };
     model.surfaces.iter().enumerate().map(row).collect()

@@ -5,6 +5,7 @@ pub mod disk;
 mod export;
 pub mod guard;
 pub mod json;
+pub mod kept;
 mod plan;
 pub mod reference;
 pub mod report;

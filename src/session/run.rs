@@ -3,6 +3,7 @@
 use super::collect;
 use super::disk::{Disk, Outputs};
 use super::export;
+use super::kept::Kept;
 use super::report::{OutputRow, Report, Timings, VERSION};
 use super::stages::Stages;
 use crate::base::fault::{Fault, Severity};
@@ -11,6 +12,7 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::diag_render::render_all;
+use crate::lang::memory::Memory;
 use crate::lang::run::Entry;
 use crate::lang::value::ModuleId;
 
@@ -49,6 +51,8 @@ pub struct Outcome {
     pub interrupted: bool,
     /// Something that cannot happen did.
     pub bug: bool,
+    /// Declarations and stages whose results were taken over from the run before.
+    pub reused: usize,
 }
 
 impl Outcome {
@@ -62,7 +66,26 @@ impl Outcome {
 /// Runs it.
 pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
     let stages = Stages::new(task.clock);
-    let mut run = Run { cx: Cx::new(disk, &stages, job), task, disk, report: Report::default(), bug: None, flows: Vec::new() };
+    run_in(task, Cx::new(disk, &stages, job), disk, &stages).0
+}
+
+/// Runs it again: what did not change since the run before is taken over from `kept`, which then holds what this run
+/// found. The outcome is the same to the last bit as that of [`run`].
+pub fn run_again(task: &Task, disk: &Disk, job: &Job, kept: &mut Kept) -> Outcome {
+    let Kept { memory, stages } = std::mem::take(kept);
+    let stages = Stages::recalling(task.clock, stages);
+    let mut cx = Cx::new(disk, &stages, job);
+    cx.recall_from(memory);
+    let (mut outcome, memory) = run_in(task, cx, disk, &stages);
+    outcome.reused = memory.reused() + stages.reused();
+    let mut stages = stages.into_kept();
+    stages.tidy();
+    *kept = Kept { memory, stages };
+    outcome
+}
+
+fn run_in<'r>(task: &'r Task<'r>, cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> (Outcome, Memory) {
+    let mut run = Run { cx, stages, task, disk, report: Report::default(), bug: None, flows: Vec::new() };
     run.report.loft = VERSION;
     run.report.model = task.name.to_owned();
     match std::str::from_utf8(task.text) {
@@ -70,14 +93,15 @@ pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
         Err(error) => {
             let message = format!("{} is not UTF-8 text (byte {})", task.name, error.valid_up_to() + 1);
             run.report.units = run.cx.unit().name.to_owned();
-            return run.finish(Some(Diagnostic::without_place("E801", message)), &stages);
+            return run.finish(Some(Diagnostic::without_place("E801", message)));
         }
     }
-    run.finish(None, &stages)
+    run.finish(None)
 }
 
 struct Run<'r> {
     cx: Cx<'r>,
+    stages: &'r Stages<'r>,
     task: &'r Task<'r>,
     disk: &'r Disk,
     report: Report,
@@ -149,7 +173,7 @@ impl Run<'_> {
         }
         let model = self.cx.model(main);
         if let Some(model) = self.take(model) {
-            self.report.surfaces = collect::surfaces(&model);
+            self.report.surfaces = collect::surfaces(&model, &mut |surface| self.stages.area(surface));
             self.flows = collect::flows(&self.cx, &model);
             self.report.topology = collect::topology(&model, 0);
         }
@@ -157,7 +181,7 @@ impl Run<'_> {
         for (name, value) in self.cx.mesh_values() {
             let mesh = self.cx.mesh(&value);
             if let Some(mesh) = self.take(mesh) {
-                self.report.meshes.push(collect::mesh(&name, &mesh, &tolerance, self.task.full));
+                self.report.meshes.push(self.stages.row(&name, &mesh, &tolerance, self.task.full));
             }
         }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();
@@ -192,7 +216,7 @@ impl Run<'_> {
     }
 
     /// Gives outputs their names when all is well, and puts the outcome together.
-    fn finish(mut self, said: Option<Diagnostic>, stages: &Stages) -> Outcome {
+    fn finish(mut self, said: Option<Diagnostic>) -> (Outcome, Memory) {
         let interrupted = self.cx.job.go_on().is_err();
         let mut diagnostics = self.cx.finish();
         diagnostics.extend(said);
@@ -218,17 +242,19 @@ impl Run<'_> {
         self.report.diagnostics = diagnostics.iter().flat_map(|d| collect::diagnostic(d, &self.cx.sources)).collect();
         let tolerance = self.cx.tolerance_used().map(|t| t.point);
         let timings = &mut self.report.timings;
-        timings.mesh = stages.mesh_seconds();
+        timings.mesh = self.stages.mesh_seconds();
         timings.evaluate = (timings.evaluate - timings.mesh).max(0.0);
         let sources = std::mem::take(&mut self.cx.sources);
-        Outcome {
+        let outcome = Outcome {
             report: self.report,
             diagnostics,
             sources,
-            notes: self.flows.into_iter().chain(stages.notes()).collect(),
+            notes: self.flows.into_iter().chain(self.stages.notes()).collect(),
             tolerance,
             interrupted,
             bug,
-        }
+            reused: 0,
+        };
+        (outcome, self.cx.into_memory())
     }
 }

@@ -8,35 +8,67 @@ use glam::DVec3;
 use crate::base::fault::{CurveEnd, Fault, Say};
 use crate::base::limits::REPORTS_OF_A_KIND;
 use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
 use crate::lang::plans::MeshSpec;
+use crate::lang::scene::Scene;
 use crate::lang::value::ModuleId;
 use crate::mesh::{self, Mesh};
-use crate::model::Model;
 use crate::model::topology::Named;
+use crate::model::{Model, measure};
 use crate::network::chain::same_curve;
 use crate::network::graph::Input;
 use crate::network::snap::{SnapEnd, snap};
 use crate::network::{Chain, Network};
+use crate::surface::Surface;
 
-use super::plan;
+use super::kept::{KeptMesh, KeptModel, KeptNetwork, KeptStages};
+use super::report::MeshRow;
+use super::{collect, plan};
 
 /// The pipeline of a session; remembers how things were found and how long meshes took.
 pub struct Stages<'c> {
     clock: &'c (dyn Fn() -> f64 + Sync),
     found: Mutex<Found>,
+    /// What the run before made, and where this one leaves what it makes; `None` in a run that keeps nothing.
+    kept: Option<Mutex<KeptStages>>,
 }
 
 #[derive(Debug, Default)]
 struct Found {
     notes: Vec<String>,
     mesh_seconds: f64,
+    reused: usize,
 }
 
 impl<'c> Stages<'c> {
     /// `clock` gives seconds since some moment.
     pub fn new(clock: &'c (dyn Fn() -> f64 + Sync)) -> Self {
-        Self { clock, found: Mutex::default() }
+        Self { clock, found: Mutex::default(), kept: None }
+    }
+
+    /// The same, with what the run before made.
+    pub(super) fn recalling(clock: &'c (dyn Fn() -> f64 + Sync), kept: KeptStages) -> Self {
+        Self { kept: Some(Mutex::new(kept)), ..Self::new(clock) }
+    }
+
+    /// What the next run may take over.
+    pub(super) fn into_kept(self) -> KeptStages {
+        self.kept.map(|kept| kept.into_inner().unwrap_or_else(PoisonError::into_inner)).unwrap_or_default()
+    }
+
+    /// What is kept; `None` in a run that keeps nothing.
+    pub(super) fn kept(&self) -> Option<MutexGuard<'_, KeptStages>> {
+        Some(self.kept.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn count_reused(&self) {
+        self.found().reused += 1;
+    }
+
+    /// Stages that were taken over from the run before.
+    pub fn reused(&self) -> usize {
+        self.found().reused
     }
 
     fn found(&self) -> MutexGuard<'_, Found> {
@@ -55,6 +87,25 @@ impl<'c> Stages<'c> {
 
     fn note(&self, lines: impl IntoIterator<Item = String>) {
         self.found().notes.extend(lines);
+    }
+}
+
+impl Stages<'_> {
+    /// The area of a surface.
+    pub(super) fn area(&self, surface: &Surface) -> f64 {
+        match self.kept() {
+            Some(mut kept) => kept.area(surface),
+            None => measure::area(surface),
+        }
+    }
+
+    /// The row of a mesh in the report.
+    pub(super) fn row(&self, name: &str, mesh: &Arc<Mesh>, tolerance: &Tolerance, full: bool) -> MeshRow {
+        let measured = || collect::mesh(name, mesh, tolerance, full);
+        match self.kept() {
+            Some(mut kept) => kept.row(name, mesh, full, measured),
+            None => measured(),
+        }
     }
 }
 
@@ -91,34 +142,73 @@ impl Pipeline for Stages<'_> {
         Ok(())
     }
 
-    fn network(&self, cx: &mut Cx, _module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop> {
+    fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop> {
         let tolerance = cx.tolerance()?;
         let inputs = inputs(cx, parts);
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
-        let mut sink = Vec::new();
-        let network = Network::build(inputs, &points, &tolerance, cx.job, &mut sink)?;
-        say_all(cx, &sink);
-        Ok(Arc::new(network))
+        if let Some(kept) = self.kept()
+            && let Some(before) = kept.networks.get(&module).filter(|before| before.fits(&inputs, &points, &tolerance))
+        {
+            self.count_reused();
+            say_all(cx, &before.said);
+            return Ok(before.network.clone());
+        }
+        let mut said = Vec::new();
+        let again = self.kept.as_ref().map(|_| inputs.clone());
+        let network = Arc::new(Network::build(inputs, &points, &tolerance, cx.job, &mut said)?);
+        say_all(cx, &said);
+        if let (Some(mut kept), Some(inputs)) = (self.kept(), again) {
+            kept.networks.insert(module, KeptNetwork { inputs, points, tolerance, network: network.clone(), said });
+        }
+        Ok(network)
     }
 
     fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop> {
         let (tolerance, network) = (cx.tolerance()?, cx.network(module)?);
         let named = |s: &crate::lang::cx::Declared<crate::surface::Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
-        let surfaces = parts.surfaces.iter().map(named).collect();
-        Ok(Arc::new(Model::build(surfaces, &network, &tolerance, cx.job)?))
+        let surfaces: Vec<Named> = parts.surfaces.iter().map(named).collect();
+        if let Some(kept) = self.kept()
+            && let Some(before) = kept.models.get(&module).filter(|before| before.fits(&surfaces, &network, &tolerance))
+        {
+            self.count_reused();
+            return Ok(before.model.clone());
+        }
+        let model = Arc::new(Model::build(surfaces, &network, &tolerance, cx.job)?);
+        if let Some(mut kept) = self.kept() {
+            kept.models.insert(module, KeptModel { tolerance, network, model: model.clone() });
+        }
+        Ok(model)
     }
 
     fn mesh(&self, cx: &mut Cx, module: ModuleId, spec: &MeshSpec) -> Result<Arc<Mesh>, Stop> {
         let (tolerance, start) = (cx.tolerance()?, (self.clock)());
         let mut sink = Vec::new();
         let (plan, scene) = plan::of(cx, module, spec, &mut sink)?;
+        let place = (module, spec.name.clone());
+        if let Some(mut kept) = self.kept() {
+            kept.asked.insert(place.clone());
+        }
+        if let Some(kept) = self.kept()
+            && let Some(before) = kept.meshes.get(&place).filter(|m| m.fits(&plan, (&scene.model, &scene.network), &tolerance))
+        {
+            self.count_reused();
+            say_all(cx, &before.said);
+            self.note(before.lines.iter().cloned());
+            return Ok(before.mesh.clone());
+        }
         let input = mesh::build::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
         let built = mesh::build::build(&input, cx.job, &mut sink);
         say_all(cx, &sink);
         self.found().mesh_seconds += (self.clock)() - start;
         let mesh::build::Built { mesh, explanation } = built?;
-        self.note(explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)));
-        Ok(Arc::new(mesh))
+        let lines: Vec<String> = explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)).collect();
+        self.note(lines.iter().cloned());
+        let mesh = Arc::new(mesh);
+        if let Some(mut kept) = self.kept() {
+            let Scene { model, network } = scene;
+            kept.meshes.insert(place, KeptMesh { plan, model, network, tolerance, mesh: mesh.clone(), said: sink, lines });
+        }
+        Ok(mesh)
     }
 }
 

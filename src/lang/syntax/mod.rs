@@ -68,6 +68,12 @@ pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diag
     parser.end()
 }
 
+/// Where each token of a script stands; comments and blanks have none.
+pub(crate) fn token_spans(source: &str) -> Vec<Span> {
+    let tokens = scan::scan(source);
+    (0..tokens.len()).map(|token| tokens.span(token)).collect()
+}
+
 /// Bytes of the longest declaration that is parsed again to check a repair.
 const CHECKED: usize = 4096;
 

@@ -1,0 +1,132 @@
+//! What a session keeps from one run to the next beside values: the stages over everything declared, and what was
+//! measured of their results.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::report::MeshRow;
+use crate::base::fault::Fault;
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::lang::memory::Memory;
+use crate::lang::value::ModuleId;
+use crate::mesh::{Mesh, Plan};
+use crate::model::topology::Named;
+use crate::model::{Model, measure};
+use crate::network::Network;
+use crate::network::graph::Input;
+use crate::surface::Surface;
+
+/// Areas kept before those of surfaces that are gone are forgotten.
+const AREAS: usize = 10_000;
+
+/// Everything kept; [`Default`] before the first run.
+#[derive(Debug, Default)]
+pub struct Kept {
+    pub(super) memory: Memory,
+    pub(super) stages: KeptStages,
+}
+
+/// Stages of the last run, each with all that it was made from.
+#[derive(Debug, Default)]
+pub(super) struct KeptStages {
+    pub networks: BTreeMap<ModuleId, KeptNetwork>,
+    pub models: BTreeMap<ModuleId, KeptModel>,
+    pub meshes: BTreeMap<(ModuleId, Arc<str>), KeptMesh>,
+    pub areas: BTreeMap<Origin, (Surface, f64)>,
+    pub rows: Vec<(Arc<Mesh>, bool, MeshRow)>,
+    /// Meshes that the run asked for.
+    pub asked: BTreeSet<(ModuleId, Arc<str>)>,
+}
+
+impl KeptStages {
+    /// The area of a surface, measured once.
+    pub fn area(&mut self, surface: &Surface) -> f64 {
+        match self.areas.get(&surface.origin()) {
+            Some((before, area)) if before.is(surface) => *area,
+            _ => {
+                let area = measure::area(surface);
+                self.areas.insert(surface.origin(), (surface.clone(), area));
+                area
+            }
+        }
+    }
+
+    /// The row of a mesh in the report, measured once.
+    pub fn row(&mut self, name: &str, mesh: &Arc<Mesh>, full: bool, measure: impl FnOnce() -> MeshRow) -> MeshRow {
+        if let Some((.., row)) = self.rows.iter().find(|(m, f, row)| Arc::ptr_eq(m, mesh) && *f == full && row.name == name) {
+            return row.clone();
+        }
+        let row = measure();
+        self.rows.push((mesh.clone(), full, row.clone()));
+        row
+    }
+
+    /// Forgets what the last run did not use any more.
+    pub fn tidy(&mut self) {
+        let live = |surface: &Surface| self.models.values().any(|m| m.model.surfaces.iter().any(|named| named.surface.is(surface)));
+        if self.areas.len() > AREAS {
+            let areas = std::mem::take(&mut self.areas);
+            self.areas = areas.into_iter().filter(|(_, (surface, _))| live(surface)).collect();
+        }
+        let Self { meshes, rows, asked, .. } = self;
+        meshes.retain(|place, _| asked.contains(place));
+        asked.clear();
+        rows.retain(|(mesh, ..)| meshes.values().any(|m| Arc::ptr_eq(&m.mesh, mesh)));
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct KeptNetwork {
+    pub inputs: Vec<Input>,
+    pub points: Vec<DVec3>,
+    pub tolerance: Tolerance,
+    pub network: Arc<Network>,
+    pub said: Vec<Fault>,
+}
+
+impl KeptNetwork {
+    pub fn fits(&self, inputs: &[Input], points: &[DVec3], tolerance: &Tolerance) -> bool {
+        let same = |(a, b): (&Input, &Input)| a.name == b.name && a.curve.is(&b.curve) && a.cuts == b.cuts;
+        self.tolerance == *tolerance
+            && self.points == points
+            && self.inputs.len() == inputs.len()
+            && self.inputs.iter().zip(inputs).all(same)
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct KeptModel {
+    pub tolerance: Tolerance,
+    pub network: Arc<Network>,
+    pub model: Arc<Model>,
+}
+
+impl KeptModel {
+    pub fn fits(&self, surfaces: &[Named], network: &Arc<Network>, tolerance: &Tolerance) -> bool {
+        let same = |(a, b): (&Named, &Named)| a.name == b.name && a.surface.is(&b.surface);
+        self.tolerance == *tolerance
+            && Arc::ptr_eq(&self.network, network)
+            && self.model.surfaces.len() == surfaces.len()
+            && self.model.surfaces.iter().zip(surfaces).all(same)
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct KeptMesh {
+    pub plan: Plan,
+    pub model: Arc<Model>,
+    pub network: Arc<Network>,
+    pub tolerance: Tolerance,
+    pub mesh: Arc<Mesh>,
+    pub said: Vec<Fault>,
+    pub lines: Vec<String>,
+}
+
+impl KeptMesh {
+    pub fn fits(&self, plan: &Plan, (model, network): (&Arc<Model>, &Arc<Network>), tolerance: &Tolerance) -> bool {
+        self.tolerance == *tolerance && Arc::ptr_eq(&self.model, model) && Arc::ptr_eq(&self.network, network) && self.plan.is(plan)
+    }
+}

@@ -1,0 +1,162 @@
+//! A run that takes over what earlier runs found says, measures and writes the same as one that starts from nothing.
+
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lofting::base::job::Job;
+use lofting::session::disk::{Disk, Outputs};
+use lofting::session::guard::guarded;
+use lofting::session::json::report_text;
+use lofting::session::kept::Kept;
+use lofting::session::run::{Outcome, Task, run, run_again};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// A folder with the examples' data beside the script.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("incremental-{name}"));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(folder.join("data")).unwrap();
+        let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+        for entry in fs::read_dir(examples.join("data")).unwrap() {
+            let path = entry.unwrap().path();
+            fs::copy(&path, folder.join("data").join(path.file_name().unwrap())).unwrap();
+        }
+        Self(folder)
+    }
+
+    fn run(&self, text: &str, out: &str, kept: Option<&mut Kept>) -> (String, Vec<(String, Vec<u8>)>, usize) {
+        let script = self.0.join("model.loft");
+        let out = self.0.join(out);
+        let disk = Disk::new(Some(&script), Some(&out), &[], Outputs::Written).unwrap();
+        let clock = || 0.0;
+        let task =
+            Task { name: "model.loft", text: text.as_bytes(), sets: &[], strict: false, keep_going: true, full: true, clock: &clock };
+        let job = Job::default();
+        let outcome: Outcome = match kept {
+            Some(kept) => guarded(|| run_again(&task, &disk, &job, kept)).unwrap(),
+            None => guarded(|| run(&task, &disk, &job)).unwrap(),
+        };
+        let mut files: Vec<(String, Vec<u8>)> =
+            outcome.report.outputs.iter().map(|o| (o.path.clone(), fs::read(out.join(&o.path)).unwrap())).collect();
+        files.sort();
+        let said = format!(
+            "{}\n{}\n{}\n{:?}",
+            report_text(&outcome.report),
+            outcome.drawn(false, true),
+            outcome.notes.join("\n"),
+            outcome.tolerance
+        );
+        (said, files, outcome.reused)
+    }
+
+    /// Runs both ways and compares; the number of results that were taken over.
+    fn check(&self, text: &str, kept: &mut Kept) -> usize {
+        let (cold, cold_files, _) = self.run(text, "cold", None);
+        let (warm, warm_files, reused) = self.run(text, "warm", Some(kept));
+        if let Some((a, b)) = cold.lines().zip(warm.lines()).find(|(a, b)| a != b) {
+            panic!("cold: {a}\nwarm: {b}\nof this script:\n{text}");
+        }
+        assert_eq!(cold.lines().count(), warm.lines().count(), "more was said in one of the runs of\n{text}");
+        assert!(cold_files == warm_files, "files differ for\n{text}");
+        reused
+    }
+}
+
+fn example(name: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name)).unwrap()
+}
+
+/// Starts of declarations, as lines.
+fn starts(lines: &[String]) -> Vec<usize> {
+    const WORDS: &[&str] =
+        &["param ", "let ", "point ", "curve ", "modeling ", "surface ", "shell ", "group ", "mesh ", "check ", "report ", "export "];
+    (0..lines.len()).filter(|i| WORDS.iter().any(|w| lines[*i].starts_with(w))).collect()
+}
+
+/// One edit of a script, chosen by three numbers.
+fn edited(text: &str, kind: u8, place: usize, amount: u32) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let starts = starts(&lines);
+    if starts.is_empty() {
+        return text.to_owned();
+    }
+    let nth = place % starts.len();
+    let at = starts[nth];
+    let end = starts.get(nth + 1).copied().unwrap_or(lines.len());
+    match kind % 8 {
+        // A number changes.
+        0 | 1 => {
+            if let Some(k) = lines[at].rfind(|c: char| c.is_ascii_digit()) {
+                let digit = char::from_digit(amount % 9 + 1, 10).unwrap();
+                lines[at].replace_range(k..=k, &digit.to_string());
+            }
+        }
+        // A declaration goes.
+        2 => {
+            lines.drain(at..end);
+        }
+        // A declaration moves to the end.
+        3 => {
+            let moved: Vec<String> = lines.drain(at..end).collect();
+            lines.extend(moved);
+        }
+        // A comment, above and inside.
+        4 => {
+            lines[at].push_str(" // changed");
+            lines.insert(at, format!("// note {amount}"));
+        }
+        // Something new.
+        5 => lines.insert(at, format!("curve new_{amount} = line(({amount}mm, 0, 0), (0, {amount}mm, 3mm))")),
+        // A declaration breaks.
+        6 => lines[at].push_str(" ("),
+        // Blanks.
+        _ => lines[at] = lines[at].replace(" = ", "  =  "),
+    }
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn random_edits_of_the_examples_give_what_a_fresh_run_gives() {
+    let folder = Folder::new("edits");
+    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(2);
+    for name in ["porch.loft", "barrel_vault.loft", "tank.loft", "canopy.loft", "wing.loft", "greenhouse.loft"] {
+        let base = example(name);
+        let config = Config { cases, max_shrink_iters: 40, failure_persistence: None, ..Config::default() };
+        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
+        let mut runner = TestRunner::new_with_rng(config, rng);
+        let edits = proptest::collection::vec((0u8..8, 0usize..64, 0u32..100), 1..6);
+        runner
+            .run(&edits, |edits| {
+                let mut kept = Kept::default();
+                let mut states = vec![base.clone()];
+                folder.check(&base, &mut kept);
+                for (kind, place, amount) in edits {
+                    // Some edits are taken back, as by an undo.
+                    let from = if amount % 5 == 0 { 0 } else { states.len() - 1 };
+                    let next = edited(&states[from], kind, place, amount);
+                    folder.check(&next, &mut kept);
+                    states.push(next);
+                }
+                Ok(())
+            })
+            .unwrap();
+    }
+}
+
+#[test]
+fn what_did_not_change_is_taken_over() {
+    let folder = Folder::new("reuse");
+    let base = example("porch.loft");
+    let mut kept = Kept::default();
+    assert_eq!(folder.check(&base, &mut kept), 0);
+    let all = folder.check(&base, &mut kept);
+    // Every declaration that can be kept, the network, the model and the mesh.
+    assert!(all >= 20, "{all} results were taken over");
+    let commented = base.replace("surface ", "// a comment\nsurface ");
+    assert_eq!(folder.check(&commented, &mut kept), all);
+}
