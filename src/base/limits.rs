@@ -16,8 +16,8 @@ pub const DATA_BYTES: u64 = 256 << 20;
 pub const COORDINATE: f64 = 1e50;
 /// Members of one list.
 pub const LIST_MEMBERS: usize = 10_000_000;
-/// Members of all lists that comprehensions, families and sums of lists make in one run.
-pub const MEMBERS_MADE: usize = 50_000_000;
+/// Members of all lists that are held at a time, with 3 for each list itself: 40 bytes each, under 1 GiB together.
+pub const MEMBERS_MADE: usize = 20_000_000;
 /// Elements of one mesh.
 pub const MESH_ELEMENTS: u64 = 100_000_000;
 /// Lists inside each other.

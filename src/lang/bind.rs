@@ -1,6 +1,5 @@
 //! Arguments to parameters: positions, names, defaults, types; what is missing, too much or misspelled.
 
-use super::coerce::flatten_into;
 use super::cx::{Cx, Stop};
 use super::eval::{Code, Gather};
 use super::names::nearest;
@@ -8,7 +7,6 @@ use super::std::{Args, Builtin};
 use super::syntax::ast::{Arg, Expr, ExprId, Span};
 use super::types::Ty;
 use super::value::Value;
-use crate::base::limits;
 
 /// What a call passes to a parameter list: by position or name, before or after the dot.
 pub(super) struct Signature<'p> {
@@ -112,10 +110,7 @@ impl Cx<'_> {
         gather.done()?;
         for (k, param) in builtin.params.iter().enumerate() {
             if Some(k) == rest_at {
-                values[k] = one_list(std::mem::take(&mut rest));
-                if values[k].len().is_some_and(|n| n > limits::LIST_MEMBERS) {
-                    return Err(self.too_long(code, id, "this list"));
-                }
+                values[k] = self.one_list(code, id, std::mem::take(&mut rest))?;
             } else if given & (1 << k.min(63)) == 0 {
                 values[k] = match param.default {
                     Some(text) => self.default_of(builtin, k, text)?,
@@ -147,13 +142,22 @@ impl Cx<'_> {
         let value = if let Value::Table(t) = value { Value::List(t.rows.clone()) } else { value };
         match &value {
             Value::List(items) if items.iter().any(|v| matches!(v, Value::List(_) | Value::Range(..))) => {
-                let mut flat = Vec::new();
-                flatten_into(value, &mut flat);
+                let flat = self.flattened(code, id, value)?;
                 self.fit_expr(code, id, Value::list(flat), list, &quoted(name))
             }
             Value::List(_) | Value::Range(..) => self.fit_expr(code, id, value, list, &quoted(name)),
             _ => self.fit_expr(code, id, value, of, &quoted(name)),
         }
+    }
+
+    /// All rest arguments as one flat list; a single list is kept as it is.
+    fn one_list(&mut self, code: Code<'_>, id: ExprId, mut rest: Vec<Value>) -> Result<Value, Stop> {
+        if let [Value::List(items)] = rest.as_slice()
+            && !items.iter().any(|v| matches!(v, Value::List(_) | Value::Range(..)))
+        {
+            return Ok(rest.remove(0));
+        }
+        self.flattened(code, id, Value::list(rest)).map(Value::list)
     }
 
     /// A default, evaluated once a run.
@@ -276,18 +280,6 @@ pub(super) fn call_name(code: Code<'_>, id: ExprId) -> Span {
         Expr::Call { name_span, .. } | Expr::Field { name_span, .. } => *name_span,
         _ => code.span(id),
     }
-}
-
-/// All rest arguments as one flat list; a single list is kept as it is.
-fn one_list(mut rest: Vec<Value>) -> Value {
-    if let [Value::List(items)] = rest.as_slice()
-        && !items.iter().any(|v| matches!(v, Value::List(_) | Value::Range(..)))
-    {
-        return rest.remove(0);
-    }
-    let mut flat = Vec::with_capacity(rest.len());
-    rest.into_iter().for_each(|v| flatten_into(v, &mut flat));
-    Value::list(flat)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use super::eval::{Code, Frame, Gather, Site, Word};
 use super::later;
 use super::module::State;
 use super::names::{Name, nearest};
+use super::room::LIST_COST;
 use super::std::{self, Builtin};
 use super::syntax::ast::{Arg, DeclarationKind, Expr, ExprId, FnParam, Keyword, Span};
 use super::types::Ty;
@@ -115,6 +116,7 @@ impl Cx<'_> {
                     }
                 }
                 self.machine.site.expr = id;
+                self.made_by_builtin(code, id, &value)?;
                 self.finite_result(code, id, value)
             }
             Err(Stop::Fault(crate::base::fault::Fault::Interrupted)) => Err(crate::base::fault::Fault::Interrupted.into()),
@@ -163,7 +165,7 @@ impl Cx<'_> {
         let given = self.fn_args(code, id, (bound.name, params), first, args)?;
 
         let site = self.machine.site;
-        let base = self.machine.locals.len();
+        let (base, room) = (self.machine.locals.len(), self.machine.room);
         let old_base = ::std::mem::replace(&mut self.machine.base, base);
         self.machine.calls.push(Frame { name: bound.name, site: Site { expr: id, ..site }, origin: Origin::NONE });
         self.machine.site = Site { module, declaration, member: site.member, expr: *body };
@@ -176,6 +178,7 @@ impl Cx<'_> {
             None => Ok(value),
         });
         self.machine.calls.pop();
+        self.machine.room.give_back(room, result.as_ref().ok());
         self.machine.locals.truncate(base);
         self.machine.base = old_base;
         self.machine.site = site;
@@ -355,6 +358,7 @@ impl Cx<'_> {
             Expr::Slice { from, to } => {
                 let a = from.map_or(Ok(0), |e| self.bound_of(code, e, n))?;
                 let b = to.map_or(Ok(n), |e| self.bound_of(code, e, n))?;
+                self.made(code, id, LIST_COST + b.saturating_sub(a))?;
                 Ok(Value::list((a..b.max(a)).filter_map(|i| value.item(i)).collect()))
             }
             _ => match self.eval(code, index)? {
@@ -367,6 +371,7 @@ impl Cx<'_> {
                 }
                 Value::Range(a, b) => {
                     let clip = |k: i64| usize::try_from(k.clamp(0, n as i64)).unwrap_or(0);
+                    self.made(code, id, LIST_COST + clip(b).saturating_sub(clip(a)))?;
                     Ok(Value::list((clip(a)..clip(b).max(clip(a))).filter_map(|i| value.item(i)).collect()))
                 }
                 Value::Text(key) => match (&value, self.names.find(&key)) {

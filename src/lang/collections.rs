@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::coerce::flatten_into;
 use super::cx::{Cx, Stop};
 use super::eval::{Code, Gather};
 use super::faults::member_name;
@@ -165,8 +164,7 @@ impl Cx<'_> {
         for &thing in things {
             let Some(value) = gather.take(self.eval(code, thing)) else { continue };
             let origin = self.origin_at(thing);
-            let mut flat = Vec::new();
-            flatten_into(value, &mut flat);
+            let flat = self.flattened(code, thing, value)?;
             for value in flat {
                 if fits(&value) {
                     // A bare tuple is a point here.

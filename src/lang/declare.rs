@@ -6,6 +6,7 @@ use super::later::keyword_word;
 use super::module::bound;
 use super::names::Name;
 use super::origins::{NO_MEMBER, Place};
+use super::room::LIST_COST;
 use super::std;
 use super::syntax::ast::{Declaration, DeclarationKind, ExprId, FnParam, For, Keyword, TypeName};
 use super::types::{TYPE_NAMES, Ty};
@@ -52,12 +53,15 @@ impl Cx<'_> {
             return Err(self.error(code, "E302", "a family runs over one or two lists", f.name_span, "one `for` too many").stop());
         };
         let list = self.list_of(code, f)?;
+        self.made(code, f.list, LIST_COST + list.len().unwrap_or(0))?;
         let (mut out, mut gather) = (Vec::with_capacity(list.len().unwrap_or(0)), Gather::default());
         self.each(f.name, &list, |cx, i| {
             let mut member = member;
             member[slot] = i as u32;
             cx.step()?;
+            let before = cx.machine.room;
             let made = cx.members(code, rest, member, level + 1, make);
+            cx.machine.room.give_back(before, made.as_ref().ok());
             let failed = made.is_err();
             out.extend(gather.take(made));
             // Many members with the same mistake are one mistake.

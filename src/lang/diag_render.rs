@@ -22,6 +22,8 @@ use crate::base::limits::REPORTS_SHOWN;
 
 /// Characters of a line shown before and behind its labels when it is long.
 const WINDOW: usize = 100;
+/// Characters of the longest message that is shown whole.
+const WORDS: usize = 2000;
 /// Bytes of the longest line that is shown whole.
 const WHOLE_LINE: usize = 500;
 
@@ -75,7 +77,7 @@ fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, 
         Severity::Warning => '⚠',
         Severity::Note => '☞',
     };
-    let message = diagnostic.message.replace('\n', "\n       ");
+    let message = shortened(&diagnostic.message).replace('\n', "\n       ");
     let mut text = format!("{} {message}\n", paint.head(&format!("{} {sign}", diagnostic.code.0)));
     for (number, file) in files(diagnostic).into_iter().enumerate() {
         if let Some(source) = sources.get(file) {
@@ -110,7 +112,18 @@ fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, 
 
 /// `help:` or `note:` with its text, further lines set in.
 fn tail(text: &mut String, word: &str, lines: &str) {
-    text.push_str(&format!("  {word} {}\n", lines.replace('\n', "\n        ")));
+    text.push_str(&format!("  {word} {}\n", shortened(lines).replace('\n', "\n        ")));
+}
+
+/// Words that quote something endless: their beginning and end. The JSON report has them whole.
+fn shortened(words: &str) -> std::borrow::Cow<'_, str> {
+    let total = words.chars().count();
+    if total <= WORDS {
+        return words.into();
+    }
+    let begin: String = words.chars().take(WORDS / 2).collect();
+    let end: String = words.chars().skip(total - WORDS / 4).collect();
+    format!("{begin}…{end}").into()
 }
 
 /// Files of the labels in the order in which they are named.
@@ -180,8 +193,8 @@ fn rows(source: &SourceFile, labels: &[&Label]) -> Vec<Row> {
         let to = (source.boundary(label.span.end) as usize).saturating_sub(line_start).clamp(from, line.len());
         let to = if line[from..to].trim_end().is_empty() { to } else { from + line[from..to].trim_end().len() };
         match by_line.iter_mut().find(|(i, _)| *i == index) {
-            Some((_, marks)) => marks.push((from, to, label.text.clone())),
-            None => by_line.push((index, vec![(from, to, label.text.clone())])),
+            Some((_, marks)) => marks.push((from, to, shortened(&label.text).into_owned())),
+            None => by_line.push((index, vec![(from, to, shortened(&label.text).into_owned())])),
         }
     }
     by_line.sort_by_key(|(index, _)| *index);

@@ -10,6 +10,7 @@ use super::names::Name;
 use super::origins::{NO_MEMBER, Origins, Place};
 use super::plans::MeshSpec;
 use super::recall::Start;
+use super::room::Room;
 use super::std::Builtin;
 use super::syntax::ast::{Declaration, Expr, ExprId, Keyword, Node, Span};
 use super::value::{ModuleId, Value};
@@ -87,8 +88,8 @@ pub struct Machine {
     pub(super) running: Vec<(ModuleId, u32)>,
     pub(super) words: Vec<Word>,
     pub(super) steps: u64,
-    /// Members of lists made so far.
-    pub(super) members_made: usize,
+    /// Members of lists held.
+    pub(super) room: Room,
     next_look: u64,
     pub(super) depth: u32,
     pub(super) in_within: bool,
@@ -116,7 +117,7 @@ impl Default for Machine {
             running: Vec::new(),
             words: Vec::new(),
             steps: 0,
-            members_made: 0,
+            room: Room::default(),
             next_look: STEPS_A_LOOK,
             depth: 0,
             in_within: false,
@@ -309,10 +310,10 @@ impl Cx<'_> {
         let base = std::mem::replace(&mut self.machine.base, self.machine.locals.len());
         let calls = std::mem::take(&mut self.machine.calls);
         let sink = std::mem::take(&mut self.sink);
-        let depth = self.machine.depth;
         let start = self.start(module);
         let asked = std::mem::take(&mut self.machine.asked);
         let seen = std::mem::replace(&mut self.seen, Box3::EMPTY);
+        let (depth, room) = (self.machine.depth, self.machine.room);
 
         let code = Code { nodes: &declaration.nodes, module, declaration: index };
         let mut result = self.declare(code, declaration);
@@ -321,6 +322,7 @@ impl Cx<'_> {
         }
 
         self.machine.depth = depth;
+        self.machine.room.settle(room, result.as_ref().ok());
         self.machine.locals.truncate(self.machine.base);
         self.machine.base = base;
         self.machine.calls = calls;
@@ -364,7 +366,7 @@ impl Cx<'_> {
         asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
         self.machine.at_mut(module).asked[index as usize] = asked;
         self.machine.asked.join(asked);
-        self.machine.asked.members += self.machine.members_made - start.members;
+        self.machine.asked.members += self.machine.room.held() - start.members;
         self.machine.asked.steps += self.machine.steps - start.steps;
     }
 

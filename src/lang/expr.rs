@@ -8,6 +8,7 @@ use super::cx::{Cx, Stop};
 use super::eval::{Code, Gather};
 use super::module::State;
 use super::names::Name;
+use super::room::LIST_COST;
 use super::syntax::ast::{Clause, Expr, ExprId, For, Keyword, TextPart, Unary};
 use super::types::dim_words;
 use super::units;
@@ -45,14 +46,17 @@ impl Cx<'_> {
             Expr::Index { of, index } => self.index(code, id, *of, *index),
             Expr::List(items) => {
                 let items = self.items(code, items)?;
+                self.made(code, id, LIST_COST + items.len())?;
                 self.shallow(code, id, items)
             }
             Expr::Comprehension { clauses, body } => {
                 let mut out = Vec::new();
+                self.made(code, id, LIST_COST)?;
                 self.comprehension(code, id, clauses, *body, &mut out)?;
                 self.shallow(code, id, out)
             }
             Expr::Record(fields) => {
+                self.made(code, id, LIST_COST + fields.len())?;
                 let record = self.record_literal(code, fields)?;
                 self.shallow(code, id, vec![record.clone()])?;
                 Ok(record)
@@ -66,7 +70,11 @@ impl Cx<'_> {
                 let value = self.eval(code, *value)?;
                 self.with_local(*name, value, |cx| cx.eval(code, *body))
             }
-            Expr::Text(parts) => self.interpolate(code, parts).map(|t| Value::Text(t.into())),
+            Expr::Text(parts) => {
+                let text = self.interpolate(code, parts)?;
+                self.made_text(code, id, &text)?;
+                Ok(Value::Text(text.into()))
+            }
             Expr::Slice { .. } => {
                 Err(self.error(code, "E102", "a run stands inside `[ ]`", code.span(id), "runs from where to where").stop())
             }
@@ -220,7 +228,9 @@ impl Cx<'_> {
                     return Err(self.too_long(code, id, "this list"));
                 }
                 self.made(code, id, 1)?;
+                let before = self.machine.room;
                 let value = self.eval(code, body)?;
+                self.machine.room.give_back(before, Some(&value));
                 out.push(value);
                 Ok(())
             }
@@ -268,34 +278,6 @@ impl Cx<'_> {
         }
         let draft = self.error(code, "E217", "lists inside each other too deep", code.span(id), "one more here");
         Err(draft.help(format!("the limit is {} lists inside each other", limits::LIST_NESTING)).stop())
-    }
-
-    /// Counts members of lists that are made; fails when a run makes too many.
-    #[inline]
-    pub(super) fn made(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Stop> {
-        self.has_room(code, id, n)?;
-        self.machine.members_made += n;
-        Ok(())
-    }
-
-    /// Fails before `n` more members are made than a run may make.
-    #[inline]
-    fn has_room(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Stop> {
-        if n <= limits::MEMBERS_MADE - self.machine.members_made { Ok(()) } else { Err(self.no_room(code, id)) }
-    }
-
-    #[cold]
-    fn no_room(&mut self, code: Code<'_>, id: ExprId) -> Stop {
-        self.error(code, "E217", "the lists of this run have too many members together", code.span(id), "more than fit")
-            .help("the limit is 5 x 10^7 members in one run")
-            .stop()
-    }
-
-    #[cold]
-    pub(super) fn too_long(&mut self, code: Code<'_>, id: ExprId, what: &str) -> Stop {
-        self.error(code, "E217", format!("{what} has too many members"), code.span(id), "made here")
-            .help("the limit is 10^7 members")
-            .stop()
     }
 
     /// Binds the name to each member in turn.

@@ -27,6 +27,7 @@ mod outputs;
 mod params;
 pub mod plans;
 mod recall;
+mod room;
 pub mod run;
 pub mod scene;
 pub mod settings;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::cx::{Cx, Stop};
 use super::eval::Code;
+use super::room::LIST_COST;
 use super::syntax::ast::{Binary, Expr, ExprId, Span};
 use super::types::dim_words;
 use super::value::{Dim, Quantity, Value};
@@ -121,7 +122,7 @@ impl Cx<'_> {
                 if a.len() + b.len() > limits::LIST_MEMBERS {
                     return Err(self.too_long(at.code, at.id, "this list"));
                 }
-                self.made(at.code, at.id, a.len() + b.len())?;
+                self.made(at.code, at.id, LIST_COST + a.len() + b.len())?;
                 self.steps(a.len() + b.len())?;
                 Ok(Value::list(a.iter().chain(b.iter()).cloned().collect()))
             }
@@ -217,11 +218,18 @@ impl Cx<'_> {
             }
         };
         let a = end(self, left, at.a)?;
-        Ok(Value::Range(a, end(self, right, at.b)?))
+        let range = Value::Range(a, end(self, right, at.b)?);
+        match range.len() {
+            Some(n) if n > limits::LIST_MEMBERS => Err(self.too_long(at.code, at.id, "this range")),
+            _ => Ok(range),
+        }
     }
 
     /// `==` and `!=` without `within`.
     fn equality(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<bool, Stop> {
+        if let Err(stop) = self.comparable(&[left, right]) {
+            return Err(self.at_operator(at, stop));
+        }
         let equal = match (left, right) {
             (Value::Number(x), Value::Number(y)) if x.dim.is_none() && y.dim.is_none() => Some(x.value == y.value),
             (Value::Number(x), Value::Number(y)) => {

@@ -73,7 +73,7 @@ impl Cx<'_> {
         if self.tolerance.is_none() {
             self.seen = self.seen.union(kept.seen);
         }
-        self.machine.members_made += kept.members;
+        self.machine.room.take_over(kept.members);
         self.machine.steps += kept.steps;
         let m = &mut self.machine.modules[module.index()];
         let span = m.script.declarations[index as usize].span;
@@ -99,7 +99,7 @@ impl Cx<'_> {
         let m = self.machine.at(module);
         let machine = &self.machine;
         Start {
-            members: machine.members_made,
+            members: machine.room.held(),
             steps: machine.steps,
             checks: m.checks.len(),
             reports: m.reports.len(),
@@ -166,7 +166,7 @@ impl Cx<'_> {
             checks,
             reports,
             meshes: if declaration.keyword == Keyword::Mesh { m.meshes[start.meshes..].to_vec() } else { Vec::new() },
-            members: (self.machine.members_made - start.members).saturating_sub(asked.members),
+            members: (self.machine.room.held() - start.members).saturating_sub(asked.members),
             steps: (self.machine.steps - start.steps).saturating_sub(asked.steps),
         })
     }

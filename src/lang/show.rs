@@ -8,10 +8,29 @@ use super::value::{Dim, MeshValue, Quantity, Value};
 
 /// Members of a list shown in a text.
 const MEMBERS_SHOWN: usize = 1000;
+/// Members shown of lists inside each other, all together.
+const ALL_SHOWN: usize = 100_000;
 
 impl Cx<'_> {
     /// A value as text: shortest numbers with units, names for geometry.
     pub fn show(&self, value: &Value) -> String {
+        let mut left = ALL_SHOWN;
+        self.show_some(value, &mut left)
+    }
+
+    /// Like [`Cx::show`]; `left` members are shown at most, those of inner lists included.
+    fn show_some(&self, value: &Value, left: &mut usize) -> String {
+        let mut inside = |v: &Value| match v {
+            Value::List(_) | Value::Record(_) if *left == 0 => "…".to_owned(),
+            Value::List(_) | Value::Record(_) => {
+                *left -= 1;
+                self.show_some(v, left)
+            }
+            other => {
+                *left = left.saturating_sub(1);
+                self.show_inside(other)
+            }
+        };
         match value {
             Value::None => "none".into(),
             Value::Bool(b) => b.to_string(),
@@ -21,7 +40,7 @@ impl Cx<'_> {
             Value::Node(p) => self.vector(*p, Dim::LENGTH),
             Value::Text(t) | Value::Word(t) => t.to_string(),
             Value::List(items) => {
-                let mut parts: Vec<String> = items.iter().take(MEMBERS_SHOWN).map(|v| self.show_inside(v)).collect();
+                let mut parts: Vec<String> = items.iter().take(MEMBERS_SHOWN).map(inside).collect();
                 if items.len() > MEMBERS_SHOWN {
                     parts.push(format!("… {} in all", items.len()));
                 }
@@ -29,7 +48,7 @@ impl Cx<'_> {
             }
             Value::Record(r) => {
                 let parts: Vec<String> =
-                    r.keys.iter().zip(&r.values).map(|(k, v)| format!("{}: {}", self.names.text(*k), self.show_inside(v))).collect();
+                    r.keys.iter().zip(&r.values).map(|(k, v)| format!("{}: {}", self.names.text(*k), inside(v))).collect();
                 format!("{{{}}}", parts.join(", "))
             }
             Value::Curve(c) => self.entity(c.origin(), "curve"),

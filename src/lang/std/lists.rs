@@ -4,20 +4,11 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
-use crate::base::limits;
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::operators::same;
 use crate::lang::types::{Rest, dim_words};
 use crate::lang::value::Value;
-
-/// Fails before a list of so many members is made.
-pub(super) fn room(n: usize) -> Result<(), Stop> {
-    if n > limits::LIST_MEMBERS {
-        return Err(ValueFault::Limit { what: format!("a list of {n} members"), limit: "10^7 members".into() }.into());
-    }
-    Ok(())
-}
 
 /// The order of two values that have one; `None` for kinds or dimensions that differ.
 fn order(a: &Value, b: &Value) -> Option<Ordering> {
@@ -144,6 +135,7 @@ builtins! {
         key: Value = "none",
     ) -> Vec<Value> = |cx, list, key| {
         let keys = keys(cx, &list, &key)?;
+        keys.iter().try_for_each(|k| cx.comparable(&[k]))?;
         if keys.windows(2).any(|w| order(&w[0], &w[1]).is_none()) {
             let (found, beside) = dims(&keys);
             return Err(ValueFault::Mixed { argument: "list", found, beside }.into());
@@ -182,6 +174,7 @@ builtins! {
                 (Value::Number(x), Value::Number(y)) => x.dim == y.dim && x.value == y.value,
                 (v, value) => same(v, value) == Some(true),
             };
+            cx.comparable(&[list, value])?;
             Ok(members(list).iter().any(equal))
         }
         _ => {
@@ -224,7 +217,7 @@ builtins! {
         c: Option<Vec<Value>>,
     ) -> Vec<Value> = |cx, a, b, c| {
         let n = a.len().min(b.len()).min(c.as_ref().map_or(usize::MAX, Vec::len));
-        cx.steps(n)?;
+        cx.room_of_lists(n, Some(2 + usize::from(c.is_some())))?;
         let row = |i: usize| {
             let mut row = vec![a[i].clone(), b[i].clone()];
             row.extend(c.as_ref().map(|c| c[i].clone()));

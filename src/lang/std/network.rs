@@ -150,15 +150,12 @@ builtins! {
         of: Chain,
         /// How many, at least 2.
         count: usize,
-    ) -> Vec<Point> = |_, of, count| {
+    ) -> Vec<Point> = |cx, of, count| {
         if count < 2 {
             let range = "at least 2".to_owned();
             return Err(ValueFault::OutsideRange { argument: "count", found: count.to_string(), range }.into());
         }
-        if count > crate::base::limits::LIST_MEMBERS {
-            let (what, limit) = (format!("a list of {count} points"), format!("{} members", crate::base::limits::LIST_MEMBERS));
-            return Err(ValueFault::Limit { what, limit }.into());
-        }
+        cx.room(count)?;
         Ok((0..count).map(|k| Point(of.point(k as f64 / (count - 1) as f64))).collect())
     };
 }

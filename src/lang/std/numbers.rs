@@ -392,8 +392,7 @@ builtins! {
         if count < 2 {
             return Err(outside("count", count as f64, "2 or more"));
         }
-        super::lists::room(count)?;
-        cx.steps(count)?;
+        cx.room(count)?;
         let at = |i: usize| {
             let t = i as f64 / (count - 1) as f64;
             if i + 1 == count { to.value } else { from.value + (to.value - from.value) * t }
