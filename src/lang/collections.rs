@@ -137,7 +137,6 @@ impl Cx<'_> {
                         | Value::Shell(_)
                         | Value::Curve(_)
                         | Value::Link(..)
-                        | Value::Patch(..)
                         | Value::Vector(..)
                         | Value::Node(_)
                         | Value::Vertex(..)

@@ -22,7 +22,6 @@ const FUNCTIONS: &[&str] = &[
     "hydrostatics",
     "iso",
     "project",
-    "deviation",
 ];
 
 const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];

@@ -20,7 +20,7 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::par;
-use crate::model::{PatchId, SurfaceId};
+use crate::model::PatchId;
 
 /// Refinements of whole faces before a limit counts as out of reach.
 const ROUNDS: usize = 40;
@@ -208,14 +208,14 @@ struct Whole {
 /// Ranges, line elements and mid nodes.
 fn finish(input: &Input, whole: Whole, mut mesh: Mesh, explanation: Explanation) -> Part {
     let Whole { layout, nodes, prepared, sizing } = whole;
-    let mut ranges: Vec<(SurfaceId, std::ops::Range<u32>, std::ops::Range<u32>)> = Vec::new();
+    let mut ranges = super::sets::Ranges::new();
     let (mut t, mut q) = (0, 0);
-    for ready in &prepared {
+    for (ready, face) in prepared.iter().zip(&layout.faces) {
         let (triangles, quads) = (t..t + ready.triangles as u32, q..q + ready.quads as u32);
         (t, q) = (triangles.end, quads.end);
         let name = input.model.surfaces[ready.surface.index()].name.clone();
         mesh.faces.push(FaceRange { name, triangles: triangles.clone(), quads: quads.clone(), lines: 0..0 });
-        ranges.push((ready.surface, triangles, quads));
+        ranges.push(((face.patch, ready.surface), triangles, quads));
     }
     lines::add(input, &layout, &nodes, &mut mesh);
     if input.plan.order == 2 {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::origin::Origin;
-use crate::model::SurfaceId;
+use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 
 /// Which elements a face gets.
@@ -35,8 +35,21 @@ pub enum Target {
     Chain(Chain),
     /// All faces of a surface.
     Surface(SurfaceId),
+    /// One face; wins over its surface.
+    Patch(PatchId),
     /// A point (groups only).
     Point(DVec3),
+}
+
+impl Target {
+    /// Whether it speaks of a face, given by its patch and surface: `Some(true)` of this one alone.
+    pub fn faces(&self, patch: PatchId, surface: SurfaceId) -> Option<bool> {
+        match self {
+            Self::Surface(s) => (*s == surface).then_some(false),
+            Self::Patch(p) => (*p == patch).then_some(true),
+            Self::Chain(_) | Self::Point(_) => None,
+        }
+    }
 }
 
 /// `on ENTITY { … }`: settings for a part of the mesh.

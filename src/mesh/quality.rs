@@ -123,6 +123,23 @@ impl Mesh {
         })
     }
 
+    /// Centre of the area of the elements, a quad as its two triangles; of a mesh of lines of their length, of loose nodes
+    /// their mean. By corner nodes; `None` without nodes.
+    pub fn centroid(&self) -> Option<DVec3> {
+        let node = |n: u32| self.nodes[n as usize];
+        let about = *self.nodes.first()?;
+        let heavy = |[a, b, c]: [DVec3; 3]| (0.5 * (b - a).cross(c - a).length(), (a + b + c) / 3.0);
+        let halves = |q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]].map(|t| heavy(t.map(node)));
+        let faces = self.triangles.iter().map(|t| heavy(t.map(node))).chain(self.quads.iter().flat_map(halves));
+        let lines = self.lines.iter().map(|l| (node(l[0]).distance(node(l[1])), 0.5 * (node(l[0]) + node(l[1]))));
+        let center = |parts: &mut dyn Iterator<Item = (f64, DVec3)>| {
+            let (mass, moment) = parts.fold((0.0, DVec3::ZERO), |(mass, moment), (m, p)| (mass + m, moment + (p - about) * m));
+            (mass > 0.0).then(|| about + moment / mass)
+        };
+        let nodes = self.nodes.iter().map(|p| (1.0, *p));
+        center(&mut { faces }).or_else(|| center(&mut { lines })).or_else(|| center(&mut { nodes }))
+    }
+
     /// Largest distance mesh–surface at 25 points a triangle (a quad as its two triangles), model units; `None` where
     /// the surfaces are not known (a mesh that was read) or there is no face.
     pub fn chord_error(&self, tolerance: &Tolerance) -> Option<f64> {

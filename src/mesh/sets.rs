@@ -7,10 +7,12 @@ use super::data::{Group, Mesh};
 use super::layout::Layout;
 use super::nodes::Nodes;
 use super::plan::{GroupRequest, Target};
-use crate::model::SurfaceId;
+use crate::model::{PatchId, SurfaceId};
 
-/// Where the elements of each surface are in the mesh: surface, triangles, quads.
-pub type Ranges = Vec<(SurfaceId, std::ops::Range<u32>, std::ops::Range<u32>)>;
+/// Where the elements of a face are in the mesh: its patch and surface, triangles, quads.
+pub type FaceElements = ((PatchId, SurfaceId), std::ops::Range<u32>, std::ops::Range<u32>);
+/// Where the elements of all faces are.
+pub type Ranges = Vec<FaceElements>;
 
 /// Ascending, each once.
 fn sorted(mut list: Vec<u32>) -> Vec<u32> {
@@ -21,8 +23,13 @@ fn sorted(mut list: Vec<u32>) -> Vec<u32> {
 
 /// The set of one surface.
 pub fn of_surface(input: &Input, mesh: &Mesh, ranges: &Ranges, surface: SurfaceId) -> Group {
-    let mut group = Group { name: input.model.surfaces[surface.index()].name.clone(), ..Group::default() };
-    for (_, triangles, quads) in ranges.iter().filter(|r| r.0 == surface) {
+    of_faces(mesh, ranges, &input.model.surfaces[surface.index()].name, &Target::Surface(surface))
+}
+
+/// The set of the faces that a target speaks of.
+fn of_faces(mesh: &Mesh, ranges: &Ranges, name: &str, target: &Target) -> Group {
+    let mut group = Group { name: name.to_owned(), ..Group::default() };
+    for (_, triangles, quads) in ranges.iter().filter(|r| target.faces(r.0.0, r.0.1).is_some()) {
         group.triangles.extend(triangles.clone());
         group.quads.extend(quads.clone());
     }
@@ -61,8 +68,8 @@ pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, 
     let mut nodes = Vec::new();
     for member in &request.members {
         match member {
-            Target::Surface(surface) => {
-                let own = of_surface(input, mesh, ranges, *surface);
+            Target::Surface(_) | Target::Patch(_) => {
+                let own = of_faces(mesh, ranges, &request.name, member);
                 group.triangles.extend(own.triangles);
                 group.quads.extend(own.quads);
                 nodes.extend(own.nodes);

@@ -10,7 +10,6 @@ use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
-use crate::model::SurfaceId;
 use crate::model::atoms::Use;
 use crate::network::Chain;
 
@@ -61,8 +60,9 @@ pub struct Sizing {
     overridden: Vec<(usize, usize, &'static str)>,
 }
 
-const LINK: u8 = 2;
-const CURVE: u8 = 1;
+const LINK: u8 = 3;
+const CURVE: u8 = 2;
+const PATCH: u8 = 1;
 const FACE: u8 = 0;
 
 /// Settles a rule against what is there: inner rules win, of equal ones the later.
@@ -90,7 +90,7 @@ impl Sizing {
         for (index, rule) in rules.iter().enumerate() {
             match &rule.target {
                 Target::Chain(chain) => sizing.chain_rule(input, layout, (index, rule, chain), &mut division, &mut bias)?,
-                Target::Surface(surface) => sizing.surface_counts(layout, (index, rule, *surface), &mut division)?,
+                Target::Surface(_) | Target::Patch(_) => sizing.face_counts(layout, (index, rule), &mut division)?,
                 Target::Point(_) => {}
             }
         }
@@ -133,14 +133,17 @@ impl Sizing {
         for face in &mut layout.faces {
             face.size = (size, None);
             let mut last: [Option<usize>; 3] = [None; 3];
-            for (index, rule) in input.plan.rules.iter().enumerate() {
-                if !matches!(rule.target, Target::Surface(s) if s == face.surface) {
-                    continue;
-                }
+            let rules = input.plan.rules.iter().enumerate();
+            let mut own: Vec<_> = rules.filter_map(|(n, r)| r.target.faces(face.patch, face.surface).map(|alone| (alone, n, r))).collect();
+            // A rule on the face alone wins over one on its surface.
+            own.sort_by_key(|(alone, index, _)| (*alone, *index));
+            let alone = |index: usize| matches!(input.plan.rules[index].target, Target::Patch(_));
+            for (_, index, rule) in own {
                 let says = [rule.size.is_some(), rule.elements.is_some(), rule.method.is_some()];
                 for (k, key) in ["size", "elements", "method"].into_iter().enumerate() {
                     if says[k]
                         && let Some(old) = last[k].replace(index)
+                        && alone(old) == alone(index)
                     {
                         self.overridden.push((old, index, key));
                     }
@@ -160,9 +163,14 @@ impl Sizing {
             }
         }
         for (index, rule) in input.plan.rules.iter().enumerate() {
-            if let Target::Surface(surface) = rule.target {
-                if !layout.faces.iter().any(|f| f.surface == surface) {
-                    self.homeless[index] = Some("that surface is not in this mesh".to_owned());
+            let what = match rule.target {
+                Target::Surface(_) => "surface",
+                Target::Patch(_) => "face",
+                Target::Chain(_) | Target::Point(_) => "",
+            };
+            if !what.is_empty() {
+                if !layout.faces.iter().any(|f| rule.target.faces(f.patch, f.surface).is_some()) {
+                    self.homeless[index] = Some(format!("that {what} is not in this mesh"));
                 } else if rule.bias.is_some()
                     && rule.count.is_none()
                     && rule.size.is_none()
@@ -218,17 +226,12 @@ impl Sizing {
         Ok(())
     }
 
-    /// A count on a surface is for each of its sides.
-    fn surface_counts(
-        &mut self,
-        layout: &Layout,
-        (index, rule, surface): (usize, &Rule, SurfaceId),
-        division: &mut [Option<Ruled<Division>>],
-    ) -> Result<()> {
+    /// A count on a surface or a face is for each of its sides.
+    fn face_counts(&mut self, layout: &Layout, (index, rule): (usize, &Rule), division: &mut [Option<Ruled<Division>>]) -> Result<()> {
         let Some((count, origin)) = rule.count else {
             return Ok(());
         };
-        let faces: Vec<_> = layout.faces.iter().filter(|f| f.surface == surface).collect();
+        let faces: Vec<_> = layout.faces.iter().filter(|f| rule.target.faces(f.patch, f.surface).is_some()).collect();
         let sides = faces.first().map_or(0, |f| f.sides.len());
         for side in 0..sides {
             let on: Vec<_> = faces.iter().filter(|f| f.sides.len() == sides).collect();
@@ -247,7 +250,8 @@ impl Sizing {
             let shares = share(count, &weights, &least)
                 .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: stretches.len() as u32 })?;
             for (s, n) in stretches.iter().zip(shares) {
-                settle(&mut division[*s], Ruled { rank: FACE, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
+                let rank = if matches!(rule.target, Target::Patch(_)) { PATCH } else { FACE };
+                settle(&mut division[*s], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
             }
         }
         Ok(())

@@ -6,10 +6,13 @@
 
 use glam::{DMat3, DVec3};
 
-use super::measure_quadrature::{flat_integral, integral};
+use super::measure_quadrature::{Rectangle, WHOLE, flat_integral, integral};
 use crate::base::bbox::Box3;
 use crate::base::par;
-use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox};
+use crate::base::quadrature::integrate;
+use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::network::Chain;
+use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, chain_breaks};
 
 /// A thin sheet of mass 1 per area.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +43,25 @@ pub struct Solid {
 /// Area of one surface, square model units; 0 for an unbounded plane's (it has none).
 pub fn area(surface: &Surface) -> f64 {
     over(surface, DVec3::ZERO, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
+}
+
+/// Area of the part of a surface between two values of u and two of v, square model units; of a plane without a map and
+/// of a triangle that of the whole.
+pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {
+    if part == WHOLE || surface.domain() != Domain::Square {
+        return area(surface);
+    }
+    integral(surface, part, &|jet| [jet.du.cross(jet.dv).length()]).0[0]
+}
+
+/// Centre of the length of a curve.
+pub fn curve_centroid(chain: &Chain) -> DVec3 {
+    const DEPTH: u32 = 24;
+    let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
+    let (about, allowed) = (chain.point(0.5), (0.0, MEASURE_ACCURACY * chain.length()));
+    let along =
+        |k: usize| -> f64 { stops.windows(2).map(|w| integrate(w[0], w[1], allowed, DEPTH, |f| (chain.point(f) - about)[k]).0).sum() };
+    about + DVec3::new(along(0), along(1), along(2))
 }
 
 /// Area, centroid and inertia of surfaces taken together.
@@ -103,7 +125,7 @@ fn over<const N: usize>(surface: &Surface, about: DVec3, f: &impl Fn(&Jet2, DVec
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
         (_, SurfaceKind::Plane) => flat_integral(surface, &at),
-        _ => integral(surface, &at),
+        _ => integral(surface, WHOLE, &at),
     }
 }
 

@@ -25,16 +25,24 @@ struct Cell {
     depth: u32,
 }
 
-/// The integral of N functions of the jet over the unit square of a surface, with estimated errors.
+/// Low and high of x and of y.
+pub type Rectangle = ((f64, f64), (f64, f64));
+/// All of the unit square.
+pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
+
+/// The integral of N functions of the jet over a rectangle of the unit square of a surface, with estimated errors.
 ///
 /// A cell is done when two orders differ by no more than [`MEASURE_ACCURACY`] of the integrals of absolute values, shared
 /// out by the cells of the first division; errors are sums of these differences (of the lower order: on the safe side).
-pub fn integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let (us, vs) = surface.breaks();
     // A triangle's lines do not follow the square.
     let (us, vs) = if surface.domain() == Domain::Triangle { (Vec::new(), vs) } else { (us, vs) };
-    let (us, vs) = ([&[0.0], us.as_slice(), &[1.0]].concat(), [&[0.0], vs.as_slice(), &[1.0]].concat());
+    let stops = |inner: Vec<f64>, (low, high): (f64, f64)| -> Vec<f64> {
+        std::iter::once(low).chain(inner.into_iter().filter(|x| *x > low && *x < high)).chain(std::iter::once(high)).collect()
+    };
+    let (us, vs) = (stops(us, within.0), stops(vs, within.1));
     let mut open: Vec<Cell> =
         vs.windows(2).flat_map(|y| us.windows(2).map(move |x| Cell { x: (x[0], x[1]), y: (y[0], y[1]), depth: 0 })).collect();
     let share = MEASURE_ACCURACY / open.len() as f64;

@@ -1,5 +1,6 @@
 //! Floor 4: patches, edges, vertices, loops and shells cut and glued from surfaces.
 
+pub mod apart;
 pub mod atoms;
 pub mod contact;
 pub mod glue;

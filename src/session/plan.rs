@@ -14,6 +14,7 @@ use crate::surface::Surface;
 /// Finds what the values of a mesh stand for.
 struct Finder<'s> {
     scene: &'s Scene,
+    module: ModuleId,
     tolerance: Tolerance,
 }
 
@@ -24,7 +25,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let values = spec.things.iter().chain(rules).map(|(value, _)| value);
     let surfaces: Vec<&Surface> = values.flat_map(surfaces_of).collect();
     let scene = Scene::of(cx, module, surfaces)?;
-    let finder = Finder { scene: &scene, tolerance };
+    let finder = Finder { scene: &scene, module, tolerance };
     let mut plan = Plan::of(&spec.name, Vec::new());
     plan.origin = spec.origin;
     for (value, _) in &spec.things {
@@ -65,7 +66,7 @@ fn settings(plan: &mut Plan, spec: &MeshSpec) {
 
 /// W701 for settings that say nothing about what their rule speaks of: steps of a face, elements of a curve.
 fn idle_settings(spec: &RuleSpec, rules: &[Rule], sink: &mut Vec<Fault>) {
-    let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_)));
+    let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_) | Target::Patch(_)));
     let curves = rules.iter().any(|rule| matches!(rule.target, Target::Chain(_)));
     let of_curves = [("count", spec.count.map(|s| s.1)), ("bias", spec.bias.map(|s| s.1))];
     let of_faces = [("elements", spec.elements.map(|s| s.1)), ("method", spec.method.map(|s| s.1))];
@@ -116,7 +117,7 @@ impl Finder<'_> {
                     match target {
                         Target::Chain(chain) => plan.curves.push((cx.name(chain.origin()), chain)),
                         Target::Point(p) => plan.points.push(p),
-                        Target::Surface(_) => {}
+                        Target::Surface(_) | Target::Patch(_) => {}
                     }
                 }
             }
@@ -128,6 +129,11 @@ impl Finder<'_> {
     /// What a rule or a group speaks of.
     fn targets(&self, value: &Value) -> Result<Vec<Target>, Stop> {
         Ok(match value {
+            // Entities are numbered in the model of their own script.
+            Value::Link(of, _) | Value::Edge(of, _) | Value::Vertex(of, _) | Value::Patch(of, _) if *of != self.module => {
+                let what = format!("{} of a module in a mesh or group of another script", value.ty().words());
+                return Err(ValueFault::NotInThisVersion { what }.into());
+            }
             Value::Surface(surface) => self.scene.find_all([surface])?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
             Value::Shell(shell) => self.scene.find_all(&shell.surfaces)?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
             Value::Curve(chain) => vec![Target::Chain(chain.clone())],
@@ -138,6 +144,7 @@ impl Finder<'_> {
                 let later = || ValueFault::NotInThisVersion { what: "a rule or group on an edge inside a surface".to_owned() };
                 vec![Target::Chain(chain.ok_or_else(later)?)]
             }
+            Value::Patch(_, patch) => vec![Target::Patch(*patch)],
             Value::Vertex(_, vertex) => vec![Target::Point(self.scene.model.vertices[vertex.index()].point)],
             Value::Node(p) | Value::Vector(p, _) => vec![Target::Point(*p)],
             other => return Err(wrong(other)),

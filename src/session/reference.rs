@@ -56,17 +56,31 @@ pub fn manual() -> String {
     let mut functions: Vec<&Builtin> = builtins().collect();
     functions.sort_by_key(|b| b.name);
     functions.iter().for_each(|b| out.push_str(&manual_entry(b)));
-    out.push_str("\n## Fields\n\nWritten `x.name` or `name(x)`.\n\n| field | of | gives | |\n|---|---|---|---|\n");
-    let mut all: Vec<&Builtin> = fields().collect();
-    all.sort_by_key(|b| (b.name, b.params.first().map(|p| p.ty.signature()).unwrap_or_default()));
-    for field in all {
-        let of = field.params.first().map(|p| p.ty.signature()).unwrap_or_default();
+    out.push_str(
+        "\n## Members\n\nWritten `x.name` or `name(x)`. Lengths are in model units, areas and volumes in their powers, angles in degrees.\n\n\
+         | of | member | gives | unit | |\n|---|---|---|---|---|\n",
+    );
+    let mut all: Vec<(String, &Builtin)> = fields().map(|b| (b.params.first().map(|p| p.ty.signature()).unwrap_or_default(), b)).collect();
+    all.sort_by(|a, b| (&a.0, a.1.name).cmp(&(&b.0, b.1.name)));
+    for (of, field) in all {
         let cell = |text: &str| text.replace('|', "\\|");
-        let docs: Vec<&str> = field.docs.trim().lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
-        let row = format!("| `{}` | {} | {} | {} |\n", field.name, cell(&of), cell(&field.returns.signature()), cell(&docs.join(" ")));
+        let docs: Vec<&str> = field.docs.trim().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        let (gives, unit) = (field.returns.signature(), unit_of(&field.returns.signature()));
+        let row = format!("| {} | `{}` | {} | {unit} | {} |\n", cell(&of), field.name, cell(&gives), cell(&docs.join(" ")));
         out.push_str(&row);
     }
     out
+}
+
+/// The unit in which reports show a result of this type.
+fn unit_of(signature: &str) -> &'static str {
+    match signature.trim_matches(['[', ']', '?']) {
+        "length" | "point" | "node" => "model unit",
+        "area" => "model unit²",
+        "volume" => "model unit³",
+        "angle" => "degree",
+        _ => "",
+    }
 }
 
 fn manual_entry(builtin: &Builtin) -> String {

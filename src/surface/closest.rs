@@ -49,6 +49,11 @@ impl Nearest {
         Self { surface: surface.clone(), xs, ys, points }
     }
 
+    /// The surface.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
     /// The nearest point of the surface.
     pub fn at(&self, p: DVec3) -> Closest {
         match self.surface.domain() {

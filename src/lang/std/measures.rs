@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::kinds::PatchOf;
 use crate::base::bbox::Box3;
-use crate::base::fault::SurfaceFault;
+use crate::base::fault::{SurfaceFault, ValueFault};
 use crate::fields;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
@@ -45,12 +46,25 @@ fn box_of(chain: &Chain) -> Box3 {
 fields! {
     /// Area of a surface.
     fn area(of: Surface) -> Area = |_, of| Ok(Area(measure::area(&of)));
+    /// Area of a patch.
+    fn area(of: PatchOf) -> Area = |cx, of| {
+        let model = cx.model(of.0)?;
+        let patch = &model.patches[of.1.index()];
+        Ok(Area(measure::area_between(&model.surfaces[patch.surface.index()].surface, (patch.u, patch.v))))
+    };
     /// Area of all surfaces of a shell.
     fn area(of: Arc<ShellValue>) -> Area = |_, of| Ok(Area(measure::sheet(&of.surfaces).area));
     /// Area of all faces of a mesh.
     fn area(of: Arc<MeshValue>) -> Area = |cx, of| Ok(Area(cx.mesh(&of)?.quality().map_or(0.0, |q| q.area)));
     /// Volume that a closed shell encloses.
     fn volume(of: Arc<ShellValue>) -> Volume = |cx, of| Ok(Volume(solid(cx, &of)?.volume.abs()));
+    /// Centre of the length of a curve.
+    fn centroid(of: Chain) -> Point = |_, of| Ok(Point(measure::curve_centroid(&of)));
+    /// Centre of the area of a mesh; of lines alone of their length.
+    fn centroid(of: Arc<MeshValue>) -> Point = |cx, of| {
+        let empty = || ValueFault::OutsideRange { argument: "of", found: "an empty mesh".to_owned(), range: "a mesh with nodes".to_owned() };
+        Ok(Point(cx.mesh(&of)?.centroid().ok_or_else(empty)?))
+    };
     /// Centre of the area of a surface.
     fn centroid(of: Surface) -> Point = |_, of| Ok(Point(measure::sheet(std::slice::from_ref(&of)).centroid));
     /// Centre of the volume of a closed shell, of the area of an open one.

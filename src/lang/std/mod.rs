@@ -9,6 +9,7 @@ use super::value::Value;
 
 mod curves;
 mod data;
+mod distances;
 mod joins;
 pub mod kinds;
 mod lists;
@@ -87,6 +88,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     lists::BUILTINS,
     text::BUILTINS,
     vectors::BUILTINS,
+    distances::BUILTINS,
     data::BUILTINS,
     curves::BUILTINS,
     network::BUILTINS,

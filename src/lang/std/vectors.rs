@@ -1,15 +1,13 @@
 //! Functions and fields of points and directions.
 
 use crate::base::fault::ValueFault;
-use crate::base::math;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::types::{Angle, Vector, dim_words};
+use crate::lang::types::{Vector, dim_words};
 use crate::lang::value::{Dim, Quantity, Value};
-use crate::network::meet::closest_points;
 use crate::{builtins, fields};
 
 /// Both in one dimension: a bare one beside a length is in model units.
-fn together(cx: &Cx, a: Vector, b: Vector) -> Result<(Vector, Vector), Stop> {
+pub(super) fn together(cx: &Cx, a: Vector, b: Vector) -> Result<(Vector, Vector), Stop> {
     let bare = cx.bare_unit(cx.module());
     match (a.1, b.1) {
         (x, y) if x == y => Ok((a, b)),
@@ -23,7 +21,7 @@ fn product(a: Dim, b: Dim) -> Result<Dim, Stop> {
     a.times(b).ok_or_else(|| ValueFault::WrongKind { argument: "b", wanted: "a smaller power", found: dim_words(b) }.into())
 }
 
-fn not_zero(v: Vector, argument: &'static str) -> Result<(), Stop> {
+pub(super) fn not_zero(v: Vector, argument: &'static str) -> Result<(), Stop> {
     if v.0 == glam::DVec3::ZERO {
         return Err(ValueFault::OutsideRange { argument, found: "(0, 0, 0)".into(), range: "a vector of some length".into() }.into());
     }
@@ -31,55 +29,14 @@ fn not_zero(v: Vector, argument: &'static str) -> Result<(), Stop> {
 }
 
 /// A point, node, vertex or tuple.
-fn vector(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Vector, Stop> {
+pub(super) fn vector(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Vector, Stop> {
     match value {
         Value::Vector(..) | Value::Node(_) | Value::Vertex(..) => cx.as_vector(value).map(|(v, dim)| Vector(v, dim)),
         other => Err(ValueFault::WrongKind { argument, wanted: "a point", found: cx.kind(&other) }.into()),
     }
 }
 
-/// Shortest distance of two points, of a point and a curve, or of two curves.
-fn distance(cx: &mut Cx, a: Value, b: Value) -> Result<Quantity, Stop> {
-    let is_curve = |v: &Value| matches!(v, Value::Curve(_) | Value::Link(..));
-    match (is_curve(&a), is_curve(&b)) {
-        (true, true) => {
-            let (a, b) = (cx.as_chain(a)?, cx.as_chain(b)?);
-            let (p, q) = closest_points(&a, &b);
-            Ok(Quantity::new(p.distance(q), Dim::LENGTH))
-        }
-        (true, false) => distance(cx, b, a),
-        (false, true) => {
-            let (p, curve) = (vector(cx, a, "a")?, cx.as_chain(b)?);
-            let (p, _) = together(cx, p, Vector(curve.start(), Dim::LENGTH))?;
-            Ok(Quantity::new(curve.closest(p.0).2, Dim::LENGTH))
-        }
-        (false, false) => {
-            for value in [&a, &b] {
-                if matches!(value, Value::Surface(_) | Value::Shell(_) | Value::Mesh(_) | Value::Plane(_)) {
-                    let what = format!("the distance from {}", cx.kind(value));
-                    return Err(ValueFault::NotInThisVersion { what }.into());
-                }
-            }
-            let (a, b) = (vector(cx, a, "a")?, vector(cx, b, "b")?);
-            let (a, b) = together(cx, a, b)?;
-            Ok(Quantity::new(a.0.distance(b.0), a.1))
-        }
-    }
-}
-
 builtins! {
-    /// Shortest distance of points and curves.
-    ///
-    /// ```loft
-    /// let a = distance((0, 0, 0), (3mm, 4mm, 0)) // => 5mm
-    /// ```
-    fn distance(
-        /// A point or a curve.
-        a: Value,
-        /// Another.
-        b: Value,
-    ) -> Quantity = distance;
-
     /// Scalar product of two vectors.
     ///
     /// ```loft
@@ -169,22 +126,6 @@ builtins! {
             let (a, b) = together(cx, a, b)?;
             Ok(Value::Vector(a.0 + (b.0 - a.0) * t, a.1))
         }
-    };
-
-    /// The angle between two directions, 0 to 180 degrees.
-    ///
-    /// ```loft
-    /// let a = angle((1, 0, 0), (0, 1, 0)) // => 90deg
-    /// ```
-    fn angle(
-        /// A direction.
-        a: Vector,
-        /// Another.
-        b: Vector,
-    ) -> Angle = |_, a, b| {
-        not_zero(a, "a")?;
-        not_zero(b, "b")?;
-        Ok(Angle(math::angle_between(a.0, b.0)))
     };
 }
 
