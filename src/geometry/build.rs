@@ -123,7 +123,7 @@ pub fn arc_through(a: DVec3, b: DVec3, through: DVec3, origin: Origin) -> Result
     let angle = math::atan2(w.dot(v), w.dot(u));
     let sweep = if angle > 0.0 { angle } else { angle + TAU };
     let radius = Some(u.length());
-    Ok(Curve::new(Shape::Arc(EllipticArc { center, u, v, sweep, radius }), Kind::Arc, origin))
+    Ok(Curve::new(Shape::Arc(EllipticArc { center, u, v, sweep, radius }), Kind::Arc, origin).built_through(Some(through)))
 }
 
 /// The angle as a positive sweep and a sign; E411 for zero and E412 beyond one turn.

@@ -111,6 +111,8 @@ struct Inner {
     shape: Shape,
     kind: Kind,
     origin: Origin,
+    /// The inner point that the user gave: an arc through three points is built anew from it.
+    through: Option<DVec3>,
     lengths: OnceLock<Arc<Lengths>>,
     pieces: OnceLock<Arc<Pieces>>,
 }
@@ -118,13 +120,32 @@ struct Inner {
 impl Curve {
     /// A curve of this shape.
     pub fn new(shape: Shape, kind: Kind, origin: Origin) -> Self {
-        Self(Arc::new(Inner { shape, kind, origin, lengths: OnceLock::new(), pieces: OnceLock::new() }))
+        Self(Arc::new(Inner { shape, kind, origin, through: None, lengths: OnceLock::new(), pieces: OnceLock::new() }))
+    }
+
+    /// The same curve, known to be built through a point between its ends.
+    pub(super) fn built_through(&self, through: Option<DVec3>) -> Self {
+        let Inner { shape, kind, origin, .. } = &*self.0;
+        Self(Arc::new(Inner {
+            shape: shape.clone(),
+            kind: *kind,
+            origin: *origin,
+            through,
+            lengths: OnceLock::new(),
+            pieces: OnceLock::new(),
+        }))
+    }
+
+    /// The point between its ends through which it was built.
+    pub(super) fn through(&self) -> Option<DVec3> {
+        self.0.through
     }
 
     /// The same curve, made by another expression.
     pub fn with_origin(&self, origin: Origin) -> Self {
-        let Inner { shape, kind, lengths, pieces, .. } = &*self.0;
-        Self(Arc::new(Inner { shape: shape.clone(), kind: *kind, origin, lengths: lengths.clone(), pieces: pieces.clone() }))
+        let Inner { shape, kind, through, lengths, pieces, .. } = &*self.0;
+        let (shape, lengths, pieces) = (shape.clone(), lengths.clone(), pieces.clone());
+        Self(Arc::new(Inner { shape, kind: *kind, origin, through: *through, lengths, pieces }))
     }
 
     fn with_shape(&self, shape: Shape) -> Self {
@@ -343,14 +364,15 @@ impl Curve {
 
     /// The run backwards, kind and origin kept.
     pub fn reversed(&self) -> Self {
-        self.with_shape(match &self.0.shape {
+        let reversed = self.with_shape(match &self.0.shape {
             Shape::Line(a, b) => Shape::Line(*b, *a),
             Shape::Arc(arc) => Shape::Arc(arc.reversed()),
             Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.reversed())),
             Shape::Helix(helix) => Shape::Helix(Box::new(helix.reversed())),
             Shape::Offset(offset) => Shape::Offset(Box::new(offset.reversed())),
             Shape::Composite(c) => Shape::Composite(Arc::new(Composite::new(c.pieces.iter().rev().map(Self::reversed)))),
-        })
+        });
+        if self.0.through.is_none() { reversed } else { reversed.built_through(self.0.through) }
     }
 
     /// The exact piece between two parameters of the domain, `t0 < t1`; a whole circle's part is an arc.
@@ -383,14 +405,15 @@ impl Curve {
 
     /// The curve carried by a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
-        self.with_shape(match &self.0.shape {
+        let moved = self.with_shape(match &self.0.shape {
             Shape::Line(a, b) => Shape::Line(motion.point(*a), motion.point(*b)),
             Shape::Arc(arc) => Shape::Arc(arc.moved(motion)),
             Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.moved(motion))),
             Shape::Helix(helix) => Shape::Helix(Box::new(helix.moved(motion))),
             Shape::Offset(offset) => Shape::Offset(Box::new(offset.moved(motion))),
             Shape::Composite(c) => Shape::Composite(Arc::new(Composite::new(c.pieces.iter().map(|p| p.moved(motion))))),
-        })
+        });
+        if self.0.through.is_none() { moved } else { moved.built_through(self.0.through.map(|p| motion.point(p))) }
     }
 
     /// A box that holds the curve (of control points where the exact one costs more).

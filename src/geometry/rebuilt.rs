@@ -15,13 +15,17 @@ impl Curve {
     pub fn has_movable_ends(&self, tolerance: &Tolerance) -> bool {
         let kind = matches!(self.kind(), Kind::Line | Kind::Polyline | Kind::Spline | Kind::Bezier | Kind::Bspline | Kind::Nurbs);
         let shape = matches!(self.shape(), Shape::Line(..) | Shape::Nurbs(_));
-        kind && shape && !self.is_closed(tolerance)
+        (kind && shape || self.through().is_some()) && !self.is_closed(tolerance)
     }
 
-    /// The curve built anew with other ends: a spline interpolates again, of others the end points move.
+    /// The curve built anew with other ends: a spline interpolates again, an arc goes through the same inner point, of others
+    /// the end points move.
     ///
     /// Kind and origin stay. A curve without movable ends stays as it is.
     pub fn with_ends(&self, start: DVec3, end: DVec3) -> Result<Self> {
+        if let Some(through) = self.through() {
+            return build::arc_through(start, end, through, self.origin());
+        }
         match (self.kind(), self.shape()) {
             (Kind::Line, _) => build::line(start, end, self.origin()),
             (Kind::Spline, Shape::Nurbs(net)) => {
@@ -57,6 +61,21 @@ impl Curve {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
+
+    #[test]
+    fn an_arc_through_three_points_keeps_its_inner_point() {
+        let (a, b, through) = (DVec3::ZERO, DVec3::new(2.0, 0.0, 0.0), DVec3::new(0.5, 0.6, 0.0));
+        let tolerance = Tolerance::new(1e-6, 1.0);
+        let arc = build::arc_through(a, b, through, Origin::NONE).unwrap();
+        for curve in [arc.clone(), arc.reversed(), arc.with_origin(Origin(3))] {
+            assert!(curve.has_movable_ends(&tolerance));
+            let moved = curve.with_ends(curve.start() + DVec3::Y * 0.01, curve.end()).unwrap();
+            assert!(moved.start().distance(curve.start() + DVec3::Y * 0.01) < 1e-15 && moved.end().distance(curve.end()) < 1e-12);
+            assert!(super::super::closest(&moved, through).distance < 1e-12);
+        }
+        let about = build::arc_center(DVec3::ZERO, DVec3::X, 1.0, DVec3::Z, Origin::NONE).unwrap();
+        assert!(!about.has_movable_ends(&tolerance) && !arc.part(0.0, 0.5).has_movable_ends(&tolerance));
+    }
 
     #[test]
     fn a_spline_interpolates_again() {

@@ -12,7 +12,7 @@ use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword, Node};
 use super::types::Ty;
 use super::units;
 use super::value::{Dim, ModuleId, Value};
-use crate::base::fault::Severity;
+use crate::base::fault::{Say, Severity};
 use crate::base::tolerance::Tolerance;
 
 /// Names listed in a note about what was not built.
@@ -221,8 +221,10 @@ impl Cx<'_> {
             stale = next;
         }
         for (i, named) in stale.into_iter().enumerate() {
-            let again = named && script.declarations[i].keyword != Keyword::Curve;
-            if again && matches!(self.machine.at(module).states[i], State::Done(_)) {
+            // A second declaration of one name stays refused.
+            let first = bound(&script.declarations[i]).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
+            let again = named && first && script.declarations[i].keyword != Keyword::Curve;
+            if again && !matches!(self.machine.at(module).states[i], State::Waiting | State::Running | State::Suspended) {
                 self.machine.at_mut(module).states[i] = State::Waiting;
                 let owner = Some((module, i as u32));
                 self.machine.filed.retain(|f| f.0 != owner);
@@ -238,6 +240,7 @@ impl Cx<'_> {
     pub fn finish(&mut self) -> Vec<Diagnostic> {
         let rest = std::mem::take(&mut self.sink);
         self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
+        self.idle_tolerances();
         let skipped = self.skipped();
         let filed = std::mem::take(&mut self.machine.filed);
         let mut out: Vec<Diagnostic> = Vec::with_capacity(filed.len());
@@ -259,6 +262,23 @@ impl Cx<'_> {
         }
         diag::sort(&mut out);
         out
+    }
+
+    /// W222 for each module with a tolerance of its own: all of a model has one.
+    fn idle_tolerances(&mut self) {
+        for m in 1..self.machine.modules.len() {
+            let script = self.machine.modules[m].script.clone();
+            for (index, declaration) in script.declarations.iter().enumerate() {
+                if declaration.keyword == Keyword::Tolerance {
+                    let code = Code { nodes: &declaration.nodes, module: ModuleId::at(m), declaration: index as u32 };
+                    let point = self.tolerance.map_or(0.0, |t| t.point);
+                    let text = format!("the tolerance of this module decides nothing: the main script's, {}, holds", self.length(point));
+                    self.error(code, "W222", text, declaration.span, "only asked where this script is run itself").say();
+                }
+            }
+        }
+        let said = std::mem::take(&mut self.sink);
+        self.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     }
 
     /// For each failed declaration what was skipped because of it.

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::cluster::cluster;
 use crate::base::fault::{CurveEnd, Fault, NetworkFault, Result};
 use crate::base::math::compare_points;
+use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 
 /// An end that `snap` looks at.
@@ -28,8 +29,14 @@ pub struct Move {
 /// Moves that bring ends closer than `distance` together: to the end among them that cannot move, else to the declared
 /// point, else to their mean. Each move is noted in `sink` (N513); two ends that cannot move are E511.
 ///
-/// Independent of the order of ends.
-pub fn snap(ends: &[SnapEnd], points: &[DVec3], distance: f64, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Vec<Move>> {
+/// `asked` is the expression that says the distance. Independent of the order of ends.
+pub fn snap(
+    ends: &[SnapEnd],
+    points: &[DVec3],
+    (distance, asked): (f64, Origin),
+    tolerance: &Tolerance,
+    sink: &mut Vec<Fault>,
+) -> Result<Vec<Move>> {
     let all: Vec<DVec3> = ends.iter().map(|e| e.end.at).chain(points.iter().copied()).collect();
     let roots = cluster(&all, distance);
     let mut order: Vec<u32> = (0..all.len() as u32).collect();
@@ -44,7 +51,7 @@ pub fn snap(ends: &[SnapEnd], points: &[DVec3], distance: f64, tolerance: &Toler
         let fixed: Vec<usize> = members.iter().copied().filter(|&k| !ends[k].movable).collect();
         for (i, &a) in fixed.iter().enumerate() {
             if let Some(&b) = fixed[i + 1..].iter().find(|&&b| !tolerance.same_point(all[a], all[b])) {
-                return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance }.into());
+                return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance, asked }.into());
             }
         }
         let fixed_points: Vec<DVec3> = fixed.iter().map(|&k| all[k]).collect();
@@ -79,7 +86,6 @@ fn mean(mut points: Vec<DVec3>) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::origin::Origin;
 
     fn end(x: f64, movable: bool) -> SnapEnd {
         SnapEnd { end: CurveEnd { of: Origin::NONE, last: false, at: DVec3::new(x, 0.0, 0.0) }, movable }
@@ -88,7 +94,7 @@ mod tests {
     fn moved(ends: &[SnapEnd], points: &[f64]) -> Result<Vec<(usize, f64)>> {
         let points: Vec<DVec3> = points.iter().map(|&x| DVec3::new(x, 0.0, 0.0)).collect();
         let mut sink = Vec::new();
-        let moves = snap(ends, &points, 0.5, &Tolerance::new(1e-6, 10.0), &mut sink)?;
+        let moves = snap(ends, &points, (0.5, Origin::NONE), &Tolerance::new(1e-6, 10.0), &mut sink)?;
         assert_eq!(sink.len(), moves.len());
         Ok(moves.into_iter().map(|m| (m.end, m.to.x)).collect())
     }

@@ -110,7 +110,7 @@ impl Stages<'_> {
 }
 
 impl Pipeline for Stages<'_> {
-    fn snap(&self, cx: &mut Cx, parts: &mut Parts, distance: f64, _origin: Origin) -> Result<(), Stop> {
+    fn snap(&self, cx: &mut Cx, parts: &mut Parts, distance: f64, origin: Origin) -> Result<(), Stop> {
         let tolerance = cx.tolerance()?;
         let (mut ends, mut owners) = (Vec::new(), Vec::new());
         for (k, declared) in parts.curves.iter().enumerate() {
@@ -123,7 +123,7 @@ impl Pipeline for Stages<'_> {
         }
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
         let mut sink = Vec::new();
-        let moves = snap(&ends, &points, distance, &tolerance, &mut sink)?;
+        let moves = snap(&ends, &points, (distance, origin), &tolerance, &mut sink)?;
         say_all(cx, &sink);
         let mut places: Vec<DVec3> = ends.iter().map(|e| e.end.at).collect();
         let mut moved = vec![false; owners.len()];

@@ -122,6 +122,8 @@ pub enum NetworkFault {
         b: CurveEnd,
         /// The snap distance.
         snap: f64,
+        /// The expression that says it.
+        asked: Origin,
     },
     /// N512: two curves run over the same links.
     SharedRun {
@@ -249,7 +251,7 @@ impl Describe for NetworkFault {
             Self::SeveralMeetings { a, b, candidates } => several_meetings(*a, *b, candidates, say),
             Self::SharesRun { a, b, runs } => shares_run(*a, *b, runs, say),
             Self::InUse { of, users } => in_use(*of, users, say),
-            Self::SnapFixed { a, b, snap } => Report::new(
+            Self::SnapFixed { a, b, snap, asked } => Report::new(
                 "E511",
                 format!(
                     "{} and {} end {} apart at {}, closer than `snap {}`, and neither end can be moved",
@@ -262,6 +264,7 @@ impl Describe for NetworkFault {
             )
             .at(a.of, a.verb())
             .at(b.of, b.verb())
+            .at(*asked, "ends closer than this are joined")
             .help(format!(
                 "write one of them through points, end both at one point, or declare a `snap` below {}",
                 typed(say, a.at.distance(b.at))
