@@ -12,6 +12,7 @@ pub mod origin;
 pub mod par;
 pub mod predicates;
 pub mod quadrature;
+pub mod range;
 pub mod solve;
 pub mod text;
 pub mod tolerance;

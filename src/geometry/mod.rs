@@ -21,6 +21,7 @@ mod offset_build;
 mod pieces;
 mod rebuilt;
 pub mod spline;
+mod spread;
 
 pub use build::{Ends, Spline};
 pub use closest::{Closest, closest, closest_pair};
@@ -28,3 +29,4 @@ pub use curve::{Curve, Jet, Kind};
 pub use intersect::{Hit, intersect, self_intersect};
 pub use motion::Motion;
 pub use nurbs::Nurbs;
+pub use spread::{Spread, spread};

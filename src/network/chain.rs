@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::slice;
+use super::spread::{self, ChainSpread};
 use crate::base::bbox::Box3;
 use crate::base::fault::{NetworkFault, Result};
 use crate::base::origin::Origin;
@@ -319,6 +320,11 @@ impl Chain {
             [one] => Ok(one.with_origin(self.0.origin)),
             _ => build::composite(&pieces, self.0.origin),
         }
+    }
+
+    /// Bounds of the derivatives by the fraction between two fractions, `f0 < f1`.
+    pub fn spread(&self, f0: f64, f1: f64) -> ChainSpread {
+        spread::of_chain(self, f0, f1)
     }
 
     /// A box that holds the chain (of the whole curves it runs on where they are cut).

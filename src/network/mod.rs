@@ -15,6 +15,7 @@ mod near;
 mod shared;
 mod slice;
 pub mod snap;
+mod spread;
 
 pub use chain::{Chain, Run};
 pub use flow::{Flow, FlowFault, FlowKind, FlowOptions, NodeList};
@@ -22,3 +23,4 @@ pub use flow_chains::{ChainFlow, of_chains};
 pub use graph::{CurveId, Input, Link, LinkId, LinkMap, Network, Node, NodeId};
 pub use meet::{Meeting, meet, meet_once};
 pub use snap::{Move, SnapEnd, snap};
+pub use spread::ChainSpread;

@@ -71,7 +71,8 @@ impl Blend {
         (&mut self.along_u, &mut self.along_v)
     }
 
-    fn corner(&self, i: usize, j: usize) -> DVec3 {
+    /// P_ij.
+    pub(super) fn corner(&self, i: usize, j: usize) -> DVec3 {
         self.corners[j * self.along_v.len() + i]
     }
 

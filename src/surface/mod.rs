@@ -1,6 +1,7 @@
 //! Floor 3: surfaces, one file per kind. Built from chains; knows nothing of patches, meshes or text.
 
 mod blend;
+mod blend_spread;
 mod breaks;
 pub mod closest;
 pub mod coons;
@@ -10,6 +11,8 @@ mod extent;
 pub mod extrude;
 mod flow_words;
 pub mod interpolate;
+mod line;
+mod net_spread;
 pub mod nurbs;
 pub mod plane;
 mod rail;
@@ -18,9 +21,11 @@ mod review;
 pub mod revolve;
 mod ruled;
 mod shape;
+mod spread;
 mod square;
 mod sweep;
 mod trilateral;
+mod trilateral_spread;
 mod weights;
 
 pub use breaks::chain_breaks;
@@ -34,3 +39,4 @@ pub use rail::Lean;
 pub use reparam::{Map, Reparam};
 pub use revolve::{axis_of, revolve};
 pub use ruled::ruled;
+pub use spread::{Spread, Strip};

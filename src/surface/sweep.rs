@@ -6,13 +6,25 @@ use glam::DVec3;
 
 use super::Jet2;
 use super::breaks::{chain_breaks, tidy};
+use super::line::Line;
 use super::rail::{Lean, Rail};
+use super::spread::Spread;
 use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::base::par;
+use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::EPSILON;
 use crate::geometry::{Jet, Motion};
 use crate::network::Chain;
+
+/// A vector turned about an axis by up to ±`reach` radians.
+fn turn_range(w: DVec3, axis: DVec3, reach: f64) -> Ranges {
+    let still = axis * axis.dot(w);
+    let (out_of, across) = (w - still, axis.cross(w));
+    let (sin, cos) = math::sin_cos(reach.min(std::f64::consts::PI));
+    let sides = Range::around_zero(if reach < std::f64::consts::FRAC_PI_2 { sin } else { 1.0 });
+    Range { low: cos, high: 1.0 } * out_of + sides * across + still
+}
 
 /// Rows of points made by one thread at a time.
 const ROWS: usize = 16;
@@ -122,6 +134,33 @@ impl Sweep {
             let g = self.profile.jet(v, lean);
             out.extend(us.iter().map(|&(u, _)| self.carried(&g, u)));
         }
+    }
+
+    /// The profile.
+    pub fn profile(&self) -> &Rail {
+        &self.profile
+    }
+
+    /// Bounds over a rectangle about `u`, the profile known over its stretch.
+    pub fn spread(&self, u: f64, half: (f64, f64), line: &Line) -> Spread {
+        let mid = self.carried(&line.mid, u);
+        let Path::Turn { about, axis, angle } = self.path else {
+            return Spread::new(mid, half, [Ranges::default(), Ranges::default(), line.d2], None);
+        };
+        let reach = (half.0 * angle).abs();
+        // W turned by up to ±reach: the middle one exactly, what the others differ by stays as long as it is.
+        let turned = |middle: DVec3, others: Ranges, wanted: DVec3| {
+            let off = (others + -middle).reach().max(0.0);
+            let off = if middle == DVec3::ZERO && others == Ranges::default() { 0.0 } else { off };
+            turn_range(wanted, axis, reach) + Ranges::around_zero(DVec3::splat(off))
+        };
+        let arms = line.p() + -about;
+        let across = |w: Ranges| Ranges::at(axis).cross(&w);
+        let middle = line.mid.p - about;
+        let duu = turned(axis.cross(axis.cross(middle)), across(across(arms)), mid.duu / (angle * angle)) * (angle * angle);
+        let duv = turned(axis.cross(line.mid.d1), across(line.d1), mid.duv / angle) * angle;
+        let dvv = turned(line.mid.d2, line.d2, mid.dvv);
+        Spread::new(mid, half, [duu, duv, dvv], Some([Ranges::ANY, turned(line.mid.d1, line.d1, mid.dv)]))
     }
 
     /// Interior parameters where the profile is less than analytic.

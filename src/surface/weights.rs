@@ -1,6 +1,7 @@
 //! Blending functions of one direction: cubic between neighbours (composite Coons) or Lagrange through all.
 
 use super::rail::Lean;
+use crate::base::range::Range;
 use crate::base::tolerance::EPSILON;
 
 /// How curves are blended across one direction.
@@ -106,6 +107,43 @@ impl Axis {
             }
         }
         p
+    }
+
+    /// Bounds of the active blending values with their derivatives over `x0 < x1` inside one cell.
+    pub fn ranges(&self, x0: f64, x1: f64) -> Vec<[Range; 3]> {
+        let (middle, half) = (0.5 * (x0 + x1), 0.5 * (x1 - x0));
+        let at = self.weights(middle, Lean::After);
+        let steps = Range::around_zero(half);
+        let third = |k: usize| match self.rule {
+            Rule::Cubic => {
+                let h = self.nodes[at.first + 1] - self.nodes[at.first];
+                Range::at(if k == 1 { -12.0 } else { 12.0 } / (h * h * h))
+            }
+            Rule::Lagrange => self.lagrange_third(k, Range { low: x0, high: x1 }),
+        };
+        let one = |(k, w): (usize, &[f64; 3])| {
+            // Down from the third derivative by Taylor's formula about the middle.
+            let d3 = third(k);
+            let d2 = Range::at(w[2]) + d3 * steps;
+            let d1 = Range::at(w[1]) + steps * w[2] + d3 * Range { low: 0.0, high: 0.5 * half * half };
+            let d0 = Range::at(w[0]) + steps * w[1] + d2 * Range { low: 0.0, high: 0.5 * half * half };
+            [d0, d1, d2]
+        };
+        at.values().iter().enumerate().map(one).collect()
+    }
+
+    /// Bounds of L_i‴ by the product rule over intervals.
+    fn lagrange_third(&self, i: usize, x: Range) -> Range {
+        let own = self.nodes[i];
+        let mut p = [Range::at(1.0), Range::at(0.0), Range::at(0.0), Range::at(0.0)];
+        for (k, &node) in self.nodes.iter().enumerate() {
+            if k != i {
+                let d = 1.0 / (own - node);
+                let f = (x - Range::at(node)) * d;
+                p = [p[0] * f, p[1] * f + p[0] * d, p[2] * f + p[1] * (2.0 * d), p[3] * f + p[2] * (3.0 * d)];
+            }
+        }
+        p[3]
     }
 
     /// Largest Σ|L_i| over the direction, by sampling each cell and climbing from its best sample.

@@ -1,0 +1,147 @@
+//! Bounds of a curve's direction and curvature over a stretch, from control points and closed forms: nothing is sampled.
+//!
+//! Both are geometric (derivatives by arc length), so a piece may be bounded in whatever parameter suits it.
+
+use glam::DVec3;
+
+use super::arc::EllipticArc;
+use super::curve::{Curve, Shape};
+use super::nurbs::{Nurbs, projected};
+use super::nurbs_edit::Bezier;
+use crate::base::math;
+use crate::base::range::{Range, Ranges};
+use crate::base::tolerance::EPSILON;
+
+/// What the unit tangent and the curvature vector of a stretch may be.
+#[derive(Clone, Copy, Debug)]
+pub struct Spread {
+    /// dC/ds.
+    pub tangent: Ranges,
+    /// d²C/ds²; vast where there is a cusp.
+    pub bend: Ranges,
+    /// Sum over the corners inside of how far each coordinate of the tangent jumps.
+    pub jumps: DVec3,
+}
+
+impl Spread {
+    /// Of both stretches.
+    pub fn union(self, other: &Self) -> Self {
+        Self { tangent: self.tangent.union(other.tangent), bend: self.bend.union(other.bend), jumps: self.jumps + other.jumps }
+    }
+
+    /// Of the stretch run backwards.
+    pub fn reversed(self) -> Self {
+        Self { tangent: -self.tangent, ..self }
+    }
+
+    fn smooth(tangent: Ranges, bend: Ranges) -> Self {
+        Self { tangent, bend, jumps: DVec3::ZERO }
+    }
+}
+
+/// The spread of a curve between two parameters of its domain.
+pub fn spread(curve: &Curve, t0: f64, t1: f64) -> Spread {
+    match curve.shape() {
+        Shape::Line(a, b) => Spread::smooth(Ranges::at((*b - *a).normalize_or_zero()), Ranges::default()),
+        Shape::Arc(EllipticArc { u, v, radius: Some(r), .. }) => {
+            let (out, along) = turned(*u, *v, t0, t1);
+            Spread::smooth(along * (1.0 / r), out * (-1.0 / (r * r)))
+        }
+        Shape::Arc(arc) => of_nurbs(&arc.part(t0, t1).to_nurbs()),
+        Shape::Helix(helix) => {
+            let (out, along) = turned(helix.u, helix.v, t0, t1);
+            let speed = helix.speed();
+            Spread::smooth((along + helix.rise) * (1.0 / speed), out * (-1.0 / (speed * speed)))
+        }
+        Shape::Nurbs(c) => of_nurbs(&c.part(t0, t1)),
+        Shape::Offset(offset) => {
+            let base = spread(&offset.base, t0, t1);
+            // Same directions; lengths grow by 1 − d·k.
+            let left = Ranges::at(offset.normal).cross(&base.tangent);
+            let growth = Range::at(1.0) - base.bend.dot(&left) * offset.distance;
+            Spread { bend: if growth.low > 0.0 { base.bend * growth.inverse() } else { Ranges::ANY }, ..base }
+        }
+        Shape::Composite(c) => {
+            let (first, last) = (c.locate(t0).0, c.locate_before(t1).0);
+            let one = |i: usize| spread(&c.pieces[i], c.own(i, t0.max(c.breaks[i])), c.own(i, t1.min(c.breaks[i + 1])));
+            (first + 1..=last).fold(one(first), |whole, i| {
+                let jump = direction(&c.pieces[i], false) - direction(&c.pieces[i - 1], true);
+                Spread { jumps: whole.jumps + jump.abs(), ..whole }.union(&one(i))
+            })
+        }
+    }
+}
+
+/// Unit tangent at an end of a curve.
+fn direction(curve: &Curve, last: bool) -> DVec3 {
+    let (a, b) = curve.domain();
+    if last { curve.jet_before(b).d1 } else { curve.jet(a).d1 }.normalize_or_zero()
+}
+
+/// u·cos t + v·sin t and its derivative over an interval of t, about the middle.
+fn turned(u: DVec3, v: DVec3, t0: f64, t1: f64) -> (Ranges, Ranges) {
+    let (s, c) = math::sin_cos(0.5 * (t0 + t1));
+    let (out, along) = (u * c + v * s, v * c - u * s);
+    let half = (0.5 * (t1 - t0)).min(std::f64::consts::PI);
+    let (sine, cosine) = math::sin_cos(half);
+    let sides = Range::around_zero(if half < std::f64::consts::FRAC_PI_2 { sine } else { 1.0 });
+    let forward = Range { low: cosine, high: 1.0 };
+    (forward * out + sides * along, forward * along + sides * out)
+}
+
+fn of_nurbs(c: &Nurbs) -> Spread {
+    let mut whole: Option<(Spread, DVec3)> = None;
+    for piece in c.beziers() {
+        let own = of_bezier(&piece, c.polynomial);
+        let n = piece.poles.len();
+        let start = (projected(piece.poles[1]) - projected(piece.poles[0])).normalize_or_zero();
+        let end = (projected(piece.poles[n - 1]) - projected(piece.poles[n - 2])).normalize_or_zero();
+        let joined = match whole {
+            None => own,
+            Some((spread, before)) => {
+                let jump = (start - before).abs();
+                let jump = if jump.max_element() <= EPSILON { DVec3::ZERO } else { jump };
+                Spread { jumps: spread.jumps + jump, ..spread }.union(&own)
+            }
+        };
+        whole = Some((joined, end));
+    }
+    whole.map_or(Spread::smooth(Ranges::ANY, Ranges::ANY), |w| w.0)
+}
+
+/// From the hulls of the derivative nets; a rational piece by the quotient rule about its first point.
+fn of_bezier(piece: &Bezier, polynomial: bool) -> Spread {
+    let h = piece.t1 - piece.t0;
+    let p = (piece.poles.len() - 1) as f64;
+    let origin = projected(piece.poles[0]);
+    let local: Vec<_> = piece.poles.iter().map(|q| (q.truncate() - origin * q.w, q.w)).collect();
+    let first: Vec<_> = local.windows(2).map(|w| ((w[1].0 - w[0].0) * (p / h), (w[1].1 - w[0].1) * (p / h))).collect();
+    let f = (p - 1.0) / h;
+    let second: Vec<_> = first.windows(2).map(|w| ((w[1].0 - w[0].0) * f, (w[1].1 - w[0].1) * f)).collect();
+    let vectors = |net: &[(DVec3, f64)]| if net.is_empty() { Ranges::default() } else { Ranges::of(net.iter().map(|q| q.0)) };
+    let numbers = |net: &[(DVec3, f64)]| net.iter().map(|q| Range::at(q.1)).reduce(Range::union).unwrap_or_default();
+    let (mut d1, mut d2) = (vectors(&first), vectors(&second));
+    if polynomial {
+        let w = 1.0 / piece.poles[0].w;
+        (d1, d2) = (d1 * w, d2 * w);
+    } else {
+        let place = Ranges::of(local.iter().map(|q| q.0 / q.1));
+        let over = numbers(&local).inverse();
+        let (w1, w2) = (numbers(&first), numbers(&second));
+        d1 = (d1 - place * w1) * over;
+        d2 = (d2 - d1 * (w1 * 2.0) - place * w2) * over;
+    }
+    by_length(&d1, &d2)
+}
+
+/// Tangent and curvature from derivatives by any parameter: (C″ − T (T·C″)) / |C′|².
+fn by_length(d1: &Ranges, d2: &Ranges) -> Spread {
+    let speed = d1.length();
+    let unit = Ranges { low: DVec3::NEG_ONE, high: DVec3::ONE };
+    if speed.low <= EPSILON * speed.high {
+        return Spread::smooth(unit, Ranges::ANY);
+    }
+    let tangent = (*d1 * speed.inverse()).intersection(unit);
+    let bend = (*d2 - tangent * tangent.dot(d2)) * speed.square().inverse();
+    Spread::smooth(tangent, bend)
+}

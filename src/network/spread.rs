@@ -1,0 +1,63 @@
+//! Bounds of a chain's derivatives by its fraction.
+
+use glam::DVec3;
+
+use super::chain::Chain;
+use crate::base::range::Ranges;
+use crate::base::tolerance::EPSILON;
+use crate::geometry::{Spread, spread};
+
+/// Derivatives of a chain with respect to its fraction over a stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct ChainSpread {
+    /// First derivative, model units.
+    pub d1: Ranges,
+    /// Second derivative, model units; vast at a cusp.
+    pub d2: Ranges,
+    /// Sum of the jumps of the first derivative inside, coordinate by coordinate.
+    pub jumps: DVec3,
+}
+
+/// Bounds between two fractions, `f0 < f1`.
+pub fn of_chain(chain: &Chain, f0: f64, f1: f64) -> ChainSpread {
+    let joints = chain.joints();
+    let length = chain.length();
+    let mut whole: Option<Spread> = None;
+    for (k, run) in chain.runs().iter().enumerate() {
+        let (a, b) = (f0.max(joints[k]), f1.min(joints[k + 1]));
+        if b - a <= EPSILON && whole.is_some() || b <= a {
+            continue;
+        }
+        let at = |f: f64| run.s0 + (run.s1 - run.s0) * ((f - joints[k]) / (joints[k + 1] - joints[k])).clamp(0.0, 1.0);
+        let (low, high) = (at(a).min(at(b)), at(a).max(at(b)));
+        let turn = run.curve.length();
+        // A run past the start of a closed curve is on it twice.
+        let parts = [(low.min(turn), high.min(turn)), (low.max(turn) - turn, high.max(turn) - turn)];
+        let mut own: Option<Spread> = None;
+        for (s0, s1) in parts {
+            if s1 - s0 <= EPSILON * turn && (own.is_some() || (s0, s1) == (0.0, 0.0) || s1 <= s0) {
+                continue;
+            }
+            let found = spread(&run.curve, run.curve.param_at_length(s0), run.curve.param_at_length(s1));
+            own = Some(match own {
+                Some(before) => {
+                    let seam = run.curve.jet(run.curve.domain().0).d1.normalize_or_zero()
+                        - run.curve.jet_before(run.curve.domain().1).d1.normalize_or_zero();
+                    Spread { jumps: before.jumps + seam.abs(), ..before }.union(&found)
+                }
+                None => found,
+            });
+        }
+        let Some(own) = own else { continue };
+        let own = if run.is_backward() { own.reversed() } else { own };
+        whole = Some(match whole {
+            Some(before) => {
+                let jump = (chain.jet(joints[k]).d1 - chain.jet_before(joints[k]).d1) / length;
+                Spread { jumps: before.jumps + jump.abs(), ..before }.union(&own)
+            }
+            None => own,
+        });
+    }
+    let found = whole.unwrap_or(Spread { tangent: Ranges::around_zero(DVec3::ONE), bend: Ranges::ANY, jumps: DVec3::ZERO });
+    ChainSpread { d1: found.tangent * length, d2: found.bend * (length * length), jumps: found.jumps * length }
+}

@@ -1,0 +1,98 @@
+//! A function of one parameter over a stretch, known by its middle and by bounds of its derivatives.
+
+use glam::DVec3;
+
+use super::rail::{Lean, Rail};
+use crate::base::range::{Range, Ranges};
+use crate::geometry::Jet;
+
+/// Taylor's formula about the middle, with what the derivatives may be over the whole stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Half the width of the stretch.
+    pub half: f64,
+    /// Value and derivatives in the middle.
+    pub mid: Jet,
+    /// First derivative.
+    pub d1: Ranges,
+    /// Second derivative; vast where there is a cusp. Jumps of the first derivative count as what bends as far.
+    pub d2: Ranges,
+}
+
+impl Line {
+    /// From the middle and the second derivative; `d1` is what else is known of the first.
+    pub fn new(half: f64, mid: Jet, d1: Option<Ranges>, d2: Ranges) -> Self {
+        let taylor = d2 * Range::around_zero(half) + mid.d1;
+        Self { half, mid, d1: d1.map_or(taylor, |known| taylor.intersection(known)), d2 }
+    }
+
+    /// The value.
+    pub fn p(&self) -> Ranges {
+        let steps = Range::around_zero(self.half);
+        let by_slope = self.d1 * steps + self.mid.p;
+        let by_bend = steps * self.mid.d1 + self.d2 * Range { low: 0.0, high: 0.5 * self.half * self.half } + self.mid.p;
+        by_bend.intersection(by_slope)
+    }
+
+    /// Σ of fixed multiples of lines over the same stretch.
+    pub fn sum(terms: impl Iterator<Item = (f64, Self)>) -> Self {
+        let zero = Self { half: 0.0, mid: Jet::default(), d1: Ranges::default(), d2: Ranges::default() };
+        let whole = terms.fold(zero, |s, (w, l)| Self {
+            half: l.half,
+            mid: Jet { p: s.mid.p + l.mid.p * w, d1: s.mid.d1 + l.mid.d1 * w, d2: s.mid.d2 + l.mid.d2 * w },
+            d1: s.d1 + l.d1 * w,
+            d2: s.d2 + l.d2 * w,
+        });
+        Self::new(whole.half, whole.mid, Some(whole.d1), whole.d2)
+    }
+
+    /// This order of derivative.
+    pub fn order(&self, k: usize) -> Ranges {
+        match k {
+            0 => self.p(),
+            1 => self.d1,
+            _ => self.d2,
+        }
+    }
+
+    /// The function backwards.
+    pub fn backwards(self) -> Self {
+        Self { mid: Jet { d1: -self.mid.d1, ..self.mid }, d1: -self.d1, ..self }
+    }
+}
+
+/// Σ w_k·l_k^(order) for weights known by their middle values and ranges, whose sum is the same everywhere; `mixed` gives
+/// Σ m_k l_k for numbers m.
+///
+/// What the weights vary by sums to 0, so it multiplies differences of the l_k only: constants cost nothing.
+pub fn blended(weights: &[([f64; 3], [Range; 3])], derivative: usize, order: usize, mixed: &dyn Fn(&[f64]) -> Line) -> Ranges {
+    let mut shares: Vec<f64> = weights.iter().map(|w| w.0[derivative]).collect();
+    let mut sum = mixed(&shares).order(order);
+    for k in 1..weights.len() {
+        shares.fill(0.0);
+        (shares[0], shares[k]) = (-1.0, 1.0);
+        let varies = weights[k].1[derivative] - Range::at(weights[k].0[derivative]);
+        sum = sum + mixed(&shares).order(order) * varies;
+    }
+    sum
+}
+
+impl Rail {
+    /// Its bounds over `x0 < x1`.
+    pub fn line(&self, x0: f64, x1: f64) -> Line {
+        let half = 0.5 * (x1 - x0);
+        let mid = self.jet(0.5 * (x0 + x1), Lean::After);
+        let Self::Chain { chain, map, .. } = self else {
+            return Line::new(half, mid, None, Ranges::default());
+        };
+        let ([value, m1, m2], jumps) = map.ranges(x0, x1);
+        let spread = chain.spread(value.low.clamp(0.0, 1.0), value.high.clamp(0.0, 1.0));
+        // A jump J of the slope moves values by at most J·half and slopes by J: a bend of 2J/half does as much.
+        let jump = spread.jumps * m1.reach() + spread.d1.low.abs().max(spread.d1.high.abs()) * jumps;
+        let mut d2 = spread.d2 * m1.square() + spread.d1 * m2;
+        if jump != DVec3::ZERO {
+            d2 = d2 + Ranges::around_zero(jump * (2.0 / half));
+        }
+        Line::new(half, mid, Some(spread.d1 * m1), d2)
+    }
+}

@@ -1,0 +1,129 @@
+//! Bounds of nets: the Bézier points of the piece over a rectangle and of its derivatives (convex hull property), a
+//! rational piece by the quotient rule about its first point.
+
+use glam::{DVec3, DVec4};
+
+use super::nurbs::NurbsSurface;
+use super::rail::Lean;
+use super::spread::Spread;
+use crate::base::range::{Range, Ranges};
+use crate::base::tolerance::EPSILON;
+use crate::geometry::nurbs::{MAX_DEGREE, projected};
+
+/// The Bézier points over an interval inside one span, as sums of the active poles.
+#[derive(Clone, Debug)]
+pub struct NetStrip {
+    first: usize,
+    width: f64,
+    /// Row k: shares of the active poles in Bézier point k.
+    shares: Vec<[f64; MAX_DEGREE + 1]>,
+}
+
+/// Blossom values of the basis functions of one span: how much each active pole adds [Ramshaw 1989].
+fn shares(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> [f64; MAX_DEGREE + 1] {
+    let mut out = [0.0; MAX_DEGREE + 1];
+    for own in 0..=p {
+        let mut d = [0.0; MAX_DEGREE + 1];
+        d[own] = 1.0;
+        for r in 1..=p {
+            for j in (r..=p).rev() {
+                let (low, high) = (knots[span - p + j], knots[span + 1 + j - r]);
+                let share = (arguments[r - 1] - low) / (high - low);
+                d[j] = d[j - 1] * (1.0 - share) + d[j] * share;
+            }
+        }
+        out[own] = d[p];
+    }
+    out
+}
+
+type Net = Vec<Vec<DVec4>>;
+
+/// Differences along u (within rows) times `f`.
+fn along_u(net: &Net, f: f64) -> Net {
+    net.iter().map(|row| row.windows(2).map(|w| (w[1] - w[0]) * f).collect()).collect()
+}
+
+fn along_v(net: &Net, f: f64) -> Net {
+    net.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(a, b)| (*b - *a) * f).collect()).collect()
+}
+
+fn hull(net: &Net) -> (Ranges, Range) {
+    let mut all = net.iter().flatten();
+    let Some(first) = all.next() else { return (Ranges::default(), Range::default()) };
+    let (low, high) = all.fold((*first, *first), |(low, high), q| (low.min(*q), high.max(*q)));
+    (Ranges { low: low.truncate(), high: high.truncate() }, Range { low: low.w, high: high.w })
+}
+
+impl NurbsSurface {
+    /// Inner knots, and whether the net may have a corner at one of them.
+    pub fn knot_lines(&self, in_u: bool) -> (Vec<f64>, bool) {
+        let (knots, degree) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
+        let (us, vs) = self.breaks();
+        let lines = if in_u { us } else { vs };
+        let corner = lines.iter().any(|x| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count() >= degree);
+        (lines, corner)
+    }
+
+    /// The Bézier points of one direction between two values inside one span.
+    pub fn strip(&self, in_u: bool, (x0, x1): (f64, f64)) -> NetStrip {
+        let (knots, p) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
+        let middle = 0.5 * (x0 + x1);
+        let span = (knots.partition_point(|k| *k <= middle)).clamp(p + 1, knots.len() - p - 1) - 1;
+        let point = |k: usize| {
+            let mut arguments = [x0; MAX_DEGREE];
+            arguments[..k].fill(x1);
+            shares(knots, p, span, &arguments[..p])
+        };
+        NetStrip { first: span - p, width: x1 - x0, shares: (0..=p).map(point).collect() }
+    }
+
+    /// Bounds over the rectangle of two strips.
+    pub fn spread(&self, u: &NetStrip, v: &NetStrip, (x, y): (f64, f64), half: (f64, f64)) -> Spread {
+        let net = self.piece(u, v);
+        let (p, q) = (self.degree.0 as f64, self.degree.1 as f64);
+        let nets = |net: &Net| {
+            let (nu, nv) = (along_u(net, p / u.width), along_v(net, q / v.width));
+            let (uu, vv) = (along_u(&nu, (p - 1.0) / u.width), along_v(&nv, (q - 1.0) / v.width));
+            [hull(net), hull(&nu), hull(&nv), hull(&uu), hull(&along_v(&nu, q / v.width)), hull(&vv)]
+        };
+        let mid = self.jet(x, y, (Lean::After, Lean::After));
+        let same_weights = net.iter().flatten().all(|q| q.w == net[0][0].w);
+        if same_weights {
+            let hulls = nets(&net).map(|h| h.0 * (1.0 / net[0][0].w));
+            let mut spread = Spread::new(mid, half, [hulls[3], hulls[4], hulls[5]], Some([hulls[1], hulls[2]]));
+            spread.p = spread.p.intersection(hulls[0]);
+            return spread;
+        }
+        // Relative to the first point little cancels.
+        let origin = projected(net[0][0]);
+        let local: Net = net.iter().map(|row| row.iter().map(|q| (q.truncate() - origin * q.w).extend(q.w)).collect()).collect();
+        let [value, u1, v1, uu, uv, vv] = nets(&local);
+        let over = value.1.inverse();
+        let points: Vec<DVec3> = local.iter().flatten().map(|q| projected(*q)).collect();
+        let place = Ranges::of(points);
+        let du = (u1.0 - place * u1.1) * over;
+        let dv = (v1.0 - place * v1.1) * over;
+        let second = [
+            (uu.0 - du * (u1.1 * 2.0) - place * uu.1) * over,
+            (uv.0 - du * v1.1 - dv * u1.1 - place * uv.1) * over,
+            (vv.0 - dv * (v1.1 * 2.0) - place * vv.1) * over,
+        ];
+        let mut spread = Spread::new(mid, half, second, Some([du, dv]));
+        spread.p = spread.p.intersection(place + origin);
+        spread
+    }
+
+    /// Bézier points over a rectangle, rows along u.
+    fn piece(&self, u: &NetStrip, v: &NetStrip) -> Net {
+        let (p, q) = self.degree;
+        let rows: Net = (0..=q)
+            .map(|j| {
+                let row = &self.poles[(v.first + j) * self.counts.0 + u.first..][..=p];
+                u.shares.iter().map(|share| row.iter().zip(share).fold(DVec4::ZERO, |sum, (pole, s)| sum + *pole * *s)).collect()
+            })
+            .collect();
+        let column = |share: &[f64], i: usize| rows.iter().zip(share).fold(DVec4::ZERO, |sum, (row, s)| sum + row[i] * *s);
+        v.shares.iter().map(|share| (0..=p).map(|i| column(share, i)).collect()).collect()
+    }
+}

@@ -1,0 +1,214 @@
+//! Bounds of surfaces hold everywhere and come near to the truth; what stands on them keeps its promise.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    clippy::approx_constant,
+    reason = "a test fails by panicking and checks with the platform's functions"
+)]
+
+use glam::DVec3;
+use lofting::base::origin::Origin;
+use lofting::base::tolerance::Tolerance;
+use lofting::geometry::build::{arc_through, circle, ellipse, helix, line, offset, polyline, spline};
+use lofting::geometry::{Curve, Ends, Motion, Spline};
+use lofting::network::{Chain, ChainFlow, of_chains};
+use lofting::surface::coons::{Grid, Method, Settings, build};
+use lofting::surface::nurbs::{Net, bezier, nurbs};
+use lofting::surface::revolve::Axis;
+use lofting::surface::{Domain, Lean, Reparam, Surface, extrude, plane, revolve, ruled};
+
+fn p(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+fn tolerance() -> Tolerance {
+    Tolerance::new(1e-6, 10.0)
+}
+
+fn straight(a: DVec3, b: DVec3) -> Chain {
+    Chain::of_curve(&line(a, b, Origin::NONE).unwrap())
+}
+
+fn curved(points: &[DVec3]) -> Curve {
+    spline(points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: false }, Origin::NONE).unwrap()
+}
+
+fn through(points: &[DVec3]) -> Chain {
+    Chain::of_curve(&curved(points))
+}
+
+fn arc(a: DVec3, b: DVec3, c: DVec3) -> Chain {
+    Chain::of_curve(&arc_through(a, c, b, Origin::NONE).unwrap())
+}
+
+fn spanned(chains: &[Chain], options: &ChainFlow, method: Method, reparam: Reparam) -> Surface {
+    let (flow, nodes) = of_chains(chains, options, &tolerance()).unwrap();
+    let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
+    build(&Grid { chains, flow: &flow, poles }, &Settings { method, reparam, origin: Origin::NONE }, &tolerance()).unwrap().0
+}
+
+/// A 3 × 3 grid of curves over a bumpy floor, unevenly spaced.
+fn net_of_curves(method: Method, reparam: Reparam) -> Surface {
+    let at = |x: f64, y: f64| p(x, y, 0.4 * (x * 1.3).sin() * (y * 0.9).cos() + 0.1 * x * y);
+    let lines = [0.0, 0.8, 3.0];
+    let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 2.0).collect();
+    let along_x = lines
+        .map(|y| through(&steps.iter().copied().chain([0.8]).collect::<Vec<_>>().sorted().iter().map(|x| at(*x, y)).collect::<Vec<_>>()));
+    let along_y = lines
+        .map(|x| through(&steps.iter().copied().chain([0.8]).collect::<Vec<_>>().sorted().iter().map(|y| at(x, *y)).collect::<Vec<_>>()));
+    spanned(&[along_x, along_y].concat(), &ChainFlow::default(), method, reparam)
+}
+
+trait Sorted {
+    fn sorted(self) -> Self;
+}
+
+impl Sorted for Vec<f64> {
+    fn sorted(mut self) -> Self {
+        self.sort_by(f64::total_cmp);
+        self
+    }
+}
+
+/// One surface of every kind and flow, with its name.
+fn zoo() -> Vec<(&'static str, Surface)> {
+    let t = tolerance();
+    let o = Origin::NONE;
+    let wave = through(&[p(0., 0., 0.), p(1., 0.4, 0.7), p(2., -0.3, 0.2), p(4., 0., 0.)]);
+    let far = through(&[p(0., 3., 0.), p(1.5, 3.3, 1.0), p(4., 3., 0.5)]);
+    let (left, right) = (arc(p(0., 0., 0.), p(-0.3, 1.4, 0.6), p(0., 3., 0.)), straight(p(4., 0., 0.), p(4., 3., 0.5)));
+    let octant = |a: DVec3, b: DVec3| arc(a, (a + b).normalize(), b);
+    let great = [octant(DVec3::X, DVec3::Y), octant(DVec3::Y, DVec3::Z), octant(DVec3::Z, DVec3::X)];
+    let sides = [
+        through(&[p(0., 0., 0.), p(1., -0.2, 0.5), p(2., 0., 0.)]),
+        through(&[p(2., 0., 0.), p(1.8, 1.2, 0.2), p(0.5, 2., 0.)]),
+        through(&[p(0., 0., 0.), p(0.1, 1.0, -0.4), p(0.5, 2., 0.)]),
+    ];
+    let rows: Vec<Vec<DVec3>> =
+        (0..5).map(|j| (0..6).map(|i| p(f64::from(i), f64::from(j) * 1.1, (f64::from(i * j) * 0.7).sin())).collect()).collect();
+    let weights: Vec<Vec<f64>> = (0..5).map(|j| (0..6).map(|i| 1.0 + 0.5 * f64::from((i * 3 + j * 5) % 4)).collect()).collect();
+    let (net, rational) = (Net { rows: &rows, weights: None }, Net { rows: &rows, weights: Some(&weights) });
+    let ring = Chain::of_curve(&circle(p(0., 0., 0.), 1.5, DVec3::Z, o).unwrap());
+    let oval = Chain::of_curve(&ellipse(p(0., 0., 2.), DVec3::X * 2.0, DVec3::Y, 0.0, std::f64::consts::TAU, o).unwrap());
+    let spiral = Chain::of_curve(&helix(p(0., 0., 0.), DVec3::Z, p(1., 0., 0.), 2.0, 1.2, o).unwrap());
+    let aside =
+        Chain::of_curve(&offset(&curved(&[p(1., 0., 0.), p(2., 0.4, 0.), p(3., 0.2, 0.), p(4., 0.8, 0.)]), 0.2, DVec3::Z, o).unwrap());
+    let axis = Axis { about: p(0., 0., 0.), direction: p(0.2, 1., 0.1).normalize() };
+    let pole = ChainFlow { pole: Some(DVec3::Z), ..ChainFlow::default() };
+    let moved = Motion::rotation(p(1., 2., 3.), p(1., 1., 0.3).normalize(), 0.7);
+    let bent = polyline(&[p(0., 0., 0.), p(1., 0.5, 0.), p(2., 0., 0.)], false, o).unwrap();
+    vec![
+        (
+            "coons",
+            spanned(&[wave.clone(), right.clone(), far.clone(), left.clone()], &ChainFlow::default(), Method::Composite, Reparam::Smooth),
+        ),
+        ("coons 3x3", net_of_curves(Method::Composite, Reparam::Smooth)),
+        ("coons 3x3 linear", net_of_curves(Method::Composite, Reparam::Linear)),
+        ("transfinite", net_of_curves(Method::Lagrange, Reparam::Smooth)),
+        ("bilinear", spanned(&[wave.clone(), right, far.clone(), left], &ChainFlow::default(), Method::Lagrange, Reparam::Smooth)),
+        ("trilateral", spanned(&sides, &ChainFlow::default(), Method::Composite, Reparam::Smooth)),
+        ("octant", spanned(&great, &ChainFlow::default(), Method::Composite, Reparam::Smooth)),
+        ("octant flipped", spanned(&great, &ChainFlow::default(), Method::Composite, Reparam::Smooth).flipped()),
+        ("octant with a pole", spanned(&great, &pole, Method::Composite, Reparam::Smooth)),
+        ("ruled", ruled(&wave, &far, o, &t).unwrap().0),
+        ("ruled of rings", ruled(&ring, &oval, o, &t).unwrap().0),
+        ("extrude", extrude::extrude(&wave, p(0.3, 2., 0.), o, &t).unwrap()),
+        ("extrude helix", extrude::extrude(&spiral, p(2., 0.3, 0.), o, &t).unwrap()),
+        ("extrude offset", extrude::extrude(&aside, p(0., 0., 1.), o, &t).unwrap()),
+        ("extrude polyline", extrude::extrude(&Chain::of_curve(&bent), p(0., 0., 1.), o, &t).unwrap()),
+        ("revolve", revolve::revolve(&far, &axis, 2.1, o, &t).unwrap()),
+        (
+            "revolve ring",
+            revolve::revolve(&oval, &Axis { about: p(5., 0., 0.), direction: DVec3::Z }, std::f64::consts::TAU, o, &t).unwrap(),
+        ),
+        ("bezier", bezier(&net, o, &t).unwrap()),
+        ("rational bezier", bezier(&rational, o, &t).unwrap()),
+        ("nurbs", nurbs(&net, (3, 2), (None, None), o, &t).unwrap()),
+        ("rational nurbs", nurbs(&rational, (2, 3), (None, None), o, &t).unwrap().flipped()),
+        ("plane", plane::unbounded(p(0., 0., 1.), p(1., 1., 1.), o).unwrap()),
+        ("moved", net_of_curves(Method::Lagrange, Reparam::Smooth).moved(&moved).flipped()),
+    ]
+}
+
+/// Numbers in 0…1 that look like chance and are always the same.
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Largest second derivatives on a lattice of a rectangle, its borders taken from inside.
+fn largest(surface: &Surface, u: (f64, f64), v: (f64, f64), n: u32) -> [f64; 3] {
+    let mut most = [0.0_f64; 3];
+    let at = |(low, high): (f64, f64), k: u32| low + (high - low) * f64::from(k) / f64::from(n);
+    let lean = |k: u32| if k == n { Lean::Before } else { Lean::After };
+    for (i, j) in (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))) {
+        let (x, y) = (at(u, i), at(v, j));
+        if surface.domain() == Domain::Triangle && x + y > 1.0 {
+            continue;
+        }
+        let jet = surface.jet_lean(x, y, (lean(i), lean(j)));
+        for (m, d) in most.iter_mut().zip([jet.duu, jet.duv, jet.dvv]) {
+            *m = m.max(d.length());
+        }
+    }
+    most
+}
+
+#[test]
+fn no_second_derivative_exceeds_its_bound() {
+    let mut chance = Chance(7);
+    for (name, surface) in zoo() {
+        for round in 0..60 {
+            let wide = if round < 10 { 1.0 } else { chance.next() * chance.next() };
+            let (w, h) = (wide.max(1e-3), (wide * (0.3 + 0.7 * chance.next())).max(1e-3));
+            let (u0, v0) = ((1.0 - w) * chance.next(), (1.0 - h) * chance.next());
+            if surface.domain() == Domain::Triangle && u0 + v0 > 0.999 {
+                continue;
+            }
+            let (u, v) = ((u0, u0 + w), (v0, v0 + h));
+            let bound = surface.second_derivative_bound(u, v);
+            let most = largest(&surface, u, v, 24);
+            let spread = surface.spread(u, v);
+            for k in 0..3 {
+                assert!(most[k] <= bound[k] * (1.0 + 1e-9) + 1e-7, "{name} {u:?} {v:?} derivative {k}: {most:?} above {bound:?}");
+            }
+            for _ in 0..40 {
+                let (x, y) = (u0 + w * chance.next(), v0 + h * chance.next());
+                if surface.domain() == Domain::Triangle && x + y > 1.0 {
+                    continue;
+                }
+                let jet = surface.jet(x, y);
+                for (d, r, what) in [(jet.p, spread.p, "p"), (jet.du, spread.du, "du"), (jet.dv, spread.dv, "dv")] {
+                    let out = (r.low - d).max(d - r.high).max_element();
+                    assert!(out <= 1e-8, "{name} {what} at {x} {y} of {u:?} {v:?}: {out}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bounds_come_to_the_truth_as_rectangles_shrink() {
+    for (name, surface) in zoo() {
+        // Inside one smooth piece, off every knot of the zoo.
+        let (x, y) = if surface.domain() == Domain::Triangle { (0.23, 0.31) } else { (0.6123, 0.7319) };
+        let mut last = [f64::INFINITY; 3];
+        for halvings in [4, 7, 10] {
+            let h = 0.5_f64.powi(halvings);
+            let (u, v) = ((x - 0.3 * h, x + 0.7 * h), (y - 0.4 * h, y + 0.6 * h));
+            let (bound, most) = (surface.second_derivative_bound(u, v), largest(&surface, u, v, 12));
+            let scale = most.iter().fold(1e-6_f64, |m, d| m.max(*d));
+            for k in 0..3 {
+                let excess = (bound[k] - most[k]) / scale;
+                assert!(excess <= last[k] * 0.5 + 1e-3, "{name} derivative {k} at 2^-{halvings}: {excess} after {}", last[k]);
+                last[k] = excess;
+            }
+        }
+        assert!(last.iter().all(|e| *e < 0.05), "{name}: {last:?}");
+    }
+}
