@@ -51,7 +51,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("model", 2_500),
     ("mesh", 6_500),
     ("io", 6_000),
-    ("lang", 15_000),
+    ("lang", 16_500),
     ("session", 3_000),
     ("cli", 3_500),
 ];
