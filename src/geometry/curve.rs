@@ -58,6 +58,8 @@ pub enum Kind {
     Offset,
     /// Several curves in a row.
     Composite,
+    /// Line of constant u or v of a surface.
+    Iso,
 }
 
 impl Kind {
@@ -78,6 +80,7 @@ impl Kind {
             Self::Helix => "helix",
             Self::Offset => "offset",
             Self::Composite => "composite",
+            Self::Iso => "iso",
         }
     }
 }

@@ -7,22 +7,8 @@ use super::syntax::ast::{ExprId, Keyword, Span};
 use super::value::{ModuleId, Value};
 use super::{module::bound, std};
 
-const FUNCTIONS: &[&str] = &[
-    "sweep",
-    "trim",
-    "gordon",
-    "fit",
-    "picture",
-    "skin",
-    "hermite",
-    "along",
-    "scatter",
-    "blend",
-    "join",
-    "hydrostatics",
-    "iso",
-    "project",
-];
+const FUNCTIONS: &[&str] =
+    &["sweep", "trim", "gordon", "fit", "picture", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics", "project"];
 
 const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];
 

@@ -35,8 +35,8 @@ pub enum Target {
     Chain(Chain),
     /// All faces of a surface.
     Surface(SurfaceId),
-    /// One face; wins over its surface.
-    Patch(PatchId),
+    /// One face; wins over its surface. Several patches where a curve inside cuts it.
+    Patches(Vec<PatchId>),
     /// A point (groups only).
     Point(DVec3),
 }
@@ -46,7 +46,7 @@ impl Target {
     pub fn faces(&self, patch: PatchId, surface: SurfaceId) -> Option<bool> {
         match self {
             Self::Surface(s) => (*s == surface).then_some(false),
-            Self::Patch(p) => (*p == patch).then_some(true),
+            Self::Patches(all) => all.contains(&patch).then_some(true),
             Self::Chain(_) | Self::Point(_) => None,
         }
     }

@@ -68,7 +68,7 @@ pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, 
     let mut nodes = Vec::new();
     for member in &request.members {
         match member {
-            Target::Surface(_) | Target::Patch(_) => {
+            Target::Surface(_) | Target::Patches(_) => {
                 let own = of_faces(mesh, ranges, &request.name, member);
                 group.triangles.extend(own.triangles);
                 group.quads.extend(own.quads);

@@ -90,7 +90,7 @@ impl Sizing {
         for (index, rule) in rules.iter().enumerate() {
             match &rule.target {
                 Target::Chain(chain) => sizing.chain_rule(input, layout, (index, rule, chain), &mut division, &mut bias)?,
-                Target::Surface(_) | Target::Patch(_) => sizing.face_counts(layout, (index, rule), &mut division)?,
+                Target::Surface(_) | Target::Patches(_) => sizing.face_counts(layout, (index, rule), &mut division)?,
                 Target::Point(_) => {}
             }
         }
@@ -137,7 +137,7 @@ impl Sizing {
             let mut own: Vec<_> = rules.filter_map(|(n, r)| r.target.faces(face.patch, face.surface).map(|alone| (alone, n, r))).collect();
             // A rule on the face alone wins over one on its surface.
             own.sort_by_key(|(alone, index, _)| (*alone, *index));
-            let alone = |index: usize| matches!(input.plan.rules[index].target, Target::Patch(_));
+            let alone = |index: usize| matches!(input.plan.rules[index].target, Target::Patches(_));
             for (_, index, rule) in own {
                 let says = [rule.size.is_some(), rule.elements.is_some(), rule.method.is_some()];
                 for (k, key) in ["size", "elements", "method"].into_iter().enumerate() {
@@ -165,7 +165,7 @@ impl Sizing {
         for (index, rule) in input.plan.rules.iter().enumerate() {
             let what = match rule.target {
                 Target::Surface(_) => "surface",
-                Target::Patch(_) => "face",
+                Target::Patches(_) => "face",
                 Target::Chain(_) | Target::Point(_) => "",
             };
             if !what.is_empty() {
@@ -250,7 +250,7 @@ impl Sizing {
             let shares = share(count, &weights, &least)
                 .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: stretches.len() as u32 })?;
             for (s, n) in stretches.iter().zip(shares) {
-                let rank = if matches!(rule.target, Target::Patch(_)) { PATCH } else { FACE };
+                let rank = if matches!(rule.target, Target::Patches(_)) { PATCH } else { FACE };
                 settle(&mut division[*s], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
             }
         }

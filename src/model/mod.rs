@@ -14,6 +14,7 @@ pub mod trace;
 
 pub use contact::{Apart, Contact, Spread};
 pub use loops::Loop;
+pub use patches::Lines;
 pub use shells::ShellRequest;
 pub use topology::{Edge, EdgeCurve, EdgeId, Model, Patch, PatchId, Shell, SurfaceId, Vertex, VertexId};
 pub use trace::{Trace, Track};

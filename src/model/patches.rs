@@ -66,13 +66,34 @@ struct Cutter<'a> {
     surface: &'a Surface,
     network: &'a Network,
     tolerance: &'a Tolerance,
+    lines: &'a Lines,
     pieces: Pieces,
 }
 
+/// Lines of a surface along which it is cut although it is smooth there: values of u and of v.
+#[derive(Clone, Debug, Default)]
+pub struct Lines {
+    /// Values of u.
+    pub u: Vec<f64>,
+    /// Values of v.
+    pub v: Vec<f64>,
+}
+
+/// Both lists as one, ascending, each value once.
+fn merged(a: &[f64], b: &[f64], tolerance: &Tolerance) -> Vec<f64> {
+    let inside = |x: &f64| *x > tolerance.parameter && *x < 1.0 - tolerance.parameter;
+    let mut all: Vec<f64> = a.to_vec();
+    // Where both have a line, the first list's is it.
+    all.extend(b.iter().copied().filter(|x| inside(x) && !a.iter().any(|y| (x - y).abs() <= tolerance.parameter)));
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|x, y| *x - *y <= tolerance.parameter);
+    all
+}
+
 /// The pieces of one surface: patches row by row (u fastest), corners likewise.
-pub(super) fn cut(id: SurfaceId, surfaces: &[Named], network: &Network, tolerance: &Tolerance) -> Pieces {
+pub(super) fn cut(id: SurfaceId, surfaces: &[Named], lines: &Lines, network: &Network, tolerance: &Tolerance) -> Pieces {
     let surface = &surfaces[id.index()].surface;
-    let cutter = Cutter { id, surfaces, surface, network, tolerance, pieces: Pieces::default() };
+    let cutter = Cutter { id, surfaces, surface, network, tolerance, lines, pieces: Pieces::default() };
     match surface.domain() {
         Domain::Square => cutter.square(),
         Domain::Triangle => cutter.triangle(),
@@ -85,7 +106,8 @@ impl Cutter<'_> {
     fn square(mut self) -> Pieces {
         let (kinks_u, kinks_v) = self.surface.kinks();
         let with_ends = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
-        let (us, vs) = (with_ends(kinks_u), with_ends(kinks_v));
+        let inner = |kinks: &[f64], lines: &[f64]| with_ends(&merged(kinks, lines, self.tolerance));
+        let (us, vs) = (inner(kinks_u, &self.lines.u), inner(kinks_v, &self.lines.v));
         let (nu, nv) = (us.len() - 1, vs.len() - 1);
         for &v in &vs {
             for &u in &us {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::patches::Lines;
 use super::trace::Track;
 use super::{glue, patches};
 use crate::base::fault::{Fault, Result};
@@ -137,9 +138,21 @@ pub struct Model {
 impl Model {
     /// Splits surfaces into patches at their kinks and glues edges and vertices.
     pub fn build(surfaces: Vec<Named>, network: &Network, tolerance: &Tolerance, job: &Job) -> Result<Self> {
+        Self::build_cut(surfaces, &[], (network, tolerance), job)
+    }
+
+    /// The same, cut along further lines of some surfaces.
+    pub fn build_cut(
+        surfaces: Vec<Named>,
+        lines: &[(SurfaceId, Lines)],
+        (network, tolerance): (&Network, &Tolerance),
+        job: &Job,
+    ) -> Result<Self> {
+        let none = Lines::default();
         let pieces = par::try_map(surfaces.len(), |n| {
             job.go_on()?;
-            Ok::<_, Fault>(patches::cut(SurfaceId::at(n), &surfaces, network, tolerance))
+            let own = lines.iter().find(|l| l.0.index() == n).map_or(&none, |l| &l.1);
+            Ok::<_, Fault>(patches::cut(SurfaceId::at(n), &surfaces, own, network, tolerance))
         })?;
         Ok(glue::glue(surfaces, &pieces, network, tolerance))
     }

@@ -1,6 +1,7 @@
 //! Floor 8: a model from script to files, as commands and other programs use it.
 
 mod collect;
+mod cuts;
 pub mod disk;
 mod export;
 pub mod guard;

@@ -51,6 +51,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         }
         plan.groups.push(GroupRequest { name: group.name.to_string(), members });
     }
+    let scene = super::cuts::along_curves(cx, scene, &mut plan)?;
     Ok((plan, scene))
 }
 
@@ -66,22 +67,23 @@ fn settings(plan: &mut Plan, spec: &MeshSpec) {
 
 /// W701 for settings that say nothing about what their rule speaks of: steps of a face, elements of a curve.
 fn idle_settings(spec: &RuleSpec, rules: &[Rule], sink: &mut Vec<Fault>) {
-    let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_) | Target::Patch(_)));
+    let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_) | Target::Patches(_)));
     let curves = rules.iter().any(|rule| matches!(rule.target, Target::Chain(_)));
-    let of_curves = [("count", spec.count.map(|s| s.1)), ("bias", spec.bias.map(|s| s.1))];
+    // A count on faces is for each of their sides.
+    let of_curves = [("bias", spec.bias.map(|s| s.1))];
     let of_faces = [("elements", spec.elements.map(|s| s.1)), ("method", spec.method.map(|s| s.1))];
-    let mut idle = |settings: [(&str, Option<Origin>); 2], what: &str| {
+    let mut idle = |settings: &[(&str, Option<Origin>)], what: &str| {
         for (key, rule) in settings {
-            if let Some(rule) = rule {
+            if let Some(rule) = *rule {
                 sink.push(MeshFault::RuleUnused { rule, why: format!("`{key}` is for {what}, and there is none here") }.into());
             }
         }
     };
     if faces && !curves {
-        idle(of_curves, "curves");
+        idle(&of_curves, "curves");
     }
     if curves && !faces {
-        idle(of_faces, "faces");
+        idle(&of_faces, "faces");
     }
 }
 
@@ -117,7 +119,7 @@ impl Finder<'_> {
                     match target {
                         Target::Chain(chain) => plan.curves.push((cx.name(chain.origin()), chain)),
                         Target::Point(p) => plan.points.push(p),
-                        Target::Surface(_) | Target::Patch(_) => {}
+                        Target::Surface(_) | Target::Patches(_) => {}
                     }
                 }
             }
@@ -144,7 +146,7 @@ impl Finder<'_> {
                 let later = || ValueFault::NotInThisVersion { what: "a rule or group on an edge inside a surface".to_owned() };
                 vec![Target::Chain(chain.ok_or_else(later)?)]
             }
-            Value::Patch(_, patch) => vec![Target::Patch(*patch)],
+            Value::Patch(_, patch) => vec![Target::Patches(vec![*patch])],
             Value::Vertex(_, vertex) => vec![Target::Point(self.scene.model.vertices[vertex.index()].point)],
             Value::Node(p) | Value::Vector(p, _) => vec![Target::Point(*p)],
             other => return Err(wrong(other)),

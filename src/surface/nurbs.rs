@@ -13,8 +13,8 @@ use crate::base::fault::{CurveFault, Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::{EPSILON, Tolerance};
-use crate::geometry::Motion;
 use crate::geometry::nurbs::{MAX_DEGREE, projected, weighted};
+use crate::geometry::{Motion, Nurbs};
 
 /// S(u, v) = Σ w_ij P_ij N_i(u) M_j(v) / Σ w_ij N_i(u) M_j(v) over 0 ≤ u, v ≤ 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,6 +124,22 @@ impl NurbsSurface {
             add(&mut sums, &part, y);
         }
         quotient(&sums)
+    }
+
+    /// The line of constant u (`at_u`) or v: the net contracted.
+    pub fn iso(&self, at_u: bool, at: f64) -> Nurbs {
+        let sum = |a: &Basis, pole: &dyn Fn(usize) -> DVec4| {
+            a.values().iter().enumerate().fold(DVec4::ZERO, |sum, (k, x)| sum + pole(a.first + k) * x[0])
+        };
+        if at_u {
+            let a = basis(&self.knots.0, self.degree.0, at, Lean::After);
+            let poles = (0..self.counts.1).map(|j| sum(&a, &|i| self.pole(i, j))).collect();
+            Nurbs::new(self.degree.1, self.knots.1.clone(), poles)
+        } else {
+            let b = basis(&self.knots.1, self.degree.1, at, Lean::After);
+            let poles = (0..self.counts.0).map(|i| sum(&b, &|j| self.pole(i, j))).collect();
+            Nurbs::new(self.degree.0, self.knots.0.clone(), poles)
+        }
     }
 
     /// Points of the tensor grid, u fastest: the net is contracted once per row.

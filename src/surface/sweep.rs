@@ -10,11 +10,14 @@ use super::line::Line;
 use super::rail::{Lean, Rail};
 use super::spread::Spread;
 use crate::base::bbox::Box3;
+use crate::base::fault::{CurveFault, Result};
 use crate::base::math;
+use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::range::{Range, Ranges};
-use crate::base::tolerance::EPSILON;
-use crate::geometry::{Jet, Motion};
+use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::geometry::build::{arc_center, line};
+use crate::geometry::{Curve, Jet, Motion};
 use crate::network::Chain;
 
 /// A vector turned about an axis by up to ±`reach` radians.
@@ -196,6 +199,31 @@ impl Sweep {
                     let reach = DVec3::new(reach.x.sqrt(), reach.y.sqrt(), reach.z.sqrt());
                     hull.with(foot - reach).with(foot + reach)
                 })
+            }
+        }
+    }
+
+    /// The profile carried to a place of the path; `None` where it is no chain.
+    pub fn profile_at(&self, u: f64) -> Option<Chain> {
+        let motion = match self.path {
+            Path::Straight { by } => Motion::translation(by * u),
+            Path::Turn { about, axis, angle } => Motion::rotation(about, axis, Self::angle_at(angle, u)),
+        };
+        self.profile.chain().map(|chain| chain.moved(&motion))
+    }
+
+    /// The path of the profile's point at `v`: a straight line or an arc; E401 on the axis.
+    pub fn path_at(&self, v: f64, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
+        let p = self.profile.point(v);
+        match self.path {
+            Path::Straight { by } => line(p, p + by, origin),
+            Path::Turn { about, axis, angle } => {
+                let center = about + axis * axis.dot(p - about);
+                let length = angle.abs() * p.distance(center);
+                if length <= tolerance.point {
+                    return Err(CurveFault::ZeroLength { of: origin, length, tolerance: tolerance.point }.into());
+                }
+                arc_center(center, p, angle, axis, origin)
             }
         }
     }

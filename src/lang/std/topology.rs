@@ -14,7 +14,7 @@ use crate::lang::types::{Direction, Length, Point};
 use crate::lang::value::{ModuleId, ShellValue, Value};
 use crate::model::{EdgeId, Model, PatchId, VertexId};
 use crate::network::Chain;
-use crate::surface::Surface;
+use crate::surface::{IsoLine, Surface};
 use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
@@ -100,6 +100,19 @@ fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
     Ok(scene.edge_chain(&scene.model.edges[edge.1.index()], &tolerance)?.ok_or_else(later)?)
 }
 
+/// The line of constant u or v.
+fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> Result<Chain, Stop> {
+    let tolerance = cx.tolerance()?;
+    if !(0.0..=1.0).contains(&at.value()) {
+        let (found, range) = (at.value().to_string(), "between 0 and 1".to_owned());
+        return Err(ValueFault::OutsideRange { argument, found, range }.into());
+    }
+    let word = if matches!(at, IsoLine::U(_)) { "u" } else { "v" };
+    let what = format!("a line of constant {word} inside a surface by `{}`", of.kind().name());
+    let curve = of.iso(at, cx.origin(), &tolerance)?.ok_or(ValueFault::NotInThisVersion { what })?;
+    Ok(Chain::of_curve(&curve))
+}
+
 builtins! {
     /// The edge of a surface that lies along a curve, or on which a point lies.
     ///
@@ -114,6 +127,68 @@ builtins! {
         /// A curve it lies on, or a point of it.
         on: EdgeKey,
     ) -> EdgeOf = |cx, of, on| edge_of(cx, &[of], &on);
+
+    /// The line of constant u or v of a surface, as a curve.
+    ///
+    /// It runs with the other parameter ascending and may join the network (`curve seam = iso(roof, u: 0.5)`); in a mesh
+    /// `of roof, seam` it lies on mesh lines. `roof.u(0.5)` and `roof.v(0.5)` say the same. This version has those
+    /// that are exact curves: of `extrude`, `revolve`, `bezier_surface`, `nurbs_surface` and `grid` all, of `ruled` those of
+    /// constant u, and of every surface its borders and the curves of its grid.
+    /// ```loft
+    /// curve south = arc((0, 0, 0), (4m, 0, 0), through: (2m, 0, 1m))
+    /// surface roof = extrude(south, by: (0, 9m, 0))
+    /// curve ridge = iso(roof, v: 0.5)
+    /// let length = ridge.length // => 9000mm
+    /// ```
+    fn iso(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1; give this or `v`.
+        u: Option<f64>,
+        /// From 0 to 1.
+        v: Option<f64>,
+    ) -> Chain = |cx, of, u, v| match (u, v) {
+        (Some(u), None) => iso_line(cx, &of, IsoLine::U(u), "u"),
+        (None, Some(v)) => iso_line(cx, &of, IsoLine::V(v), "v"),
+        (Some(_), Some(_)) => {
+            Err(ValueFault::Exclusive {
+                function: "iso",
+                what: "a constant u or a constant v, not both",
+                arguments: vec!["u", "v"],
+                example: "iso(roof, u: 0.5)",
+            }
+            .into())
+        }
+        (None, None) => Err(ValueFault::Missing { function: "iso", what: "`u:` or `v:`", example: "iso(roof, u: 0.5)" }.into()),
+    };
+
+    /// The line of constant u of a surface, see `iso`.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let belt = wall.u(0.5).length // => 4000mm
+    /// ```
+    fn u(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1.
+        at: f64,
+    ) -> Chain = |cx, of, at| iso_line(cx, &of, IsoLine::U(at), "at");
+
+    /// The line of constant v of a surface, see `iso`.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let post = wall.v(0.5).length // => 3000mm
+    /// ```
+    fn v(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1.
+        at: f64,
+    ) -> Chain = |cx, of, at| iso_line(cx, &of, IsoLine::V(at), "at");
 
     /// The unit normal of a surface at u and v.
     ///
