@@ -1,30 +1,42 @@
 //! Limits that keep bad input from eating the machine (language.md section 9). Checked before allocating.
 
-/// Open brackets inside each other.
-pub const NESTED_BRACKETS: usize = 256;
-/// Prefix or right-associative operators in a row.
-pub const OPERATORS_IN_A_ROW: usize = 64;
-/// Operators, fields and indices that hang on each other: how tall the tree of an expression may grow.
-pub const EXPRESSION_HEIGHT: usize = 4_000;
-/// Function calls inside each other.
-pub const CALL_DEPTH: usize = 1_000;
-/// Bytes of one script.
-pub const SOURCE_BYTES: u64 = 32 << 20;
-/// Bytes of one data file.
-pub const DATA_BYTES: u64 = 256 << 20;
-/// Largest coordinate or length of a curve, model units either way: its fourth power must not overflow.
-pub const COORDINATE: f64 = 1e50;
-/// Members of one list.
-pub const LIST_MEMBERS: usize = 10_000_000;
-/// Members of all lists that are held at a time, with 3 for each list itself: 40 bytes each, under 1 GiB together.
-pub const MEMBERS_MADE: usize = 20_000_000;
-/// Elements of one mesh.
-pub const MESH_ELEMENTS: u64 = 100_000_000;
-/// Lists inside each other.
-pub const LIST_NESTING: usize = 1_000;
-/// Evaluation steps of one run.
-pub const EVALUATION_STEPS: u64 = 1_000_000_000;
-/// Reports of one code that one declaration or stage says one by one; further ones are counted.
-pub const REPORTS_OF_A_KIND: usize = 1_000;
-/// Reports printed in full in one run.
-pub const REPORTS_SHOWN: usize = 20;
+/// Declares the limits once, as constants and as the table that the reference prints.
+macro_rules! limits {
+    ($( $(#[doc = $doc:literal])+ pub const $name:ident: $ty:ty = $value:expr; )+) => {
+        $( $(#[doc = $doc])+ pub const $name: $ty = $value; )+
+
+        /// All of them: what is limited, and the largest value.
+        pub const ALL: &[(&str, f64)] = &[ $( (concat!($($doc),+), $name as f64) ),+ ];
+    };
+}
+
+limits! {
+    /// Open brackets inside each other.
+    pub const NESTED_BRACKETS: usize = 256;
+    /// Prefix or right-associative operators in a row.
+    pub const OPERATORS_IN_A_ROW: usize = 64;
+    /// Operators, fields and indices that hang on each other: how tall the tree of an expression may grow.
+    pub const EXPRESSION_HEIGHT: usize = 4_000;
+    /// Function calls inside each other.
+    pub const CALL_DEPTH: usize = 1_000;
+    /// Bytes of one script.
+    pub const SOURCE_BYTES: u64 = 32 << 20;
+    /// Bytes of one data file.
+    pub const DATA_BYTES: u64 = 256 << 20;
+    /// Largest coordinate or length of a curve, model units either way: its fourth power must not overflow.
+    pub const COORDINATE: f64 = 1e50;
+    /// Members of one list.
+    pub const LIST_MEMBERS: usize = 10_000_000;
+    /// Members of all lists that are held at a time, with 3 for each list itself: 32 bytes each, under 1 GiB together with what they hold.
+    pub const MEMBERS_MADE: usize = 20_000_000;
+    /// Elements of one mesh.
+    pub const MESH_ELEMENTS: u64 = 100_000_000;
+    /// Lists inside each other.
+    pub const LIST_NESTING: usize = 1_000;
+    /// Evaluation steps of one run.
+    pub const EVALUATION_STEPS: u64 = 1_000_000_000;
+    /// Reports of one code that one declaration or stage says one by one; further ones are counted.
+    pub const REPORTS_OF_A_KIND: usize = 1_000;
+    /// Reports printed in full in one run.
+    pub const REPORTS_SHOWN: usize = 20;
+}

@@ -136,25 +136,5 @@ fn is_word(name: &str) -> bool {
 
 /// A keyword as messages say it.
 pub(super) fn keyword_word(keyword: Keyword) -> &'static str {
-    match keyword {
-        Keyword::Units => "units",
-        Keyword::Tolerance => "tolerance",
-        Keyword::Snap => "snap",
-        Keyword::Use => "module",
-        Keyword::Import => "import",
-        Keyword::Param => "param",
-        Keyword::Let => "let",
-        Keyword::Fn => "fn",
-        Keyword::Point => "point",
-        Keyword::Curve => "curve",
-        Keyword::ModelingCurve => "modeling curve",
-        Keyword::Surface => "surface",
-        Keyword::Shell => "shell",
-        Keyword::Group => "group",
-        Keyword::Mesh => "mesh",
-        Keyword::Check => "check",
-        Keyword::Report => "report",
-        Keyword::Export => "export",
-        Keyword::Picture => "picture",
-    }
+    if keyword == Keyword::Use { "module" } else { super::syntax::keywords::written(keyword) }
 }

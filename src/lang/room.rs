@@ -1,6 +1,6 @@
 //! Room for lists: what a run holds is counted before it is made, so that no script eats the machine.
 //!
-//! A member takes 40 bytes and a list of its own some more. What a declaration made on the way is given back when it is
+//! A member takes 32 bytes and a list of its own some more. What a declaration made on the way is given back when it is
 //! evaluated, all but the value that it keeps.
 
 use std::sync::Arc;

@@ -24,6 +24,27 @@ pub const LENGTHS: &[LengthUnit] = &[
     LengthUnit { name: "ft", micrometres: 304_800, docs: "foot" },
 ];
 
+/// A unit of something else.
+#[derive(Clone, Copy, Debug)]
+pub struct OtherUnit {
+    /// As written.
+    pub name: &'static str,
+    /// What it measures.
+    pub dim: Dim,
+    /// Its value in degrees or kg.
+    pub ratio: f64,
+    /// What it is called in the reference.
+    pub docs: &'static str,
+}
+
+/// All units of angle and mass.
+pub const OTHERS: &[OtherUnit] = &[
+    OtherUnit { name: "deg", dim: Dim::ANGLE, ratio: 1.0, docs: "degree" },
+    OtherUnit { name: "rad", dim: Dim::ANGLE, ratio: 180.0 / std::f64::consts::PI, docs: "radian" },
+    OtherUnit { name: "kg", dim: Dim::MASS, ratio: 1.0, docs: "kilogram" },
+    OtherUnit { name: "t", dim: Dim::MASS, ratio: 1000.0, docs: "tonne" },
+];
+
 /// The default model unit.
 pub const MILLIMETRE: LengthUnit = LENGTHS[1];
 
@@ -63,12 +84,9 @@ fn gcd(a: u64, b: u64) -> u64 {
 
 /// One side of a unit: its dimension and the value of one in model units, degrees, kg.
 fn factor(text: &str) -> Option<(Dim, Factor)> {
-    Some(match text {
-        "deg" => (Dim::ANGLE, Factor::Ratio(1.0)),
-        "rad" => (Dim::ANGLE, Factor::Ratio(180.0 / std::f64::consts::PI)),
-        "kg" => (Dim::MASS, Factor::Ratio(1.0)),
-        "t" => (Dim::MASS, Factor::Ratio(1000.0)),
-        _ => {
+    Some(match OTHERS.iter().find(|u| u.name == text) {
+        Some(unit) => (unit.dim, Factor::Ratio(unit.ratio)),
+        None => {
             let (name, power) = match text.as_bytes().last()? {
                 b'2' => (&text[..text.len() - 1], 2),
                 b'3' => (&text[..text.len() - 1], 3),

@@ -1,35 +1,73 @@
 //! The reference of the language, made from the tables that the interpreter uses.
 
+use std::collections::BTreeMap;
+
+use crate::base::limits;
+use crate::lang::settings::{BLOCKS, Setting};
 use crate::lang::std::{Builtin, builtins, fields};
+use crate::lang::syntax::keywords::{KeywordDoc, WORDS, openers};
+use crate::lang::types::TYPE_NAMES;
+use crate::lang::units::{LENGTHS, OTHERS};
 
 /// Every word in a line each.
 pub fn overview() -> String {
     let mut out = String::new();
-    let mut section = |title: &str, words: &mut dyn Iterator<Item = &'static Builtin>| {
+    let mut section = |title: &str, mut words: Vec<(String, &str)>| {
         out.push_str(&format!("{title}\n"));
-        let mut words: Vec<(String, &str)> = words.map(|b| (b.name.to_owned(), b.summary())).collect();
-        words.sort();
         words.dedup_by(|a, b| a.0 == b.0);
         let width = words.iter().map(|w| w.0.len()).max().unwrap_or(0);
         words.iter().for_each(|(name, summary)| out.push_str(&format!("  {name:width$}  {summary}\n")));
     };
-    section("functions", &mut builtins());
-    section("fields, written x.name or name(x)", &mut fields());
+    let sorted = |of: &mut dyn Iterator<Item = &'static Builtin>| {
+        let mut words: Vec<(String, &str)> = of.map(|b| (b.name.to_owned(), b.summary())).collect();
+        words.sort();
+        words
+    };
+    let line = |w: &'static KeywordDoc| (w.written().to_owned(), first_sentence(w.docs));
+    section("declarations", openers().into_iter().map(line).collect());
+    section("words inside them", WORDS.iter().filter(|w| w.keyword.is_none()).map(line).collect());
+    section("settings", settings().map(|(_, s)| (s.key.to_owned(), first_sentence(s.docs))).collect());
+    section("functions", sorted(&mut builtins()));
+    section("fields, written x.name or name(x)", sorted(&mut fields()));
     out.push_str("\n`loft doc NAME` tells more about one of them.\n");
     out
 }
 
+fn first_sentence(docs: &str) -> &str {
+    docs.split(". ").next().unwrap_or(docs).trim_end_matches('.')
+}
+
+/// All settings with their blocks.
+fn settings() -> impl Iterator<Item = (&'static str, &'static Setting)> {
+    BLOCKS.iter().flat_map(|(block, table)| table.iter().map(|s| (*block, s)))
+}
+
 /// All that is known of a word, or words that look like it.
 pub fn entry(name: &str) -> Result<String, Vec<&'static str>> {
-    let found: Vec<&Builtin> = builtins().chain(fields()).filter(|b| b.name == name).collect();
+    let words = WORDS.iter().filter(|w| w.word == name || w.written() == name).map(text_of_word);
+    let keys = settings().filter(|(_, s)| s.key == name).map(|(block, s)| text_of_setting(block, s));
+    let calls = builtins().chain(fields()).filter(|b| b.name == name).map(text_of);
+    let found: Vec<String> = words.chain(keys).chain(calls).collect();
     if found.is_empty() {
-        let mut near: Vec<(usize, &'static str)> =
-            builtins().chain(fields()).filter_map(|b| super::similar::word_distance(name, b.name).map(|d| (d, b.name))).collect();
+        let all = builtins().chain(fields()).map(|b| b.name);
+        let all = all.chain(WORDS.iter().map(KeywordDoc::written)).chain(settings().map(|(_, s)| s.key));
+        let mut near: Vec<(usize, &'static str)> = all.filter_map(|w| super::similar::word_distance(name, w).map(|d| (d, w))).collect();
         near.sort_unstable();
         near.dedup();
         return Err(near.into_iter().take(3).map(|(_, name)| name).collect());
     }
-    Ok(found.into_iter().map(text_of).collect::<Vec<_>>().join("\n"))
+    Ok(found.join("\n"))
+}
+
+/// A reserved word for a terminal.
+fn text_of_word(word: &KeywordDoc) -> String {
+    format!("{}\n\n  {}\n", word.form, word.docs)
+}
+
+/// A setting for a terminal.
+fn text_of_setting(block: &str, setting: &Setting) -> String {
+    let default = if setting.default.is_empty() { String::new() } else { format!(" [default: {}]", setting.default) };
+    format!("{}: {}{default}\n\n  {}\n  Stands in `{block}`.\n", setting.key, setting.ty.signature(), setting.docs)
 }
 
 /// A word for a terminal.
@@ -50,26 +88,79 @@ fn text_of(builtin: &Builtin) -> String {
 /// The reference manual in Markdown: `docs/guide/reference.md`.
 pub fn manual() -> String {
     let mut out = String::from(
-        "# Reference\n\nEvery function and field of the language, from the declarations that the interpreter uses \
-         (`loft doc --markdown` prints this page).\n\n## Functions\n",
+        "# Reference\n\nEvery word of the language, from the tables that the interpreter uses \
+         (`loft doc --markdown` prints this page).\n",
     );
+    out.push_str("\n## Declarations\n");
+    openers().into_iter().for_each(|w| out.push_str(&format!("\n### `{}`\n\n```text\n{}\n```\n\n{}\n", w.written(), w.form, w.docs)));
+    let inside: Vec<_> = WORDS.iter().filter(|w| w.keyword.is_none()).collect();
+    let forms = |form: &str| form.lines().map(|line| format!("`{line}`")).collect::<Vec<_>>().join("<br>");
+    let rows = inside.iter().map(|w| vec![format!("`{}`", w.word), forms(w.form), w.docs.to_owned()]);
+    table(&mut out, "## Words inside declarations", &["word", "written", ""], rows.collect());
+    for (block, settings) in BLOCKS.iter().filter(|b| !b.1.is_empty()) {
+        let row = |s: &Setting| vec![format!("`{}`", s.key), s.ty.signature(), s.default.to_owned(), s.docs.to_owned()];
+        table(&mut out, &format!("## Settings of `{block}`"), &["setting", "takes", "default", ""], settings.iter().map(row).collect());
+    }
+    units(&mut out);
+    let names: Vec<String> = TYPE_NAMES.iter().map(|name| format!("`{name}`")).collect();
+    out.push_str(&format!("\n## Types\n\nIn `fn` and `param`: {}; `[length]` is a list of lengths.\n", names.join(", ")));
+    let row = |(what, value): &(&str, f64)| vec![what.trim().trim_end_matches('.').to_owned(), plain(*value)];
+    table(&mut out, "## Limits", &["", "at most"], limits::ALL.iter().map(row).collect());
+    out.push_str("\n## Functions\n");
     let mut functions: Vec<&Builtin> = builtins().collect();
     functions.sort_by_key(|b| b.name);
     functions.iter().for_each(|b| out.push_str(&manual_entry(b)));
-    out.push_str(
-        "\n## Members\n\nWritten `x.name` or `name(x)`. Lengths are in model units, areas and volumes in their powers, angles in degrees.\n\n\
-         | of | member | gives | unit | |\n|---|---|---|---|---|\n",
-    );
-    let mut all: Vec<(String, &Builtin)> = fields().map(|b| (b.params.first().map(|p| p.ty.signature()).unwrap_or_default(), b)).collect();
-    all.sort_by(|a, b| (&a.0, a.1.name).cmp(&(&b.0, b.1.name)));
-    for (of, field) in all {
-        let cell = |text: &str| text.replace('|', "\\|");
-        let docs: Vec<&str> = field.docs.trim().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-        let (gives, unit) = (field.returns.signature(), unit_of(&field.returns.signature()));
-        let row = format!("| {} | `{}` | {} | {unit} | {} |\n", cell(&of), field.name, cell(&gives), cell(&docs.join(" ")));
-        out.push_str(&row);
-    }
+    members(&mut out);
     out
+}
+
+/// A heading with a table; bars in cells are escaped.
+fn table(out: &mut String, title: &str, head: &[&str], rows: Vec<Vec<String>>) {
+    let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| c.replace('|', "\\|")).collect::<Vec<_>>().join(" | "));
+    let head: Vec<String> = head.iter().map(|h| (*h).to_owned()).collect();
+    out.push_str(&format!("\n{title}\n\n{}|{}\n", line(&head), "---|".repeat(head.len())));
+    rows.iter().for_each(|row| out.push_str(&line(row)));
+}
+
+fn units(out: &mut String) {
+    let length = LENGTHS.iter().map(|u| [u.name.to_owned(), format!("{}, also `{}2` and `{}3`", u.docs, u.name, u.name)]);
+    let other = OTHERS.iter().map(|u| [u.name.to_owned(), u.docs.to_owned()]);
+    let rows = length.chain(other).chain([["%".to_owned(), "hundredth".to_owned()]]);
+    let rows = rows.map(|[name, docs]| vec![format!("`{name}`"), docs]).collect();
+    table(out, "## Units", &["unit", ""], rows);
+    out.push_str("\nGlued to a number: `3mm`, `2m2`, `7850kg/m3`. One `/` may stand between two of them.\n");
+}
+
+/// A limit in digits, grouped; powers of two above a megabyte in MiB.
+fn plain(value: f64) -> String {
+    const MIB: f64 = 1_048_576.0;
+    if value >= 1e15 {
+        return format!("{value:e}");
+    }
+    if value >= MIB && value % MIB == 0.0 {
+        return format!("{} MiB", value / MIB);
+    }
+    let digits = format!("{value}");
+    let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
+    groups.join(" ")
+}
+
+/// Members of each kind of thing, a table each.
+fn members(out: &mut String) {
+    out.push_str("\n## Members\n\nWritten `x.name` or `name(x)`. Lengths are in model units, areas and volumes in their powers, angles in degrees.\n");
+    let mut kinds: BTreeMap<String, Vec<&Builtin>> = BTreeMap::new();
+    for field in fields() {
+        let of = field.params.first().map(|p| p.ty.signature()).unwrap_or_default();
+        kinds.entry(of).or_default().push(field);
+    }
+    for (kind, mut found) in kinds {
+        found.sort_by_key(|b| b.name);
+        let row = |field: &&Builtin| {
+            let docs: Vec<&str> = field.docs.trim().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+            vec![format!("`{}`", field.name), field.returns.signature(), unit_of(&field.returns.signature()).to_owned(), docs.join(" ")]
+        };
+        table(out, &format!("### Members of `{kind}`"), &["member", "gives", "unit", ""], found.iter().map(row).collect());
+    }
 }
 
 /// The unit in which reports show a result of this type.

@@ -1,8 +1,8 @@
 //! What is wrong with tokens, brackets and lines, in words.
 
 use super::ast::Span;
+use super::keywords::{KeywordDoc, openers};
 use super::number::{self, Fault};
-use super::token::KEYWORDS;
 use crate::base::limits::SOURCE_BYTES;
 use crate::lang::diag::{Diagnostic, FileId};
 use crate::lang::names::nearest;
@@ -294,12 +294,10 @@ fn no_keyword(source: &str, file: FileId, at: Span, next: Option<Span>, binds: b
     }
     let report = Diagnostic::new("E106", format!("`{word}` is not a keyword"), file, at, "no declaration starts with this");
     let two = next.map(|n| source[at.start as usize..n.end as usize].split_whitespace().collect::<Vec<_>>().join(" "));
-    let words = || KEYWORDS.iter().map(|(word, _)| *word);
+    let words = || openers().into_iter().map(KeywordDoc::written);
     let found = two.as_deref().filter(|t| t.ends_with(" curve")).and_then(|t| nearest(t, words())).or_else(|| nearest(word, words()));
     match found {
         Some(meant) => report.help(format!("did you mean `{meant}`?")),
-        None => {
-            report.help("the keywords are units tolerance snap use import param let fn point curve modeling curve surface shell group mesh check report export picture")
-        }
+        None => report.help(format!("the keywords are {}", words().collect::<Vec<_>>().join(" "))),
     }
 }

@@ -10,6 +10,7 @@
 pub mod ast;
 mod climb;
 mod expected;
+pub mod keywords;
 mod mistake;
 pub mod number;
 mod scan;
@@ -31,7 +32,6 @@ use scan::Tokens;
 use shape::{Filler, Shape, Shapes};
 use split::Piece;
 use token::Kind;
-pub use token::{KEYWORDS, reserved_words};
 
 /// What pest makes of `grammar/loft.pest`.
 #[allow(missing_docs)]

@@ -1,6 +1,7 @@
-//! Kinds of tokens and the table of reserved words.
+//! Kinds of tokens.
 
 use super::ast::Keyword;
+use super::keywords::WORDS;
 
 /// What a token is. A declaration's tree follows from the kinds of its tokens alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -87,107 +88,18 @@ pub(crate) enum Kind {
     Near,
 }
 
-/// Reserved words, sorted.
-const RESERVED: [(&str, Kind); 36] = [
-    ("and", Kind::AndWord),
-    ("as", Kind::As),
-    ("check", Kind::Check),
-    ("curve", Kind::Curve),
-    ("else", Kind::Else),
-    ("export", Kind::Export),
-    ("false", Kind::False),
-    ("fn", Kind::Fn),
-    ("for", Kind::For),
-    ("group", Kind::Group),
-    ("if", Kind::If),
-    ("import", Kind::Import),
-    ("in", Kind::In),
-    ("let", Kind::Let),
-    ("mesh", Kind::Mesh),
-    ("modeling", Kind::Modeling),
-    ("near", Kind::Near),
-    ("none", Kind::None),
-    ("not", Kind::Not),
-    ("of", Kind::Of),
-    ("on", Kind::On),
-    ("or", Kind::OrWord),
-    ("param", Kind::Param),
-    ("picture", Kind::Picture),
-    ("point", Kind::Point),
-    ("report", Kind::Report),
-    ("shell", Kind::Shell),
-    ("snap", Kind::Snap),
-    ("surface", Kind::Surface),
-    ("then", Kind::Then),
-    ("to", Kind::To),
-    ("tolerance", Kind::Tolerance),
-    ("true", Kind::True),
-    ("units", Kind::Units),
-    ("use", Kind::Use),
-    ("within", Kind::Within),
-];
-
 /// The kind of a word.
 pub(crate) fn kind_of_word(word: &str) -> Kind {
     if !(2..=9).contains(&word.len()) || !word.as_bytes()[0].is_ascii_lowercase() {
         return Kind::Name;
     }
-    RESERVED.binary_search_by(|(w, _)| (*w).cmp(word)).map_or(Kind::Name, |i| RESERVED[i].1)
+    super::keywords::find(word).map_or(Kind::Name, |w| w.kind)
 }
-
-/// All reserved words, for suggestions, completion and syntax colours.
-pub fn reserved_words() -> impl Iterator<Item = &'static str> {
-    RESERVED.iter().map(|(word, _)| *word)
-}
-
-/// Keywords that start a declaration, as the user writes them.
-pub const KEYWORDS: [(&str, Keyword); 19] = [
-    ("units", Keyword::Units),
-    ("tolerance", Keyword::Tolerance),
-    ("snap", Keyword::Snap),
-    ("use", Keyword::Use),
-    ("import", Keyword::Import),
-    ("param", Keyword::Param),
-    ("let", Keyword::Let),
-    ("fn", Keyword::Fn),
-    ("point", Keyword::Point),
-    ("curve", Keyword::Curve),
-    ("modeling curve", Keyword::ModelingCurve),
-    ("surface", Keyword::Surface),
-    ("shell", Keyword::Shell),
-    ("group", Keyword::Group),
-    ("mesh", Keyword::Mesh),
-    ("check", Keyword::Check),
-    ("report", Keyword::Report),
-    ("export", Keyword::Export),
-    ("picture", Keyword::Picture),
-];
 
 impl Kind {
     /// The keyword of a declaration that starts with this token.
     pub(crate) fn keyword(self) -> Option<Keyword> {
-        Some(match self {
-            Self::Units => Keyword::Units,
-            Self::Tolerance => Keyword::Tolerance,
-            Self::Snap => Keyword::Snap,
-            Self::Use => Keyword::Use,
-            Self::Import => Keyword::Import,
-            Self::Param => Keyword::Param,
-            Self::Let => Keyword::Let,
-            Self::Fn => Keyword::Fn,
-            Self::Point => Keyword::Point,
-            Self::Curve => Keyword::Curve,
-            Self::Modeling => Keyword::ModelingCurve,
-            Self::Surface => Keyword::Surface,
-            Self::Shell => Keyword::Shell,
-            Self::Group => Keyword::Group,
-            Self::Mesh => Keyword::Mesh,
-            Self::Check => Keyword::Check,
-            Self::Report => Keyword::Report,
-            Self::Export => Keyword::Export,
-            Self::Picture => Keyword::Picture,
-            _ => return None,
-        })
+        if self.is_reserved() { WORDS.iter().find(|w| w.kind == self)?.keyword } else { None }
     }
 
     /// Whether it is a word that cannot be a name.
@@ -257,18 +169,5 @@ impl Kind {
                 | Self::OrWord
                 | Self::Within
         )
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reserved_words_are_sorted_and_found() {
-        assert!(RESERVED.windows(2).all(|w| w[0].0 < w[1].0));
-        assert!(RESERVED.iter().all(|&(word, kind)| kind_of_word(word) == kind && kind.is_reserved()));
-        assert_eq!(kind_of_word("letter"), Kind::Name);
-        assert_eq!(kind_of_word("m"), Kind::Name);
     }
 }

@@ -1,0 +1,225 @@
+//! The reserved words: what each is, how it is written, and what it means. Scanner, messages and reference read this table.
+
+use super::ast::Keyword;
+use super::token::Kind;
+
+/// A reserved word.
+#[derive(Debug)]
+pub struct KeywordDoc {
+    /// As written; `modeling` opens the two words `modeling curve`.
+    pub word: &'static str,
+    pub(crate) kind: Kind,
+    /// The declaration that it opens, when it opens one.
+    pub keyword: Option<Keyword>,
+    /// How it is used, a line each.
+    pub form: &'static str,
+    /// What it means.
+    pub docs: &'static str,
+}
+
+const fn opens(word: &'static str, (kind, keyword): (Kind, Keyword), form: &'static str, docs: &'static str) -> KeywordDoc {
+    KeywordDoc { word, kind, keyword: Some(keyword), form, docs }
+}
+
+const fn inside(word: &'static str, kind: Kind, form: &'static str, docs: &'static str) -> KeywordDoc {
+    KeywordDoc { word, kind, keyword: None, form, docs }
+}
+
+/// All reserved words, sorted.
+pub static WORDS: [KeywordDoc; 36] = [
+    inside("and", Kind::AndWord, "a and b", "True when both are; the right side is evaluated only when the left is true."),
+    inside("as", Kind::As, "use \"ribs.loft\" as ribs", "The name of what is loaded."),
+    opens(
+        "check",
+        (Kind::Check, Keyword::Check),
+        "check condition\ncheck \"label\": condition\ncheck ribs[i].length > 1m for i in 0..5",
+        "What must hold: a run fails, and writes nothing, while a check does not. Its sides, their difference and the tolerance are told.",
+    ),
+    opens(
+        "curve",
+        (Kind::Curve, Keyword::Curve),
+        "curve name = value\ncurve name for i in list = value",
+        "A curve of the model's network, which gets a node where it ends or meets another. With `for` a family: `name[i]`.",
+    ),
+    inside("else", Kind::Else, "if condition then a else b", "The value when the condition is false."),
+    opens(
+        "export",
+        (Kind::Export, Keyword::Export),
+        "export things to \"file.ending\"\nexport things to \"file.ending\" { settings }\nexport plates[i] for i in 0..3 to \"plate_{i}.stl\"",
+        "A file, in the format of its ending. All files of a run are put in place together, when every check has passed.",
+    ),
+    inside("false", Kind::False, "false", "The condition that does not hold."),
+    opens(
+        "fn",
+        (Kind::Fn, Keyword::Fn),
+        "fn name(a, b: type, c: type = default) = value\nfn name(a): type = value",
+        "A function: its value depends on its arguments and the script's names alone. Types are optional; it may call itself.",
+    ),
+    inside(
+        "for",
+        Kind::For,
+        "[for i in list if condition: value]\ncurve name for i in list = value",
+        "Takes the members of a list or range in turn; more `for`s nest.",
+    ),
+    opens(
+        "group",
+        (Kind::Group, Keyword::Group),
+        "group name of things",
+        "Things under one name: a node or element set in every file that has sets.",
+    ),
+    inside("if", Kind::If, "if condition then a else b", "One of two values; in a comprehension, keeps the members for which it holds."),
+    opens(
+        "import",
+        (Kind::Import, Keyword::Import),
+        "import \"file.csv\" as name\nimport \"file.csv\" (header: true  unit: m) as name",
+        "Data: csv, dat, txt, json, OBJ or STL. Curves of it join the network when a `curve` binds them.",
+    ),
+    inside(
+        "in",
+        Kind::In,
+        "for i in list\nlet x = a in value\nparam p = a in a to b",
+        "What is run over, where a name holds, or what is allowed.",
+    ),
+    opens(
+        "let",
+        (Kind::Let, Keyword::Let),
+        "let name = value\nlet name for i in list = value\nlet name = a in value",
+        "A name for any value. Curves and surfaces of a `let` are construction geometry: not meshed, drawn or exported unless asked.",
+    ),
+    opens(
+        "mesh",
+        (Kind::Mesh, Keyword::Mesh),
+        "mesh name of things { settings  on things { settings } }",
+        "A mesh of surfaces, shells, curves or points, conforming over all their faces.",
+    ),
+    opens(
+        "modeling",
+        (Kind::Modeling, Keyword::ModelingCurve),
+        "modeling curve name = chain\nmodeling curve name for i in list = chain",
+        "A chain of links of the network, which surfaces stand on: `south[A .. ribs[2]] + ribs[2][south .. B]`.",
+    ),
+    inside("near", Kind::Near, "near things { settings }", "A clause of a mesh: refines it near things. Not in this version."),
+    inside("none", Kind::None, "none", "No value; an empty cell of a table."),
+    inside("not", Kind::Not, "not a", "True when the condition is false."),
+    inside("of", Kind::Of, "mesh name of things", "What a shell, group or mesh holds; nested lists are flattened."),
+    inside(
+        "on",
+        Kind::On,
+        "on things { count: 20  bias: 2 }",
+        "A clause of a mesh: settings for the links, curves, edges or faces named. The later of two equal rules holds.",
+    ),
+    inside("or", Kind::OrWord, "a or b", "True when either is; the right side is evaluated only when the left is false."),
+    opens(
+        "param",
+        (Kind::Param, Keyword::Param),
+        "param name = default\nparam name: type = default\nparam name = default in a to b\nparam name = word in [word, other]",
+        "A value that may be set from outside by a literal: `--set name=value`, a column of a design table, or `use`. A range includes \
+         both ends.",
+    ),
+    opens("picture", (Kind::Picture, Keyword::Picture), "picture things to \"file.png\" { settings }", "A picture of things."),
+    opens(
+        "point",
+        (Kind::Point, Keyword::Point),
+        "point name = (x, y, z)\npoint name for i in list = value",
+        "A point of the model; of a pair z is 0. A node that curves make within the tolerance of it is this point.",
+    ),
+    opens(
+        "report",
+        (Kind::Report, Keyword::Report),
+        "report value\nreport \"title\": value\nreport value for i in list",
+        "A table in the summary and the JSON report: of records, lists, or what an entity tells of itself.",
+    ),
+    opens(
+        "shell",
+        (Kind::Shell, Keyword::Shell),
+        "shell name of surfaces",
+        "Surfaces that are one: a composite surface, or the skin of a solid when it closes.",
+    ),
+    opens(
+        "snap",
+        (Kind::Snap, Keyword::Snap),
+        "snap length",
+        "For measured data: curve ends closer than this are moved together, once, before anything is built. Every move is told.",
+    ),
+    opens(
+        "surface",
+        (Kind::Surface, Keyword::Surface),
+        "surface name = value\nsurface name for i in list = value",
+        "A surface of the model, with patches, edges and vertices. `-s` turns its side.",
+    ),
+    inside("then", Kind::Then, "if condition then a else b", "The value when the condition is true."),
+    inside("to", Kind::To, "export things to \"file.stl\"\nparam p = 3 in 1 to 5", "Where a file goes, or the last value allowed."),
+    opens(
+        "tolerance",
+        (Kind::Tolerance, Keyword::Tolerance),
+        "tolerance length\ntolerance length, angle",
+        "When two points are one, and how sharp a turn is a kink. Default 1e-6 of the model's diagonal, rounded down to a power of ten, and \
+         0.1deg.",
+    ),
+    inside("true", Kind::True, "true", "The condition that holds."),
+    opens("units", (Kind::Units, Keyword::Units), "units m", "The model unit: of bare lengths, reports and files. Default mm."),
+    opens(
+        "use",
+        (Kind::Use, Keyword::Use),
+        "use \"ribs.loft\" as ribs\nuse \"ribs.loft\" (height: 3m) as ribs",
+        "Another script as a module, with its own units, network and checks; its params may be given.",
+    ),
+    inside(
+        "within",
+        Kind::Within,
+        "a == b within 0.1mm\na == b within 0.1%",
+        "How far two quantities may differ and be equal: absolute, or of the right side.",
+    ),
+];
+
+/// The entry of a word.
+pub fn find(word: &str) -> Option<&'static KeywordDoc> {
+    WORDS.binary_search_by(|w| w.word.cmp(word)).ok().map(|i| &WORDS[i])
+}
+
+/// Words that open a declaration, in the order of [`Keyword`].
+pub fn openers() -> Vec<&'static KeywordDoc> {
+    let mut found: Vec<&KeywordDoc> = WORDS.iter().filter(|w| w.keyword.is_some()).collect();
+    found.sort_by_key(|w| w.keyword);
+    found
+}
+
+impl KeywordDoc {
+    /// As the user writes it: `modeling curve` has two words.
+    pub fn written(&self) -> &'static str {
+        if self.keyword == Some(Keyword::ModelingCurve) { "modeling curve" } else { self.word }
+    }
+}
+
+/// The words of a declaration keyword.
+pub fn written(keyword: Keyword) -> &'static str {
+    WORDS.iter().find(|w| w.keyword == Some(keyword)).map_or("", KeywordDoc::written)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lang::syntax::token::kind_of_word;
+
+    #[test]
+    fn words_are_sorted_and_found_and_told() {
+        assert!(WORDS.windows(2).all(|w| w[0].word < w[1].word));
+        for word in &WORDS {
+            assert!(kind_of_word(word.word) == word.kind && word.kind.is_reserved() && word.kind.keyword() == word.keyword);
+            assert!(word.docs.ends_with('.') && word.form.lines().all(|line| line.contains(word.word)), "{}", word.word);
+        }
+        assert_eq!(openers().len(), 19);
+        assert_eq!(kind_of_word("letter"), Kind::Name);
+        assert_eq!(kind_of_word("m"), Kind::Name);
+    }
+
+    /// The grammar must name its words itself; these are the same.
+    #[test]
+    fn the_grammar_reserves_these_words() {
+        let grammar = include_str!("../../../grammar/loft.pest");
+        let rule = grammar.split("reserved = @{").nth(1).and_then(|rest| rest.split('}').next()).unwrap_or("");
+        let mut reserved: Vec<&str> = rule.split('"').skip(1).step_by(2).collect();
+        reserved.sort_unstable();
+        assert!(reserved.iter().eq(WORDS.iter().map(|w| &w.word)));
+    }
+}
