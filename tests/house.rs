@@ -42,7 +42,7 @@ const DOORS: &[(&str, &[&str])] = &[
 const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "eprintln!"];
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
-/// fault of the kernel, and `lang` the grammar's tree, the evaluator and all builtins with their documentation.
+/// fault of the kernel, and `lang` the grammar's tree, the evaluator, its memory between runs, and all words with their documentation.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_500),
     ("geometry", 5_500),
