@@ -7,12 +7,13 @@
 //! ```
 //!
 //! The crate is laid out in floors, and a floor imports only from floors below it:
-//! [`base`] · [`geometry`] · [`network`] · [`surface`] · [`model`] · [`mesh`] · [`io`] · [`lang`] · [`session`] · `cli`.
+//! [`base`] · [`geometry`] · [`network`] · [`surface`] · [`model`] · [`mesh`] · [`io`], [`draw`] · [`lang`] · [`session`] · `cli`.
 //! `docs/architecture.md` tells what each one holds and what is deliberately absent from it.
 
 pub mod base;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod draw;
 pub mod geometry;
 pub mod io;
 pub mod lang;

@@ -28,7 +28,8 @@ fn reports(path: &Path, text: &str) -> (Vec<Diagnostic>, Sources) {
     let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
     let disk = Disk::new(Some(path), None, &[], Outputs::Counted).expect("the folder of the script exists");
     let clock = || 0.0;
-    let task = Task { name: &name, text: text.as_bytes(), sets: &[], strict: false, keep_going: false, full: true, clock: &clock };
+    let task =
+        Task { name: &name, text: text.as_bytes(), sets: &[], strict: false, keep_going: false, full: true, picture: None, clock: &clock };
     match guarded(|| run(&task, &disk, &Job::new())) {
         Ok(outcome) => (outcome.diagnostics, outcome.sources),
         Err(bug) => (vec![Diagnostic::without_place("E999", bug.what)], Sources::default()),

@@ -34,8 +34,16 @@ impl Folder {
         let out = self.0.join(out);
         let disk = Disk::new(Some(&script), Some(&out), &[], Outputs::Written).unwrap();
         let clock = || 0.0;
-        let task =
-            Task { name: "model.loft", text: text.as_bytes(), sets: &[], strict: false, keep_going: true, full: true, clock: &clock };
+        let task = Task {
+            name: "model.loft",
+            text: text.as_bytes(),
+            sets: &[],
+            strict: false,
+            keep_going: true,
+            full: true,
+            picture: None,
+            clock: &clock,
+        };
         let job = Job::default();
         let outcome: Outcome = match kept {
             Some(kept) => guarded(|| run_again(&task, &disk, &job, kept)).unwrap(),

@@ -31,6 +31,10 @@ limits! {
     pub const MEMBERS_MADE: usize = 20_000_000;
     /// Elements of one mesh.
     pub const MESH_ELEMENTS: u64 = 100_000_000;
+    /// Pixels along a side of a picture.
+    pub const PICTURE_SIDE: u32 = 8_192;
+    /// Pixels of one picture.
+    pub const PICTURE_PIXELS: u64 = 1 << 25;
     /// Lists inside each other.
     pub const LIST_NESTING: usize = 1_000;
     /// Evaluation steps of one run.
@@ -40,3 +44,6 @@ limits! {
     /// Reports printed in full in one run.
     pub const REPORTS_SHOWN: usize = 20;
 }
+
+/// Least number of pixels along a side of a picture.
+pub const PICTURE_LEAST: u32 = 16;

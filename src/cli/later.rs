@@ -12,7 +12,6 @@ pub const COMMANDS: &[Command] = &[
     later("test", "Golden tests of your own models (not in this version)"),
     later("fmt", "Canonical layout of a script (not in this version)"),
     later("view", "Live page in the browser (not in this version)"),
-    later("render", "A picture without a window (not in this version)"),
     later("lsp", "Language server (not in this version)"),
     later("diff", "What changed between two models (not in this version)"),
 ];

@@ -10,6 +10,7 @@ mod model;
 mod new;
 mod options;
 mod progress;
+mod render;
 mod run;
 mod summary;
 mod terminal;
@@ -33,8 +34,10 @@ pub struct Command {
 }
 
 /// All subcommands, in the order of the help.
-const COMMANDS: &[&[Command]] =
-    &[&[run::COMMAND, check::COMMAND, new::COMMAND, explain::COMMAND, doc::COMMAND, completions::COMMAND], later::COMMANDS];
+const COMMANDS: &[&[Command]] = &[
+    &[run::COMMAND, check::COMMAND, render::COMMAND, new::COMMAND, explain::COMMAND, doc::COMMAND, completions::COMMAND],
+    later::COMMANDS,
+];
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -17,10 +17,13 @@ use crate::session::report::{Case, Cases, VERSION};
 use crate::session::run::{self, Outcome, Task};
 
 /// One script with all its rows.
-struct Model<'a> {
-    name: &'a str,
-    text: Vec<u8>,
-    disk: Disk,
+pub struct Model<'a> {
+    /// As named on the command line.
+    pub name: &'a str,
+    /// Its bytes.
+    pub text: Vec<u8>,
+    /// Where it may read and write.
+    pub disk: Disk,
 }
 
 /// Runs all models of the command line; the worst exit status wins.
@@ -56,7 +59,8 @@ pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
     worst
 }
 
-fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Model<'a>, String> {
+/// Reads a script; the error is a sentence about the command line.
+pub fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Model<'a>, String> {
     let path = script_path(name);
     let cannot = |error: FileError| format!("cannot read {}", said(name, &error));
     let text = match path {
@@ -94,12 +98,14 @@ fn case(model: &Model, disk: &Disk, sets: &[(String, String)], options: &Options
         strict: options.strict,
         keep_going: options.keep_going,
         full: options.json || options.verbose,
+        picture: None,
         clock: &clock,
     };
     guarded(|| run::run(&task, disk, job))
 }
 
-fn bug(bug: &Bug, model: &Model, terminal: &Terminal) -> Exit {
+/// Says that loft has a bug.
+pub fn bug(bug: &Bug, model: &Model, terminal: &Terminal) -> Exit {
     let place = interrupt::last_panic_place();
     terminal.tell(&format!(
         "E999 × a bug in loft: {} ({place})\n  help: nothing was written; please report it with the script ({}), the command line and this text\n",
@@ -108,7 +114,8 @@ fn bug(bug: &Bug, model: &Model, terminal: &Terminal) -> Exit {
     Exit::Bug
 }
 
-fn exit_of(outcome: &Outcome) -> Exit {
+/// How the program ends after a run.
+pub fn exit_of(outcome: &Outcome) -> Exit {
     if outcome.interrupted {
         Exit::Interrupted
     } else if outcome.bug {
@@ -143,7 +150,7 @@ fn one(
 }
 
 /// Diagnostics, how things were found, and timings: all on standard error.
-fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
+pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
     terminal.tell(&outcome.drawn(terminal.color_err, options.verbose));
     if options.verbose {
         outcome.notes.iter().for_each(|line| terminal.tell(&format!("{line}\n")));

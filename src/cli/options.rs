@@ -35,9 +35,20 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
     let path = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
     };
-    command
+    let command = command
         .arg(if several { model.num_args(1..) } else { model })
         .arg(path("out", "DIR", "Folder for outputs [default: the script's]").short('o'))
+        .arg(path("table", "FILE.csv", "One run for each row; the header names params"))
+        .arg(path("cache", "DIR", "Not in this version").hide(true))
+        .arg(flag("json", "Prints the report as JSON"))
+        .arg(flag("keep-going", "Writes what is sound although something failed"));
+    add_shared(command)
+}
+
+/// Adds the options of everything that evaluates a script.
+pub fn add_shared(command: clap::Command) -> clap::Command {
+    let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
+    command
         .arg(
             Arg::new("set")
                 .long("set")
@@ -46,7 +57,6 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
                 .value_parser(assignment)
                 .help("Gives a param another value"),
         )
-        .arg(path("table", "FILE.csv", "One run for each row; the header names params"))
         .arg(
             Arg::new("threads")
                 .long("threads")
@@ -54,13 +64,17 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
                 .value_parser(value_parser!(u16).range(1..))
                 .help("How many threads may work [default: one per core]; results do not depend on it"),
         )
-        .arg(path("cache", "DIR", "Not in this version").hide(true))
         .arg(flag("strict", "Warnings count as errors"))
         .arg(flag("timings", "Shows the seconds of each phase"))
-        .arg(flag("json", "Prints the report as JSON"))
         .arg(flag("verbose", "Shows how things were found: flows, methods, counts, notes").short('v'))
-        .arg(path("allow", "PATH", "A further place that imports and modules may be read from").action(ArgAction::Append))
-        .arg(flag("keep-going", "Writes what is sound although something failed"))
+        .arg(
+            Arg::new("allow")
+                .long("allow")
+                .value_name("PATH")
+                .value_parser(value_parser!(PathBuf))
+                .action(ArgAction::Append)
+                .help("A further place that imports and modules may be read from"),
+        )
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -76,18 +90,29 @@ impl Options {
         if matches.contains_id("cache") && matches.get_one::<PathBuf>("cache").is_some() {
             return Err("`--cache` is not in this version".to_owned());
         }
-        let many = |name: &str| matches.get_many::<PathBuf>(name).into_iter().flatten().cloned().collect();
+        Ok(Self {
+            out: matches.get_one::<PathBuf>("out").cloned(),
+            table: matches.get_one::<PathBuf>("table").cloned(),
+            json: matches.get_flag("json"),
+            keep_going: matches.get_flag("keep-going"),
+            ..Self::read_shared(matches)?
+        })
+    }
+
+    /// Reads those of [`add_shared`]; outputs go to the folder that holds `--out`.
+    pub fn read_shared(matches: &ArgMatches) -> Result<Self, String> {
+        let folder = |file: &PathBuf| file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
         let options = Self {
             models: matches.get_many::<String>("model").into_iter().flatten().cloned().collect(),
-            out: matches.get_one::<PathBuf>("out").cloned(),
+            out: matches.get_one::<PathBuf>("out").map(folder),
             sets: matches.get_many::<(String, String)>("set").into_iter().flatten().cloned().collect(),
-            table: matches.get_one::<PathBuf>("table").cloned(),
+            table: None,
             strict: matches.get_flag("strict"),
             timings: matches.get_flag("timings"),
-            json: matches.get_flag("json"),
+            json: false,
             verbose: matches.get_flag("verbose"),
-            allow: many("allow"),
-            keep_going: matches.get_flag("keep-going"),
+            allow: matches.get_many::<PathBuf>("allow").into_iter().flatten().cloned().collect(),
+            keep_going: false,
         };
         if let Some((name, _)) =
             options.sets.iter().enumerate().find(|(i, s)| options.sets[..*i].iter().any(|o| o.0 == s.0)).map(|(_, s)| s)

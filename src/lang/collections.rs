@@ -13,6 +13,7 @@ use super::settings::{self, Setting};
 use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
 use super::units;
 use super::value::{MeshValue, ShellValue, Value};
+use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::mesh::{Elements, Method};
 
@@ -142,6 +143,22 @@ impl Cx<'_> {
                         | Value::Vertex(..)
                 )
             }),
+            Keyword::Picture => ("things with geometry", |v| {
+                matches!(
+                    v,
+                    Value::Surface(_)
+                        | Value::Shell(_)
+                        | Value::Mesh(_)
+                        | Value::Curve(_)
+                        | Value::Link(..)
+                        | Value::Edge(..)
+                        | Value::Patch(..)
+                        | Value::Vertex(..)
+                        | Value::Vector(..)
+                        | Value::Node(_)
+                        | Value::Network(_)
+                )
+            }),
             Keyword::Export => ("meshes, curves, surfaces or records", |v| !matches!(v, Value::None | Value::Module(_) | Value::Plane(_))),
             _ => ("things with geometry", |v| {
                 !matches!(
@@ -223,15 +240,24 @@ impl Cx<'_> {
             return Err(self.not_yet(code, &what, code.span(id)));
         }
         let Some(x) = number(&value) else { return Ok(value) };
+        let (least, most) = (f64::from(limits::PICTURE_LEAST), f64::from(limits::PICTURE_SIDE));
         let range = match key {
             "order" if x != 1.0 && x != 2.0 => "1 or 2",
             "count" if x < 1.0 => "at least 1",
             "count" if x > 1e8 => "at most 10^8",
+            "width" | "height" if !(least..=most).contains(&x) => return Err(self.out_of_page(code, key, &value, id)),
             "size" | "chord_error" | "angle_error" | "bias" | "snap" if x <= 0.0 => "more than 0",
             _ => return Ok(value),
         };
         let found = self.show(&value);
         Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).stop())
+    }
+
+    #[cold]
+    fn out_of_page(&mut self, code: Code<'_>, key: &str, value: &Value, id: ExprId) -> Stop {
+        let (least, most, found) = (limits::PICTURE_LEAST, limits::PICTURE_SIDE, self.show(value));
+        let text = format!("`{key}` must be {least} to {most} pixels, got {found}");
+        self.error(code, "E306", text, code.span(id), found).stop()
     }
 
     #[cold]

@@ -85,6 +85,17 @@ pub struct Parts {
     pub surfaces: Vec<Declared<Surface>>,
 }
 
+/// The geometry of a script as far as it is sound: everything, or where something failed what was evaluated.
+#[derive(Clone, Debug)]
+pub struct Sound {
+    /// What is declared.
+    pub parts: Arc<Parts>,
+    /// The network of these curves.
+    pub network: Arc<Network>,
+    /// The surface model of these surfaces.
+    pub model: Arc<Model>,
+}
+
 /// The stages that depend on everything declared; the session implements them over the kernel floors.
 ///
 /// Each is called at most once per script (mesh: per mesh); results are kept by [`Cx`].
@@ -216,6 +227,11 @@ impl<'w> Cx<'w> {
     /// The surface model of a script; evaluates all its surfaces first.
     pub fn model(&mut self, module: ModuleId) -> Result<Arc<Model>, Stop> {
         super::stages::model(self, module)
+    }
+
+    /// What is sound of a script's geometry, for showing it; asked after everything was evaluated.
+    pub fn sound(&mut self, module: ModuleId) -> Result<Sound, Stop> {
+        super::stages::sound(self, module)
     }
 
     /// What a script declares; evaluates all its points, curves and surfaces first.

@@ -8,7 +8,7 @@ use super::value::{ModuleId, Value};
 use super::{module::bound, std};
 
 const FUNCTIONS: &[&str] =
-    &["sweep", "trim", "gordon", "fit", "picture", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics", "project"];
+    &["sweep", "trim", "gordon", "fit", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics", "project"];
 
 const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];
 

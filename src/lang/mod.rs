@@ -25,6 +25,7 @@ mod operators;
 pub mod origins;
 mod outputs;
 mod params;
+mod pictures;
 pub mod plans;
 mod recall;
 mod room;

@@ -6,7 +6,7 @@ use super::cx::Parts;
 use super::diag::FileId;
 use super::memory::{Asked, Keys};
 use super::names::Name;
-use super::plans::{CheckResult, ExportSpec, MeshSpec, ReportTable};
+use super::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
 use super::syntax::ast::{Bound, Declaration, DeclarationKind, Keyword, Script};
 use super::units::LengthUnit;
 use super::value::{ModuleId, Value};
@@ -99,6 +99,7 @@ pub(super) struct Module {
     pub checks: Vec<(u32, CheckResult)>,
     pub reports: Vec<(u32, ReportTable)>,
     pub exports: Vec<(u32, ExportSpec)>,
+    pub pictures: Vec<(u32, PictureSpec)>,
 }
 
 impl Module {
@@ -144,6 +145,7 @@ impl Module {
             checks: Vec::new(),
             reports: Vec::new(),
             exports: Vec::new(),
+            pictures: Vec::new(),
         };
         (module, twice)
     }

@@ -1,4 +1,4 @@
-//! `check`, `report`, `export`: evaluated to plain data that the session shows and writes.
+//! `check`, `report`, `export`, `picture`: evaluated to plain data that the session shows and writes.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::eval::{Code, Gather};
 use super::operators::Comparison;
 use super::plans::{CheckResult, Column, ExportSpec, ReportTable};
 use super::settings;
-use super::syntax::ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword};
+use super::syntax::ast::{self, Declaration, DeclarationKind, Expr, ExprId, Keyword};
 use super::units;
 use super::value::{Dim, ModuleId, Quantity, Value};
 
@@ -18,9 +18,6 @@ impl Cx<'_> {
         let DeclarationKind::Output { label, things, family, to, settings } = &declaration.kind else {
             return Err(Stop::Bug("not an output"));
         };
-        if declaration.keyword == Keyword::Picture {
-            return Err(self.not_yet(code, "`picture`", declaration.keyword_span));
-        }
         // A module's checks run; its exports, pictures and reports do not.
         if declaration.keyword != Keyword::Check && code.module != ModuleId::MAIN {
             return Ok(Value::None);
@@ -47,30 +44,20 @@ impl Cx<'_> {
                 })?;
                 self.machine.at_mut(code.module).reports.extend(done);
             }
+            Keyword::Picture => {
+                let mut done = Vec::new();
+                self.family(code, family, &mut |cx, member| {
+                    let picture = cx.picture(code, member, (things, *to), settings)?;
+                    done.push((code.declaration, picture));
+                    Ok(Value::None)
+                })?;
+                self.machine.at_mut(code.module).pictures.extend(done);
+            }
             _ => {
                 let mut done = Vec::new();
                 self.family(code, family, &mut |cx, member| {
-                    let mut gather = Gather::default();
-                    let things = gather.take(cx.things(code, things, Keyword::Export));
-                    let path = gather.take(cx.path(code, *to));
-                    let settings = gather.take(cx.settings(code, "export", settings::EXPORT, settings));
-                    gather.done()?;
-                    let origin = cx.own_origin(code, member);
-                    let settings = settings.unwrap_or_default();
-                    let word = |key: &str| match find(&settings, key) {
-                        Some(r) => match &r.value {
-                            Value::Word(w) => Some((w.clone(), r.origin)),
-                            _ => None,
-                        },
-                        None => None,
-                    };
-                    let (path, path_origin) = path.unwrap_or_default();
-                    let units = word("units").and_then(|(w, origin)| units::length_unit(&w).map(|u| (u, origin)));
-                    let things = things.unwrap_or_default();
-                    done.push((
-                        code.declaration,
-                        ExportSpec { things, path, path_origin, encoding: word("encoding"), element: word("element"), units, origin },
-                    ));
+                    let export = cx.export(code, member, (things, *to), settings)?;
+                    done.push((code.declaration, export));
                     Ok(Value::None)
                 })?;
                 self.machine.at_mut(code.module).exports.extend(done);
@@ -79,7 +66,34 @@ impl Cx<'_> {
         Ok(Value::None)
     }
 
-    fn path(&mut self, code: Code<'_>, to: Option<ExprId>) -> Result<(String, crate::base::origin::Origin), Stop> {
+    fn export(
+        &mut self,
+        code: Code<'_>,
+        member: [u32; 2],
+        (things, to): (&[ExprId], Option<ExprId>),
+        settings: &[ast::Setting],
+    ) -> Result<ExportSpec, Stop> {
+        let mut gather = Gather::default();
+        let things = gather.take(self.things(code, things, Keyword::Export));
+        let path = gather.take(self.path(code, to));
+        let settings = gather.take(self.settings(code, "export", settings::EXPORT, settings));
+        gather.done()?;
+        let origin = self.own_origin(code, member);
+        let settings = settings.unwrap_or_default();
+        let word = |key: &str| match find(&settings, key) {
+            Some(r) => match &r.value {
+                Value::Word(w) => Some((w.clone(), r.origin)),
+                _ => None,
+            },
+            None => None,
+        };
+        let (path, path_origin) = path.unwrap_or_default();
+        let units = word("units").and_then(|(w, origin)| units::length_unit(&w).map(|u| (u, origin)));
+        let things = things.unwrap_or_default();
+        Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), element: word("element"), units, origin })
+    }
+
+    pub(super) fn path(&mut self, code: Code<'_>, to: Option<ExprId>) -> Result<(String, crate::base::origin::Origin), Stop> {
         let Some(to) = to else { return Err(Stop::Bug("an export without a path")) };
         match self.eval(code, to)? {
             Value::Text(t) => Ok((t.to_string(), self.origin_at(to))),

@@ -1,4 +1,4 @@
-//! What `mesh`, `check`, `report` and `export` declarations say, resolved to plain data for the session.
+//! What `mesh`, `check`, `report`, `export` and `picture` declarations say, resolved to plain data for the session.
 
 use std::sync::Arc;
 
@@ -6,6 +6,7 @@ use super::diag::FileId;
 use super::syntax::ast::Span;
 use super::value::Value;
 use crate::base::origin::Origin;
+use crate::draw::View;
 use crate::mesh::{Elements, Method};
 
 /// A setting with the expression that says it.
@@ -116,3 +117,52 @@ pub struct ExportSpec {
     /// The declaration.
     pub origin: Origin,
 }
+
+/// `picture things to "path" { settings }`.
+#[derive(Clone, Debug)]
+pub struct PictureSpec {
+    /// What is drawn, nested lists flattened.
+    pub things: Vec<(Value, Origin)>,
+    /// The things as written.
+    pub named: String,
+    /// Where, as written (interpolated).
+    pub path: String,
+    /// The path expression.
+    pub path_origin: Origin,
+    /// Where it is seen from.
+    pub view: View,
+    /// Pixels across and down.
+    pub size: (u32, u32),
+    /// `shade:` as a word.
+    pub shade: Said<Arc<str>>,
+    /// What fills the picture; empty for everything.
+    pub zoom: Vec<(Value, Origin)>,
+    /// Words above it.
+    pub title: Option<Arc<str>>,
+    /// What is drawn beside faces.
+    pub show: Show,
+    /// The declaration.
+    pub origin: Origin,
+}
+
+/// What a picture shows beside faces; `None` where it was left to what is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Show {
+    /// Edges of elements.
+    pub elements: Option<bool>,
+    /// Edges of faces.
+    pub borders: Option<bool>,
+    /// Curves and nodes of the network.
+    pub network: Option<bool>,
+    /// Names.
+    pub labels: Option<bool>,
+    /// Directions of x, y and z.
+    pub axes: Option<bool>,
+    /// A bar that shows a length.
+    pub ruler: Option<bool>,
+    /// What colours and lines mean.
+    pub legend: Option<bool>,
+}
+
+/// Pixels of a picture that says nothing of its size.
+pub const PICTURE_SIZE: (u32, u32) = (1200, 800);

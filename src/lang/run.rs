@@ -6,7 +6,7 @@ use super::cx::{Cx, SAID_JUST_NOW, Stop};
 use super::diag::{self, Diagnostic};
 use super::eval::Code;
 use super::module::{State, bound};
-use super::plans::{CheckResult, ExportSpec, ReportTable};
+use super::plans::{CheckResult, ExportSpec, PictureSpec, ReportTable};
 use super::stages;
 use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword, Node};
 use super::types::Ty;
@@ -232,6 +232,7 @@ impl Cx<'_> {
                 m.checks.retain(|c| c.0 != i as u32);
                 m.reports.retain(|c| c.0 != i as u32);
                 m.exports.retain(|c| c.0 != i as u32);
+                m.pictures.retain(|c| c.0 != i as u32);
             }
         }
     }
@@ -346,6 +347,11 @@ impl Cx<'_> {
     /// Exports of the main script in order of declaration.
     pub fn exports(&self) -> Vec<ExportSpec> {
         in_order(self.machine.modules.first().map_or(&[], |m| &m.exports))
+    }
+
+    /// Pictures of the main script in order of declaration.
+    pub fn pictures(&self) -> Vec<PictureSpec> {
+        in_order(self.machine.modules.first().map_or(&[], |m| &m.pictures))
     }
 
     /// The declared meshes of the main script, in order of declaration, as values for [`Cx::mesh`].

@@ -24,7 +24,12 @@ impl Scene {
     /// The script's model, extended by those of `surfaces` that it does not declare (moved ones, `let`s).
     pub fn of<'s>(cx: &mut Cx, module: ModuleId, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
         let (model, network) = (cx.model(module)?, cx.network(module)?);
-        let scene = Self { model, network };
+        Self { model, network }.with(cx, surfaces)
+    }
+
+    /// This scene, extended by those of `surfaces` that it does not hold.
+    pub fn with<'s>(self, cx: &mut Cx, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
+        let scene = self;
         let mut extra: Vec<Named> = Vec::new();
         for surface in surfaces {
             let known = extra.iter().any(|named| side_of(&named.surface, surface).is_some());

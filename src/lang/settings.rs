@@ -14,6 +14,19 @@ pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "in", "ft"];
 /// Shell elements of decks.
 pub const DECK_ELEMENTS: &[&str] = &crate::io::ELEMENT_NAMES;
 
+/// Words of `shade:`.
+pub const SHADES: &[&str] = &["plain", "names", "side", "quality", "size", "zebra", "curvature"];
+/// Words of `view:`.
+pub const VIEWS: &[&str] = &{
+    let mut words = [""; crate::draw::VIEWS.len()];
+    let mut k = 0;
+    while k < words.len() {
+        words[k] = crate::draw::VIEWS[k].0;
+        k += 1;
+    }
+    words
+};
+
 /// A key of a settings block.
 #[derive(Debug)]
 pub struct Setting {
@@ -69,12 +82,59 @@ pub const EXPORT: &[Setting] = &[
     Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS) },
 ];
 
+/// `picture things to "…" { … }`.
+pub const PICTURE: &[Setting] = &[
+    Setting {
+        key: "view",
+        docs: "Where the eye is: a word, or the direction from the model to the eye, as in `(1, -2, 0.5)`.",
+        default: "isometric",
+        ty: Ty::OneOf(&[Ty::Choice(VIEWS), Ty::Direction]),
+    },
+    Setting { key: "up", docs: "Direction that is up in the picture.", default: "z, in `top` and `bottom` y", ty: Ty::Direction },
+    Setting { key: "perspective", docs: "Near things are larger.", default: "false", ty: Ty::Bool },
+    Setting { key: "zoom", docs: "Things that fill the picture.", default: "everything drawn", ty: Ty::Any },
+    Setting { key: "width", docs: "Pixels across.", default: "1200", ty: Ty::Count },
+    Setting { key: "height", docs: "Pixels down.", default: "800", ty: Ty::Count },
+    Setting {
+        key: "shade",
+        docs: "What colours of faces tell: nothing but light (`plain`), which surface (`names`), which side the normal points to (`side`), \
+               quality or longest side of elements (`quality`, `size`), reflected stripes that break where the tangent plane does \
+               (`zebra`), the larger principal curvature (`curvature`).",
+        default: "plain",
+        ty: Ty::Choice(SHADES),
+    },
+    Setting { key: "elements", docs: "Edges of elements are drawn.", default: "true", ty: Ty::Bool },
+    Setting {
+        key: "borders",
+        docs: "Edges of faces are drawn: free ones red, kinks orange, edges of three faces or more purple.",
+        default: "true",
+        ty: Ty::Bool,
+    },
+    Setting {
+        key: "network",
+        docs: "The model's curves and nodes are drawn as well.",
+        default: "whether `network` is among the things",
+        ty: Ty::Bool,
+    },
+    Setting {
+        key: "labels",
+        docs: "Names stand beside surfaces, curves, links, nodes and points.",
+        default: "whether curves or points are drawn",
+        ty: Ty::Bool,
+    },
+    Setting { key: "title", docs: "Words above the picture, none with `\"\"`.", default: "the model and what is drawn", ty: Ty::Text },
+    Setting { key: "axes", docs: "The directions of x, y and z stand in a corner.", default: "true", ty: Ty::Bool },
+    Setting { key: "ruler", docs: "A bar shows a length.", default: "true", ty: Ty::Bool },
+    Setting { key: "legend", docs: "Colours and lines are explained.", default: "true", ty: Ty::Bool },
+];
+
 /// Every block that takes settings: how it is written, and its table.
 pub const BLOCKS: &[(&str, &[Setting])] = &[
     ("mesh name of things { … }", MESH),
     ("on things { … }", ON),
     ("shell name of surfaces { … }", SHELL),
     ("export things to \"file\" { … }", EXPORT),
+    ("picture things to \"file\" { … }", PICTURE),
 ];
 
 /// All words that settings take.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::cx::{Cx, Declared, Parts, Stop};
+use super::cx::{Cx, Declared, Parts, Sound, Stop};
 use super::eval::Code;
 use super::faults::member_name;
 use super::module::{Module, Stage, State, bound};
@@ -16,7 +16,9 @@ use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::mesh::Mesh;
 use crate::model::Model;
+use crate::model::topology::Named;
 use crate::network::Network;
+use crate::surface::Surface;
 
 /// Geometry that the network and the surface model are built from.
 const GEOMETRY: &[Keyword] = &[Keyword::Point, Keyword::Curve, Keyword::ModelingCurve, Keyword::Surface];
@@ -182,6 +184,22 @@ fn once<T: Clone>(
         *slot = stage;
     }
     result
+}
+
+/// The whole geometry, or what was evaluated of it.
+pub(super) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
+    if let (Ok(parts), Ok(network), Ok(model)) = (parts(cx, module), network(cx, module), model(cx, module)) {
+        return Ok(Sound { parts, network, model });
+    }
+    let (parts, tolerance) = (Arc::new(gather(cx, module)), cx.tolerance()?);
+    // What is wrong with the curves or surfaces was said when the whole was asked for; some may be fine without the rest.
+    let network = match network(cx, module) {
+        Ok(network) => network,
+        Err(_) => cx.pipeline.network(cx, module, &parts).unwrap_or_default(),
+    };
+    let named = |s: &Declared<Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
+    let model = Model::build(parts.surfaces.iter().map(named).collect(), &network, &tolerance, cx.job)?;
+    Ok(Sound { parts, network, model: Arc::new(model) })
 }
 
 pub(super) fn network(cx: &mut Cx, module: ModuleId) -> Result<Arc<Network>, Stop> {

@@ -94,6 +94,17 @@ impl Tally {
     }
 }
 
+/// Quality of one triangle or quad by its corners, as [`Quality::mean_quality`] counts it; 0 for anything else.
+pub fn of_element(corners: &[DVec3]) -> f64 {
+    let mut tally = Tally::NONE;
+    match *corners {
+        [a, b, c] => tally.triangle([a, b, c]),
+        [a, b, c, d] => tally.quad([a, b, c, d]),
+        _ => return 0.0,
+    }
+    tally.quality.1
+}
+
 impl Mesh {
     /// Shape of the elements, by corner nodes; `None` for a mesh without triangles and quads.
     pub fn quality(&self) -> Option<Quality> {

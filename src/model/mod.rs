@@ -9,6 +9,7 @@ pub mod measure;
 mod measure_quadrature;
 mod patches;
 pub mod shells;
+pub mod stretches;
 pub mod topology;
 pub mod trace;
 
@@ -16,5 +17,6 @@ pub use contact::{Apart, Contact, Spread};
 pub use loops::Loop;
 pub use patches::Lines;
 pub use shells::ShellRequest;
+pub use stretches::{Meeting, Stretch};
 pub use topology::{Edge, EdgeCurve, EdgeId, Model, Patch, PatchId, Shell, SurfaceId, Vertex, VertexId};
 pub use trace::{Trace, Track};

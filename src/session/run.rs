@@ -4,6 +4,7 @@ use super::collect;
 use super::disk::{Disk, Outputs};
 use super::export;
 use super::kept::Kept;
+use super::pictures;
 use super::report::{OutputRow, Report, Timings, VERSION};
 use super::stages::Stages;
 use crate::base::fault::{Fault, Severity};
@@ -13,6 +14,7 @@ use crate::lang::cx::{Cx, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::memory::Memory;
+use crate::lang::plans::PictureSpec;
 use crate::lang::run::Entry;
 use crate::lang::value::ModuleId;
 
@@ -30,8 +32,21 @@ pub struct Task<'a> {
     pub keep_going: bool,
     /// Every number of the JSON report; without it the costly ones of meshes over 200 000 elements are left out.
     pub full: bool,
+    /// One picture is all that is written, whatever the script exports, and also of a model that has errors.
+    pub picture: Option<&'a Wanted>,
     /// Seconds since some moment.
     pub clock: &'a (dyn Fn() -> f64 + Sync),
+}
+
+/// A picture asked for on the command line.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Names of the script to draw; everything where there are none.
+    pub names: Vec<String>,
+    /// What to fill the picture with; everything drawn where there are none.
+    pub zoom: Vec<String>,
+    /// The rest of it, without things.
+    pub spec: PictureSpec,
 }
 
 /// What became of it.
@@ -85,7 +100,7 @@ pub fn run_again(task: &Task, disk: &Disk, job: &Job, kept: &mut Kept) -> Outcom
 }
 
 fn run_in<'r>(task: &'r Task<'r>, cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> (Outcome, Memory) {
-    let mut run = Run { cx, stages, task, disk, report: Report::default(), bug: None, flows: Vec::new() };
+    let mut run = Run { cx, stages, task, disk, report: Report::default(), bug: None, said: None, flows: Vec::new() };
     run.report.loft = VERSION;
     run.report.model = task.name.to_owned();
     match std::str::from_utf8(task.text) {
@@ -106,6 +121,8 @@ struct Run<'r> {
     disk: &'r Disk,
     report: Report,
     bug: Option<&'static str>,
+    /// What has no place in the script.
+    said: Option<Diagnostic>,
     /// The flow found for each surface, a line each.
     flows: Vec<String>,
 }
@@ -123,7 +140,9 @@ impl Run<'_> {
         self.cx.leave();
         self.collect();
         let evaluated = clock();
-        if self.is_sound() || self.task.keep_going {
+        if let Some(wanted) = self.task.picture {
+            self.picture(wanted);
+        } else if self.is_sound() || self.task.keep_going {
             self.write();
         }
         self.report.timings = Timings { parse: parsed - start, evaluate: evaluated - parsed, mesh: 0.0, write: clock() - evaluated };
@@ -206,12 +225,45 @@ impl Run<'_> {
                 return;
             }
             let row = export::write(&mut self.cx, &spec, self.disk);
-            if let Some(row) = self.take(row)
-                && self.disk.outputs() == Outputs::Written
-            {
-                self.report.outputs.retain(|old: &OutputRow| old.path != row.path);
-                self.report.outputs.push(row);
+            self.written(row);
+        }
+        let model = self.model_name();
+        for spec in self.cx.pictures() {
+            if self.cx.job.go_on().is_err() {
+                return;
             }
+            let row = pictures::write(&mut self.cx, &spec, &model, self.disk);
+            self.written(row);
+        }
+    }
+
+    fn written(&mut self, row: Result<OutputRow, Stop>) {
+        if let Some(row) = self.take(row)
+            && self.disk.outputs() == Outputs::Written
+        {
+            self.report.outputs.retain(|old: &OutputRow| old.path != row.path);
+            self.report.outputs.push(row);
+        }
+    }
+
+    /// The script's name without folder and ending.
+    fn model_name(&self) -> String {
+        let name = std::path::Path::new(self.task.name).file_stem().unwrap_or_default().to_string_lossy();
+        if name == "-" { "model".to_owned() } else { name.into_owned() }
+    }
+
+    /// The one picture that was asked for.
+    fn picture(&mut self, wanted: &Wanted) {
+        if self.cx.job.go_on().is_err() {
+            return;
+        }
+        let model = self.model_name();
+        match pictures::request(&mut self.cx, wanted) {
+            Ok(spec) => {
+                let row = pictures::write(&mut self.cx, &spec, &model, self.disk);
+                self.written(row);
+            }
+            Err(message) => self.said = Some(message),
         }
     }
 
@@ -219,7 +271,7 @@ impl Run<'_> {
     fn finish(mut self, said: Option<Diagnostic>) -> (Outcome, Memory) {
         let interrupted = self.cx.job.go_on().is_err();
         let mut diagnostics = self.cx.finish();
-        diagnostics.extend(said);
+        diagnostics.extend(said.or(self.said.take()));
         let wrong = |d: &Diagnostic| d.severity() == Severity::Error || (self.task.strict && d.severity() == Severity::Warning);
         let mut ok = !diagnostics.iter().any(wrong) && self.report.checks.iter().all(|c| c.pass) && !interrupted;
         if let Some(what) = self.bug {
@@ -227,7 +279,7 @@ impl Run<'_> {
             diagnostics.push(Diagnostic::without_place("E999", text).help("please report it with this script and the command line"));
             ok = false;
         }
-        if (ok || self.task.keep_going) && !interrupted {
+        if (ok || self.task.keep_going || self.task.picture.is_some()) && !interrupted {
             if let Err(error) = self.disk.staging().commit() {
                 diagnostics.push(Diagnostic::without_place("E808", format!("cannot write {error}")));
                 ok = false;

@@ -1,0 +1,172 @@
+//! Surfaces as triangles fine enough for the picture: each patch by itself, with its own normals.
+
+use glam::DVec3;
+
+use super::scene::{Paint, Sheet};
+use crate::base::par;
+use crate::base::triangulate;
+use crate::model::{Model, Patch, SurfaceId};
+use crate::surface::{Domain, Jet2, Lean, Side, Surface};
+
+/// Places along each direction where a patch is asked how much it bends.
+const LOOKS: usize = 9;
+/// Least steps of a patch that is bent.
+const LEAST: usize = 4;
+/// Most steps along each direction of a patch.
+const MOST: usize = 400;
+/// Points of a border of a plane face, for each of its sides.
+const SIDE: usize = 48;
+
+/// What each point of a sheet shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Show {
+    /// Nothing but light.
+    Light,
+    /// The larger of the two principal curvatures, with its sign: above zero where the surface bends away from its
+    /// normal; 1/model unit.
+    Curvature,
+}
+
+/// The patches of a surface as sheets; `fine` is how far a triangle may be from the surface, model units.
+pub fn surface(model: &Model, id: SurfaceId, flipped: bool, fine: f64, show: Show) -> Vec<Sheet> {
+    let named = &model.surfaces[id.index()];
+    let patches: Vec<&Patch> = model.patches_of(id).map(|p| &model.patches[p.index()]).collect();
+    par::map(patches.len(), |k| {
+        let mut sheet = patch(&named.surface, patches[k], fine, show);
+        sheet.name = named.name.clone();
+        if flipped {
+            sheet.normals.iter_mut().for_each(|n| *n = -*n);
+            sheet.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        sheet
+    })
+}
+
+/// One patch as a sheet without a name.
+pub fn patch(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
+    match surface.domain() {
+        Domain::Loop => flat(surface),
+        Domain::Triangle => triangle(surface, fine, show),
+        Domain::Square | Domain::Unbounded => square(surface, patch, fine, show),
+    }
+}
+
+fn even(sheet: (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), values: Vec<f32>) -> Sheet {
+    let (points, normals, triangles) = sheet;
+    let paint = if values.is_empty() { Paint::Even(super::color::FACE) } else { Paint::OfPoints(values) };
+    Sheet { name: String::new(), points, normals, triangles, edges: Vec::new(), paint }
+}
+
+/// Places between two parameters, each leaning into the range.
+fn places((low, high): (f64, f64), n: usize) -> Vec<(f64, Lean)> {
+    let at = |k: usize| if k == n { (high, Lean::Before) } else { (low + (high - low) * k as f64 / n as f64, Lean::After) };
+    (0..=n).map(at).collect()
+}
+
+/// Steps along u and v that keep the distance of triangles from the surface.
+fn steps(jets: &[Jet2], (du, dv): (f64, f64), fine: f64) -> (usize, usize) {
+    let largest = |of: &dyn Fn(&Jet2) -> f64| jets.iter().map(of).filter(|x| x.is_finite()).fold(0.0, f64::max);
+    // A chord of a bend a over h is a·h²/8 away; the twist adds to both directions.
+    let twist = largest(&|j| j.duv.length()) * du * dv;
+    let n = |bend: f64| {
+        let n = ((bend + twist) / (8.0 * fine)).sqrt().ceil().min(MOST as f64) as usize;
+        if n <= 1 { 1 } else { n.max(LEAST) }
+    };
+    (n(largest(&|j| j.duu.length()) * du * du), n(largest(&|j| j.dvv.length()) * dv * dv))
+}
+
+fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
+    let look = surface.jets(&places(patch.u, LOOKS - 1), &places(patch.v, LOOKS - 1));
+    let (nu, nv) = steps(&look, (patch.u.1 - patch.u.0, patch.v.1 - patch.v.0), fine);
+    let (us, vs) = (places(patch.u, nu), places(patch.v, nv));
+    let jets = surface.jets(&us, &vs);
+    let normal = |k: usize| {
+        let ((u, lu), (v, lv)) = (us[k % us.len()], vs[k / us.len()]);
+        let cross = jets[k].du.cross(jets[k].dv);
+        let scale = jets[k].du.length() * jets[k].dv.length();
+        // Where the cross product all but vanishes (a pole) the surface knows better.
+        if cross.length() > crate::base::tolerance::PARALLEL * scale && scale > 0.0 {
+            cross.normalize()
+        } else {
+            surface.normal_lean(u, v, (lu, lv))
+        }
+    };
+    let normals: Vec<DVec3> = (0..jets.len()).map(normal).collect();
+    let values = match show {
+        Show::Light => Vec::new(),
+        Show::Curvature => jets.iter().zip(&normals).map(|(jet, n)| curvature(jet, *n) as f32).collect(),
+    };
+    let at = |i: usize, j: usize| (j * (nu + 1) + i) as u32;
+    let mut triangles = Vec::with_capacity(2 * nu * nv);
+    for j in 0..nv {
+        for i in 0..nu {
+            triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    even((jets.iter().map(|j| j.p).collect(), normals, triangles), values)
+}
+
+/// The principal curvature of larger size; not a number where the surface is singular.
+pub fn curvature(jet: &Jet2, normal: DVec3) -> f64 {
+    let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+    let (l, m, n) = (jet.duu.dot(normal), jet.duv.dot(normal), jet.dvv.dot(normal));
+    let area = e * g - f * f;
+    if area <= crate::base::tolerance::PARALLEL * e * g {
+        return f64::NAN;
+    }
+    let (mean, gauss) = ((e * n - 2.0 * f * m + g * l) / (2.0 * area), (l * n - m * m) / area);
+    let spread = (mean * mean - gauss).max(0.0).sqrt();
+    // Bending towards the normal is a valley seen from its side.
+    -(if mean >= 0.0 { mean + spread } else { mean - spread })
+}
+
+fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
+    let inner: Vec<Jet2> =
+        (0..LOOKS).flat_map(|j| (0..LOOKS - j).map(move |i| (i, j))).map(|(i, j)| jet_of(surface, i, j, LOOKS - 1)).collect();
+    let (a, b) = steps(&inner, (1.0, 1.0), fine);
+    let n = a.max(b);
+    let index = |i: usize, j: usize| (j * (n + 1) - j * j.saturating_sub(1) / 2 + i) as u32;
+    let (mut points, mut normals, mut values, mut triangles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for j in 0..=n {
+        for i in 0..=n - j {
+            let jet = jet_of(surface, i, j, n);
+            let normal = surface.normal(i as f64 / n as f64, j as f64 / n as f64);
+            points.push(jet.p);
+            normals.push(normal);
+            if show == Show::Curvature {
+                values.push(curvature(&jet, normal) as f32);
+            }
+            if i + j < n {
+                triangles.push([index(i, j), index(i + 1, j), index(i, j + 1)]);
+            }
+            if i + j + 1 < n {
+                triangles.push([index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)]);
+            }
+        }
+    }
+    even((points, normals, triangles), values)
+}
+
+fn jet_of(surface: &Surface, i: usize, j: usize, n: usize) -> Jet2 {
+    surface.jet(i as f64 / n as f64, j as f64 / n as f64)
+}
+
+/// A plane face inside a loop of sides.
+fn flat(surface: &Surface) -> Sheet {
+    let mut points: Vec<DVec3> = Vec::new();
+    for k in 0..surface.n_sides() {
+        if let Side::Chain { chain, from, to } = surface.side(k) {
+            let straight = chain.runs().iter().all(|run| run.curve.kind() == crate::geometry::Kind::Line) && chain.runs().len() == 1;
+            let n = if straight { 1 } else { SIDE };
+            points.extend((0..n).map(|i| chain.point(from + (to - from) * i as f64 / n as f64)));
+        }
+    }
+    points.dedup();
+    // A polygon that crosses itself has no triangles; its border is drawn all the same.
+    let triangles = triangulate::polygon(&points).unwrap_or_default();
+    let normal = surface.normal(0.5, 0.5);
+    let turned = triangulate::newell(&points).dot(normal) < 0.0;
+    let triangles = triangles.into_iter().map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] }.map(|i| i as u32)).collect();
+    even((points.clone(), vec![normal; points.len()], triangles), Vec::new())
+}

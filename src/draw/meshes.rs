@@ -1,0 +1,178 @@
+//! Meshes as triangles with the edges of their elements, and what is wrong with them: free and crowded edges.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::color::FACE;
+use super::scene::{Kind, Line, Paint, Sheet};
+use crate::base::math;
+use crate::mesh::{FaceRange, Mesh};
+
+/// Turn between two elements above which their edge counts as a kink in a mesh that knows no faces, radians.
+const TURN: f64 = std::f64::consts::FRAC_PI_6;
+
+/// What elements show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Nothing but light.
+    Light,
+    /// 1 for perfect elements, 0 for flat ones, as in the report.
+    Quality,
+    /// The longest side, model units.
+    Size,
+}
+
+/// Corners of the n-th element, triangles before quads.
+fn corners(mesh: &Mesh, n: usize) -> &[u32] {
+    match mesh.triangles.get(n) {
+        Some(triangle) => triangle,
+        None => &mesh.quads[n - mesh.triangles.len()],
+    }
+}
+
+/// A mesh as one sheet of flat elements.
+pub fn whole(mesh: &Mesh, measure: Measure) -> Sheet {
+    let mut sheet = of_elements(mesh, &(0..mesh.triangles.len()), &(0..mesh.quads.len()), measure);
+    sheet.name = mesh.name.clone();
+    sheet.points = mesh.nodes.clone();
+    sheet
+}
+
+/// Triangles of some elements with the numbers of the mesh's nodes; without points.
+fn of_elements(mesh: &Mesh, triangles: &Range<usize>, quads: &Range<usize>, measure: Measure) -> Sheet {
+    let n = triangles.len() + 2 * quads.len();
+    let (mut out, mut edges, mut values) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::new());
+    for t in &mesh.triangles[triangles.clone()] {
+        out.push(*t);
+        edges.push(0b111);
+    }
+    for [a, b, c, d] in &mesh.quads[quads.clone()] {
+        out.extend([[*a, *b, *c], [*a, *c, *d]]);
+        edges.extend([0b011, 0b110]);
+    }
+    if measure != Measure::Light {
+        let of = |nodes: &[u32]| of_element(mesh, nodes, measure) as f32;
+        values.extend(mesh.triangles[triangles.clone()].iter().map(|t| of(t)));
+        values.extend(mesh.quads[quads.clone()].iter().flat_map(|q| [of(q); 2]));
+    }
+    let paint = if values.is_empty() { Paint::Even(FACE) } else { Paint::OfTriangles(values) };
+    Sheet { name: String::new(), points: Vec::new(), normals: Vec::new(), triangles: out, edges, paint }
+}
+
+fn of_element(mesh: &Mesh, nodes: &[u32], measure: Measure) -> f64 {
+    let p: Vec<DVec3> = nodes.iter().map(|n| mesh.nodes[*n as usize]).collect();
+    match measure {
+        Measure::Size => (0..p.len()).map(|k| p[k].distance(p[(k + 1) % p.len()])).fold(0.0, f64::max),
+        _ => crate::mesh::quality::of_element(&p),
+    }
+}
+
+/// A sheet for each face of the mesh with points of its own; `smooth` gives them the mean normals of its elements.
+pub fn by_face(mesh: &Mesh, smooth: bool) -> Vec<Sheet> {
+    let whole =
+        [FaceRange { name: mesh.name.clone(), triangles: 0..mesh.triangles.len() as u32, quads: 0..mesh.quads.len() as u32, lines: 0..0 }];
+    let ranges = if mesh.faces.iter().any(has_faces) { mesh.faces.as_slice() } else { &whole };
+    let mut place = vec![u32::MAX; mesh.nodes.len()];
+    let mut sheets = Vec::new();
+    for range in ranges.iter().filter(|r| has_faces(r)) {
+        let wide = |r: &Range<u32>| r.start as usize..r.end as usize;
+        let mut sheet = of_elements(mesh, &wide(&range.triangles), &wide(&range.quads), Measure::Light);
+        sheet.name = range.name.clone();
+        let mut used = Vec::new();
+        for corner in sheet.triangles.iter_mut().flatten() {
+            let n = *corner as usize;
+            if place[n] == u32::MAX {
+                place[n] = used.len() as u32;
+                used.push(n);
+            }
+            *corner = place[n];
+        }
+        sheet.points = used.iter().map(|n| mesh.nodes[*n]).collect();
+        used.iter().for_each(|n| place[*n] = u32::MAX);
+        if smooth {
+            sheet.normals = mean_normals(&sheet.points, &sheet.triangles);
+        }
+        sheets.push(sheet);
+    }
+    sheets
+}
+
+fn has_faces(range: &FaceRange) -> bool {
+    !range.triangles.is_empty() || !range.quads.is_empty()
+}
+
+/// Normals at points: those of the triangles around, weighted by their areas.
+fn mean_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; points.len()];
+    for t in triangles {
+        let [a, b, c] = t.map(|k| points[k as usize]);
+        let normal = (b - a).cross(c - a);
+        t.iter().for_each(|k| sums[*k as usize] += normal);
+    }
+    sums.into_iter().map(|n| n.try_normalize().unwrap_or(DVec3::Z)).collect()
+}
+
+/// A side of an element: its nodes ascending in one number, and the element.
+type Use = (u64, u32);
+
+/// Free and crowded edges, edges between faces, and line elements.
+pub fn lines(mesh: &Mesh) -> Vec<Line> {
+    let count = mesh.triangles.len() + mesh.quads.len();
+    let face_of = faces_of(mesh);
+    let mut uses: Vec<Use> = Vec::with_capacity(3 * mesh.triangles.len() + 4 * mesh.quads.len());
+    for element in 0..count {
+        let nodes = corners(mesh, element);
+        for k in 0..nodes.len() {
+            let (a, b) = (nodes[k], nodes[(k + 1) % nodes.len()]);
+            uses.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), element as u32));
+        }
+    }
+    uses.sort_unstable();
+    let mut out: Vec<Line> = mesh.lines.iter().map(|ends| segment(mesh, Kind::Curve, *ends)).collect();
+    for edge in uses.chunk_by(|a, b| a.0 == b.0) {
+        if let Some(kind) = kind_of(mesh, edge, &face_of) {
+            out.push(segment(mesh, kind, [(edge[0].0 >> 32) as u32, edge[0].0 as u32]));
+        }
+    }
+    out
+}
+
+fn segment(mesh: &Mesh, kind: Kind, ends: [u32; 2]) -> Line {
+    Line { kind, points: ends.map(|n| mesh.nodes[n as usize]).to_vec() }
+}
+
+/// The face of each element; empty where the mesh knows none.
+fn faces_of(mesh: &Mesh) -> Vec<u32> {
+    if !mesh.faces.iter().any(has_faces) {
+        return Vec::new();
+    }
+    let mut of = vec![u32::MAX; mesh.triangles.len() + mesh.quads.len()];
+    for (k, range) in mesh.faces.iter().enumerate() {
+        let quads = range.quads.start as usize + mesh.triangles.len()..range.quads.end as usize + mesh.triangles.len();
+        (range.triangles.start as usize..range.triangles.end as usize).chain(quads).for_each(|e| of[e] = k as u32);
+    }
+    of
+}
+
+/// What an edge tells; `None` for one inside a face.
+fn kind_of(mesh: &Mesh, edge: &[Use], face_of: &[u32]) -> Option<Kind> {
+    let [(_, a), (_, b)] = *edge else {
+        return Some(if edge.len() == 1 { Kind::Free } else { Kind::Crowded });
+    };
+    match (face_of.get(a as usize), face_of.get(b as usize)) {
+        (Some(a), Some(b)) if a == b => None,
+        (Some(a), Some(b)) => {
+            let name = |k: &u32| mesh.faces.get(*k as usize).map(|f| f.name.as_str());
+            Some(if name(a) == name(b) { Kind::Kink } else { Kind::Border })
+        }
+        _ => {
+            let normal = |e: u32| {
+                let p: Vec<DVec3> = corners(mesh, e as usize).iter().map(|n| mesh.nodes[*n as usize]).collect();
+                crate::base::triangulate::newell(&p)
+            };
+            let (m, n) = (normal(a), normal(b));
+            (m.length() > 0.0 && n.length() > 0.0 && math::angle_between(m, n) > TURN).then_some(Kind::Kink)
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Every stretch of the edges of some surfaces with who uses it: what is free, bent or shared, for showing.
+
+use std::collections::BTreeSet;
+
+use super::topology::{EdgeId, Model, Patch, SurfaceId};
+use super::trace::Track;
+use crate::base::tolerance::Tolerance;
+use crate::network::Network;
+use crate::surface::Domain;
+
+/// What a stretch of an edge is to the faces around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meeting {
+    /// One face only.
+    Free,
+    /// Two patches of one surface at a kink line.
+    Kink,
+    /// A surface that closes on itself.
+    Seam,
+    /// Two surfaces.
+    Joined,
+    /// Three faces or more.
+    Crowded,
+}
+
+/// A stretch between two junctions.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// Its geometry.
+    pub track: Track,
+    /// Arc lengths on the track where it begins and ends, ascending.
+    pub s: (f64, f64),
+    /// What it is to the faces around it.
+    pub meeting: Meeting,
+}
+
+impl Model {
+    /// Stretches of the edges of some surfaces; faces of other surfaces do not count.
+    ///
+    /// One long side against several shorter ones is cut where they end, as in [`Model::shell`].
+    pub fn stretches(&self, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> Vec<Stretch> {
+        let (edges, joins) = self.joins(members, network, tolerance);
+        let n = joins.pieces.atoms.len();
+        let mut users: Vec<Vec<SurfaceId>> = vec![Vec::new(); n];
+        let mut inside = vec![false; n];
+        for (edge, uses) in edges.iter().zip(&joins.pieces.of_track) {
+            for (patch, _) in &self.edges[edge.index()].users {
+                let patch = &self.patches[patch.index()];
+                if members.contains(&patch.surface) {
+                    for atom in uses.iter().map(|u| u.atom) {
+                        users[atom].push(patch.surface);
+                        inside[atom] |= self.is_inside(patch, *edge);
+                    }
+                }
+            }
+        }
+        let meeting = |atom: usize| match users[atom].as_slice() {
+            [_] => Meeting::Free,
+            [a, b] if a != b => Meeting::Joined,
+            [_, _] if inside[atom] => Meeting::Kink,
+            [_, _] => Meeting::Seam,
+            _ => Meeting::Crowded,
+        };
+        let stretch = |(k, atom): (usize, &super::atoms::Atom)| Stretch {
+            track: joins.parts[atom.track].track.clone(),
+            s: atom.s,
+            meeting: meeting(k),
+        };
+        joins.pieces.atoms.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()).map(stretch).collect()
+    }
+
+    /// Whether an edge is on a side of its patch that is not a side of the whole surface.
+    fn is_inside(&self, patch: &Patch, edge: EdgeId) -> bool {
+        let square = self.surfaces[patch.surface.index()].surface.domain() == Domain::Square;
+        let ends = [patch.v.0, patch.u.1, patch.v.1, patch.u.0];
+        let on = |k: &usize| patch.sides[*k].edges.iter().any(|(e, _)| *e == edge);
+        square && (0..patch.sides.len().min(4)).filter(on).any(|k| ends[k] > 0.0 && ends[k] < 1.0)
+    }
+}

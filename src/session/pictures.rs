@@ -1,0 +1,368 @@
+//! `picture`: from the things of a script to a scene, and from that to a file.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::picture_names as names;
+use super::report::OutputRow;
+use super::run::Wanted;
+use super::shades;
+use crate::base::bbox::Box3;
+use crate::base::fault::{FileFault, Say};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::draw::picture::{FORMATS, Format, Picture, Settings};
+use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
+use crate::geometry::Curve;
+use crate::io::{FileError, Files, extension, no_format};
+use crate::lang::cx::{Cx, Sound, Stop};
+use crate::lang::diag::Diagnostic;
+use crate::lang::plans::{PictureSpec, Show};
+use crate::lang::scene::Scene;
+use crate::lang::value::{MeshValue, ModuleId, Value};
+use crate::mesh::Mesh;
+use crate::model::SurfaceId;
+use crate::network::Chain;
+use crate::network::chain::same_curve;
+use crate::surface::{Domain, Surface};
+
+/// How far lines and triangles may be from what they show, pixels.
+const FINE: f64 = 0.25;
+/// Places of a curve that its box is taken from.
+const LOOKS: usize = 33;
+/// Share of the model around a point that `zoom:` shows.
+const AROUND: f64 = 0.05;
+
+/// What a picture draws, sorted out.
+#[derive(Default)]
+pub(super) struct Things {
+    /// Surfaces of shells and by themselves, each with `true` for its other side.
+    pub surfaces: Vec<(SurfaceId, bool)>,
+    /// Patches by themselves.
+    pub patches: Vec<crate::model::PatchId>,
+    /// Meshes.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// Curves, links and edges with their names.
+    pub curves: Vec<(String, Chain)>,
+    /// Edges that no curve carries.
+    pub edges: Vec<crate::model::EdgeId>,
+    /// Points with their names, empty where they have none.
+    pub points: Vec<(String, DVec3)>,
+    /// The whole network.
+    pub network: bool,
+}
+
+/// Everything that making a scene asks.
+pub(super) struct Stage<'a> {
+    pub scene: &'a Scene,
+    pub sound: &'a Sound,
+    pub tolerance: Tolerance,
+    /// How far triangles and lines may be from what they show, model units.
+    pub fine: f64,
+}
+
+/// Writes one picture; gives its row. `model` is the name of the script without its ending.
+pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files) -> Result<OutputRow, Stop> {
+    let format = format_of(spec)?;
+    let tolerance = cx.tolerance()?;
+    let sound = cx.sound(ModuleId::MAIN)?;
+    let scene = scene_of(cx, spec, &sound)?;
+    let things = sort(cx, &spec.things, &scene, tolerance)?;
+    let focus = match spec.zoom.as_slice() {
+        [] => Vec::new(),
+        zoom => outline(&sort(cx, zoom, &scene, tolerance)?, &scene, &sound),
+    };
+    let everything = Box3::of(outline(&things, &scene, &sound));
+    let shown = if focus.is_empty() { everything } else { around(&focus, &everything) };
+    let pixels = f64::from(spec.size.0.min(spec.size.1));
+    let fine = FINE * shown.diagonal().max(tolerance.point) / pixels;
+    let stage = Stage { scene: &scene, sound: &sound, tolerance, fine };
+    let mut drawing = draw(cx, spec, &things, &stage)?;
+    if !focus.is_empty() {
+        drawing.focus = corners(&shown);
+    }
+    let nothing = drawing.sheets.iter().all(|s| s.triangles.is_empty()) && drawing.lines.is_empty() && drawing.marks.is_empty();
+    if nothing {
+        return Err(unsupported(spec.origin, "there is nothing to draw", "name surfaces, meshes, curves or points"));
+    }
+    let picture = Picture::new(&drawing, &settings(cx, spec, model), format);
+    put(spec, &picture, format, files)
+}
+
+fn unsupported(of: Origin, what: &str, help: &str) -> Stop {
+    FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()) }.into()
+}
+
+fn format_of(spec: &PictureSpec) -> Result<Format, Stop> {
+    let ending = extension(&spec.path);
+    let known = FORMATS.iter().find(|(name, _)| *name == ending);
+    Ok(known.ok_or_else(|| no_format(spec.path_origin, &spec.path, FORMATS.iter().map(|f| f.0).collect()))?.1)
+}
+
+fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
+    let said = |flag: Option<bool>| flag.unwrap_or(true);
+    let title = match &spec.title {
+        Some(title) => title.to_string(),
+        None if spec.named.is_empty() => model.to_owned(),
+        None => format!("{model}: {}", spec.named),
+    };
+    Settings {
+        view: spec.view,
+        width: spec.size.0 as usize,
+        height: spec.size.1 as usize,
+        title,
+        unit: cx.unit().name.to_owned(),
+        edges: said(spec.show.elements),
+        axes: said(spec.show.axes),
+        ruler: said(spec.show.ruler),
+        legend: said(spec.show.legend),
+    }
+}
+
+fn put(spec: &PictureSpec, picture: &Picture, format: Format, files: &dyn Files) -> Result<OutputRow, Stop> {
+    let (of, path) = (spec.path_origin, spec.path.clone());
+    match files.write(&spec.path, &mut |out| picture.write(format, out)) {
+        Ok(bytes) => Ok(OutputRow { path, bytes }),
+        Err(FileError::Outside) => Err(FileFault::Outside { of, path }.into()),
+        Err(FileError::Other(why)) => Err(FileFault::CannotWrite { of, path, why }.into()),
+        Err(_) => Err(FileFault::CannotWrite { of, path, why: "the system refuses it".to_owned() }.into()),
+    }
+}
+
+fn surfaces_of(value: &Value) -> Vec<&Surface> {
+    match value {
+        Value::Surface(surface) => vec![surface],
+        Value::Shell(shell) => shell.surfaces.iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The surface model with everything that is drawn or zoomed to in it.
+fn scene_of(cx: &mut Cx, spec: &PictureSpec, sound: &Sound) -> Result<Scene, Stop> {
+    let base = Scene { model: sound.model.clone(), network: sound.network.clone() };
+    let values = spec.things.iter().chain(&spec.zoom);
+    let surfaces: Vec<&Surface> = values.flat_map(|(value, _)| surfaces_of(value)).collect();
+    base.with(cx, surfaces)
+}
+
+/// Sorts values out by what they are.
+fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Tolerance) -> Result<Things, Stop> {
+    let mut things = Things::default();
+    for (value, origin) in values {
+        match value {
+            Value::Surface(surface) if surface.domain() == Domain::Unbounded => {
+                return Err(unsupported(*origin, "a plane without borders cannot be drawn", "draw `plane(curves)`"));
+            }
+            Value::Surface(surface) => things.surfaces.extend(scene.find_all([surface])?),
+            // A shell that is none (in pieces, one-sided) shows its surfaces as they are.
+            Value::Shell(shell) => things.surfaces.extend(match scene.shell(shell, &tolerance, &mut Vec::new()) {
+                Ok(built) => built.surfaces,
+                Err(_) => scene.find_all(&shell.surfaces)?,
+            }),
+            Value::Mesh(mesh) => things.meshes.push(cx.mesh(mesh)?),
+            Value::Patch(_, patch) => things.patches.push(*patch),
+            Value::Curve(chain) => things.curves.push((cx.name(chain.origin()), chain.clone())),
+            Value::Link(_, link) => {
+                let name = names::of_link(&scene.network, *link);
+                things.curves.push((name, scene.network.link_chain(*link)));
+            }
+            Value::Edge(_, edge) => things.edges.push(*edge),
+            Value::Vertex(_, vertex) => things.points.push((String::new(), scene.model.vertices[vertex.index()].point)),
+            Value::Node(p) | Value::Vector(p, _) => things.points.push((String::new(), *p)),
+            Value::Network(_) => things.network = true,
+            _ => {}
+        }
+    }
+    things.surfaces.sort_unstable_by_key(|s| s.0);
+    things.surfaces.dedup_by_key(|s| s.0);
+    Ok(things)
+}
+
+/// Points that things lie between, for framing them.
+fn outline(things: &Things, scene: &Scene, sound: &Sound) -> Vec<DVec3> {
+    let mut out: Vec<DVec3> = Vec::new();
+    let of_surface = |id: &SurfaceId| corners(&crate::surface::bbox(&scene.model.surfaces[id.index()].surface));
+    things.surfaces.iter().for_each(|(id, _)| out.extend(of_surface(id)));
+    for patch in things.patches.iter().map(|p| &scene.model.patches[p.index()]) {
+        let surface = &scene.model.surfaces[patch.surface.index()].surface;
+        let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / 8.0;
+        out.extend((0..81).map(|k| surface.point(at(patch.u, k % 9), at(patch.v, k / 9))));
+    }
+    things.meshes.iter().for_each(|mesh| out.extend(corners(&Box3::of(mesh.nodes.iter().copied()))));
+    let mut along = |chain: &Chain| out.extend((0..LOOKS).map(|k| chain.point(k as f64 / (LOOKS - 1) as f64)));
+    things.curves.iter().for_each(|(_, chain)| along(chain));
+    if things.network {
+        sound.network.curves.iter().for_each(|c| along(&Chain::of_curve(&c.curve)));
+    }
+    for edge in &things.edges {
+        let track = scene.model.track(*edge, &scene.network);
+        out.extend((0..LOOKS).map(|k| track.point(track.length() * k as f64 / (LOOKS - 1) as f64)));
+    }
+    out.extend(things.points.iter().map(|p| p.1));
+    out
+}
+
+fn corners(around: &Box3) -> Vec<DVec3> {
+    if around.is_empty() {
+        return Vec::new();
+    }
+    let pick = |k: u32, bit: u32, low: f64, high: f64| if k & bit == 0 { low } else { high };
+    let (a, b) = (around.min, around.max);
+    (0..8).map(|k| DVec3::new(pick(k, 1, a.x, b.x), pick(k, 2, a.y, b.y), pick(k, 4, a.z, b.z))).collect()
+}
+
+/// The box of what is zoomed to; around a point a part of the model.
+fn around(focus: &[DVec3], everything: &Box3) -> Box3 {
+    let own = Box3::of(focus.iter().copied());
+    let least = AROUND * everything.diagonal();
+    if own.diagonal() >= least {
+        return own;
+    }
+    let half = DVec3::splat(0.5 * least);
+    Box3 { min: own.center() - half, max: own.center() + half }
+}
+
+/// The scene of a picture.
+fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Result<Drawing, Stop> {
+    let mut drawing = Drawing::default();
+    let (model, fine) = (&stage.scene.model, stage.fine);
+    let covered: BTreeSet<&str> = things.meshes.iter().flat_map(|m| &m.faces).map(|f| f.name.as_str()).collect();
+    let is_covered = |id: SurfaceId| covered.contains(model.surfaces[id.index()].name.as_str());
+    let of_surfaces = shades::is_of_surfaces(spec);
+    // What is meshed and drawn as a mesh is not drawn twice.
+    let bare: Vec<(SurfaceId, bool)> = things.surfaces.iter().copied().filter(|(id, _)| of_surfaces || !is_covered(*id)).collect();
+    let drawn: BTreeSet<SurfaceId> = bare.iter().map(|s| s.0).collect();
+    let show = if of_surfaces { faces::Show::Curvature } else { faces::Show::Light };
+    bare.iter().for_each(|(id, flipped)| drawing.sheets.extend(faces::surface(model, *id, *flipped, fine, show)));
+    for id in &things.patches {
+        let patch = &model.patches[id.index()];
+        let named = &model.surfaces[patch.surface.index()];
+        let mut sheet = faces::patch(&named.surface, patch, fine, show);
+        sheet.name = named.name.clone();
+        drawing.sheets.push(sheet);
+        for edge in model.edges_of(&[*id]) {
+            add_edge(&mut drawing, Kind::Border, edge, stage);
+        }
+    }
+    let borders = spec.show.borders.unwrap_or(true);
+    if borders && !drawn.is_empty() {
+        drawing.lines.extend(lines::borders((model, &stage.scene.network), &drawn, fine, &stage.tolerance));
+    }
+    let meshes: Vec<&Arc<Mesh>> = things.meshes.iter().filter(|m| !of_surfaces || !drawn_as_surface(m, stage, &drawn)).collect();
+    for mesh in &meshes {
+        drawing.sheets.extend(shades::mesh_sheets(spec, mesh));
+        drawing.lines.extend(meshes::lines(mesh).into_iter().filter(|l| borders || l.kind == Kind::Curve));
+        drawing.marks.extend(mesh.points.iter().map(|n| Mark { at: mesh.nodes[*n as usize], node: false }));
+    }
+    for (_, chain) in &things.curves {
+        drawing.lines.push(Line { kind: Kind::Curve, points: lines::chain(chain, fine, &stage.tolerance) });
+    }
+    things.edges.iter().for_each(|edge| add_edge(&mut drawing, Kind::Border, *edge, stage));
+    drawing.marks.extend(things.points.iter().map(|(_, at)| Mark { at: *at, node: false }));
+    let only_network = things.network && drawing.sheets.is_empty();
+    if spec.show.network.unwrap_or(things.network) || only_network {
+        network(&mut drawing, stage);
+    }
+    drawing.lines.retain(|line| line.points.len() > 1);
+    shades::paint(cx, spec, &mut drawing)?;
+    names::add(spec, things, stage, &mut drawing);
+    Ok(drawing)
+}
+
+fn drawn_as_surface(mesh: &Mesh, stage: &Stage, drawn: &BTreeSet<SurfaceId>) -> bool {
+    let name = |id: &SurfaceId| stage.scene.model.surfaces[id.index()].name.as_str();
+    mesh.faces.iter().any(|face| drawn.iter().any(|id| name(id) == face.name))
+}
+
+fn add_edge(drawing: &mut Drawing, kind: Kind, edge: crate::model::EdgeId, stage: &Stage) {
+    let track = stage.scene.model.track(edge, &stage.scene.network);
+    drawing.lines.push(Line { kind, points: lines::track(&track, (0.0, track.length()), stage.fine) });
+}
+
+/// Links and nodes of the whole network.
+fn network(drawing: &mut Drawing, stage: &Stage) {
+    let network = &stage.sound.network;
+    for k in 0..network.links.len() {
+        let chain = network.link_chain(crate::network::LinkId::at(k));
+        drawing.lines.push(Line { kind: Kind::Curve, points: lines::chain(&chain, stage.fine, &stage.tolerance) });
+    }
+    drawing.marks.extend(network.nodes.iter().map(|node| Mark { at: node.point, node: true }));
+}
+
+/// What a command line asks for: some names of the script, or everything it declares.
+///
+/// Everything is its meshes, the surfaces that none of them covers, and its curves; without faces the network.
+pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Diagnostic> {
+    let mut spec = wanted.spec.clone();
+    spec.things = values_of(cx, &wanted.names)?;
+    spec.zoom = values_of(cx, &wanted.zoom)?;
+    spec.named = wanted.names.join(", ");
+    if wanted.names.is_empty() {
+        everything(cx, &mut spec);
+    }
+    Ok(spec)
+}
+
+/// Things by their names in the script; E201 for one that is not declared, E805 for one that cannot be drawn.
+fn values_of(cx: &mut Cx, names: &[String]) -> Result<Vec<(Value, Origin)>, Diagnostic> {
+    let mut out = Vec::new();
+    for name in names {
+        if name == "network" {
+            out.push((Value::Network(ModuleId::MAIN), Origin::NONE));
+            continue;
+        }
+        let Some(value) = cx.value_of(name) else {
+            let failed = cx.names.find(name).is_some();
+            let text = if failed { format!("`{name}` has no value to draw") } else { format!("`{name}` is not defined") };
+            return Err(Diagnostic::without_place("E201", text).help("a name that the script declares, or `network`"));
+        };
+        let before = out.len();
+        let _ = value.for_each_flat::<()>(&mut |v| {
+            if is_drawn(v) {
+                out.push((v.clone(), Origin::NONE));
+            }
+            Ok(())
+        });
+        if out.len() == before {
+            return Err(Diagnostic::without_place("E805", format!("`{name}` is {}, which cannot be drawn", value.ty().words())));
+        }
+    }
+    Ok(out)
+}
+
+fn is_drawn(value: &Value) -> bool {
+    use Value as V;
+    let faces = matches!(value, V::Surface(_) | V::Shell(_) | V::Mesh(_) | V::Patch(..));
+    faces || matches!(value, V::Curve(_) | V::Link(..) | V::Edge(..) | V::Vertex(..) | V::Vector(..) | V::Node(_))
+}
+
+fn everything(cx: &mut Cx, spec: &mut PictureSpec) {
+    let mut covered: BTreeSet<String> = BTreeSet::new();
+    for (_, value) in cx.mesh_values() {
+        // A mesh that cannot be made was reported; its surfaces are drawn.
+        let Ok(mesh) = cx.mesh(&value) else { continue };
+        if mesh.faces.iter().all(|face| !covered.contains(&face.name)) {
+            covered.extend(mesh.faces.iter().map(|face| face.name.clone()));
+            spec.things.push((Value::Mesh(Arc::new(MeshValue::Data(mesh, Origin::NONE))), Origin::NONE));
+        }
+    }
+    let Ok(sound) = cx.sound(ModuleId::MAIN) else { return };
+    let bounded = |s: &Surface| s.domain() != Domain::Unbounded;
+    let surfaces = sound.parts.surfaces.iter().filter(|s| bounded(&s.value) && !covered.contains(&*s.name));
+    spec.things.extend(surfaces.map(|s| (Value::Surface(s.value.clone()), Origin::NONE)));
+    let faces = !spec.things.is_empty();
+    if faces {
+        // The borders of faces show the curves that carry them.
+        let carried: Vec<&Curve> =
+            sound.parts.surfaces.iter().flat_map(|s| s.value.chains()).flat_map(Chain::runs).map(|run| &run.curve).collect();
+        let is_free = |chain: &Chain| chain.runs().iter().all(|run| !carried.iter().any(|c| same_curve(c, &run.curve)));
+        let free = sound.parts.curves.iter().filter(|c| is_free(&c.value));
+        spec.things.extend(free.map(|c| (Value::Curve(c.value.clone()), Origin::NONE)));
+        spec.show = Show { labels: spec.show.labels.or(Some(false)), ..spec.show };
+    } else {
+        spec.things.push((Value::Network(ModuleId::MAIN), Origin::NONE));
+        spec.things.extend(sound.parts.points.iter().map(|p| (Value::point(p.value), Origin::NONE)));
+    }
+}

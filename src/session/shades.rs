@@ -1,0 +1,104 @@
+//! `shade:`: what the colours of faces tell.
+
+use std::sync::Arc;
+
+use crate::base::fault::FileFault;
+use crate::base::origin::Origin;
+use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUCH, NAMES};
+use crate::draw::meshes::{self, Measure};
+use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::plans::PictureSpec;
+use crate::mesh::Mesh;
+
+/// Share of places whose curvature lies inside the scale: a few sharp places do not take all colours.
+const MOST_PLACES: f64 = 0.98;
+
+fn word(spec: &PictureSpec) -> &str {
+    spec.shade.as_ref().map_or("plain", |s| &s.0)
+}
+
+/// Whether the shade is a property of surfaces, so that these are drawn instead of their meshes.
+pub(super) fn is_of_surfaces(spec: &PictureSpec) -> bool {
+    word(spec) == "curvature"
+}
+
+/// A mesh as sheets that can be shaded as asked.
+pub(super) fn mesh_sheets(spec: &PictureSpec, mesh: &Arc<Mesh>) -> Vec<Sheet> {
+    match word(spec) {
+        "quality" => vec![meshes::whole(mesh, Measure::Quality)],
+        "size" => vec![meshes::whole(mesh, Measure::Size)],
+        "zebra" => meshes::by_face(mesh, true),
+        "names" => meshes::by_face(mesh, false),
+        _ => vec![meshes::whole(mesh, Measure::Light)],
+    }
+}
+
+/// Paints the sheets of a scene and says what the colours mean.
+///
+/// Fails with E805 where a shade speaks of something that is not drawn.
+pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Result<(), Stop> {
+    let of = spec.shade.as_ref().map_or(Origin::NONE, |s| s.1);
+    let unit = cx.unit().name;
+    match word(spec) {
+        "names" => by_name(drawing),
+        "side" => drawing.sheets.iter_mut().for_each(|s| s.paint = Paint::Sides(FRONT, BACK)),
+        "zebra" => drawing.sheets.iter_mut().for_each(|s| s.paint = Paint::Zebra),
+        "quality" => {
+            needs(drawing, of, "`shade: quality` colours the elements of a mesh, and none is drawn", "draw a mesh")?;
+            drawing.scale = Some(Scale { title: "quality".to_owned(), unit: String::new(), low: 0.0, high: 1.0, ramp: BAD_TO_GOOD });
+        }
+        "size" => {
+            needs(drawing, of, "`shade: size` colours the elements of a mesh, and none is drawn", "draw a mesh")?;
+            let (low, high) = values(drawing).fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), x| (l.min(x), h.max(x)));
+            // Elements of one size all the same are told by a scale from zero.
+            let low = if high - low > 0.001 * high { low } else { 0.0 };
+            let high = if high > low { high } else { low + 1.0 };
+            drawing.scale = Some(Scale { title: "longest side".to_owned(), unit: unit.to_owned(), low, high, ramp: LITTLE_TO_MUCH });
+        }
+        "curvature" => {
+            needs(drawing, of, "`shade: curvature` colours surfaces, and none is drawn", "draw a surface or a shell")?;
+            let mut sizes: Vec<f64> = values(drawing).map(f64::abs).collect();
+            sizes.sort_by(f64::total_cmp);
+            let most = sizes.get(((sizes.len() as f64 - 1.0) * MOST_PLACES) as usize).copied().unwrap_or(0.0);
+            // A plane has no curvature; its scale is from −1 to 1.
+            let most = if most > f64::from(f32::EPSILON) / drawn_size(drawing) { most } else { 1.0 };
+            let unit = format!("1/{unit}");
+            drawing.scale = Some(Scale { title: "curvature".to_owned(), unit, low: -most, high: most, ramp: BELOW_TO_ABOVE });
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+fn drawn_size(drawing: &Drawing) -> f64 {
+    crate::base::bbox::Box3::of(drawing.sheets.iter().flat_map(|s| s.points.iter().copied())).diagonal().max(f64::MIN_POSITIVE)
+}
+
+fn values(drawing: &Drawing) -> impl Iterator<Item = f64> + '_ {
+    let of = |sheet: &'_ Sheet| match &sheet.paint {
+        Paint::OfTriangles(values) | Paint::OfPoints(values) => values.clone(),
+        _ => Vec::new(),
+    };
+    drawing.sheets.iter().flat_map(of).map(f64::from).filter(|x| x.is_finite())
+}
+
+fn needs(drawing: &Drawing, of: Origin, what: &str, help: &str) -> Result<(), Stop> {
+    match values(drawing).next() {
+        Some(_) => Ok(()),
+        None => Err(FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()) }.into()),
+    }
+}
+
+/// A colour for each name, in order of appearance.
+fn by_name(drawing: &mut Drawing) {
+    let mut found: Vec<String> = Vec::new();
+    for sheet in &mut drawing.sheets {
+        let k = found.iter().position(|n| *n == sheet.name).unwrap_or_else(|| {
+            found.push(sheet.name.clone());
+            found.len() - 1
+        });
+        sheet.paint = Paint::Even(NAMES[k % NAMES.len()]);
+    }
+    drawing.keys = found.into_iter().enumerate().map(|(k, name)| (NAMES[k % NAMES.len()], name)).collect();
+}
