@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
 use glam::DVec3;
 use lofting::draw::color::FACE;
 use lofting::draw::raster::{self, Image, Thick};
@@ -203,4 +206,144 @@ fn a_dot_is_round() {
     let image = raster::draw(&Scene::default(), &camera, &[dot], (0.0, 0.0), (100, 100));
     let area = covered(&image) as f64;
     assert!((area - std::f64::consts::PI * 400.0).abs() < 8.0, "{area}");
+}
+
+/// Runs `loft` in a folder of its own; gives exit status, what it printed and said, and the folder.
+fn loft(name: &str, script: &str, arguments: &[&str]) -> (i32, String, PathBuf) {
+    let folder = std::env::temp_dir().join(format!("loft-draw-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("model.loft"), script).unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_loft")).current_dir(&folder).args(arguments).output().unwrap();
+    let said = String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr);
+    (out.status.code().unwrap_or(-1), said, folder)
+}
+
+const ROOF: &str = "units m
+point A = (0, 0, 0)
+curve s = line(A, (6, 0, 0))
+curve n = arc((0, 4, 0), (6, 4, 0), through: (3, 4.5, 2))
+curve w = line(s.start, n.start)
+curve e = line(s.end, n.end)
+surface roof = coons(s, e, n, w)
+mesh fine of roof { size: 500mm }
+";
+
+#[test]
+fn pictures_of_scripts_are_outputs_like_exports() {
+    let family = "picture fine for v in [front, top] to \"{v}.png\" { view: v  width: 300  height: 200  shade: quality }\n";
+    let rest = "picture network to \"sub/net.svg\" { view: (1, -2, 0.5)  up: (0, 0, 1)  title: \"net & nodes\" }
+picture roof to \"curvature.png\" { shade: curvature  zoom: A  perspective: true  labels: true  network: true }
+picture s, A, roof.edges, roof.patches, roof.vertices to \"parts.png\" { borders: false }
+";
+    let (status, said, folder) = loft("outputs", &format!("{ROOF}{family}{rest}"), &["run", "model.loft", "--json"]);
+    assert_eq!(status, 0, "{said}");
+    for file in ["front.png", "top.png", "sub/net.svg", "curvature.png", "parts.png"] {
+        let bytes = std::fs::read(folder.join(file)).unwrap();
+        assert!(said.contains(&format!("\"path\": \"{file}\"")) && said.contains(&format!("\"bytes\": {}", bytes.len())), "{file}: {said}");
+    }
+    let (width, height, pixels) = decoded(&std::fs::read(folder.join("front.png")).unwrap());
+    assert_eq!((width, height, pixels.len()), (300, 200, 300 * 200 * 3));
+    let net = std::fs::read_to_string(folder.join("sub/net.svg")).unwrap();
+    for name in ["net &amp; nodes", ">A<", ">s &amp; e<", ">s<", ">n<"] {
+        assert!(net.contains(name), "{name}");
+    }
+    // With a failed check nothing new is written.
+    std::fs::remove_file(folder.join("top.png")).unwrap();
+    let (status, _, folder) = loft("outputs", &format!("{ROOF}{family}check 1 == 2\n"), &["run", "model.loft"]);
+    assert!(status == 1 && !folder.join("top.png").exists());
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn what_cannot_be_drawn_is_told_at_its_place() {
+    let cases = [
+        ("picture fine to \"a.jpg\"", "E804"),
+        ("picture roof to \"a.png\" { shade: quality }", "E805"),
+        ("picture roof to \"a.png\" { shade: nice }", "E213"),
+        ("picture roof to \"a.png\" { width: 8 }", "E306"),
+        ("picture roof to \"a.png\" { width: 100000 }", "E306"),
+        ("picture roof to \"a.png\" { width: 8000  height: 8000 }", "E306"),
+        ("picture roof to \"a.png\" { width: 2.5 }", "E306"),
+        ("picture roof to \"a.png\" { view: (0, 0, 0) }", "E306"),
+        ("picture roof to \"a.png\" { view: (0, 0, 1)  up: (0, 0, 2) }", "E306"),
+        ("picture roof to \"a.png\" { view: nowhere }", "E2"),
+        ("picture 3 to \"a.png\"", "E211"),
+        ("picture roof to \"a.png\" { zoom: 3 }", "E211"),
+        ("picture roof to \"../a.png\"", "E802"),
+        ("picture roof to \"a.png\" { colour: red }", "E303"),
+    ];
+    for (k, (line, code)) in cases.iter().enumerate() {
+        let (status, said, folder) = loft(&format!("bad{k}"), &format!("{ROOF}{line}\n"), &["run", "model.loft"]);
+        assert_eq!(status, 1, "{line}: {said}");
+        assert!(said.contains(code), "{line}: {said}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "{line} wrote something");
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+}
+
+#[test]
+fn render_draws_what_is_sound_and_the_same_with_any_threads() {
+    let bytes = |threads: &str| {
+        let arguments = ["render", "model.loft", "-o", "a.png", "--shade", "zebra", "--network", "--labels", "--threads", threads];
+        let (status, said, folder) = loft(&format!("threads{threads}"), ROOF, &arguments);
+        assert_eq!(status, 0, "{said}");
+        let bytes = std::fs::read(folder.join("a.png")).unwrap();
+        std::fs::remove_dir_all(folder).unwrap();
+        bytes
+    };
+    assert!(bytes("1") == bytes("8"));
+    let broken = format!("{ROOF}surface more = coons(s, w)\nmesh other of more\ncurve z = line(A, nothing)\n");
+    let (status, said, folder) = loft("broken", &broken, &["render", "model.loft", "-o", "a.png", "--size", "400x300"]);
+    assert!(status == 1 && said.contains("E201") && folder.join("a.png").exists(), "{said}");
+    let (_, _, pixels) = decoded(&std::fs::read(folder.join("a.png")).unwrap());
+    assert!(pixels.chunks(3).filter(|p| p[2] > p[0] && p[0] < 220).count() > 5_000, "the roof is not drawn");
+    std::fs::remove_dir_all(folder).unwrap();
+    let (status, said, folder) = loft("usage", ROOF, &["render", "model.loft", "-o", "a.gif"]);
+    assert!(status == 2 && said.contains(".png or .svg"), "{said}");
+    std::fs::remove_dir_all(folder).unwrap();
+    for wrong in [["--size", "0x5"], ["--size", "99999x99999"], ["--view", "sideways"], ["--up", "0,0,0"], ["--shade", "nice"]] {
+        let (status, said, folder) = loft("wrong", ROOF, &["render", "model.loft", "-o", "a.png", wrong[0], wrong[1]]);
+        assert!(status == 2 && !folder.join("a.png").exists(), "{wrong:?}: {said}");
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+    let (status, said, folder) = loft("empty", "units m\n", &["render", "model.loft", "-o", "a.png"]);
+    assert!(status == 1 && said.contains("nothing to draw") && !folder.join("a.png").exists(), "{said}");
+    std::fs::remove_dir_all(folder).unwrap();
+    let (status, said, _) = loft("name", ROOF, &["render", "model.loft", "-o", "a.png", "--of", "rof"]);
+    assert!(status == 1 && said.contains("E201") && said.contains("`rof`"), "{said}");
+}
+
+/// How far a picture of the guide may be from what its command draws: share of pixels that differ visibly.
+const ALIKE: f64 = 0.03;
+
+#[test]
+fn pictures_of_the_guide_are_what_their_commands_draw() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("docs/guide/pictures/README.md")).unwrap();
+    let accept = std::env::var_os("LOFT_ACCEPT").is_some();
+    let folder = std::env::temp_dir().join(format!("loft-guide-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut seen = 0;
+    for command in page.lines().filter_map(|l| l.strip_prefix("loft ")) {
+        let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
+        let at = words.iter().position(|w| w == "-o").unwrap() + 1;
+        let kept = root.join(&words[at]);
+        let name = kept.file_name().unwrap().to_string_lossy().into_owned();
+        assert!(page.contains(&format!("]({name})")), "{name} is made and not shown");
+        if !accept {
+            words[at] = folder.join(&name).to_string_lossy().into_owned();
+        }
+        let out = Command::new(env!("CARGO_BIN_EXE_loft")).current_dir(root).args(&words).output().unwrap();
+        assert!(out.status.success(), "{command}: {}", String::from_utf8_lossy(&out.stderr));
+        let (old, new) = (std::fs::read(&kept).unwrap(), std::fs::read(root.join(&words[at])).unwrap());
+        assert!(old.len() < 150_000, "{name} has {} bytes", old.len());
+        let (old, new) = (decoded(&old), decoded(&new));
+        assert_eq!((old.0, old.1), (new.0, new.1), "{name}");
+        let far = |p: &(&[u8], &[u8])| p.0.iter().zip(p.1).any(|(a, b)| a.abs_diff(*b) > 48);
+        let different = old.2.chunks(3).zip(new.2.chunks(3)).filter(far).count();
+        assert!((different as f64) < ALIKE * (old.0 * old.1) as f64, "{name}: {different} pixels are others; LOFT_ACCEPT=1 makes it anew");
+        seen += 1;
+    }
+    assert!(seen >= 6, "{seen} pictures");
+    std::fs::remove_dir_all(folder).unwrap();
 }

@@ -24,6 +24,10 @@ const NAMES: usize = 400;
 const KEYS: usize = 12;
 /// Numbers along a scale.
 const TICKS: usize = 5;
+/// Pixels of a cell in which it is known whether a line is seen.
+const CELL: usize = 3;
+/// How much nearer than its place a name counts: its own mark does not hide it.
+const NAME_LIFT: f64 = MARK_LIFT + 4.0;
 /// Least share of the page that the model gets; where words would leave less they give way.
 const MODEL: f64 = 0.45;
 
@@ -119,7 +123,7 @@ impl Layout {
     }
 
     fn text(&self, at: DVec2, words: &str, color: Rgb) -> Item {
-        Item::Text { at, size: self.size, text: words.to_owned(), color, halo: false }
+        Item::Text { at, size: self.size, text: words.to_owned(), color, halo: true }
     }
 }
 
@@ -159,7 +163,7 @@ pub fn items(scene: &Scene, camera: &Camera, image: &Image, layout: &Layout, den
     if !layout.title.is_empty() {
         let (size, room) = (1.3 * layout.size, layout.page.max.x - 2.0 * layout.margin);
         let at = DVec2::new(layout.margin, layout.margin + font::CAPITAL * size);
-        items.push(Item::Text { at, size, text: fitting(&layout.title, size, room), color: color::INK, halo: false });
+        items.push(Item::Text { at, size, text: fitting(&layout.title, size, room), color: color::INK, halo: true });
     }
     let mut notes = Vec::new();
     if dense {
@@ -253,6 +257,17 @@ fn legend(scene: &Scene, layout: &Layout) -> Vec<Item> {
     let (size, mut items) = (layout.size, Vec::new());
     let left = layout.page.max.x - layout.margin - layout.legend_width(scene) + 0.4 * size;
     let mut y = layout.frame.min.y;
+    if !scene.focus.is_empty() && layout.frame.max.x < layout.page.max.x - 3.0 * layout.margin {
+        // The model goes on under the legend.
+        let rows = keys(scene).len() as f64 * 1.5 * size;
+        let bar = if scene.scale.is_some() { (0.42 * layout.page.size().y).min(16.0 * size) + 3.4 * size } else { 0.0 };
+        let low = DVec2::new(left - 0.6 * size, y - 1.1 * size);
+        items.push(Item::rect(
+            &Rect::new(low, DVec2::new(layout.page.max.x - 0.4 * layout.margin, y + rows + bar - 0.4 * size)),
+            color::WHITE,
+            0.85,
+        ));
+    }
     if let Some(scale) = &scene.scale {
         items.push(layout.text(DVec2::new(left, y + 0.2 * size), &title(scale), color::INK));
         y += 1.2 * size;
@@ -261,7 +276,9 @@ fn legend(scene: &Scene, layout: &Layout) -> Vec<Item> {
         for k in 0..steps {
             let share = |k: usize| y + height * k as f64 / steps as f64;
             let color = scale.ramp.at(1.0 - (k as f64 + 0.5) / steps as f64);
-            items.push(Item::rect(&Rect::new(DVec2::new(left, share(k)), DVec2::new(left + 1.1 * size, share(k + 1))), color, 1.0));
+            // Each reaches under the next one, so that no paper shows between them.
+            let low = if k + 1 < steps { share(k + 2) } else { share(k + 1) };
+            items.push(Item::rect(&Rect::new(DVec2::new(left, share(k)), DVec2::new(left + 1.1 * size, low)), color, 1.0));
         }
         for (share, words) in ticks(scale) {
             let at = y + height * (1.0 - share);
@@ -317,6 +334,7 @@ fn names(scene: &Scene, camera: &Camera, image: &Image, layout: &Layout, mut tak
     taken.extend(scene.marks.iter().map(mark));
     let mut order: Vec<&Label> = scene.labels.iter().collect();
     order.sort_by_key(|label| label.rank);
+    let busy = Busy::new(scene, camera, image);
     let (mut items, mut left_out) = (Vec::new(), 0);
     for label in order {
         let seen: Vec<Spot> = label.places.iter().map(|p| camera.project(*p)).filter(|s| is_seen(s, image, layout)).collect();
@@ -327,7 +345,8 @@ fn names(scene: &Scene, camera: &Camera, image: &Image, layout: &Layout, mut tak
             let room = text_bounds(*at, size, &label.text);
             layout.page.grown(-0.3 * layout.margin).holds(&room) && !taken.iter().any(|t| t.meets(&room))
         };
-        let found = seen.iter().flat_map(|s| stands(s.at(), &label.text, size, label.centered)).find(free);
+        let stands = seen.iter().flat_map(|s| stands(s.at(), &label.text, size, label.centered)).filter(free);
+        let found = stands.min_by_key(|at| busy.under(&text_bounds(*at, size, &label.text)));
         match found {
             Some(at) if items.len() < NAMES => {
                 taken.push(text_bounds(at, size, &label.text));
@@ -339,8 +358,49 @@ fn names(scene: &Scene, camera: &Camera, image: &Image, layout: &Layout, mut tak
     (items, left_out)
 }
 
+/// Where lines are seen, in cells of some pixels: names stand beside lines rather than on them.
+struct Busy {
+    columns: usize,
+    rows: usize,
+    cells: Vec<bool>,
+}
+
+impl Busy {
+    fn new(scene: &Scene, camera: &Camera, image: &Image) -> Self {
+        let (columns, rows) = (image.width.div_ceil(CELL), image.height.div_ceil(CELL));
+        let mut busy = Self { columns, rows, cells: vec![false; columns * rows] };
+        for line in scene.lines.iter().filter(|l| l.kind != Kind::Element) {
+            let spots: Vec<Spot> = line.points.iter().map(|p| camera.project(*p)).collect();
+            for pair in spots.windows(2) {
+                let (a, b) = (pair[0], pair[1]);
+                // Longer than the page it is not looked at more often than the page has cells.
+                let n = (2.0 * a.at().distance(b.at()) / CELL as f64).ceil().min(4.0 * (columns + rows) as f64) as usize;
+                for k in 0..=n {
+                    let t = k as f64 / n.max(1) as f64;
+                    let at = a.at() + (b.at() - a.at()) * t;
+                    let spot = Spot { x: at.x, y: at.y, near: a.near + (b.near - a.near) * t, grow: a.grow };
+                    let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < image.width as f64 && at.y < image.height as f64;
+                    if inside && !image.hides(&spot, NAME_LIFT) {
+                        busy.cells[at.y as usize / CELL * columns + at.x as usize / CELL] = true;
+                    }
+                }
+            }
+        }
+        busy
+    }
+
+    /// How many cells with lines lie under a rectangle.
+    fn under(&self, room: &Rect) -> usize {
+        let range = |low: f64, high: f64, n: usize| (low.max(0.0) as usize / CELL)..(high.max(0.0) as usize / CELL + 1).min(n);
+        let columns = range(room.min.x, room.max.x, self.columns);
+        range(room.min.y, room.max.y, self.rows)
+            .map(|row| columns.clone().filter(|column| self.cells[row * self.columns + column]).count())
+            .sum()
+    }
+}
+
 fn is_seen(spot: &Spot, image: &Image, layout: &Layout) -> bool {
-    layout.page.holds(&Rect::new(spot.at(), spot.at())) && !image.hides(spot, MARK_LIFT)
+    layout.page.holds(&Rect::new(spot.at(), spot.at())) && !image.hides(spot, NAME_LIFT)
 }
 
 /// Where words may stand around a place, the best first: right above, then round it.

@@ -69,10 +69,10 @@ pub struct Ramp(&'static [Rgb]);
 
 /// From bad (red) to good (blue); also told apart by who sees no difference between red and green.
 pub const BAD_TO_GOOD: Ramp =
-    Ramp(&[Rgb(178, 18, 36), Rgb(236, 104, 60), Rgb(252, 206, 120), Rgb(226, 240, 214), Rgb(116, 180, 216), Rgb(40, 100, 176)]);
+    Ramp(&[Rgb(178, 18, 36), Rgb(236, 104, 60), Rgb(252, 206, 120), Rgb(226, 240, 214), Rgb(134, 190, 222), Rgb(84, 146, 210)]);
 /// From little (dark) to much (light).
 pub const LITTLE_TO_MUCH: Ramp =
-    Ramp(&[Rgb(68, 30, 110), Rgb(62, 84, 150), Rgb(40, 126, 148), Rgb(44, 166, 130), Rgb(134, 206, 80), Rgb(248, 230, 50)]);
+    Ramp(&[Rgb(124, 88, 172), Rgb(92, 122, 192), Rgb(64, 156, 180), Rgb(72, 186, 148), Rgb(150, 212, 98), Rgb(248, 230, 70)]);
 /// From below zero (blue) over zero (white) to above (red).
 pub const BELOW_TO_ABOVE: Ramp = Ramp(&[Rgb(36, 88, 168), Rgb(132, 178, 220), Rgb(240, 240, 236), Rgb(240, 160, 124), Rgb(184, 28, 44)]);
 

@@ -10,8 +10,6 @@ use crate::surface::{Domain, Jet2, Lean, Side, Surface};
 
 /// Places along each direction where a patch is asked how much it bends.
 const LOOKS: usize = 9;
-/// Least steps of a patch that is bent.
-const LEAST: usize = 4;
 /// Most steps along each direction of a patch.
 const MOST: usize = 400;
 /// Points of a border of a plane face, for each of its sides.
@@ -25,6 +23,19 @@ pub enum Show {
     /// The larger of the two principal curvatures, with its sign: above zero where the surface bends away from its
     /// normal; 1/model unit.
     Curvature,
+    /// Reflections, which need normals close together.
+    Stripes,
+}
+
+impl Show {
+    /// Least steps of a patch that is bent: what is shown between points is as smooth as they are dense.
+    fn least(self) -> usize {
+        match self {
+            Self::Light => 4,
+            Self::Curvature => 32,
+            Self::Stripes => 96,
+        }
+    }
 }
 
 /// The patches of a surface as sheets; `fine` is how far a triangle may be from the surface, model units.
@@ -64,20 +75,20 @@ fn places((low, high): (f64, f64), n: usize) -> Vec<(f64, Lean)> {
 }
 
 /// Steps along u and v that keep the distance of triangles from the surface.
-fn steps(jets: &[Jet2], (du, dv): (f64, f64), fine: f64) -> (usize, usize) {
+fn steps(jets: &[Jet2], (du, dv): (f64, f64), fine: f64, show: Show) -> (usize, usize) {
     let largest = |of: &dyn Fn(&Jet2) -> f64| jets.iter().map(of).filter(|x| x.is_finite()).fold(0.0, f64::max);
     // A chord of a bend a over h is a·h²/8 away; the twist adds to both directions.
     let twist = largest(&|j| j.duv.length()) * du * dv;
     let n = |bend: f64| {
         let n = ((bend + twist) / (8.0 * fine)).sqrt().ceil().min(MOST as f64) as usize;
-        if n <= 1 { 1 } else { n.max(LEAST) }
+        if n <= 1 { 1 } else { n.max(show.least()) }
     };
     (n(largest(&|j| j.duu.length()) * du * du), n(largest(&|j| j.dvv.length()) * dv * dv))
 }
 
 fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
     let look = surface.jets(&places(patch.u, LOOKS - 1), &places(patch.v, LOOKS - 1));
-    let (nu, nv) = steps(&look, (patch.u.1 - patch.u.0, patch.v.1 - patch.v.0), fine);
+    let (nu, nv) = steps(&look, (patch.u.1 - patch.u.0, patch.v.1 - patch.v.0), fine, show);
     let (us, vs) = (places(patch.u, nu), places(patch.v, nv));
     let jets = surface.jets(&us, &vs);
     let normal = |k: usize| {
@@ -93,7 +104,7 @@ fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
     };
     let normals: Vec<DVec3> = (0..jets.len()).map(normal).collect();
     let values = match show {
-        Show::Light => Vec::new(),
+        Show::Light | Show::Stripes => Vec::new(),
         Show::Curvature => jets.iter().zip(&normals).map(|(jet, n)| curvature(jet, *n) as f32).collect(),
     };
     let at = |i: usize, j: usize| (j * (nu + 1) + i) as u32;
@@ -124,7 +135,7 @@ pub fn curvature(jet: &Jet2, normal: DVec3) -> f64 {
 fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
     let inner: Vec<Jet2> =
         (0..LOOKS).flat_map(|j| (0..LOOKS - j).map(move |i| (i, j))).map(|(i, j)| jet_of(surface, i, j, LOOKS - 1)).collect();
-    let (a, b) = steps(&inner, (1.0, 1.0), fine);
+    let (a, b) = steps(&inner, (1.0, 1.0), fine, show);
     let n = a.max(b);
     let index = |i: usize, j: usize| (j * (n + 1) - j * j.saturating_sub(1) / 2 + i) as u32;
     let (mut points, mut normals, mut values, mut triangles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());

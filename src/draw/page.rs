@@ -10,7 +10,7 @@ use super::raster::Image;
 /// Width of the strokes of letters as a share of their size.
 pub const LETTER: f64 = 0.1;
 /// Width of the halo around letters as a share of their size.
-pub const HALO: f64 = 0.28;
+pub const HALO: f64 = 0.40;
 /// Places along each side of a pixel where a filled shape is asked for.
 const PLACES: usize = 4;
 

@@ -15,7 +15,7 @@ const HEAD: f64 = 0.52;
 /// Light from above on the left.
 const FILL: f64 = 0.26;
 /// Stripes over half a turn of the reflected view.
-const STRIPES: f64 = 22.0;
+const STRIPES: f64 = 36.0;
 
 /// Everything that shading a face asks.
 pub(super) struct Shader<'s> {
@@ -76,7 +76,8 @@ impl<'s> Shader<'s> {
             Paint::OfPoints(values) => self.of_scale((0..3).map(|k| f64::from(values[corners[k]]) * inside[k]).sum()),
         };
         let light = AMBIENT + HEAD * upward.dot(to_eye).max(0.0) + FILL * upward.dot(self.fill).max(0.0);
-        let lit = if matches!(sheet.paint, Paint::Zebra) { 0.5 + 0.5 * light } else { light };
+        // Colours that stand for something stay near themselves.
+        let lit = if matches!(sheet.paint, Paint::Even(_) | Paint::Sides(..)) { light } else { 0.55 + 0.45 * light };
         let edge = self.edge(sheet, triangle, &spots, shares, twice_area);
         let (face, ink) = (color.shares(), ELEMENT.shares());
         [0, 1, 2].map(|k| {

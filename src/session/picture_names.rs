@@ -32,15 +32,14 @@ fn along(chain: &Chain) -> Vec<DVec3> {
 
 /// Adds the names of what is drawn where they are wanted.
 pub(super) fn add(spec: &PictureSpec, things: &Things, stage: &Stage, drawing: &mut Drawing) {
-    let network = spec.show.network.unwrap_or(things.network);
-    let drawn = network || !things.curves.is_empty() || !things.points.is_empty();
+    let network = stage.network(spec, things);
+    let drawn = network.is_some() || !things.curves.is_empty() || !things.points.is_empty();
     if !spec.show.labels.unwrap_or(drawn) {
         return;
     }
     let mut labels = surfaces(drawing);
-    if network {
-        labels.extend(nodes(stage));
-        let net = &stage.sound.network;
+    if let Some(net) = network {
+        labels.extend(nodes(stage, net));
         labels.extend((0..net.links.len()).map(LinkId::at).map(|link| {
             let rank = if net.curves[net.links[link.index()].curve.index()].links.len() == 1 { RANKS.2 } else { RANKS.3 };
             Label { text: of_link(net, link), places: along(&net.link_chain(link)), rank, centered: false }
@@ -98,8 +97,7 @@ fn surfaces(drawing: &Drawing) -> Vec<Label> {
 }
 
 /// Nodes: the declared point there, else `a & b` for curves that meet, else the end of a curve.
-fn nodes(stage: &Stage) -> Vec<Label> {
-    let network = &stage.sound.network;
+fn nodes(stage: &Stage, network: &Network) -> Vec<Label> {
     let mut of_node: Vec<Vec<(usize, bool, bool)>> = vec![Vec::new(); network.nodes.len()];
     for (k, curve) in network.curves.iter().enumerate() {
         let last = curve.nodes.len() - 1;

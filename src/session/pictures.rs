@@ -1,10 +1,12 @@
 //! `picture`: from the things of a script to a scene, and from that to a file.
 
 use std::collections::BTreeSet;
+use std::io::Write;
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::disk::Outputs;
 use super::picture_names as names;
 use super::report::OutputRow;
 use super::run::Wanted;
@@ -24,8 +26,8 @@ use crate::lang::scene::Scene;
 use crate::lang::value::{MeshValue, ModuleId, Value};
 use crate::mesh::Mesh;
 use crate::model::SurfaceId;
-use crate::network::Chain;
 use crate::network::chain::same_curve;
+use crate::network::{Chain, Network};
 use crate::surface::{Domain, Surface};
 
 /// How far lines and triangles may be from what they show, pixels.
@@ -41,17 +43,17 @@ pub(super) struct Things {
     /// Surfaces of shells and by themselves, each with `true` for its other side.
     pub surfaces: Vec<(SurfaceId, bool)>,
     /// Patches by themselves.
-    pub patches: Vec<crate::model::PatchId>,
+    pub patches: Vec<(Scene, crate::model::PatchId)>,
     /// Meshes.
     pub meshes: Vec<Arc<Mesh>>,
     /// Curves, links and edges with their names.
     pub curves: Vec<(String, Chain)>,
     /// Edges that no curve carries.
-    pub edges: Vec<crate::model::EdgeId>,
+    pub edges: Vec<(Scene, crate::model::EdgeId)>,
     /// Points with their names, empty where they have none.
     pub points: Vec<(String, DVec3)>,
-    /// The whole network.
-    pub network: bool,
+    /// A whole network.
+    pub network: Option<Arc<Network>>,
 }
 
 /// Everything that making a scene asks.
@@ -63,8 +65,20 @@ pub(super) struct Stage<'a> {
     pub fine: f64,
 }
 
+impl Stage<'_> {
+    /// The network that is drawn with nodes and names, if any.
+    pub(super) fn network<'t>(&'t self, spec: &PictureSpec, things: &'t Things) -> Option<&'t Network> {
+        let named = things.network.as_deref();
+        match spec.show.network {
+            Some(false) => None,
+            Some(true) => Some(named.unwrap_or(&self.sound.network)),
+            None => named,
+        }
+    }
+}
+
 /// Writes one picture; gives its row. `model` is the name of the script without its ending.
-pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files) -> Result<OutputRow, Stop> {
+pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn Files, Outputs)) -> Result<OutputRow, Stop> {
     let format = format_of(spec)?;
     let tolerance = cx.tolerance()?;
     let sound = cx.sound(ModuleId::MAIN)?;
@@ -72,9 +86,9 @@ pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files) ->
     let things = sort(cx, &spec.things, &scene, tolerance)?;
     let focus = match spec.zoom.as_slice() {
         [] => Vec::new(),
-        zoom => outline(&sort(cx, zoom, &scene, tolerance)?, &scene, &sound),
+        zoom => outline(&sort(cx, zoom, &scene, tolerance)?, &scene),
     };
-    let everything = Box3::of(outline(&things, &scene, &sound));
+    let everything = Box3::of(outline(&things, &scene));
     let shown = if focus.is_empty() { everything } else { around(&focus, &everything) };
     let pixels = f64::from(spec.size.0.min(spec.size.1));
     let fine = FINE * shown.diagonal().max(tolerance.point) / pixels;
@@ -87,8 +101,13 @@ pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files) ->
     if nothing {
         return Err(unsupported(spec.origin, "there is nothing to draw", "name surfaces, meshes, curves or points"));
     }
-    let picture = Picture::new(&drawing, &settings(cx, spec, model), format);
-    put(spec, &picture, format, files)
+    let settings = settings(cx, spec, model);
+    if outputs == Outputs::Counted {
+        // What could go wrong did not; pixels are for files.
+        return put(spec, &mut |_| Ok(()), files);
+    }
+    let picture = Picture::new(&drawing, &settings, format);
+    put(spec, &mut |out| picture.write(format, out), files)
 }
 
 fn unsupported(of: Origin, what: &str, help: &str) -> Stop {
@@ -105,7 +124,7 @@ fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
     let said = |flag: Option<bool>| flag.unwrap_or(true);
     let title = match &spec.title {
         Some(title) => title.to_string(),
-        None if spec.named.is_empty() => model.to_owned(),
+        None if spec.named.is_empty() || spec.named == model => model.to_owned(),
         None => format!("{model}: {}", spec.named),
     };
     Settings {
@@ -121,9 +140,9 @@ fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
     }
 }
 
-fn put(spec: &PictureSpec, picture: &Picture, format: Format, files: &dyn Files) -> Result<OutputRow, Stop> {
+fn put(spec: &PictureSpec, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>, files: &dyn Files) -> Result<OutputRow, Stop> {
     let (of, path) = (spec.path_origin, spec.path.clone());
-    match files.write(&spec.path, &mut |out| picture.write(format, out)) {
+    match files.write(&spec.path, fill) {
         Ok(bytes) => Ok(OutputRow { path, bytes }),
         Err(FileError::Outside) => Err(FileFault::Outside { of, path }.into()),
         Err(FileError::Other(why)) => Err(FileFault::CannotWrite { of, path, why }.into()),
@@ -162,16 +181,19 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
                 Err(_) => scene.find_all(&shell.surfaces)?,
             }),
             Value::Mesh(mesh) => things.meshes.push(cx.mesh(mesh)?),
-            Value::Patch(_, patch) => things.patches.push(*patch),
+            Value::Patch(module, patch) => things.patches.push((own(cx, *module)?, *patch)),
             Value::Curve(chain) => things.curves.push((cx.name(chain.origin()), chain.clone())),
-            Value::Link(_, link) => {
-                let name = names::of_link(&scene.network, *link);
-                things.curves.push((name, scene.network.link_chain(*link)));
+            Value::Link(module, link) => {
+                let network = cx.network(*module)?;
+                things.curves.push((names::of_link(&network, *link), network.link_chain(*link)));
             }
-            Value::Edge(_, edge) => things.edges.push(*edge),
-            Value::Vertex(_, vertex) => things.points.push((String::new(), scene.model.vertices[vertex.index()].point)),
+            Value::Edge(module, edge) => things.edges.push((own(cx, *module)?, *edge)),
+            Value::Vertex(module, vertex) => {
+                let point = cx.model(*module)?.vertices[vertex.index()].point;
+                things.points.push((String::new(), point));
+            }
             Value::Node(p) | Value::Vector(p, _) => things.points.push((String::new(), *p)),
-            Value::Network(_) => things.network = true,
+            Value::Network(module) => things.network = Some(cx.sound(*module)?.network),
             _ => {}
         }
     }
@@ -180,12 +202,18 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
     Ok(things)
 }
 
+/// The surface model that edges and patches of a script are numbered in.
+fn own(cx: &mut Cx, module: ModuleId) -> Result<Scene, Stop> {
+    Ok(Scene { model: cx.model(module)?, network: cx.network(module)? })
+}
+
 /// Points that things lie between, for framing them.
-fn outline(things: &Things, scene: &Scene, sound: &Sound) -> Vec<DVec3> {
+fn outline(things: &Things, scene: &Scene) -> Vec<DVec3> {
     let mut out: Vec<DVec3> = Vec::new();
     let of_surface = |id: &SurfaceId| corners(&crate::surface::bbox(&scene.model.surfaces[id.index()].surface));
     things.surfaces.iter().for_each(|(id, _)| out.extend(of_surface(id)));
-    for patch in things.patches.iter().map(|p| &scene.model.patches[p.index()]) {
+    for (scene, patch) in &things.patches {
+        let patch = &scene.model.patches[patch.index()];
         let surface = &scene.model.surfaces[patch.surface.index()].surface;
         let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / 8.0;
         out.extend((0..81).map(|k| surface.point(at(patch.u, k % 9), at(patch.v, k / 9))));
@@ -193,10 +221,10 @@ fn outline(things: &Things, scene: &Scene, sound: &Sound) -> Vec<DVec3> {
     things.meshes.iter().for_each(|mesh| out.extend(corners(&Box3::of(mesh.nodes.iter().copied()))));
     let mut along = |chain: &Chain| out.extend((0..LOOKS).map(|k| chain.point(k as f64 / (LOOKS - 1) as f64)));
     things.curves.iter().for_each(|(_, chain)| along(chain));
-    if things.network {
-        sound.network.curves.iter().for_each(|c| along(&Chain::of_curve(&c.curve)));
+    if let Some(network) = &things.network {
+        network.curves.iter().for_each(|c| along(&Chain::of_curve(&c.curve)));
     }
-    for edge in &things.edges {
+    for (scene, edge) in &things.edges {
         let track = scene.model.track(*edge, &scene.network);
         out.extend((0..LOOKS).map(|k| track.point(track.length() * k as f64 / (LOOKS - 1) as f64)));
     }
@@ -234,16 +262,16 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
     // What is meshed and drawn as a mesh is not drawn twice.
     let bare: Vec<(SurfaceId, bool)> = things.surfaces.iter().copied().filter(|(id, _)| of_surfaces || !is_covered(*id)).collect();
     let drawn: BTreeSet<SurfaceId> = bare.iter().map(|s| s.0).collect();
-    let show = if of_surfaces { faces::Show::Curvature } else { faces::Show::Light };
+    let show = shades::of_faces(spec);
     bare.iter().for_each(|(id, flipped)| drawing.sheets.extend(faces::surface(model, *id, *flipped, fine, show)));
-    for id in &things.patches {
-        let patch = &model.patches[id.index()];
-        let named = &model.surfaces[patch.surface.index()];
+    for (scene, id) in &things.patches {
+        let patch = &scene.model.patches[id.index()];
+        let named = &scene.model.surfaces[patch.surface.index()];
         let mut sheet = faces::patch(&named.surface, patch, fine, show);
         sheet.name = named.name.clone();
         drawing.sheets.push(sheet);
-        for edge in model.edges_of(&[*id]) {
-            add_edge(&mut drawing, Kind::Border, edge, stage);
+        for edge in scene.model.edges_of(&[*id]) {
+            add_edge(&mut drawing, scene, edge, stage);
         }
     }
     let borders = spec.show.borders.unwrap_or(true);
@@ -259,11 +287,10 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
     for (_, chain) in &things.curves {
         drawing.lines.push(Line { kind: Kind::Curve, points: lines::chain(chain, fine, &stage.tolerance) });
     }
-    things.edges.iter().for_each(|edge| add_edge(&mut drawing, Kind::Border, *edge, stage));
+    things.edges.iter().for_each(|(scene, edge)| add_edge(&mut drawing, scene, *edge, stage));
     drawing.marks.extend(things.points.iter().map(|(_, at)| Mark { at: *at, node: false }));
-    let only_network = things.network && drawing.sheets.is_empty();
-    if spec.show.network.unwrap_or(things.network) || only_network {
-        network(&mut drawing, stage);
+    if let Some(network) = stage.network(spec, things) {
+        add_network(&mut drawing, network, stage);
     }
     drawing.lines.retain(|line| line.points.len() > 1);
     shades::paint(cx, spec, &mut drawing)?;
@@ -276,14 +303,13 @@ fn drawn_as_surface(mesh: &Mesh, stage: &Stage, drawn: &BTreeSet<SurfaceId>) -> 
     mesh.faces.iter().any(|face| drawn.iter().any(|id| name(id) == face.name))
 }
 
-fn add_edge(drawing: &mut Drawing, kind: Kind, edge: crate::model::EdgeId, stage: &Stage) {
-    let track = stage.scene.model.track(edge, &stage.scene.network);
-    drawing.lines.push(Line { kind, points: lines::track(&track, (0.0, track.length()), stage.fine) });
+fn add_edge(drawing: &mut Drawing, scene: &Scene, edge: crate::model::EdgeId, stage: &Stage) {
+    let track = scene.model.track(edge, &scene.network);
+    drawing.lines.push(Line { kind: Kind::Border, points: lines::track(&track, (0.0, track.length()), stage.fine) });
 }
 
 /// Links and nodes of the whole network.
-fn network(drawing: &mut Drawing, stage: &Stage) {
-    let network = &stage.sound.network;
+fn add_network(drawing: &mut Drawing, network: &Network, stage: &Stage) {
     for k in 0..network.links.len() {
         let chain = network.link_chain(crate::network::LinkId::at(k));
         drawing.lines.push(Line { kind: Kind::Curve, points: lines::chain(&chain, stage.fine, &stage.tolerance) });

@@ -232,7 +232,7 @@ impl Run<'_> {
             if self.cx.job.go_on().is_err() {
                 return;
             }
-            let row = pictures::write(&mut self.cx, &spec, &model, self.disk);
+            let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
             self.written(row);
         }
     }
@@ -260,7 +260,7 @@ impl Run<'_> {
         let model = self.model_name();
         match pictures::request(&mut self.cx, wanted) {
             Ok(spec) => {
-                let row = pictures::write(&mut self.cx, &spec, &model, self.disk);
+                let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
                 self.written(row);
             }
             Err(message) => self.said = Some(message),

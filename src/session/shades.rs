@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
 use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUCH, NAMES};
+use crate::draw::faces::Show;
 use crate::draw::meshes::{self, Measure};
 use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
 use crate::lang::cx::{Cx, Stop};
@@ -21,6 +22,15 @@ fn word(spec: &PictureSpec) -> &str {
 /// Whether the shade is a property of surfaces, so that these are drawn instead of their meshes.
 pub(super) fn is_of_surfaces(spec: &PictureSpec) -> bool {
     word(spec) == "curvature"
+}
+
+/// What the points of surfaces have to show.
+pub(super) fn of_faces(spec: &PictureSpec) -> Show {
+    match word(spec) {
+        "curvature" => Show::Curvature,
+        "zebra" => Show::Stripes,
+        _ => Show::Light,
+    }
 }
 
 /// A mesh as sheets that can be shaded as asked.
