@@ -54,7 +54,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("io", 6_000),
     ("draw", 3_000),
     ("lang", 16_500),
-    ("session", 3_000),
+    ("session", 8_000),
     ("cli", 3_500),
 ];
 

@@ -14,6 +14,7 @@ mod render;
 mod run;
 mod summary;
 mod terminal;
+mod test;
 
 use std::process::ExitCode;
 
@@ -35,7 +36,7 @@ pub struct Command {
 
 /// All subcommands, in the order of the help.
 const COMMANDS: &[&[Command]] = &[
-    &[run::COMMAND, check::COMMAND, render::COMMAND, new::COMMAND, explain::COMMAND, doc::COMMAND, completions::COMMAND],
+    &[run::COMMAND, check::COMMAND, render::COMMAND, test::COMMAND, new::COMMAND, explain::COMMAND, doc::COMMAND, completions::COMMAND],
     later::COMMANDS,
 ];
 

@@ -171,7 +171,7 @@ codes! {
     now "W810", "entity-skipped", "an entity of a file was skipped or repaired";
     now "E811", "file-too-large", "a file is too large";
     now "E901", "check-failed", "a check failed";
-    later "E902", "golden-differs", "a golden differs";
+    now "E902", "golden-differs", "a golden differs";
     now "E999", "bug", "a bug in loft";
 }
 

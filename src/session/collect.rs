@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::base::bbox::Box3;
 use crate::base::fault::{Say, Severity};
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Parts, Stop};
@@ -15,8 +16,8 @@ use crate::network::{Chain, LinkId, Network};
 use crate::surface::{Domain, Surface};
 
 use super::report::{
-    Cell, CheckRow, Column, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow, SurfaceRow, Table,
-    TopologyCounts,
+    Cell, CheckRow, Column, Corners, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow,
+    SurfaceRow, Table, TopologyCounts,
 };
 
 /// Counts of the network.
@@ -83,9 +84,22 @@ pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> f64) -> Vec<Sur
             edges: model.edges_of(&patches).len(),
             vertices: model.vertices_of(&patches).len(),
             area: (named.surface.domain() != Domain::Unbounded).then(|| area(&named.surface)),
+            corners: None,
         }
     };
     model.surfaces.iter().enumerate().map(row).collect()
+}
+
+/// A box as plain numbers; `None` when it is empty or has no end.
+pub fn corners(bounds: Box3) -> Option<Corners> {
+    let found = !bounds.is_empty() && bounds.min.is_finite() && bounds.max.is_finite();
+    // Adding zero makes the two zeros one.
+    found.then(|| [bounds.min, bounds.max].map(|p| p.to_array().map(|x| x + 0.0)))
+}
+
+/// The box of each surface.
+pub fn boxes(model: &Model) -> Vec<Box3> {
+    model.surfaces.iter().map(|named| measure::bounds(std::slice::from_ref(&named.surface))).collect()
 }
 
 /// Counts of the surface model.
@@ -109,6 +123,7 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool)
         volume: built.closed.then(|| measure::solid(&sides).volume.abs()),
         gap: contacts.iter().map(|c| c.gap.max).reduce(f64::max),
         angle: contacts.iter().filter_map(|c| c.angle).map(|a| crate::lang::units::degrees(a.max)).reduce(f64::max),
+        corners: if full { corners(measure::bounds(&shell.surfaces)) } else { None },
     })
 }
 

@@ -61,6 +61,11 @@ impl Disk {
         }
     }
 
+    /// The same, with files named as seen from the script's folder, wherever the program was started.
+    pub fn seen_from_home(self) -> Self {
+        Self { shown_home: PathBuf::new(), ..self }
+    }
+
     /// What becomes of outputs.
     pub fn outputs(&self) -> Outputs {
         self.outputs

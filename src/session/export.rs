@@ -32,7 +32,7 @@ pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Output
     };
     let (bytes, losses) = losses;
     losses.into_iter().for_each(|loss| cx.say(&loss.fault(spec.path_origin, &spec.path).into()));
-    Ok(OutputRow { path: spec.path.clone(), bytes })
+    Ok(OutputRow { path: spec.path.clone(), bytes, unit: unit_of(cx, spec).0 })
 }
 
 /// Size of a file and what it could not hold.

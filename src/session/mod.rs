@@ -4,6 +4,7 @@ mod collect;
 mod cuts;
 pub mod disk;
 mod export;
+pub mod golden;
 pub mod guard;
 pub mod json;
 pub mod kept;

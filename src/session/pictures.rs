@@ -143,7 +143,7 @@ fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
 fn put(spec: &PictureSpec, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>, files: &dyn Files) -> Result<OutputRow, Stop> {
     let (of, path) = (spec.path_origin, spec.path.clone());
     match files.write(&spec.path, fill) {
-        Ok(bytes) => Ok(OutputRow { path, bytes }),
+        Ok(bytes) => Ok(OutputRow { path, bytes, unit: "" }),
         Err(FileError::Outside) => Err(FileFault::Outside { of, path }.into()),
         Err(FileError::Other(why)) => Err(FileFault::CannotWrite { of, path, why }.into()),
         Err(_) => Err(FileFault::CannotWrite { of, path, why: "the system refuses it".to_owned() }.into()),

@@ -42,7 +42,13 @@ pub struct Report {
     pub diagnostics: Vec<DiagnosticRow>,
     /// Seconds; the only part that may differ between two runs.
     pub timings: Timings,
+    /// Box of all curves and bounded surfaces, model units; `None` without any and where no full report was asked for.
+    #[serde(skip)]
+    pub bounds: Option<Corners>,
 }
+
+/// Smallest and largest coordinates of a box, model units.
+pub type Corners = [[f64; 3]; 2];
 
 /// Counts of the curve network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -92,6 +98,9 @@ pub struct SurfaceRow {
     pub edges: usize,
     pub vertices: usize,
     pub area: Option<f64>,
+    /// Its box; `None` where it has no bounds and where no full report was asked for.
+    #[serde(skip)]
+    pub corners: Option<Corners>,
 }
 
 /// Counts of the surface model.
@@ -119,6 +128,9 @@ pub struct ShellRow {
     pub gap: Option<f64>,
     /// Largest angle between the normals of the faces of an inner edge, degrees; `None` without inner edges.
     pub angle: Option<f64>,
+    /// Its box; `None` where no full report was asked for.
+    #[serde(skip)]
+    pub corners: Option<Corners>,
 }
 
 /// A mesh.
@@ -207,6 +219,9 @@ pub struct OutputRow {
     pub path: String,
     /// Its size.
     pub bytes: u64,
+    /// Name of the unit of its lengths; empty where it holds none.
+    #[serde(skip)]
+    pub unit: &'static str,
 }
 
 /// A diagnostic.

@@ -7,6 +7,7 @@ use super::kept::Kept;
 use super::pictures;
 use super::report::{OutputRow, Report, Timings, VERSION};
 use super::stages::Stages;
+use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
@@ -177,12 +178,16 @@ impl Run<'_> {
     fn collect(&mut self) {
         let main = ModuleId::MAIN;
         let Some(tolerance) = self.cx.tolerance_used() else { return };
+        let mut bounds = Box3::EMPTY;
         if let Some(network) = {
             let n = self.cx.network(main);
             self.take(n)
         } {
             self.report.network = collect::network_counts(&network);
             self.report.curves = collect::curves(&network);
+            if self.task.full {
+                bounds = network.curves.iter().fold(bounds, |bounds, c| bounds.union(c.curve.bbox()));
+            }
             if let Some(parts) = {
                 let p = self.cx.parts(main);
                 self.take(p)
@@ -195,7 +200,14 @@ impl Run<'_> {
             self.report.surfaces = collect::surfaces(&model, &mut |surface| self.stages.area(surface));
             self.flows = collect::flows(&self.cx, &model);
             self.report.topology = collect::topology(&model, 0);
+            if self.task.full {
+                for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(&model)) {
+                    row.corners = collect::corners(found);
+                    bounds = row.corners.map_or(bounds, |_| bounds.union(found));
+                }
+            }
         }
+        self.report.bounds = collect::corners(bounds);
         self.shells(&tolerance);
         for (name, value) in self.cx.mesh_values() {
             let mesh = self.cx.mesh(&value);

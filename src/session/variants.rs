@@ -66,7 +66,7 @@ fn literal(cell: &Cell) -> Option<String> {
 }
 
 /// One component of a path on every system.
-fn is_folder_name(name: &str) -> bool {
+pub(super) fn is_folder_name(name: &str) -> bool {
     let forbidden = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
     !name.is_empty() && !name.starts_with('.') && !name.contains(forbidden) && !name.chars().any(char::is_control)
 }

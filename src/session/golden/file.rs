@@ -1,0 +1,471 @@
+//! The golden file: read with a place for everything that is wrong, and written again with its head and comments.
+
+use crate::lang::units::LengthUnit;
+
+use super::line::{Line, parse_line};
+use super::words::{end_of_quote, is_code, kind_of, unquoted};
+
+/// Version of the grammar.
+pub const VERSION: u32 = 1;
+/// Tolerance where the head says none.
+pub const TOLERANCE: f64 = 1e-9;
+
+/// Something wrong in a golden file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flaw {
+    /// Line, from 1.
+    pub line: usize,
+    /// One sentence.
+    pub what: String,
+}
+
+impl Flaw {
+    fn new(line: usize, what: impl Into<String>) -> Self {
+        Self { line, what: what.into() }
+    }
+}
+
+/// `compare "hall.obj" within 1e-6mm`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    /// Path of the output, as the script writes it.
+    pub file: String,
+    /// Largest distance or difference that is none.
+    pub within: f64,
+    /// Its unit; without one it is in the file's.
+    pub unit: Option<LengthUnit>,
+}
+
+/// `case "long": span = 50m, n = 4`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// Name of its section.
+    pub name: String,
+    /// Params and the texts of their literals.
+    pub sets: Vec<(String, String)>,
+}
+
+/// A case and the params it sets; `None` is the model as written.
+pub type Run = (Option<String>, Vec<(String, String)>);
+
+/// Which program wrote the body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Maker {
+    /// Version of loft.
+    pub loft: String,
+    /// Version of its mesher.
+    pub mesher: u32,
+}
+
+impl Maker {
+    /// This program.
+    pub fn this() -> Self {
+        Self { loft: env!("CARGO_PKG_VERSION").to_owned(), mesher: crate::mesh::VERSION }
+    }
+
+    /// `loft 0.4.0 mesher 3`.
+    pub fn text(&self) -> String {
+        format!("loft {} mesher {}", self.loft, self.mesher)
+    }
+}
+
+/// What the head says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Head {
+    /// Its lines as written.
+    raw: Vec<String>,
+    /// Index of `made by` among them.
+    made_at: Option<usize>,
+    /// Who wrote the body.
+    pub made_by: Option<Maker>,
+    /// Relative tolerance of reals; 0 is exact.
+    pub tolerance: Option<f64>,
+    /// Files to compare.
+    pub compares: Vec<Compare>,
+    /// Runs; none: the model as written.
+    pub cases: Vec<Case>,
+}
+
+/// A line of a body with the comments that belong to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Whole-line comments above it.
+    pub above: Vec<String>,
+    /// The comment at its end.
+    pub behind: Option<String>,
+    /// The line.
+    pub line: Line,
+}
+
+/// The lines of one run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section {
+    /// The case; `None` for the model as written.
+    pub case: Option<String>,
+    /// Comments above its `[name]`.
+    pub above: Vec<String>,
+    /// Its lines.
+    pub entries: Vec<Entry>,
+    /// Comments at its end.
+    pub below: Vec<String>,
+}
+
+/// A golden file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Golden {
+    /// What is written by hand.
+    pub head: Head,
+    /// What is compared.
+    pub sections: Vec<Section>,
+}
+
+impl Head {
+    /// The relative tolerance in force.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(TOLERANCE)
+    }
+
+    /// The runs: a name and the params set.
+    pub fn runs(&self) -> Vec<Run> {
+        if self.cases.is_empty() {
+            return vec![(None, Vec::new())];
+        }
+        self.cases.iter().map(|case| (Some(case.name.clone()), case.sets.clone())).collect()
+    }
+
+    /// The head of a golden made from nothing.
+    pub fn fresh() -> Self {
+        let raw = vec![format!("loft golden {VERSION}"), format!("made by {}", Maker::this().text()), "tolerance 1e-9".to_owned()];
+        Self { raw, made_at: Some(1), made_by: Some(Maker::this()), tolerance: Some(TOLERANCE), ..Self::default() }
+    }
+
+    /// Says that this program wrote the body.
+    pub fn sign(&mut self) {
+        let text = format!("made by {}", Maker::this().text());
+        self.made_by = Some(Maker::this());
+        match self.made_at {
+            Some(at) => {
+                let comment = comment_at(&self.raw[at]).map(|c| self.raw[at][c..].to_owned());
+                self.raw[at] = comment.map_or(text.clone(), |c| format!("{text}  {c}"));
+            }
+            None => {
+                let at = self.raw.iter().position(|line| line.trim_start().starts_with("loft ")).map_or(0, |at| at + 1);
+                self.raw.insert(at, text);
+                self.made_at = Some(at);
+            }
+        }
+    }
+}
+
+impl Golden {
+    /// The section of a case.
+    pub fn section(&self, case: Option<&str>) -> Option<&Section> {
+        self.sections.iter().find(|s| s.case.as_deref() == case)
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let mut put = |line: &str| {
+            out.push_str(line);
+            out.push('\n');
+        };
+        self.head.raw.iter().for_each(|line| put(line));
+        for section in &self.sections {
+            put("");
+            section.above.iter().for_each(|line| put(line));
+            if let Some(case) = &section.case {
+                put(&format!("[{case}]"));
+            }
+            for entry in &section.entries {
+                entry.above.iter().for_each(|line| put(line));
+                let line = entry.line.text(self.head.tolerance());
+                put(&entry.behind.as_ref().map_or(line.clone(), |comment| format!("{line}  {comment}")));
+            }
+            section.below.iter().for_each(|line| put(line));
+        }
+        out
+    }
+
+    /// Reads a golden file. Lines of the body that make no sense are left out and told beside it; a head that makes no
+    /// sense is the error.
+    pub fn parse(bytes: &[u8]) -> Result<(Self, Vec<Flaw>), Vec<Flaw>> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            let line = bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count() + 1;
+            vec![Flaw::new(line, "this is not UTF-8 text")]
+        })?;
+        let lines: Vec<&str> = text.strip_prefix('\u{feff}').unwrap_or(text).lines().map(str::trim_end).collect();
+        let mut reader = Reader::default();
+        let body = reader.head(&lines);
+        if !reader.flaws.is_empty() {
+            return Err(reader.flaws);
+        }
+        reader.body(&lines, body);
+        Ok((Self { head: reader.head, sections: reader.sections }, reader.flaws))
+    }
+}
+
+/// Where the comment of a line begins: `//` outside quotes and backquotes, at its start or behind a blank.
+fn comment_at(line: &str) -> Option<usize> {
+    let (mut quote, mut escaped, mut before) = (None, false, ' ');
+    for (at, c) in line.char_indices() {
+        match quote {
+            Some('"') if escaped => escaped = false,
+            Some('"') if c == '\\' => escaped = true,
+            Some(open) if c == open => quote = None,
+            Some(_) => {}
+            None if c == '"' => quote = Some(c),
+            None if c == '/' && before.is_whitespace() && line[at..].starts_with("//") => return Some(at),
+            None => {}
+        }
+        before = c;
+    }
+    None
+}
+
+/// Where the comment behind a diagnostic begins: its message and source may hold anything but two blanks.
+fn comment_behind_message(line: &str) -> Option<usize> {
+    line.find("  //").map(|at| at + 2)
+}
+
+/// A line without its comment, and the comment.
+fn split_comment(line: &str) -> (&str, Option<&str>) {
+    let first = line.split_whitespace().next().unwrap_or("");
+    let at = if is_code(first) { comment_behind_message(line) } else { comment_at(line) };
+    at.map_or((line, None), |at| (line[..at].trim_end(), Some(&line[at..])))
+}
+
+#[derive(Default)]
+struct Reader {
+    head: Head,
+    sections: Vec<Section>,
+    flaws: Vec<Flaw>,
+    /// Comments whose line has not come yet.
+    above: Vec<String>,
+}
+
+const HEAD_WORDS: &[&str] = &["loft", "made", "tolerance", "compare", "case"];
+
+impl Reader {
+    fn flaw(&mut self, line: usize, what: impl Into<String>) {
+        self.flaws.push(Flaw::new(line, what));
+    }
+
+    /// Reads the head; gives the index of the first line of the body.
+    fn head(&mut self, lines: &[&str]) -> usize {
+        let mut body = lines.len();
+        let mut greeted = false;
+        for (k, line) in lines.iter().enumerate() {
+            let (content, _) = split_comment(line.trim_start());
+            let word = content.split_whitespace().next().unwrap_or("");
+            if word.is_empty() {
+                continue;
+            }
+            if !greeted {
+                self.greeting(content, k + 1);
+                greeted = true;
+                if !self.flaws.is_empty() {
+                    return lines.len();
+                }
+            } else if !HEAD_WORDS.contains(&word) {
+                body = k;
+                break;
+            } else if let Err(what) = self.head_line(word, content[word.len()..].trim(), k) {
+                self.flaw(k + 1, what);
+            }
+        }
+        if !greeted {
+            self.flaw(1, format!("a golden file begins with `loft golden {VERSION}`"));
+        }
+        // Comments right above the body, without a blank line between, belong to it.
+        let mut end = body;
+        while end > 0 && end <= lines.len() && lines[end - 1].trim_start().starts_with("//") && body < lines.len() {
+            end -= 1;
+        }
+        if end > 0 && !lines[end - 1].is_empty() {
+            end = body;
+        }
+        self.head.raw = lines[..end].iter().map(|line| (*line).to_owned()).collect();
+        while self.head.raw.last().is_some_and(String::is_empty) {
+            self.head.raw.pop();
+        }
+        end
+    }
+
+    fn greeting(&mut self, content: &str, line: usize) {
+        let words: Vec<&str> = content.split_whitespace().collect();
+        match words.as_slice() {
+            ["loft", "golden", version] if version.parse() == Ok(VERSION) => {}
+            ["loft", "golden", version] if version.parse::<u32>().is_ok() => {
+                self.flaw(line, format!("this is a golden file of version {version}, and this loft reads version {VERSION}"));
+            }
+            _ => self.flaw(line, format!("a golden file begins with `loft golden {VERSION}`")),
+        }
+    }
+
+    fn head_line(&mut self, word: &str, rest: &str, k: usize) -> Result<(), String> {
+        match word {
+            "loft" => return Err("`loft golden` stands there twice".to_owned()),
+            "made" => {
+                if self.head.made_at.replace(k).is_some() {
+                    return Err("`made by` stands there twice".to_owned());
+                }
+                self.head.made_by = Some(maker(rest).ok_or("expected `made by loft 0.1.0 mesher 1`")?);
+            }
+            "tolerance" => {
+                let found = crate::base::text::parse_real(rest).filter(|x| x.is_finite() && *x >= 0.0);
+                let found = found.ok_or("expected a number of at least 0: `tolerance 1e-9`")?;
+                if self.head.tolerance.replace(found).is_some() {
+                    return Err("`tolerance` stands there twice".to_owned());
+                }
+            }
+            "compare" => {
+                let found = compare(rest)?;
+                if self.head.compares.iter().any(|c| c.file == found.file) {
+                    return Err(format!("{:?} is compared twice", found.file));
+                }
+                self.head.compares.push(found);
+            }
+            _ => {
+                let found = case(rest)?;
+                if self.head.cases.iter().any(|c| c.name.to_lowercase() == found.name.to_lowercase()) {
+                    return Err(format!("there is a case {:?} already", found.name));
+                }
+                self.head.cases.push(found);
+            }
+        }
+        Ok(())
+    }
+
+    fn body(&mut self, lines: &[&str], start: usize) {
+        for (k, line) in lines.iter().enumerate().skip(start) {
+            let content = line.trim_start();
+            if content.is_empty() {
+                continue;
+            }
+            if content.starts_with("//") {
+                self.above.push(content.to_owned());
+                continue;
+            }
+            let (content, comment) = split_comment(content);
+            if content.starts_with('[') {
+                self.section(content, comment, k + 1);
+            } else if let Err(what) = self.entry(content, comment) {
+                self.flaw(k + 1, what);
+            }
+        }
+        let above = std::mem::take(&mut self.above);
+        match self.sections.last_mut() {
+            Some(section) => section.below = above,
+            None => self.head.raw.extend(above),
+        }
+    }
+
+    fn section(&mut self, content: &str, comment: Option<&str>, line: usize) {
+        let Some(name) = content.strip_prefix('[').and_then(|t| t.strip_suffix(']')).map(str::trim).filter(|n| !n.is_empty()) else {
+            return self.flaw(line, "expected the name of a case: `[long]`");
+        };
+        if self.sections.iter().any(|s| s.case.as_deref() == Some(name)) {
+            self.flaw(line, format!("there is a section [{name}] already"));
+        }
+        let mut above = std::mem::take(&mut self.above);
+        above.extend(comment.map(str::to_owned));
+        self.sections.push(Section { case: Some(name.to_owned()), above, ..Section::default() });
+    }
+
+    fn entry(&mut self, content: &str, comment: Option<&str>) -> Result<(), String> {
+        let word = content.split_whitespace().next().unwrap_or("");
+        if HEAD_WORDS.contains(&word) {
+            return Err(format!("`{word}` belongs into the head, above the first line of results"));
+        }
+        if !is_code(word) && kind_of(word).is_none() {
+            return Err(format!("no line of a golden file begins with `{word}`"));
+        }
+        let line = parse_line(content)?;
+        if self.sections.is_empty() {
+            self.sections.push(Section::default());
+        }
+        let above = std::mem::take(&mut self.above);
+        if let Some(section) = self.sections.last_mut() {
+            section.entries.push(Entry { above, behind: comment.map(str::to_owned), line });
+        }
+        Ok(())
+    }
+}
+
+fn maker(rest: &str) -> Option<Maker> {
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    match words.as_slice() {
+        ["by", "loft", version, "mesher", mesher] => Some(Maker { loft: (*version).to_owned(), mesher: mesher.parse().ok()? }),
+        _ => None,
+    }
+}
+
+fn compare(rest: &str) -> Result<Compare, String> {
+    let wanted = || "expected `compare \"hall.obj\" within 1e-6mm`".to_owned();
+    let end = end_of_quote(rest).filter(|_| rest.starts_with('"')).ok_or_else(wanted)?;
+    let file = unquoted(&rest[..end]).map_err(|_| wanted())?;
+    let amount = rest[end..].trim_start().strip_prefix("within").ok_or_else(wanted)?.trim();
+    let (number, unit) = match crate::lang::units::LENGTHS.iter().filter(|u| amount.ends_with(u.name)).max_by_key(|u| u.name.len()) {
+        Some(unit) => (amount[..amount.len() - unit.name.len()].trim(), Some(*unit)),
+        None => (amount, None),
+    };
+    let within = crate::base::text::parse_real(number).filter(|x| x.is_finite() && *x >= 0.0).ok_or_else(wanted)?;
+    let path = std::path::Path::new(&file);
+    if file.is_empty() || !path.components().all(|part| matches!(part, std::path::Component::Normal(_))) {
+        return Err(format!("{file:?} does not lie in the folder of outputs"));
+    }
+    Ok(Compare { file, within, unit })
+}
+
+fn case(rest: &str) -> Result<Case, String> {
+    let wanted = || "expected `case \"long\": span = 50m, n = 4`".to_owned();
+    let end = end_of_quote(rest).filter(|_| rest.starts_with('"')).ok_or_else(wanted)?;
+    let name = unquoted(&rest[..end]).map_err(|_| wanted())?;
+    if name != name.trim() || name.contains("//") || name.contains(['[', ']']) || !crate::session::variants::is_folder_name(&name) {
+        return Err(format!("{name:?} cannot name a case: its stored files stand in a folder of that name"));
+    }
+    let rest = rest[end..].trim_start();
+    let values = match rest.strip_prefix(':') {
+        Some(values) => values.trim(),
+        None if rest.is_empty() => "",
+        None => return Err(wanted()),
+    };
+    let mut sets: Vec<(String, String)> = Vec::new();
+    for part in split_values(values) {
+        let (param, value) = part.split_once('=').ok_or_else(wanted)?;
+        let (param, value) = (param.trim().to_owned(), value.trim().to_owned());
+        if param.is_empty() || value.is_empty() {
+            return Err(wanted());
+        }
+        if sets.iter().any(|s| s.0 == param) {
+            return Err(format!("`{param}` is set twice"));
+        }
+        sets.push((param, value));
+    }
+    Ok(Case { name, sets })
+}
+
+/// Parts between commas, those inside brackets and quotes aside.
+fn split_values(text: &str) -> Vec<&str> {
+    let (mut parts, mut start, mut depth, mut quote, mut escaped) = (Vec::new(), 0, 0_usize, false, false);
+    for (at, c) in text.char_indices() {
+        match c {
+            _ if quote && escaped => escaped = false,
+            '\\' if quote => escaped = true,
+            '"' => quote = !quote,
+            _ if quote => {}
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth = depth.saturating_sub(1),
+            ',' if depth == 0 => {
+                parts.push(&text[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    if !text[start..].trim().is_empty() || !parts.is_empty() {
+        parts.push(&text[start..]);
+    }
+    parts
+}

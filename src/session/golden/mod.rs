@@ -1,0 +1,25 @@
+//! Golden tests of the user's own models: what a run finds as short readable text, compared with what it found before.
+//!
+//! `discover` finds models, `run` runs them through [`crate::session::run`] in scratch folders, `section` turns outcomes
+//! into lines, `file` reads and writes the golden, `compare` matches lines, `tell` says in words what moved; `copies`
+//! compares exported files, meshes as geometry.
+
+mod compare;
+mod copies;
+mod discover;
+mod file;
+mod geometry;
+mod junit;
+mod line;
+mod run;
+mod scratch;
+mod section;
+mod tell;
+mod tokens;
+mod words;
+
+pub use discover::{State, Test, discover};
+pub use file::{Flaw, Golden, Maker};
+pub use junit::text as junit_text;
+pub use run::{CaseResult, Settings, Verdict, name_of, names, run_all, run_one};
+pub use tell::Said;

@@ -1,0 +1,376 @@
+//! The words of a golden file: every kind of line with its words and what stands behind each of them.
+
+use crate::lang::units::{length_unit, number_text};
+
+/// What a real measures; its allowed change grows with the model's size to this power.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// A length, area or volume by its power, in model units.
+    Length(u8),
+    /// An angle, degrees.
+    Angle,
+    /// A bare number.
+    Ratio,
+}
+
+/// What stands behind a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A phrase, compared letter by letter.
+    Word,
+    /// A whole number, compared exactly.
+    Count,
+    /// A real with its unit, compared within the tolerance.
+    Real(Measure),
+    /// `name:count …`, compared by name.
+    Groups,
+    /// `(x, y, z) (x, y, z) unit`: two corners of a box.
+    Corners,
+    /// `pass` or `fail`, standing alone.
+    Verdict,
+    /// A stretch of source between backquotes.
+    Source,
+}
+
+/// One word of a line.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// As written; empty for a value that stands alone.
+    pub word: &'static str,
+    /// What stands behind it.
+    pub kind: Kind,
+}
+
+/// A kind of line.
+#[derive(Debug)]
+pub struct LineKind {
+    /// Its first word.
+    pub word: &'static str,
+    /// Whether a name follows.
+    pub named: bool,
+    /// Whether what is said of it in words begins with the kind: `mesh fine: …`, not `roof: …`.
+    pub spoken: bool,
+    /// Its words, in the order of writing.
+    pub fields: &'static [Field],
+}
+
+const fn field(word: &'static str, kind: Kind) -> Field {
+    Field { word, kind }
+}
+
+const fn count(word: &'static str) -> Field {
+    field(word, Kind::Count)
+}
+
+const fn length(word: &'static str, power: u8) -> Field {
+    field(word, Kind::Real(Measure::Length(power)))
+}
+
+/// All kinds of lines but diagnostics, in the order of writing.
+pub const KINDS: &[LineKind] = &[
+    LineKind { word: "network", named: false, spoken: true, fields: &[count("curves"), count("links"), count("nodes"), count("modeling")] },
+    LineKind { word: "curve", named: true, spoken: false, fields: &[field("kind", Kind::Word), length("length", 1), count("links")] },
+    LineKind { word: "modeling", named: true, spoken: true, fields: &[length("length", 1), count("links"), count("kinks")] },
+    LineKind {
+        word: "topology",
+        named: false,
+        spoken: true,
+        fields: &[count("patches"), count("edges"), count("vertices"), count("shells")],
+    },
+    LineKind {
+        word: "surface",
+        named: true,
+        spoken: false,
+        fields: &[
+            field("kind", Kind::Word),
+            field("flow", Kind::Word),
+            count("patches"),
+            count("edges"),
+            count("vertices"),
+            length("area", 2),
+            field("box", Kind::Corners),
+        ],
+    },
+    LineKind {
+        word: "shell",
+        named: true,
+        spoken: false,
+        fields: &[
+            count("faces"),
+            field("closed", Kind::Word),
+            length("area", 2),
+            length("volume", 3),
+            length("gap", 1),
+            field("angle", Kind::Real(Measure::Angle)),
+            field("box", Kind::Corners),
+        ],
+    },
+    LineKind {
+        word: "mesh",
+        named: true,
+        spoken: true,
+        fields: &[
+            count("nodes"),
+            count("triangles"),
+            count("quads"),
+            count("order"),
+            field("min_angle", Kind::Real(Measure::Angle)),
+            field("max_angle", Kind::Real(Measure::Angle)),
+            field("mean_quality", Kind::Real(Measure::Ratio)),
+            field("min_quality", Kind::Real(Measure::Ratio)),
+            field("max_aspect", Kind::Real(Measure::Ratio)),
+            length("area", 2),
+            length("chord_error", 1),
+            field("watertight", Kind::Word),
+            field("groups", Kind::Groups),
+            field("hash", Kind::Word),
+        ],
+    },
+    LineKind { word: "check", named: true, spoken: true, fields: &[field("", Kind::Verdict)] },
+];
+
+/// Words of a diagnostic, behind its message.
+pub const DIAGNOSTIC: &[Field] = &[field("at", Kind::Source), field("in", Kind::Word), count("more")];
+
+/// Whether the first word of a line is the code of a diagnostic.
+pub fn is_code(word: &str) -> bool {
+    let bytes = word.as_bytes();
+    bytes.len() == 4 && matches!(bytes[0], b'E' | b'W' | b'N') && bytes[1..].iter().all(u8::is_ascii_digit)
+}
+
+/// The kind of line that begins with this word.
+pub fn kind_of(word: &str) -> Option<&'static LineKind> {
+    KINDS.iter().find(|kind| kind.word == word)
+}
+
+/// The fields of a line that begins with this word.
+pub fn fields_of(word: &str) -> &'static [Field] {
+    if is_code(word) { DIAGNOSTIC } else { kind_of(word).map_or(&[], |kind| kind.fields) }
+}
+
+/// What stands behind a word of a line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A phrase, a verdict or a stretch of source.
+    Word(String),
+    /// A whole number.
+    Count(u64),
+    /// A number and its unit (empty for a bare one).
+    Real(f64, String),
+    /// Names with counts.
+    Groups(Vec<(String, u64)>),
+    /// Two corners and their unit.
+    Corners([[f64; 3]; 2], String),
+}
+
+/// The unit of a measure in a model of this unit.
+pub fn unit_of(measure: Measure, model: &str) -> String {
+    match measure {
+        Measure::Length(1) => model.to_owned(),
+        Measure::Length(power) => format!("{model}{power}"),
+        Measure::Angle => "deg".to_owned(),
+        Measure::Ratio => String::new(),
+    }
+}
+
+/// A number with so many significant digits, or with all it has.
+pub fn rounded(x: f64, digits: usize) -> String {
+    let cut: f64 = format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x);
+    number_text(cut)
+}
+
+impl Value {
+    /// As written in a golden file, reals with so many significant digits.
+    pub fn text(&self, kind: Kind, digits: usize) -> String {
+        let number = |x: &f64| rounded(*x, digits);
+        let with_unit = |text: String, unit: &str| if unit.is_empty() { text } else { format!("{text} {unit}") };
+        match self {
+            Self::Word(word) if kind == Kind::Source => format!("`{word}`"),
+            Self::Word(word) => phrase(word),
+            Self::Count(n) => n.to_string(),
+            Self::Real(x, unit) => with_unit(number(x), unit),
+            Self::Groups(groups) => groups.iter().map(|(name, n)| format!("{}:{n}", label(name))).collect::<Vec<_>>().join(" "),
+            Self::Corners(corners, unit) => {
+                let point = |p: &[f64; 3]| format!("({})", p.iter().map(number).collect::<Vec<_>>().join(", "));
+                with_unit(format!("{} {}", point(&corners[0]), point(&corners[1])), unit)
+            }
+        }
+    }
+
+    /// What a text says; the error is what was expected instead.
+    pub fn parse(kind: Kind, text: &str) -> Result<Self, String> {
+        match kind {
+            Kind::Word => Ok(Self::Word(if text.starts_with('"') { unquoted(text)? } else { text.to_owned() })),
+            Kind::Verdict => Ok(Self::Word(text.to_owned())),
+            Kind::Source => match text.strip_prefix('`').and_then(|t| t.strip_suffix('`')) {
+                Some(inside) => Ok(Self::Word(inside.to_owned())),
+                None => Err("a stretch of the script between backquotes".to_owned()),
+            },
+            Kind::Count => text.parse().map(Self::Count).map_err(|_| "a whole number".to_owned()),
+            Kind::Real(measure) => real(measure, text),
+            Kind::Groups => groups(text),
+            Kind::Corners => corners(text).ok_or_else(|| "two corners and a unit: `(0, 0, 0) (4, 3, 1) m`".to_owned()),
+        }
+    }
+}
+
+fn number(text: &str) -> Option<f64> {
+    crate::base::text::parse_real(text).filter(|x| x.is_finite())
+}
+
+fn real(measure: Measure, text: &str) -> Result<Value, String> {
+    let (value, unit) = text.split_once(' ').unwrap_or((text, ""));
+    let unit = unit.trim();
+    let (known, example) = match measure {
+        Measure::Length(power) => {
+            let tail = if power == 1 { String::new() } else { power.to_string() };
+            (unit.strip_suffix(tail.as_str()).is_some_and(|name| length_unit(name).is_some()), format!("12.5 m{tail}"))
+        }
+        Measure::Angle => (unit == "deg", "12.5 deg".to_owned()),
+        Measure::Ratio => (unit.is_empty(), "0.95".to_owned()),
+    };
+    match number(value) {
+        Some(x) if known => Ok(Value::Real(x, unit.to_owned())),
+        _ => Err(format!("a number{} like `{example}`", if measure == Measure::Ratio { "" } else { " and its unit" })),
+    }
+}
+
+fn groups(text: &str) -> Result<Value, String> {
+    let wanted = || "names with counts like `supports:12 \"west wall\":4`".to_owned();
+    let mut found: Vec<(String, u64)> = Vec::new();
+    let mut rest = text;
+    while !rest.is_empty() {
+        let (name, after) = if rest.starts_with('"') {
+            let end = end_of_quote(rest).ok_or_else(wanted)?;
+            (unquoted(&rest[..end])?, rest[end..].strip_prefix(':').ok_or_else(wanted)?)
+        } else {
+            let (name, after) = rest.split_once(':').ok_or_else(wanted)?;
+            (name.to_owned(), after)
+        };
+        let (count, after) = after.split_once(' ').unwrap_or((after, ""));
+        found.push((name, count.parse().map_err(|_| wanted())?));
+        rest = after.trim_start();
+    }
+    if let Some((_, (name, _))) = found.iter().enumerate().find(|(k, g)| found[..*k].iter().any(|o| o.0 == g.0)) {
+        return Err(format!("each group once, and `{name}` stands there twice"));
+    }
+    if found.is_empty() { Err(wanted()) } else { Ok(Value::Groups(found)) }
+}
+
+fn corners(text: &str) -> Option<Value> {
+    let (first, rest) = text.strip_prefix('(')?.split_once(')')?;
+    let (second, unit) = rest.trim_start().strip_prefix('(')?.split_once(')')?;
+    let point = |inside: &str| {
+        let parts: Vec<f64> = inside.split(',').map(|x| number(x.trim())).collect::<Option<_>>()?;
+        <[f64; 3]>::try_from(parts).ok()
+    };
+    let unit = unit.trim();
+    length_unit(unit)?;
+    Some(Value::Corners([point(first)?, point(second)?], unit.to_owned()))
+}
+
+/// A name as a line's head or a group holds it: quoted where it is more than one plain word.
+pub fn label(name: &str) -> String {
+    let plain = !name.is_empty()
+        && !name.starts_with("//")
+        && !name.contains(|c: char| c.is_whitespace() || c.is_control() || "\"`:\\".contains(c));
+    if plain { name.to_owned() } else { quoted(name) }
+}
+
+/// A phrase: quoted only where it could be misread.
+fn phrase(text: &str) -> String {
+    let odd = text.is_empty() || text != text.trim() || text.contains("  ") || text.contains("//") || text.starts_with('"');
+    if odd || text.contains(char::is_control) { quoted(text) } else { text.to_owned() }
+}
+
+/// Between quotes, with `\"`, `\\` and `\u{…}` for what cannot stand there.
+pub fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            '\n' => out.push_str("\\n"),
+            c if c.is_control() => out.push_str(&format!("\\u{{{:x}}}", c as u32)),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// Bytes up to behind the closing quote of a text that begins with one.
+pub fn end_of_quote(text: &str) -> Option<usize> {
+    let mut escaped = false;
+    for (at, c) in text.char_indices().skip(1) {
+        match c {
+            '"' if !escaped => return Some(at + 1),
+            '\\' if !escaped => escaped = true,
+            _ => escaped = false,
+        }
+    }
+    None
+}
+
+/// The text between quotes.
+pub fn unquoted(text: &str) -> Result<String, String> {
+    let inside = match end_of_quote(text) {
+        Some(end) if end == text.len() && end >= 2 => &text[1..end - 1],
+        _ => return Err("a text between quotes".to_owned()),
+    };
+    let mut out = String::new();
+    let mut letters = inside.chars();
+    while let Some(c) = letters.next() {
+        if c != '\\' {
+            out.push(c);
+            continue;
+        }
+        match letters.next() {
+            Some('n') => out.push('\n'),
+            Some('u') => {
+                let code: String = letters.by_ref().skip_while(|c| *c == '{').take_while(|c| *c != '}').collect();
+                let found = u32::from_str_radix(&code, 16).ok().and_then(char::from_u32);
+                out.push(found.ok_or("`\\u{…}` with a character's number")?);
+            }
+            Some(c) => out.push(c),
+            None => return Err("something behind `\\`".to_owned()),
+        }
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(kind: Kind, text: &str) {
+        let value = Value::parse(kind, text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(value.text(kind, 17), text);
+    }
+
+    #[test]
+    fn values_read_back() {
+        check(Kind::Real(Measure::Length(2)), "9.424777961 m2");
+        check(Kind::Real(Measure::Angle), "38.2 deg");
+        check(Kind::Groups, "supports:12 \"west \\\"wall\\\"\":4");
+        check(Kind::Corners, "(0, -1.5, 0) (4, 1e300, 1) mm");
+        check(Kind::Source, "`near A { size: 20mm }`");
+        check(Kind::Word, "degenerate trilateral closed in u");
+        check(Kind::Count, "63");
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let said = |kind, text| Value::parse(kind, text).unwrap_err();
+        assert_eq!(said(Kind::Count, "63 triangles 96"), "a whole number");
+        assert_eq!(said(Kind::Real(Measure::Length(2)), "9.4 m"), "a number and its unit like `12.5 m2`");
+        assert_eq!(said(Kind::Real(Measure::Length(1)), "nan m"), "a number and its unit like `12.5 m`");
+        assert_eq!(said(Kind::Groups, "a:1 a:2"), "each group once, and `a` stands there twice");
+    }
+
+    #[test]
+    fn any_text_survives_its_quotes() {
+        for text in ["", "a", "\"", "\\", "a\nb\t\u{1b}", "지붕 // x", "`x`", "a\\u{"] {
+            assert_eq!(unquoted(&quoted(text)).as_deref(), Ok(text));
+        }
+    }
+}
