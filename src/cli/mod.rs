@@ -4,6 +4,7 @@ mod check;
 mod completions;
 mod doc;
 mod explain;
+mod fmt;
 mod interrupt;
 mod later;
 mod model;
@@ -36,7 +37,17 @@ pub struct Command {
 
 /// All subcommands, in the order of the help.
 const COMMANDS: &[&[Command]] = &[
-    &[run::COMMAND, check::COMMAND, render::COMMAND, test::COMMAND, new::COMMAND, explain::COMMAND, doc::COMMAND, completions::COMMAND],
+    &[
+        run::COMMAND,
+        check::COMMAND,
+        render::COMMAND,
+        test::COMMAND,
+        new::COMMAND,
+        fmt::COMMAND,
+        explain::COMMAND,
+        doc::COMMAND,
+        completions::COMMAND,
+    ],
     later::COMMANDS,
 ];
 

@@ -13,6 +13,7 @@ mod drafts;
 pub mod eval;
 mod expr;
 mod faults;
+pub mod fmt;
 mod imports;
 mod keys;
 mod later;

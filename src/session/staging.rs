@@ -106,6 +106,11 @@ impl Staging {
         Ok(placed)
     }
 
+    /// Gives the files that are staged these permissions, as those they take the place of have.
+    pub fn permit(&self, permissions: &fs::Permissions) -> io::Result<()> {
+        self.0.files().iter().try_for_each(|staged| fs::set_permissions(&staged.temporary, permissions.clone()))
+    }
+
     /// Removes everything that was not committed.
     pub fn discard(&self) {
         self.0.remove_all();

@@ -9,7 +9,7 @@ pub const SCRIPT: &str = r#"// A barrel vault: change `span`, run it again, or s
 
 units m
 
-param span = 8m in 4m to 40m        // across the vault
+param span = 8m in 4m to 40m  // across the vault
 param rise = span / 4
 param bays = 3 in 1 to 20
 

@@ -19,6 +19,7 @@ mod split;
 mod token;
 mod tree;
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use pest::Parser as _;
@@ -28,10 +29,10 @@ use crate::lang::diag::{Diagnostic, FileId};
 use crate::lang::names::Names;
 use ast::{Bound, Script, Span};
 use mistake::Mistake;
-use scan::Tokens;
+pub(crate) use scan::Tokens;
 use shape::{Filler, Shape, Shapes};
 use split::Piece;
-use token::Kind;
+pub(crate) use token::Kind;
 
 /// What pest makes of `grammar/loft.pest`.
 #[allow(missing_docs)]
@@ -46,28 +47,43 @@ use grammar::{Grammar, Rule};
 ///
 /// The reports are sorted by place. The tree refers to `names`, where new names are entered.
 pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
+    let Read { script, found, .. } = read(source, file, names);
+    (script, found)
+}
+
+/// A script as the formatter needs it: with its tokens and comments.
+pub(crate) struct Read {
+    /// What [`parse`] gives.
+    pub script: Script,
+    /// What is wrong, sorted by place.
+    pub found: Vec<Diagnostic>,
+    /// All tokens; none when the source is too large.
+    pub tokens: Tokens,
+    /// Tokens of the declarations that parsed, in order.
+    pub sound: Vec<Range<usize>>,
+}
+
+/// Parses a script and keeps its tokens.
+pub(crate) fn read(source: &str, file: FileId, names: &mut Names) -> Read {
     if source.len() as u64 > SOURCE_BYTES {
-        let mistake = Mistake::TooLarge { bytes: source.len() };
-        return (Script::default(), vec![mistake.diagnose(source, file)]);
+        let found = vec![Mistake::TooLarge { bytes: source.len() }.diagnose(source, file)];
+        return Read { script: Script::default(), found, tokens: Tokens::default(), sound: Vec::new() };
     }
     let tokens = scan::scan(source);
     let (pieces, mistakes) = split::split(&tokens);
-    let mut parser =
-        Parser { source, file, tokens: &tokens, shapes: Shapes::default(), names, script: Script::default(), found: Vec::new() };
-    parser.script.declarations.reserve(pieces.len());
-    parser.mistakes(mistakes);
-    let (mut own, mut docs) = (tokens.mistakes.iter().peekable(), 0);
-    for mut piece in pieces {
-        let end = piece.tokens.end.checked_sub(1).map_or(0, |last| tokens.ends[last]);
-        while own.next_if(|m| m.place().start < end).is_some() {
-            piece.broken = true;
-        }
-        let doc = parser.doc(&mut docs, piece.tokens.start);
-        parser.piece(&piece, doc);
+    let (script, found, sound) = Parser {
+        source,
+        file,
+        tokens: &tokens,
+        shapes: Shapes::default(),
+        names,
+        script: Script::default(),
+        found: Vec::new(),
+        sound: Vec::with_capacity(pieces.len()),
     }
-    parser.end()
+    .run(pieces, mistakes);
+    Read { script, found, tokens, sound }
 }
-
 /// Where each token of a script stands; comments and blanks have none.
 pub(crate) fn token_spans(source: &str) -> Vec<Span> {
     let tokens = scan::scan(source);
@@ -90,9 +106,26 @@ struct Parser<'a> {
     names: &'a mut Names,
     script: Script,
     found: Vec<Diagnostic>,
+    /// Tokens of the declarations.
+    sound: Vec<Range<usize>>,
 }
 
 impl Parser<'_> {
+    fn run(mut self, pieces: Vec<Piece>, mistakes: Vec<Mistake>) -> (Script, Vec<Diagnostic>, Vec<Range<usize>>) {
+        self.script.declarations.reserve(pieces.len());
+        self.mistakes(mistakes);
+        let (mut own, mut docs) = (self.tokens.mistakes.iter().peekable(), 0);
+        for mut piece in pieces {
+            let end = piece.tokens.end.checked_sub(1).map_or(0, |last| self.tokens.ends[last]);
+            while own.next_if(|m| m.place().start < end).is_some() {
+                piece.broken = true;
+            }
+            let doc = self.doc(&mut docs, piece.tokens.start);
+            self.piece(&piece, doc);
+        }
+        self.end()
+    }
+
     /// Reports the mistakes of scanner and splitter; one cause, one report.
     fn mistakes(&mut self, split: Vec<Mistake>) {
         let own = &self.tokens.mistakes;
@@ -159,6 +192,7 @@ impl Parser<'_> {
         }
         let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
         self.script.declarations.push(declaration);
+        self.sound.push(base..base + shape.declaration.span.end as usize + 1);
     }
 
     /// A `let` at the start of a line is the local form when a value is missing before it. In a broken declaration it
@@ -228,13 +262,13 @@ impl Parser<'_> {
     }
 
     /// Reports in order of place; behind a comment without end they say nothing.
-    fn end(self) -> (Script, Vec<Diagnostic>) {
+    fn end(self) -> (Script, Vec<Diagnostic>, Vec<Range<usize>>) {
         let mut found = self.found;
         if let Some(quiet) = self.tokens.quiet_from {
             found.retain(|d| d.code.0 == "E104" || d.labels.first().is_none_or(|l| l.span.start < quiet));
         }
         found.sort_by_key(|d| d.labels.first().map(|l| l.span.start));
-        (self.script, found)
+        (self.script, found, self.sound)
     }
 }
 
