@@ -27,6 +27,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("tobj", &["src/io/obj"]),
     ("csv", &["src/io/table"]),
     ("ryu", &["src/base/text.rs"]),
+    ("unicode_width", &["src/lang/fmt/"]),
     ("png", &["src/draw/"]),
     ("pest", &["src/lang/syntax/"]),
     ("pest_derive", &["src/lang/syntax/"]),
@@ -43,7 +44,8 @@ const DOORS: &[(&str, &[&str])] = &[
 const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "eprintln!"];
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
-/// fault of the kernel, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, and all words with their documentation.
+/// fault of the kernel, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, all words with their documentation,
+/// and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_500),
     ("geometry", 5_500),
@@ -53,7 +55,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("mesh", 6_500),
     ("io", 6_000),
     ("draw", 3_000),
-    ("lang", 16_500),
+    ("lang", 18_500),
     ("session", 8_000),
     ("cli", 3_500),
 ];
