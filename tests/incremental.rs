@@ -10,7 +10,7 @@ use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::json::report_text;
 use lofting::session::kept::Kept;
-use lofting::session::run::{Outcome, Task, run, run_again};
+use lofting::session::run::{Again, Outcome, Task, run, run_again};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 /// A folder with the examples' data beside the script.
@@ -46,7 +46,7 @@ impl Folder {
         };
         let job = Job::default();
         let outcome: Outcome = match kept {
-            Some(kept) => guarded(|| run_again(&task, &disk, &job, kept)).unwrap(),
+            Some(kept) => guarded(|| run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {} })).unwrap(),
             None => guarded(|| run(&task, &disk, &job)).unwrap(),
         };
         let mut files: Vec<(String, Vec<u8>)> =

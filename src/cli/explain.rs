@@ -1,4 +1,4 @@
-//! `loft explain CODE`.
+//! `loft explain CODE` and `loft explain MODEL NAME`.
 
 use clap::{Arg, ArgMatches};
 
@@ -6,16 +6,24 @@ use super::{Command, Exit, Terminal};
 use crate::lang::codes;
 
 /// The long form of a diagnostic.
-pub const COMMAND: Command = Command { name: "explain", about: "What a diagnostic means and how to mend it", arguments, run };
+pub const COMMAND: Command =
+    Command { name: "explain", about: "What a diagnostic means, or how a name of a model came about", arguments, run };
 
 fn arguments(command: clap::Command) -> clap::Command {
-    command.arg(Arg::new("what").value_name("CODE").required(true).num_args(1..=2).help("A code, for example E501"))
+    command.arg(
+        Arg::new("what")
+            .value_name("CODE | MODEL NAME")
+            .required(true)
+            .num_args(1..=2)
+            .help("A code, for example E501; or a script and a name or expression of it"),
+    )
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     let what: Vec<&String> = matches.get_many("what").into_iter().flatten().collect();
-    let [code] = what.as_slice() else {
-        return terminal.wrong_usage("explaining a name of a model is not in this version");
+    let code = match what.as_slice() {
+        [model, name] => return explain_name(model, name, terminal),
+        what => what[0],
     };
     let wanted = code.to_uppercase();
     if let Some(page) = codes::explain(&wanted) {
@@ -27,5 +35,17 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     match codes::CODES.iter().find(|info| !number.is_empty() && &info.code[1..] == number) {
         Some(info) => terminal.wrong_usage(&format!("there is no code {wanted}; did you mean {}?", info.code)),
         None => terminal.wrong_usage(&format!("there is no code {wanted}")),
+    }
+}
+
+/// How a name of a model came about.
+fn explain_name(model: &str, name: &str, terminal: &Terminal) -> Exit {
+    match super::repl::opened(model, terminal) {
+        Ok(mut notebook) => {
+            let answer = notebook.explain(name);
+            terminal.print(&super::repl::text_of(&answer, terminal.color_out));
+            if answer.failed { Exit::Errors } else { Exit::Fine }
+        }
+        Err(exit) => exit,
     }
 }

@@ -17,6 +17,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 struct Watched {
     job: Arc<Job>,
     outputs: Vec<Staging>,
+    /// The program goes on after an interrupted job.
+    session: bool,
 }
 
 static WATCHED: OnceLock<Mutex<Watched>> = OnceLock::new();
@@ -27,14 +29,31 @@ fn watched() -> std::sync::MutexGuard<'static, Watched> {
 
 /// The job that Ctrl-C stops. Work that does not notice in time is ended without leaving a half file.
 pub fn job() -> Arc<Job> {
-    // Without a handler the system ends the program at Ctrl-C; only temporary files stay then.
+    handle();
+    watched().job.clone()
+}
+
+/// The job of the next entry of a session; Ctrl-C stops it and nothing else.
+pub fn entry_job() -> Arc<Job> {
+    handle();
+    let mut watched = watched();
+    watched.session = true;
+    watched.job = Arc::default();
+    watched.job.clone()
+}
+
+fn handle() {
+    // Without a handler the system ends the program at Ctrl-C; only temporary files stay then. A second call changes
+    // nothing.
     let _ = ctrlc::set_handler(|| {
         watched().job.cancel();
+        if watched().session {
+            return;
+        }
         thread::sleep(PATIENCE);
         watched().outputs.iter().for_each(Staging::discard);
         std::process::exit(Exit::Interrupted as i32);
     });
-    watched().job.clone()
 }
 
 /// Registers outputs that must not stay half written.

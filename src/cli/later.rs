@@ -8,7 +8,6 @@ const fn later(name: &'static str, about: &'static str) -> Command {
 
 /// Words that answer "not in this version".
 pub const COMMANDS: &[Command] = &[
-    later("repl", "Explore a model (not in this version)"),
     later("view", "Live page in the browser (not in this version)"),
     later("lsp", "Language server (not in this version)"),
     later("diff", "What changed between two models (not in this version)"),

@@ -12,6 +12,7 @@ mod new;
 mod options;
 mod progress;
 mod render;
+pub mod repl;
 mod run;
 mod summary;
 mod terminal;
@@ -40,6 +41,7 @@ const COMMANDS: &[&[Command]] = &[
     &[
         run::COMMAND,
         check::COMMAND,
+        repl::COMMAND,
         render::COMMAND,
         test::COMMAND,
         new::COMMAND,

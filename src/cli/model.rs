@@ -13,8 +13,9 @@ use crate::io::FileError;
 use crate::session::disk::{Disk, Outputs, read_limited, read_stream};
 use crate::session::guard::{Bug, guarded};
 use crate::session::json::{cases_text, report_text};
+use crate::session::kept::Kept;
 use crate::session::report::{Case, Cases, VERSION};
-use crate::session::run::{self, Outcome, Task};
+use crate::session::run::{self, Again, Outcome, Task};
 
 /// One script with all its rows.
 pub struct Model<'a> {
@@ -87,7 +88,13 @@ fn said(name: &str, error: &FileError) -> String {
 }
 
 /// Runs one case behind the wall and shows what it said; `None` after a bug.
-fn case(model: &Model, disk: &Disk, sets: &[(String, String)], options: &Options, job: &Arc<Job>) -> Result<Outcome, Bug> {
+fn case(
+    model: &Model,
+    (disk, sets): (&Disk, &[(String, String)]),
+    options: &Options,
+    job: &Arc<Job>,
+    kept: Option<&mut Kept>,
+) -> Result<Outcome, Bug> {
     interrupt::protect(disk.staging());
     let started = Instant::now();
     let clock = move || started.elapsed().as_secs_f64();
@@ -101,7 +108,10 @@ fn case(model: &Model, disk: &Disk, sets: &[(String, String)], options: &Options
         picture: None,
         clock: &clock,
     };
-    guarded(|| run::run(&task, disk, job))
+    guarded(|| match kept {
+        Some(kept) => run::run_again(&task, disk, job, Again { kept, light: false, look: &mut |_| {} }),
+        None => run::run(&task, disk, job),
+    })
 }
 
 /// Says that loft has a bug.
@@ -136,7 +146,7 @@ fn one(
     terminal: &Terminal,
 ) -> (Exit, Vec<Case>) {
     let watched = terminal.watched && !options.json;
-    let outcome = match with_progress(job, watched, || case(model, &model.disk, sets, options, job)) {
+    let outcome = match with_progress(job, watched, || case(model, (&model.disk, sets), options, job, None)) {
         Ok(outcome) => outcome,
         Err(caught) => return (bug(&caught, model, terminal), Vec::new()),
     };
@@ -157,7 +167,9 @@ pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
     }
     if options.timings {
         let t = &outcome.report.timings;
-        let line = format!("parse {:.3} s, evaluate {:.3} s, mesh {:.3} s, write {:.3} s\n", t.parse, t.evaluate, t.mesh, t.write);
+        let reused = if outcome.reused > 0 { format!("; {} results taken over from before", outcome.reused) } else { String::new() };
+        let (parse, evaluate, mesh, write) = (t.parse, t.evaluate, t.mesh, t.write);
+        let line = format!("parse {parse:.3} s, evaluate {evaluate:.3} s, mesh {mesh:.3} s, write {write:.3} s{reused}\n");
         terminal.tell(&line);
     }
     if outcome.interrupted {
@@ -176,10 +188,12 @@ fn variants(model: &Model, table: &Path, options: &Options, job: &Arc<Job>, term
     };
     let mut worst = Exit::Fine;
     let mut cases = Vec::new();
+    // Rows differ in few params: what does not depend on those is taken over.
+    let mut kept = Kept::default();
     for row in rows {
         let disk = model.disk.with_subfolder(&row.name);
         let watched = terminal.watched && !options.json;
-        let outcome = match with_progress(job, watched, || case(model, &disk, &row.sets, options, job)) {
+        let outcome = match with_progress(job, watched, || case(model, (&disk, &row.sets), options, job, Some(&mut kept))) {
             Ok(outcome) => outcome,
             // One row that fails does not stop the others, even by a bug.
             Err(caught) => {

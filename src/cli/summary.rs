@@ -164,8 +164,11 @@ fn checks(report: &Report, out: &mut String, color: bool) {
     }
 }
 
-fn print_table(table: &Table, out: &mut String, color: bool) {
-    out.push_str(&format!("{}\n", table.title));
+/// A table under its title.
+pub fn print_table(table: &Table, out: &mut String, color: bool) {
+    if !table.title.is_empty() {
+        out.push_str(&format!("{}\n", table.title));
+    }
     let number = |c: usize| table.rows.iter().any(|r| matches!(r.get(c), Some(Cell::Number(_))));
     let head: Vec<String> = table
         .columns

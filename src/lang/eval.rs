@@ -366,7 +366,7 @@ impl Cx<'_> {
         asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
         self.machine.at_mut(module).asked[index as usize] = asked;
         self.machine.asked.join(asked);
-        self.machine.asked.members += self.machine.room.held() - start.members;
+        self.machine.asked.members += self.machine.room.held().saturating_sub(start.members);
         self.machine.asked.steps += self.machine.steps - start.steps;
     }
 

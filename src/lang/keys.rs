@@ -190,6 +190,12 @@ impl Cx<'_> {
             .map(|digester| digester.finish())
     }
 
+    /// The declarations of its own script that a declaration names.
+    pub(super) fn needs(&self, module: ModuleId, declaration: &Declaration) -> Vec<usize> {
+        let leads = self.leads(module, declaration).into_iter();
+        leads.filter_map(|lead| if let Lead::Declaration(d) = lead { Some(d as usize) } else { None }).collect()
+    }
+
     /// What the names of a declaration lead to, in order, each once.
     fn leads(&self, module: ModuleId, declaration: &Declaration) -> Vec<Lead> {
         let m = self.machine.at(module);

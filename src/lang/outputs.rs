@@ -195,6 +195,16 @@ impl Cx<'_> {
         diagnostic
     }
 
+    /// A record, or a list of records, as a table; `None` for other values.
+    pub fn table_of(&mut self, value: &Value) -> Option<ReportTable> {
+        let tabular = match value {
+            Value::Record(_) => true,
+            Value::List(items) => matches!(items.first(), Some(Value::Record(_))),
+            _ => false,
+        };
+        tabular.then(|| self.table(String::new(), value))
+    }
+
     /// A report as a table: records are rows, a record is one row, anything else one cell.
     fn report(&mut self, code: Code<'_>, label: Option<ExprId>, things: &[ExprId]) -> Result<ReportTable, Stop> {
         let title = self.label(code, label, things.first().copied())?;

@@ -166,7 +166,7 @@ impl Cx<'_> {
             checks,
             reports,
             meshes: if declaration.keyword == Keyword::Mesh { m.meshes[start.meshes..].to_vec() } else { Vec::new() },
-            members: (self.machine.room.held() - start.members).saturating_sub(asked.members),
+            members: self.machine.room.held().saturating_sub(start.members).saturating_sub(asked.members),
             steps: (self.machine.steps - start.steps).saturating_sub(asked.steps),
         })
     }

@@ -72,7 +72,7 @@ fn identity(chain: &Chain, network: &Network, tolerance: &Tolerance) -> (Vec<[u6
 }
 
 /// Declared surfaces; `area` measures one.
-pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> f64) -> Vec<SurfaceRow> {
+pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> Option<f64>) -> Vec<SurfaceRow> {
     let row = |(n, named): (usize, &crate::model::topology::Named)| {
         let patches: Vec<_> = model.patches_of(SurfaceId::at(n)).collect();
         let flow = named.surface.flow();
@@ -83,7 +83,7 @@ pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> f64) -> Vec<Sur
             patches: patches.len(),
             edges: model.edges_of(&patches).len(),
             vertices: model.vertices_of(&patches).len(),
-            area: (named.surface.domain() != Domain::Unbounded).then(|| area(&named.surface)),
+            area: if named.surface.domain() == Domain::Unbounded { None } else { area(&named.surface) },
             corners: None,
         }
     };

@@ -181,6 +181,25 @@ pub fn read_stream(stream: impl Read, limit: u64) -> Result<Vec<u8>, FileError> 
     if bytes.len() as u64 > limit { Err(FileError::TooLarge(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
+/// Writes a file whole or not at all: under a temporary name first.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let staging = Staging::default();
+    let place = std::path::absolute(path)?;
+    staging.write(&place, &mut |out| out.write_all(bytes))?;
+    staging.commit().map(|_| ()).map_err(|error| io::Error::other(error.to_string()))
+}
+
+/// Why a file cannot be read, in a few words.
+pub fn words(error: &FileError) -> String {
+    match error {
+        FileError::Missing { similar } if similar.is_empty() => "there is no such file".to_owned(),
+        FileError::Missing { similar } => format!("there is no such file; there is a {:?}", similar[0]),
+        FileError::Outside => "it lies outside the allowed folders".to_owned(),
+        FileError::TooLarge(bytes) => format!("it has {bytes} bytes, which is too many"),
+        FileError::Other(text) => text.clone(),
+    }
+}
+
 /// The system's words without its number, in lower case.
 fn plain(error: &io::Error) -> String {
     let text = error.to_string();

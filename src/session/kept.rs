@@ -22,6 +22,9 @@ use crate::surface::Surface;
 /// Areas kept before those of surfaces that are gone are forgotten.
 const AREAS: usize = 10_000;
 
+/// Runs for which a mesh is kept that none of them asked for.
+const RUNS: u64 = 16;
+
 /// Everything kept; [`Default`] before the first run.
 #[derive(Debug, Default)]
 pub struct Kept {
@@ -39,6 +42,7 @@ pub(super) struct KeptStages {
     pub rows: Vec<(Arc<Mesh>, bool, MeshRow)>,
     /// Meshes that the run asked for.
     pub asked: BTreeSet<(ModuleId, Arc<str>)>,
+    run: u64,
 }
 
 impl KeptStages {
@@ -71,9 +75,14 @@ impl KeptStages {
             let areas = std::mem::take(&mut self.areas);
             self.areas = areas.into_iter().filter(|(_, (surface, _))| live(surface)).collect();
         }
-        let Self { meshes, rows, asked, .. } = self;
-        meshes.retain(|place, _| asked.contains(place));
-        asked.clear();
+        self.run += 1;
+        let Self { meshes, rows, asked, run, .. } = self;
+        for place in std::mem::take(asked) {
+            if let Some(mesh) = meshes.get_mut(&place) {
+                mesh.used = *run;
+            }
+        }
+        meshes.retain(|_, mesh| mesh.used + RUNS > *run);
         rows.retain(|(mesh, ..)| meshes.values().any(|m| Arc::ptr_eq(&m.mesh, mesh)));
     }
 }
@@ -123,6 +132,7 @@ pub(super) struct KeptMesh {
     pub mesh: Arc<Mesh>,
     pub said: Vec<Fault>,
     pub lines: Vec<String>,
+    pub used: u64,
 }
 
 impl KeptMesh {

@@ -8,6 +8,8 @@ pub mod golden;
 pub mod guard;
 pub mod json;
 pub mod kept;
+pub mod live;
+pub mod notebook;
 mod picture_names;
 pub mod pictures;
 mod plan;

@@ -82,37 +82,33 @@ impl Outcome {
 /// Runs it.
 pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
     let stages = Stages::new(task.clock);
-    run_in(task, Cx::new(disk, &stages, job), disk, &stages).0
+    Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(&mut |_| {}).0
 }
 
-/// Runs it again: what did not change since the run before is taken over from `kept`, which then holds what this run
-/// found. The outcome is the same to the last bit as that of [`run`].
-pub fn run_again(task: &Task, disk: &Disk, job: &Job, kept: &mut Kept) -> Outcome {
+/// How a run goes that follows another one.
+pub struct Again<'k> {
+    /// What the runs before left; holds what this one leaves when it is over.
+    pub kept: &'k mut Kept,
+    /// Nothing is written, and left out of the report are areas, volumes and the meshes that no check or report asks for.
+    pub light: bool,
+    /// Is shown the evaluated model.
+    pub look: &'k mut (dyn FnMut(&mut Cx<'_>) + Send),
+}
+
+/// Runs it again: what did not change since the run before is taken over. The outcome is the same to the last bit as
+/// that of [`run`].
+pub fn run_again(task: &Task, disk: &Disk, job: &Job, again: Again) -> Outcome {
+    let Again { kept, light, look } = again;
     let Kept { memory, stages } = std::mem::take(kept);
     let stages = Stages::recalling(task.clock, stages);
     let mut cx = Cx::new(disk, &stages, job);
     cx.recall_from(memory);
-    let (mut outcome, memory) = run_in(task, cx, disk, &stages);
+    let (mut outcome, memory) = Run { light, ..Run::new(task, cx, disk, &stages) }.whole(look);
     outcome.reused = memory.reused() + stages.reused();
     let mut stages = stages.into_kept();
     stages.tidy();
     *kept = Kept { memory, stages };
     outcome
-}
-
-fn run_in<'r>(task: &'r Task<'r>, cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> (Outcome, Memory) {
-    let mut run = Run { cx, stages, task, disk, report: Report::default(), bug: None, said: None, flows: Vec::new() };
-    run.report.loft = VERSION;
-    run.report.model = task.name.to_owned();
-    match std::str::from_utf8(task.text) {
-        Ok(text) => run.evaluate(text),
-        Err(error) => {
-            let message = format!("{} is not UTF-8 text (byte {})", task.name, error.valid_up_to() + 1);
-            run.report.units = run.cx.unit().name.to_owned();
-            return run.finish(Some(Diagnostic::without_place("E801", message)));
-        }
-    }
-    run.finish(None)
 }
 
 struct Run<'r> {
@@ -126,9 +122,31 @@ struct Run<'r> {
     said: Option<Diagnostic>,
     /// The flow found for each surface, a line each.
     flows: Vec<String>,
+    light: bool,
 }
 
-impl Run<'_> {
+impl<'r> Run<'r> {
+    fn new(task: &'r Task<'r>, cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> Self {
+        let report = Report { loft: VERSION, model: task.name.to_owned(), ..Report::default() };
+        Self { cx, stages, task, disk, report, bug: None, said: None, flows: Vec::new(), light: false }
+    }
+
+    /// From the text to the end; `look` is shown what was evaluated.
+    fn whole(mut self, look: &mut dyn FnMut(&mut Cx<'_>)) -> (Outcome, Memory) {
+        match std::str::from_utf8(self.task.text) {
+            Ok(text) => {
+                self.evaluate(text);
+                look(&mut self.cx);
+                self.finish(None)
+            }
+            Err(error) => {
+                let message = format!("{} is not UTF-8 text (byte {})", self.task.name, error.valid_up_to() + 1);
+                self.report.units = self.cx.unit().name.to_owned();
+                self.finish(Some(Diagnostic::without_place("E801", message)))
+            }
+        }
+    }
+
     /// Everything up to the outputs on their way.
     fn evaluate(&mut self, text: &str) {
         let clock = self.task.clock;
@@ -143,7 +161,7 @@ impl Run<'_> {
         let evaluated = clock();
         if let Some(wanted) = self.task.picture {
             self.picture(wanted);
-        } else if self.is_sound() || self.task.keep_going {
+        } else if !self.light && (self.is_sound() || self.task.keep_going) {
             self.write();
         }
         self.report.timings = Timings { parse: parsed - start, evaluate: evaluated - parsed, mesh: 0.0, write: clock() - evaluated };
@@ -197,7 +215,7 @@ impl Run<'_> {
         }
         let model = self.cx.model(main);
         if let Some(model) = self.take(model) {
-            self.report.surfaces = collect::surfaces(&model, &mut |surface| self.stages.area(surface));
+            self.report.surfaces = collect::surfaces(&model, &mut |surface| (!self.light).then(|| self.stages.area(surface)));
             self.flows = collect::flows(&self.cx, &model);
             self.report.topology = collect::topology(&model, 0);
             if self.task.full {
@@ -208,15 +226,21 @@ impl Run<'_> {
             }
         }
         self.report.bounds = collect::corners(bounds);
-        self.shells(&tolerance);
-        for (name, value) in self.cx.mesh_values() {
-            let mesh = self.cx.mesh(&value);
-            if let Some(mesh) = self.take(mesh) {
-                self.report.meshes.push(self.stages.row(&name, &mesh, &tolerance, self.task.full));
-            }
+        if !self.light {
+            self.shells(&tolerance);
+            self.meshes(&tolerance);
         }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();
         self.report.checks = self.cx.checks().iter().map(|check| collect::check(check, &self.cx.sources)).collect();
+    }
+
+    fn meshes(&mut self, tolerance: &Tolerance) {
+        for (name, value) in self.cx.mesh_values() {
+            let mesh = self.cx.mesh(&value);
+            if let Some(mesh) = self.take(mesh) {
+                self.report.meshes.push(self.stages.row(&name, &mesh, tolerance, self.task.full));
+            }
+        }
     }
 
     fn shells(&mut self, tolerance: &Tolerance) {

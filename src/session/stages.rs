@@ -206,7 +206,7 @@ impl Pipeline for Stages<'_> {
         let mesh = Arc::new(mesh);
         if let Some(mut kept) = self.kept() {
             let Scene { model, network } = scene;
-            kept.meshes.insert(place, KeptMesh { plan, model, network, tolerance, mesh: mesh.clone(), said: sink, lines });
+            kept.meshes.insert(place, KeptMesh { plan, model, network, tolerance, mesh: mesh.clone(), said: sink, lines, used: 0 });
         }
         Ok(mesh)
     }

@@ -13,6 +13,7 @@ mod expected;
 pub mod keywords;
 mod mistake;
 pub mod number;
+pub mod outline;
 mod scan;
 mod shape;
 mod split;

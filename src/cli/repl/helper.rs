@@ -1,0 +1,106 @@
+//! The line being edited: colours, completion, hints, and whether it goes on. Nothing here evaluates.
+
+use std::borrow::Cow;
+
+use rustyline::completion::{Completer, Pair};
+use rustyline::highlight::{CmdKind, Highlighter};
+use rustyline::hint::Hinter;
+use rustyline::validate::{ValidationContext, ValidationResult, Validator};
+use rustyline::{Context, Helper};
+
+use super::complete::{Known, call_at, candidates};
+use crate::lang::symbols::Symbol;
+use crate::lang::syntax::keywords::written;
+use crate::lang::syntax::outline::{Paint, painted};
+use crate::session::notebook::Notebook;
+
+/// Longest text that is coloured while it is edited.
+const COLOURED: usize = 20_000;
+
+/// What the editor knows of the session.
+pub struct Line {
+    known: Vec<Known>,
+    color: bool,
+}
+
+impl Line {
+    pub fn new(color: bool) -> Self {
+        Self { known: Vec::new(), color }
+    }
+
+    /// Takes over the names of the session.
+    pub fn learn(&mut self, symbols: &[Symbol]) {
+        self.known = symbols.iter().filter_map(|s| Some(Known { name: s.name.clone()?, keyword: written(s.keyword) })).collect();
+    }
+}
+
+impl Helper for Line {}
+
+impl Validator for Line {
+    fn validate(&self, context: &mut ValidationContext) -> rustyline::Result<ValidationResult> {
+        // An empty last line ends whatever is open.
+        let ends = context.input().ends_with("\n\n");
+        Ok(if !ends && Notebook::is_unfinished(context.input()) { ValidationResult::Incomplete } else { ValidationResult::Valid(None) })
+    }
+}
+
+impl Completer for Line {
+    type Candidate = Pair;
+
+    fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
+        Ok(candidates(&line[..at], &self.known))
+    }
+}
+
+impl Hinter for Line {
+    type Hint = String;
+
+    fn hint(&self, line: &str, at: usize, _: &Context<'_>) -> Option<String> {
+        if at < line.len() || line.is_empty() {
+            return None;
+        }
+        call_at(line).map(|builtin| format!("   {}", builtin.signature()))
+    }
+}
+
+impl Highlighter for Line {
+    fn highlight<'l>(&self, line: &'l str, _: usize) -> Cow<'l, str> {
+        if !self.color || line.len() > COLOURED || line.trim_start().starts_with(':') {
+            return Cow::Borrowed(line);
+        }
+        let mut out = String::with_capacity(line.len() * 2);
+        let mut done = 0;
+        for (span, paint) in painted(line) {
+            let (start, end) = (span.start as usize, (span.end as usize).min(line.len()));
+            if start < done || end <= start {
+                continue;
+            }
+            out.push_str(&line[done..start]);
+            let code = match paint {
+                Paint::Keyword => "1;34",
+                Paint::Function => "36",
+                Paint::Property => "35",
+                Paint::Number | Paint::Constant => "33",
+                Paint::Text => "32",
+                Paint::Comment => "2",
+                Paint::Name | Paint::Operator => "",
+            };
+            if code.is_empty() {
+                out.push_str(&line[start..end]);
+            } else {
+                out.push_str(&format!("\u{1b}[{code}m{}\u{1b}[0m", &line[start..end]));
+            }
+            done = end;
+        }
+        out.push_str(&line[done..]);
+        Cow::Owned(out)
+    }
+
+    fn highlight_hint<'h>(&self, hint: &'h str) -> Cow<'h, str> {
+        if self.color { Cow::Owned(format!("\u{1b}[2m{hint}\u{1b}[0m")) } else { Cow::Borrowed(hint) }
+    }
+
+    fn highlight_char(&self, _: &str, _: usize, _: CmdKind) -> bool {
+        true
+    }
+}

@@ -1,0 +1,152 @@
+//! `loft repl [MODEL]`: a session on a terminal, or the same from a pipe.
+
+mod complete;
+mod helper;
+mod history;
+mod script;
+
+use std::io::{IsTerminal, Read};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::{Arg, ArgMatches};
+use rustyline::error::ReadlineError;
+use rustyline::history::FileHistory;
+use rustyline::{CompletionType, Config, Editor};
+
+use super::{Command, Exit, Terminal, interrupt, summary};
+use crate::base::limits;
+use crate::session::disk::{read_limited, words};
+use crate::session::notebook::{Answer, Notebook, Part};
+
+use helper::Line;
+pub use script::transcript;
+
+/// Explores a model.
+pub const COMMAND: Command = Command { name: "repl", about: "Explore a model: define, change and ask", arguments, run };
+
+const GREETING: &str = "loft session: declarations define, expressions ask, `:help` lists commands, Ctrl-D ends\n";
+const PROMPT: &str = "loft> ";
+
+fn arguments(command: clap::Command) -> clap::Command {
+    command.arg(Arg::new("model").value_name("MODEL").help("A script to go on with"))
+}
+
+fn notebook(color: bool) -> Notebook {
+    let started = Instant::now();
+    Notebook::new(Arc::new(move || started.elapsed().as_secs_f64()), color)
+}
+
+fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
+    let watched = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
+    let mut book = notebook(terminal.color_out && watched);
+    if let Some(model) = matches.get_one::<String>("model") {
+        match read(model, terminal) {
+            Ok(text) => {
+                book.watch(interrupt::entry_job());
+                print(&book.load(model, Path::new(model), &text), terminal, watched);
+            }
+            Err(exit) => return exit,
+        }
+    }
+    if watched { on_terminal(book, terminal) } else { from_pipe(book, terminal) }
+}
+
+fn read(model: &str, terminal: &Terminal) -> Result<String, Exit> {
+    match read_limited(Path::new(model), limits::SOURCE_BYTES) {
+        Ok(bytes) => String::from_utf8(bytes).map_err(|_| terminal.wrong_usage(&format!("{model:?} is not UTF-8 text"))),
+        Err(error) => Err(terminal.wrong_usage(&format!("cannot read {model:?}: {}", words(&error)))),
+    }
+}
+
+/// A session with a script in it, what is wrong with it left unsaid.
+pub(super) fn opened(model: &str, terminal: &Terminal) -> Result<Notebook, Exit> {
+    let text = read(model, terminal)?;
+    let mut book = notebook(terminal.color_out);
+    book.load(model, Path::new(model), &text);
+    Ok(book)
+}
+
+/// Shows an answer; whether the session goes on.
+fn print(answer: &Answer, terminal: &Terminal, watched: bool) {
+    terminal.print(&text_of(answer, terminal.color_out && watched));
+}
+
+/// An answer as text.
+pub(super) fn text_of(answer: &Answer, color: bool) -> String {
+    let mut out = String::new();
+    for part in &answer.parts {
+        match part {
+            Part::Text(text) | Part::Said(text) => out.push_str(text),
+            Part::Table(table) => summary::print_table(table, &mut out, color),
+            Part::Summary(report, tolerance) => out.push_str(&summary::text(report, *tolerance, color)),
+        }
+        if !out.is_empty() && !out.ends_with('\n') {
+            out.push('\n');
+        }
+    }
+    out
+}
+
+fn from_pipe(mut notebook: Notebook, terminal: &Terminal) -> Exit {
+    let mut text = String::new();
+    if let Err(error) = std::io::stdin().lock().take(limits::SOURCE_BYTES).read_to_string(&mut text) {
+        return terminal.wrong_usage(&format!("cannot read standard input: {error}"));
+    }
+    let mut exit = Exit::Fine;
+    for entry in script::entries(&text) {
+        notebook.watch(interrupt::entry_job());
+        let answer = notebook.enter(&entry);
+        print(&answer, terminal, false);
+        if answer.failed {
+            exit = Exit::Errors;
+        }
+        if answer.quit {
+            break;
+        }
+    }
+    exit
+}
+
+fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
+    let config = Config::builder().completion_type(CompletionType::List).auto_add_history(false).build();
+    let mut editor: Editor<Line, FileHistory> = match Editor::with_config(config) {
+        Ok(editor) => editor,
+        Err(error) => return terminal.wrong_usage(&format!("this terminal cannot be used: {error}")),
+    };
+    editor.set_helper(Some(Line::new(terminal.color_out)));
+    let history = history::path();
+    if let Some(path) = &history {
+        // Without a history of earlier sessions this one begins.
+        let _ = editor.load_history(path);
+    }
+    terminal.print(GREETING);
+    loop {
+        if let Some(line) = editor.helper_mut() {
+            line.learn(notebook.symbols());
+        }
+        match editor.readline(PROMPT) {
+            Ok(entry) => {
+                if entry.trim().is_empty() {
+                    continue;
+                }
+                let added = editor.add_history_entry(entry.as_str()).unwrap_or(false);
+                if let Some(path) = history.as_ref().filter(|_| added) {
+                    // A history that cannot be written is no reason to stop.
+                    let _ = editor.append_history(path);
+                }
+                notebook.watch(interrupt::entry_job());
+                let answer = notebook.enter(&entry);
+                print(&answer, terminal, true);
+                if answer.quit {
+                    return Exit::Fine;
+                }
+            }
+            // Ctrl-C at the prompt leaves the line.
+            Err(ReadlineError::Interrupted) => {}
+            Err(ReadlineError::Eof) => return Exit::Fine,
+            Err(error) => return terminal.wrong_usage(&format!("the terminal failed: {error}")),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! A model that is run again after every change: what REPL, language server and viewer share.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::disk::{Disk, Outputs};
+use super::guard::{Bug, guarded};
+use super::kept::Kept;
+use super::run::{Again, Outcome, Task, run_again};
+use crate::base::job::Job;
+use crate::lang::cx::Cx;
+
+/// Seconds since some moment.
+pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
+
+/// What one run is to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// Values, network, surfaces and checks; meshes that nothing asks for, areas and volumes are left out.
+    Values,
+    /// Everything but writing.
+    Report,
+    /// Everything; outputs are written.
+    Files,
+}
+
+/// One script and what its last run left.
+pub struct Live {
+    name: String,
+    script: Option<PathBuf>,
+    allow: Vec<PathBuf>,
+    kept: Kept,
+    clock: Clock,
+}
+
+impl Live {
+    /// A model shown as `name`; its imports are looked for beside `script`, or in the current folder.
+    pub fn new(name: &str, script: Option<&Path>, allow: &[PathBuf], clock: Clock) -> Self {
+        Self { name: name.to_owned(), script: script.map(Path::to_owned), allow: allow.to_vec(), kept: Kept::default(), clock }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Runs the text, and shows the evaluated model to `look`. A bug is caught; then the next run starts from nothing.
+    ///
+    /// Fails when the folder of the script cannot be read.
+    pub fn run(
+        &mut self,
+        (text, sets): (&str, &[(String, String)]),
+        depth: Depth,
+        job: &Job,
+        look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
+    ) -> Result<Outcome, Bug> {
+        let outputs = if depth == Depth::Files { Outputs::Written } else { Outputs::Counted };
+        let disk = Disk::new(self.script.as_deref(), None, &self.allow, outputs).map_err(|error| Bug { what: error.to_string() })?;
+        let clock = self.clock.clone();
+        let clock = move || clock();
+        let task = Task {
+            name: &self.name,
+            text: text.as_bytes(),
+            sets,
+            strict: false,
+            keep_going: false,
+            full: false,
+            picture: None,
+            clock: &clock,
+        };
+        let mut kept = std::mem::take(&mut self.kept);
+        let result = guarded(|| {
+            let again = Again { kept: &mut kept, light: depth == Depth::Values, look };
+            run_again(&task, &disk, job, again)
+        });
+        // After a bug there may be half of something in it.
+        self.kept = if result.is_ok() { kept } else { Kept::default() };
+        result
+    }
+}

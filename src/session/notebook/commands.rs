@@ -1,0 +1,206 @@
+//! The commands of a session, declared once: help, completion and dispatch read the table.
+
+use std::path::Path;
+
+use super::{Answer, Notebook, Part, State, bug_answer};
+use crate::base::limits;
+use crate::lang::symbols::Condition;
+use crate::session::disk::{read_limited, write_whole};
+use crate::session::live::Depth;
+use crate::session::reference;
+
+/// One command.
+#[derive(Debug)]
+pub struct Command {
+    /// Its word, without the colon.
+    pub word: &'static str,
+    /// What follows it.
+    pub takes: &'static str,
+    /// What it does, in a line.
+    pub docs: &'static str,
+    run: fn(&mut Notebook, &str) -> Answer,
+}
+
+/// All commands in the order of the help.
+pub const COMMANDS: &[Command] = &[
+    Command { word: "show", takes: "NAME", docs: "What a name stands for, and what it measures", run: Notebook::show },
+    Command { word: "network", takes: "", docs: "Curves of the network with their links", run: Notebook::network },
+    Command { word: "nodes", takes: "", docs: "Nodes with their places and what meets there", run: Notebook::nodes },
+    Command { word: "links", takes: "CURVE", docs: "Links that a curve runs over", run: Notebook::links },
+    Command { word: "why", takes: "NAME", docs: "What a name depends on, and what depends on it", run: Notebook::why },
+    Command { word: "explain", takes: "NAME", docs: "How a name came about, in detail", run: |n, what| n.explain(what) },
+    Command { word: "remove", takes: "NAME", docs: "Takes out a declaration that nothing stands on", run: |n, name| n.remove(name, false) },
+    Command {
+        word: "remove!",
+        takes: "NAME",
+        docs: "Takes out a declaration and all that stands on it",
+        run: |n, name| n.remove(name, true),
+    },
+    Command { word: "undo", takes: "", docs: "Goes back by one change", run: |n, _| n.back(true) },
+    Command { word: "redo", takes: "", docs: "Takes an undo back", run: |n, _| n.back(false) },
+    Command { word: "set", takes: "PARAM=VALUE", docs: "Gives a param another value", run: Notebook::set },
+    Command { word: "mesh", takes: "NAME", docs: "Builds a mesh and tells its counts and quality", run: Notebook::mesh },
+    Command { word: "run", takes: "", docs: "Runs the whole model and writes its files", run: Notebook::whole_run },
+    Command { word: "time", takes: "", docs: "How long the last entry took and what was reused", run: Notebook::time },
+    Command { word: "load", takes: "FILE", docs: "Goes on with a script", run: |n, file| n.load_file(file) },
+    Command { word: "save", takes: "FILE", docs: "Writes a script that gives this model", run: Notebook::save },
+    Command {
+        word: "reset",
+        takes: "",
+        docs: "Starts from nothing (`:undo` takes that back)",
+        run: |n, _| n.change(State::default(), &[]),
+    },
+    Command { word: "help", takes: "[NAME]", docs: "These commands, or what a function or field does", run: Notebook::help },
+    Command { word: "quit", takes: "", docs: "Ends the session", run: |_, _| Answer { quit: true, ..Answer::default() } },
+];
+
+impl Notebook {
+    /// Carries out `word rest`.
+    pub(super) fn command(&mut self, text: &str) -> Answer {
+        let text = text.trim();
+        let (word, rest) = text.split_once(char::is_whitespace).map_or((text, ""), |(word, rest)| (word, rest.trim()));
+        let Some(command) = COMMANDS.iter().find(|c| c.word == word) else {
+            let near = crate::lang::names::nearest(word, COMMANDS.iter().map(|c| c.word));
+            let hint = near.map_or_else(String::new, |near| format!("; did you mean `:{near}`?"));
+            return Answer::failure(format!("there is no command `:{word}`{hint} (`:help` lists all)"));
+        };
+        let needs = !command.takes.is_empty() && !command.takes.starts_with('[');
+        if needs && rest.is_empty() {
+            return Answer::failure(format!("`:{word}` takes {}", command.takes));
+        }
+        if command.takes.is_empty() && !rest.is_empty() {
+            return Answer::failure(format!("`:{word}` takes nothing"));
+        }
+        (command.run)(self, rest)
+    }
+
+    fn help(&mut self, name: &str) -> Answer {
+        if let Some(command) = COMMANDS.iter().find(|c| c.word == name.trim_start_matches(':')) {
+            return Answer::text(format!(":{} {}\n  {}", command.word, command.takes, command.docs).replace(" \n", "\n"));
+        }
+        if !name.is_empty() {
+            return match reference::entry(name) {
+                Ok(text) => Answer::text(text.trim_end()),
+                Err(near) if near.is_empty() => Answer::failure(format!("there is no `{name}` in the language")),
+                Err(near) => Answer::failure(format!("there is no `{name}` in the language; did you mean `{}`?", near.join("`, `"))),
+            };
+        }
+        let width = COMMANDS.iter().map(|c| c.word.len() + c.takes.len() + 2).max().unwrap_or(0);
+        let line = |c: &Command| format!("  {:width$}  {}", format!(":{} {}", c.word, c.takes).trim_end(), c.docs);
+        let commands: Vec<String> = COMMANDS.iter().map(line).collect();
+        Answer::text(format!(
+            "A declaration (`curve a = line((0, 0, 0), (4, 0, 0))`) defines or redefines; an expression (`a.length`) shows its value.\n{}",
+            commands.join("\n")
+        ))
+    }
+
+    /// Undo or redo.
+    fn back(&mut self, undo: bool) -> Answer {
+        let from = if undo { &mut self.past } else { &mut self.future };
+        let Some(state) = from.pop() else {
+            return Answer::failure(if undo { "nothing to undo" } else { "nothing to redo" });
+        };
+        let (mut past, mut future) = (std::mem::take(&mut self.past), std::mem::take(&mut self.future));
+        let before = self.state.clone();
+        let names = changed_names(&before.text, &state.text);
+        let mut answer = self.change(state, &names);
+        let gone = self.state == before;
+        if undo { &mut future } else { &mut past }.push(before);
+        self.past = past;
+        self.future = future;
+        if !gone && answer.parts.is_empty() {
+            answer.say("done");
+        }
+        answer
+    }
+
+    fn set(&mut self, text: &str) -> Answer {
+        let Some((name, value)) = text.split_once('=').map(|(n, v)| (n.trim().to_owned(), v.trim().to_owned())) else {
+            return Answer::failure("`:set` takes PARAM=VALUE, as in `:set span=50m`");
+        };
+        let mut sets = self.state.sets.clone();
+        sets.retain(|(n, _)| *n != name);
+        sets.push((name.clone(), value));
+        let before = self.state.clone();
+        let said = self.said.clone();
+        let (conditions, symbols) = (self.conditions.clone(), self.symbols.clone());
+        let mut answer = self.change(State { text: before.text.clone(), sets }, std::slice::from_ref(&name));
+        let refused = self.conditions.get(&name) != Some(&Condition::Sound);
+        if answer.failed && refused && self.state != before {
+            // A value that the param refuses changes nothing.
+            self.past.pop();
+            (self.state, self.said, self.conditions, self.symbols) = (before, said, conditions, symbols);
+            answer.parts.retain(|part| matches!(part, Part::Said(_)));
+            answer.say("nothing was changed");
+        }
+        answer
+    }
+
+    fn whole_run(&mut self, _: &str) -> Answer {
+        let state = self.state.clone();
+        let outcome = match self.run(&state, Depth::Files, &mut |_| {}) {
+            Ok(outcome) => outcome,
+            Err(bug) => return bug_answer(&bug),
+        };
+        if outcome.interrupted {
+            return Answer::failure("interrupted: nothing was written");
+        }
+        let mut answer = Answer { failed: !outcome.report.ok, ..Answer::default() };
+        let drawn = outcome.drawn(self.color, false);
+        if !drawn.is_empty() {
+            answer.parts.push(Part::Said(drawn));
+        }
+        answer.parts.push(Part::Summary(Box::new(outcome.report), outcome.tolerance));
+        answer
+    }
+
+    fn time(&mut self, _: &str) -> Answer {
+        let Some(last) = self.last else { return Answer::failure("nothing was computed yet") };
+        let of = self.symbols.len();
+        let n = last.reused;
+        Answer::text(format!(
+            "{:.4} s: parse {:.4}, evaluate {:.4}, mesh {:.4}; {n} results taken over from before, {of} declarations",
+            last.seconds, last.parse, last.evaluate, last.mesh
+        ))
+    }
+
+    fn load_file(&mut self, file: &str) -> Answer {
+        let path = Path::new(unquoted(file));
+        let text = match read_limited(path, limits::SOURCE_BYTES) {
+            Ok(bytes) => String::from_utf8(bytes),
+            Err(error) => return Answer::failure(format!("cannot read {}: {}", path.display(), crate::session::disk::words(&error))),
+        };
+        let Ok(text) = text else { return Answer::failure(format!("{} is not UTF-8 text", path.display())) };
+        let mut answer = self.load(&path.to_string_lossy(), path, &text);
+        let sound = self.symbols.iter().filter(|s| s.name.is_some() && s.condition == Condition::Sound).count();
+        answer.say(format!("{}: {sound} names", path.display()));
+        answer
+    }
+
+    fn save(&mut self, file: &str) -> Answer {
+        let path = Path::new(unquoted(file));
+        let text = self.saved_text();
+        match write_whole(path, text.as_bytes()) {
+            Ok(()) => Answer::text(format!("wrote {}", path.display())),
+            Err(error) => Answer::failure(format!("cannot write {}: {error}", path.display())),
+        }
+    }
+}
+
+fn unquoted(text: &str) -> &str {
+    text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).unwrap_or(text)
+}
+
+/// Names whose declarations differ between two texts and stand in the second.
+fn changed_names(a: &str, b: &str) -> Vec<String> {
+    use crate::lang::syntax::outline::outline;
+    let declarations = |text: &str| -> Vec<(String, String)> {
+        let of = |o: &crate::lang::syntax::outline::Outline| {
+            let at = |s: crate::lang::syntax::ast::Span| text[s.start as usize..s.end as usize].to_owned();
+            Some((at(o.name?), at(o.span)))
+        };
+        outline(text).iter().filter_map(of).collect()
+    };
+    let before = declarations(a);
+    declarations(b).into_iter().filter(|d| !before.contains(d)).map(|d| d.0).collect()
+}

@@ -1,0 +1,205 @@
+//! What a session tells about names: values, dependencies, meshes, and whether they may be removed.
+
+use super::{Answer, Notebook, Part, bug_answer, ended};
+use crate::lang::symbols::{Condition, Symbol, about_mesh};
+use crate::lang::syntax::ast::{DeclarationKind, Keyword};
+use crate::lang::syntax::parse;
+use crate::lang::value::Value;
+use crate::session::live::Depth;
+
+impl Notebook {
+    fn symbol(&self, name: &str) -> Result<usize, Answer> {
+        match self.symbols.iter().position(|s| s.name.as_deref() == Some(name)) {
+            Some(found) => Ok(found),
+            None => {
+                let names = self.symbols.iter().filter_map(|s| s.name.as_deref());
+                let near = crate::lang::names::nearest(name, names);
+                let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+                Err(Answer::failure(format!("`{name}` is not defined{hint}")))
+            }
+        }
+    }
+
+    /// The name of a declaration, or the first line of its text.
+    fn title(&self, symbol: &Symbol) -> String {
+        let text = self.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("");
+        symbol.name.clone().unwrap_or_else(|| text.lines().next().unwrap_or("").to_owned())
+    }
+
+    pub(super) fn show(&mut self, name: &str) -> Answer {
+        let symbol = match self.symbol(name) {
+            Ok(found) => self.symbols[found].clone(),
+            Err(answer) => return answer,
+        };
+        let text = self.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("").to_owned();
+        if symbol.condition != Condition::Sound {
+            return Answer::failure(format!("{text}\n{name} has no value: {}", self.reason(&symbol)));
+        }
+        let (mut line, mut table) = (None, None);
+        let state = self.state.clone();
+        let result = self.run(&state, Depth::Values, &mut |cx| {
+            line = cx.describe_name(name);
+            table = cx.value_of(name).and_then(|value| cx.table_of(&value));
+        });
+        if let Err(bug) = result {
+            return bug_answer(&bug);
+        }
+        let mut answer = Answer::default();
+        answer.parts.extend(symbol.doc.map(Part::Text));
+        answer.say(text);
+        answer.parts.extend(line.map(Part::Text));
+        answer.parts.extend(table.map(|t| Part::Table(crate::session::collect::table(&t))));
+        answer
+    }
+
+    /// Why a declaration has no value: it was reported, or something below it was.
+    fn reason(&self, symbol: &Symbol) -> String {
+        match symbol.needs.iter().map(|n| &self.symbols[*n]).find(|s| s.condition != Condition::Sound) {
+            Some(below) => format!("it needs `{}`, which has none either", self.title(below)),
+            None => "see the report about it".to_owned(),
+        }
+    }
+
+    pub(super) fn why(&mut self, name: &str) -> Answer {
+        let found = match self.symbol(name) {
+            Ok(found) => found,
+            Err(answer) => return answer,
+        };
+        let mut out = String::new();
+        let mut tree = |title: &str, next: &dyn Fn(usize) -> Vec<usize>| {
+            let mut seen = vec![found];
+            let mut stack: Vec<(usize, usize)> = next(found).into_iter().rev().map(|n| (n, 1)).collect();
+            out.push_str(title);
+            if stack.is_empty() {
+                out.push_str(" nothing");
+            }
+            out.push('\n');
+            while let Some((at, depth)) = stack.pop() {
+                let again = seen.contains(&at);
+                let more = if again && !next(at).is_empty() { " …" } else { "" };
+                out.push_str(&format!("{}{}{more}\n", "  ".repeat(depth), self.title(&self.symbols[at])));
+                if !again {
+                    seen.push(at);
+                    stack.extend(next(at).into_iter().rev().map(|n| (n, depth + 1)));
+                }
+            }
+        };
+        tree(&format!("{name} depends on"), &|at| self.symbols[at].needs.clone());
+        tree(&format!("what depends on {name}:"), &|at| self.users(at));
+        let mut answer = Answer::text(out.trim_end());
+        if self.symbols[found].condition != Condition::Sound {
+            answer.say(format!("{name} has no value: {}", self.reason(&self.symbols[found])));
+        }
+        answer
+    }
+
+    /// Declarations that name this one.
+    fn users(&self, of: usize) -> Vec<usize> {
+        (0..self.symbols.len()).filter(|s| *s != of && self.symbols[*s].needs.contains(&of)).collect()
+    }
+
+    /// Takes a declaration out, with all that stands on it when `all`; else only when nothing does.
+    pub(super) fn remove(&mut self, name: &str, all: bool) -> Answer {
+        let found = match self.symbol(name) {
+            Ok(found) => found,
+            Err(answer) => return answer,
+        };
+        let mut gone = vec![found];
+        let mut next = 0;
+        while next < gone.len() {
+            let above: Vec<usize> = self.users(gone[next]).into_iter().filter(|u| !gone.contains(u)).collect();
+            gone.extend(above);
+            next += 1;
+        }
+        if gone.len() > 1 && !all {
+            let first: Vec<String> = self.users(found).iter().map(|u| format!("`{}`", self.title(&self.symbols[*u]))).collect();
+            let mut order: Vec<String> = gone[1..].iter().rev().map(|g| self.title(&self.symbols[*g])).collect();
+            order.truncate(12);
+            return Answer::failure(format!(
+                "E510 × `{name}` carries {}\n  help: remove {} first, or `:remove! {name}` to take all {}",
+                first.join(", "),
+                order.join(", "),
+                gone.len()
+            ));
+        }
+        let mut texts: Vec<(u32, u32)> = gone.iter().map(|g| (self.symbols[*g].span.start, self.symbols[*g].span.end)).collect();
+        texts.sort_unstable();
+        let titles: Vec<String> = gone.iter().map(|g| self.title(&self.symbols[*g])).collect();
+        let names: Vec<String> = gone.iter().filter_map(|g| self.symbols[*g].name.clone()).collect();
+        let state = self.without(&names, &texts);
+        let mut answer = Answer::text(format!("removed {}", titles.join(", ")));
+        for name in &names {
+            self.conditions.remove(name);
+        }
+        let told = self.change(state, &[]);
+        answer.failed = told.failed;
+        answer.parts.extend(told.parts);
+        answer
+    }
+
+    pub(super) fn mesh(&mut self, name: &str) -> Answer {
+        if let Err(answer) = self.symbol(name) {
+            return answer;
+        }
+        let mut found = Vec::new();
+        let mut wrong = false;
+        let state = self.state.clone();
+        let result = self.run(&state, Depth::Values, &mut |cx| {
+            let mut values = Vec::new();
+            match cx.value_of(name) {
+                Some(Value::List(items)) => values.extend(items.iter().cloned()),
+                Some(value) => values.push(value),
+                None => {}
+            }
+            for value in values {
+                let Value::Mesh(mesh) = &value else {
+                    wrong = true;
+                    continue;
+                };
+                let shown = cx.show(&value);
+                if let Ok(mesh) = cx.mesh(mesh) {
+                    let groups: Vec<String> =
+                        mesh.groups.iter().map(|g| format!("{} {}", g.name, g.lines.len() + g.triangles.len() + g.quads.len())).collect();
+                    found.push(format!("mesh {shown}: {}", about_mesh(&mesh)));
+                    if !groups.is_empty() {
+                        found.push(format!("  elements of {}", groups.join(", ")));
+                    }
+                }
+            }
+        });
+        let outcome = match result {
+            Ok(outcome) => outcome,
+            Err(bug) => return bug_answer(&bug),
+        };
+        if outcome.interrupted {
+            return Answer::failure("interrupted");
+        }
+        if wrong {
+            return Answer::failure(format!("`{name}` is no mesh"));
+        }
+        let mut answer = Answer { failed: found.is_empty(), ..Answer::default() };
+        let before = std::mem::take(&mut self.said);
+        self.said.extend(before.iter().filter(|s| !s.0.starts_with("E7")).cloned());
+        self.tell_new(&outcome, &mut answer);
+        self.said = before;
+        found.into_iter().for_each(|line| answer.say(line));
+        answer
+    }
+
+    /// The script with the params that were set as their defaults.
+    pub(super) fn saved_text(&self) -> String {
+        let mut text = ended(&self.state.text);
+        for (name, value) in &self.state.sets {
+            let mut names = crate::lang::names::Names::default();
+            let (script, _) = parse(&text, crate::lang::diag::FileId(0), &mut names);
+            let param = script.declarations.iter().filter(|d| d.keyword == Keyword::Param).find_map(|d| match &d.kind {
+                DeclarationKind::Param { bound, value, .. } if names.text(bound.name) == name => Some(d.nodes.get(value.index())?.span),
+                _ => None,
+            });
+            if let Some(span) = param {
+                text.replace_range(span.start as usize..span.end as usize, value);
+            }
+        }
+        text
+    }
+}

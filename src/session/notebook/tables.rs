@@ -1,0 +1,122 @@
+//! The network of a session as tables.
+
+use glam::DVec3;
+
+use super::{Answer, Notebook, Part, bug_answer};
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::value::{ModuleId, Value};
+use crate::network::{LinkId, Network};
+use crate::session::live::Depth;
+use crate::session::report::{Cell, Column, Table};
+
+/// Share of the tolerance that is shown as zero.
+const NOTHING: f64 = 0.001;
+
+fn column(name: &str, unit: Option<&str>) -> Column {
+    Column { name: name.to_owned(), unit: unit.map(str::to_owned) }
+}
+
+fn text(text: impl Into<String>) -> Cell {
+    Cell::Text(text.into())
+}
+
+/// A point; coordinates far below the tolerance are shown as zero.
+fn place(p: DVec3, tolerance: f64) -> Cell {
+    let shown = |x: f64| if x.abs() < tolerance * NOTHING { 0.0 } else { x };
+    Cell::List(p.to_array().map(|x| Cell::Number(shown(x))).to_vec())
+}
+
+/// Curves that have a link at the node, by name.
+fn meeting(network: &Network, node: usize) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for curve in &network.curves {
+        if curve.nodes.iter().any(|n| n.index() == node) {
+            names.push(&curve.name);
+        }
+    }
+    names.join(", ")
+}
+
+fn curves(network: &Network, unit: &str) -> Table {
+    let row = |c: &crate::network::graph::NetCurve| {
+        let links: Vec<String> = c.links.iter().map(|(l, _)| (l.0 + 1).to_string()).collect();
+        vec![text(&c.name), text(c.curve.kind().name()), Cell::Number(c.curve.length()), text(links.join(" "))]
+    };
+    let title = format!("{} curves, {} links, {} nodes", network.curves.len(), network.links.len(), network.nodes.len());
+    let columns = vec![column("curve", None), column("kind", None), column("length", Some(unit)), column("links", None)];
+    Table { title, columns, rows: network.curves.iter().map(row).collect() }
+}
+
+fn nodes(network: &Network, (unit, tolerance): (&str, f64)) -> Table {
+    let row = |(n, node): (usize, &crate::network::graph::Node)| {
+        vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(node.ends.len() as f64), text(meeting(network, n))]
+    };
+    let columns = vec![column("node", None), column("at", Some(unit)), column("links", None), column("of", None)];
+    Table { title: String::new(), columns, rows: network.nodes.iter().enumerate().map(row).collect() }
+}
+
+fn links(network: &Network, of: &[(LinkId, bool)], (unit, tolerance): (&str, f64)) -> Table {
+    let row = |(id, against): &(LinkId, bool)| {
+        let link = &network.links[id.index()];
+        let (a, b) = if *against { (link.nodes.1, link.nodes.0) } else { link.nodes };
+        vec![
+            Cell::Number(f64::from(id.0 + 1)),
+            text(&network.curves[link.curve.index()].name),
+            Cell::Number(link.s.1 - link.s.0),
+            Cell::Number(f64::from(a.0 + 1)),
+            place(network.nodes[a.index()].point, tolerance),
+            Cell::Number(f64::from(b.0 + 1)),
+            place(network.nodes[b.index()].point, tolerance),
+        ]
+    };
+    let columns = vec![
+        column("link", None),
+        column("of", None),
+        column("length", Some(unit)),
+        column("from", None),
+        column("at", Some(unit)),
+        column("to", None),
+        column("at", Some(unit)),
+    ];
+    Table { title: String::new(), columns, rows: of.iter().map(row).collect() }
+}
+
+impl Notebook {
+    pub(super) fn network(&mut self, _: &str) -> Answer {
+        self.tabled(&mut |cx, network| Ok(curves(network, cx.unit().name)))
+    }
+
+    pub(super) fn nodes(&mut self, _: &str) -> Answer {
+        self.tabled(&mut |cx, network| {
+            let tolerance = cx.tolerance_used().map_or(0.0, |t| t.point);
+            Ok(nodes(network, (cx.unit().name, tolerance)))
+        })
+    }
+
+    pub(super) fn links(&mut self, name: &str) -> Answer {
+        self.tabled(&mut |cx, network| {
+            let Some(Value::Curve(chain)) = cx.value_of(name) else { return Err(format!("`{name}` is no curve of this model")) };
+            let tolerance = cx.tolerance_used().ok_or("the model has no tolerance yet")?;
+            match network.links_of(&chain, &tolerance) {
+                Some(found) => Ok(links(network, &found, (cx.unit().name, tolerance.point))),
+                None => Err(format!("`{name}` is not in the network")),
+            }
+        })
+    }
+
+    fn tabled(&mut self, make: &mut (dyn FnMut(&mut Cx<'_>, &Network) -> Result<Table, String> + Send)) -> Answer {
+        let mut made = Err("there is no network: some curves could not be made".to_owned());
+        let state = self.state.clone();
+        let result = self.run(&state, Depth::Values, &mut |cx| {
+            let network: Result<_, Stop> = cx.network(ModuleId::MAIN);
+            if let Ok(network) = network {
+                made = make(cx, &network);
+            }
+        });
+        match (result, made) {
+            (Err(bug), _) => bug_answer(&bug),
+            (Ok(_), Ok(table)) => Answer { parts: vec![Part::Table(table)], ..Answer::default() },
+            (Ok(_), Err(words)) => Answer::failure(words),
+        }
+    }
+}
