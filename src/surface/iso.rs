@@ -1,4 +1,4 @@
-//! Lines of constant u or v as curves, where they have an exact form.
+//! Lines of constant u or v as curves: exact where they have such a form, else fitted.
 
 use std::sync::Arc;
 
@@ -48,12 +48,15 @@ fn between(chain: &Chain, from: f64, to: f64, tolerance: &Tolerance) -> Result<C
 
 impl Surface {
     /// The line of constant u or v as a curve with the same points: exact on borders and on the curves of a grid, on nets,
-    /// extruded and revolved surfaces, and along the straight lines of a ruled one; `None` where there is no exact form.
+    /// extruded and revolved surfaces, and along the straight lines of a ruled one; elsewhere within a quarter of the
+    /// tolerance, which is proved. `None` for a plane without a map.
     ///
-    /// Fails with E401 where the line is one point.
+    /// Fails with E401 where the line is one point, E413 where a fit is not to be had (a cusp below).
     pub fn iso(&self, at: IsoLine, origin: Origin, tolerance: &Tolerance) -> Result<Option<Curve>> {
-        if self.domain() != Domain::Square {
-            return Ok(None);
+        match self.domain() {
+            Domain::Square => {}
+            Domain::Triangle => return super::iso_fit::fitted(self, at, origin, tolerance).map(Some),
+            Domain::Loop | Domain::Unbounded => return Ok(None),
         }
         let whole = |chain: Chain| chain.to_curve().map(|c| Some(c.with_origin(origin)));
         if let Some(chain) = self.along_border(at, origin, tolerance)? {
@@ -90,7 +93,7 @@ impl Surface {
             },
             Shape::Trilateral(_) | Shape::Plane(_) => None,
         };
-        let Some(curve) = found else { return Ok(None) };
+        let Some(curve) = found else { return super::iso_fit::fitted(self, at, origin, tolerance).map(Some) };
         let length = curve.length();
         if length <= tolerance.point {
             return Err(CurveFault::ZeroLength { of: origin, length, tolerance: tolerance.point }.into());

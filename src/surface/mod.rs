@@ -12,6 +12,7 @@ pub mod extrude;
 mod flow_words;
 pub mod interpolate;
 mod iso;
+mod iso_fit;
 mod line;
 mod net_spread;
 pub mod nurbs;

@@ -131,9 +131,9 @@ builtins! {
     /// The line of constant u or v of a surface, as a curve.
     ///
     /// It runs with the other parameter ascending and may join the network (`curve seam = iso(roof, u: 0.5)`); in a mesh
-    /// `of roof, seam` it lies on mesh lines. `roof.u(0.5)` and `roof.v(0.5)` say the same. This version has those
-    /// that are exact curves: of `extrude`, `revolve`, `bezier_surface`, `nurbs_surface` and `grid` all, of `ruled` those of
-    /// constant u, and of every surface its borders and the curves of its grid.
+    /// `of roof, seam` it lies on mesh lines. `roof.u(0.5)` and `roof.v(0.5)` say the same. It is exact on `extrude`,
+    /// `revolve`, `bezier_surface`, `nurbs_surface` and `grid`, along the straight lines of `ruled`, and on every surface for
+    /// its borders and the curves of its grid; elsewhere it is a cubic within a quarter of the tolerance.
     /// ```loft
     /// curve south = arc((0, 0, 0), (4m, 0, 0), through: (2m, 0, 1m))
     /// surface roof = extrude(south, by: (0, 9m, 0))
