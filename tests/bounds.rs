@@ -16,7 +16,8 @@ use lofting::network::{Chain, ChainFlow, of_chains};
 use lofting::surface::coons::{Grid, Method, Settings, build};
 use lofting::surface::nurbs::{Net, bezier, nurbs};
 use lofting::surface::revolve::Axis;
-use lofting::surface::{Domain, Lean, Reparam, Surface, extrude, plane, revolve, ruled};
+use lofting::surface::{Domain, Lean, Reparam, Surface, bbox, closest, extrude, plane, revolve, ruled};
+use serde_json::Value;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -211,4 +212,61 @@ fn bounds_come_to_the_truth_as_rectangles_shrink() {
         }
         assert!(last.iter().all(|e| *e < 0.05), "{name}: {last:?}");
     }
+}
+
+#[test]
+fn boxes_hold_the_surface_and_touch_it() {
+    for (name, surface) in zoo() {
+        if surface.domain() == Domain::Unbounded {
+            continue;
+        }
+        let (n, found) = (60, bbox(&surface));
+        let mut dense = lofting::base::bbox::Box3::EMPTY;
+        for (i, j) in (0..=n).flat_map(|j| (0..=n).map(move |i| (f64::from(i) / f64::from(n), f64::from(j) / f64::from(n)))) {
+            let (u, v) = surface.from_square(i, j);
+            dense = dense.with(surface.point(u, v));
+        }
+        let (room, gap) = (2e-6 * found.diagonal(), 5e-3 * found.diagonal());
+        let out = (dense.max - found.max).max(found.min - dense.min).max_element();
+        let loose = (found.max - dense.max).max(dense.min - found.min).max_element();
+        assert!(out <= room && loose <= gap, "{name}: {out} out, {loose} loose");
+    }
+    // A spike that no sample sees.
+    let mut rows = vec![vec![DVec3::ZERO; 400]; 4];
+    for (j, row) in rows.iter_mut().enumerate() {
+        for (i, q) in row.iter_mut().enumerate() {
+            *q = p(i as f64 / 100.0, j as f64, if i == 201 { 1.0 } else { 0.0 });
+        }
+    }
+    let spike = nurbs(&Net { rows: &rows, weights: None }, (3, 3), (None, None), Origin::NONE, &tolerance()).unwrap();
+    assert!((bbox(&spike).max.z - 2.0 / 3.0).abs() < 1e-5, "{:?}", bbox(&spike));
+}
+
+/// Facts found in the tests of the library verb; `data/peer-facts/README.md` tells more.
+#[test]
+fn nearest_points_of_the_peers() {
+    let path = format!("{}/tests/data/peer-facts/facts.json", env!("CARGO_MANIFEST_DIR"));
+    let facts: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let numbers = |v: &Value| v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect::<Vec<f64>>();
+    let point = |v: &Value| DVec3::from_slice(&numbers(v));
+    let mut seen = 0;
+    for fact in facts.as_array().unwrap().iter().filter(|f| f["op"] == "closest_on_surface") {
+        let data = &fact["surface"];
+        let rows: Vec<Vec<DVec3>> =
+            data["poles"].as_array().unwrap().iter().map(|row| row.as_array().unwrap().iter().map(&point).collect()).collect();
+        let degree = (data["degree"][1].as_u64().unwrap() as usize, data["degree"][0].as_u64().unwrap() as usize);
+        let (ku, kv) = (numbers(&data["knots_v"]), numbers(&data["knots_u"]));
+        let net = Net { rows: &rows, weights: None };
+        let surface = nurbs(&net, degree, (Some(&ku), Some(&kv)), Origin::NONE, &tolerance()).unwrap();
+        let (found, within) = (closest(&surface, point(&fact["point"])), fact["tol"].as_f64().unwrap());
+        let uv = numbers(&fact["expect_uv"]);
+        // Its u runs over the rows, ours along them.
+        assert!((found.uv.1 - uv[0]).abs() <= within && (found.uv.0 - uv[1]).abs() <= within, "{fact}: {found:?}");
+        assert!((found.distance - 1.0).abs() <= 1e-12, "one above the net: {found:?}");
+        if !fact["expect_point"].is_null() {
+            assert!(found.point.distance(point(&fact["expect_point"])) <= within, "{fact}: {found:?}");
+        }
+        seen += 1;
+    }
+    assert_eq!(seen, 2);
 }

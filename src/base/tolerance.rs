@@ -53,6 +53,8 @@ const POINT_SHARE: f64 = 1e-6;
 pub const ROUNDING_SHARE: f64 = 1e-12;
 /// The nearest pair of two curves is the nearest one to this share of its distance.
 pub const NEAREST_PAIR: f64 = 1e-6;
+/// No point of a surface stands out of its box by more than this share of the diagonal.
+pub const BOX: f64 = 1e-6;
 /// A bound above this says nothing; finite, so that arithmetic on it never becomes NaN.
 pub const VAST: f64 = 1e120;
 /// Nearest points are the nearest ones to this share of their distance.

@@ -6,12 +6,14 @@ use super::closest::stations;
 use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend};
 use crate::base::bbox::Box3;
+use crate::base::tolerance::{BOX, EPSILON};
 use crate::network::Chain;
 
-/// The smallest box along the axes that holds the surface: from the extreme samples a descent finds the extreme points.
+/// The smallest box along the axes that holds the surface: no point of it stands out by more than [`BOX`] of the diagonal.
 ///
-/// Like nearest points this rests on samples of every cell; an extreme reached inside a dent narrower than a sample
-/// step may be missed.
+/// A descent from the extreme samples finds extreme points; bounds of the surface over ever smaller rectangles then show
+/// that nothing lies further out, or find what does. Plane faces without a map take the boxes of their sides, which rest
+/// on samples between the breaks of the curves.
 pub fn bbox(surface: &Surface) -> Box3 {
     if surface.domain() == Domain::Unbounded {
         return Box3 { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
@@ -40,6 +42,50 @@ pub fn bbox(surface: &Surface) -> Box3 {
                 hessian: [sign * jet.duu[axis], sign * jet.duv[axis], sign * jet.dvv[axis]],
             });
             bounds = bounds.with(surface.square_jet(end.place.0, end.place.1).p);
+        }
+    }
+    proved(surface, bounds)
+}
+
+/// Rectangles looked at before what is left is taken by its bound.
+const MOST: usize = 20_000;
+
+/// Grows a box of points of the surface until it holds the surface, by branch and bound.
+fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
+    let triangle = surface.domain() == Domain::Triangle;
+    let (us, vs) = surface.cells();
+    let stops = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
+    let (us, vs) = (stops(&us), stops(&vs));
+    let mut open: std::collections::VecDeque<((f64, f64), (f64, f64))> =
+        vs.windows(2).flat_map(|v| us.windows(2).map(move |u| ((u[0], u[1]), (v[0], v[1])))).collect();
+    let (room, mut seen) = (DVec3::splat(BOX * bounds.diagonal()), 0);
+    while let Some((u, v)) = open.pop_front() {
+        if triangle && u.0 + v.0 >= 1.0 {
+            continue;
+        }
+        let spread = surface.spread(u, v);
+        // Points reached count at once; the middle of a rectangle over the slant is none.
+        if !triangle || u.1 + v.1 <= 1.0 {
+            bounds = bounds.with(spread.mid.p);
+        }
+        let hull = spread.p.bounds();
+        let over = (hull.max - bounds.max).max(bounds.min - hull.min);
+        if (0..3).all(|k| over[k] <= room[k]) {
+            continue;
+        }
+        seen += 1;
+        let (a, b) = (u.1 - u.0, v.1 - v.0);
+        if seen > MOST || a.max(b) <= EPSILON {
+            bounds = bounds.union(hull);
+            continue;
+        }
+        let (mu, mv) = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
+        // Halved in the direction in which the coordinate that stands out most runs most.
+        let k = (0..3).max_by(|x, y| over[*x].total_cmp(&over[*y])).unwrap_or(0);
+        if spread.du.coordinate(k).reach() * a >= spread.dv.coordinate(k).reach() * b {
+            open.extend([((u.0, mu), v), ((mu, u.1), v)]);
+        } else {
+            open.extend([(u, (v.0, mv)), (u, (mv, v.1))]);
         }
     }
     bounds
