@@ -2,6 +2,12 @@
 //!
 //! Items are sorted along a space-filling curve and packed in groups of eight, groups again in groups: arrays only,
 //! no pointers, no balancing [Kamel & Faloutsos 1993].
+//!
+//! The cells of the curve are shaped as the boxes are. Boxes of mean size b whose middles lie in a cell of size c make a
+//! group of size c + b, and how many other groups it touches goes with Π(cᵢ + bᵢ); for cells of one volume that is least
+//! where c is proportional to b.
+
+use glam::DVec3;
 
 use super::bbox::Box3;
 
@@ -25,9 +31,12 @@ impl BoxTree {
         let all = boxes.iter().fold(Box3::EMPTY, |all, b| all.union(*b));
         let size = all.max - all.min;
         let scale = |x: f64| if x > 0.0 { ((1_u64 << KEY_BITS) - 1) as f64 / x } else { 0.0 };
+        let scale = DVec3::new(scale(size.x), scale(size.y), scale(size.z));
+        let cuts = cuts(boxes, size);
         let key = |b: &Box3| {
-            let at = b.center() - all.min;
-            spread((at.x * scale(size.x)) as u64) | spread((at.y * scale(size.y)) as u64) << 1 | spread((at.z * scale(size.z)) as u64) << 2
+            let at = (b.center() - all.min) * scale;
+            let at = [at.x as u64, at.y as u64, at.z as u64];
+            cuts.iter().fold(0, |key, &(axis, bit)| key << 1 | (at[axis] >> bit & 1))
         };
         let mut order: Vec<(u64, u32)> = boxes.iter().enumerate().map(|(k, b)| (key(b), k as u32)).collect();
         order.sort_unstable();
@@ -115,25 +124,26 @@ impl BoxTree {
     }
 }
 
-/// Moves bit i of a coordinate to bit 3i.
-fn spread(x: u64) -> u64 {
-    let mut x = x & ((1 << KEY_BITS) - 1);
-    for (shift, mask) in [
-        (32, 0x1f_0000_0000_ffff),
-        (16, 0x1f_0000_ff00_00ff),
-        (8, 0x100f_00f0_0f00_f00f),
-        (4, 0x10c3_0c30_c30c_30c3),
-        (2, 0x1249_2492_4924_9249),
-    ] {
-        x = (x | x << shift) & mask;
+/// Bits of the coordinates, as axis and place, in the order in which they cut the cells: always across the longest side
+/// of the cell, measured in mean boxes.
+fn cuts(boxes: &[Box3], size: DVec3) -> Vec<(usize, u32)> {
+    let mean = boxes.iter().map(|b| b.max - b.min).sum::<DVec3>() / boxes.len().max(1) as f64;
+    // Boxes that are points along an axis count as thin ones: the last cell of the longest axis.
+    let unit = mean.max(DVec3::splat(size.max_element() / (1_u64 << KEY_BITS) as f64));
+    let mut cell = (size / unit).to_array();
+    let mut left = size.to_array().map(|x| if x > 0.0 { KEY_BITS } else { 0 });
+    let mut cuts = Vec::with_capacity(3 * KEY_BITS as usize);
+    while let Some(axis) = (0..3).filter(|&axis| left[axis] > 0).reduce(|a, b| if cell[b] > cell[a] { b } else { a }) {
+        left[axis] -= 1;
+        cell[axis] *= 0.5;
+        cuts.push((axis, left[axis]));
     }
-    x
+    cuts
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     fn boxes(n: usize) -> Vec<Box3> {
         let mut state = 1_u64;
@@ -164,6 +174,32 @@ mod tests {
                 all.extend(expected.iter().filter(|&&b| b > a).map(|&b| (a as u32, b as u32)));
             }
             assert_eq!(tree.pairs(margin), all, "{n}");
+        }
+    }
+
+    /// Tall thin boxes in a long row, one of them over all: pairs are right, and groups of eight hold few strangers.
+    #[test]
+    fn thin_boxes_are_grouped_with_their_neighbours() {
+        for turn in 0..3 {
+            let mut thin = boxes(1000);
+            for (k, b) in thin.iter_mut().enumerate() {
+                b.min.x = 100.0 * k as f64;
+                b.max = DVec3::new(b.min.x + 100.0, b.min.y + 0.3, 0.0);
+                b.min.z = 0.0;
+            }
+            thin[7] = Box3 { min: DVec3::ZERO, max: DVec3::new(1e5, 0.1, 0.0) };
+            let rolled = |p: DVec3| DVec3::from_array(std::array::from_fn(|axis| p[(axis + turn) % 3]));
+            let thin: Vec<Box3> = thin.iter().map(|b| Box3 { min: rolled(b.min), max: rolled(b.max) }).collect();
+            let tree = BoxTree::build(&thin);
+            let pairs: Vec<(u32, u32)> = (0..1000_u32)
+                .flat_map(|a| (a + 1..1000).map(move |b| (a, b)))
+                .filter(|&(a, b)| thin[a as usize].touches(&thin[b as usize], 0.0))
+                .collect();
+            assert_eq!(tree.pairs(0.0), pairs);
+            let groups = &tree.levels[1];
+            let touching = |a: &Box3| groups.iter().filter(|b| a.touches(b, 0.0)).count();
+            let most = groups.iter().map(touching).filter(|&n| n < groups.len() / 2).max();
+            assert!(most.is_some_and(|n| n <= 6), "{most:?}");
         }
     }
 
