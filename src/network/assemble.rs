@@ -10,6 +10,7 @@ use super::cluster::cluster;
 use super::graph::{CurveId, Link, LinkId, NetCurve, Node, NodeId};
 use super::hits::Contact;
 use super::shared;
+use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, NetworkFault, Result, round_down};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
@@ -161,7 +162,7 @@ fn mean(points: &mut [DVec3]) -> DVec3 {
 /// Whether two of the points are more than two tolerances apart; of very many points only the outermost are compared.
 fn too_wide(points: &[DVec3], tolerance: &Tolerance) -> bool {
     let limit = 2.0 * tolerance.point;
-    crate::base::bbox::Box3::of(points.iter().copied()).diagonal() > limit && widest(points).0 > limit
+    Box3::of(points.iter().copied()).diagonal() > limit && widest(points).0 > limit
 }
 
 /// The widest pair: distance and indices.
@@ -191,17 +192,38 @@ fn ambiguous(curves: &[NetCurve], group: &[(u32, u32)], sites: &[DVec3], marks: 
     };
     let shown: Vec<usize> = [a, b].into_iter().chain((0..points.len()).filter(|&k| k != a && k != b)).take(SHOWN).collect();
     // The smallest distance that is not mere rounding is what a smaller tolerance must stay below.
-    let mut gaps: Vec<f64> =
-        points.iter().flat_map(|p| points.iter().map(|q| p.distance(*q))).filter(|d| *d > tolerance.rounding).collect();
-    gaps.sort_by(f64::total_cmp);
+    let gap = least_gap(&points, tolerance.rounding);
     NetworkFault::ClusterAmbiguous {
         points: shown.into_iter().map(|k| (points[k], origin(k))).collect(),
         count: points.len(),
         diameter,
         tolerance: tolerance.point,
-        smaller: round_down(gaps.first().copied().unwrap_or(tolerance.point)),
+        smaller: round_down(gap.unwrap_or(tolerance.point)),
     }
     .into()
+}
+
+/// The smallest distance of two of the points above `rounding`: a sweep along the widest axis.
+fn least_gap(points: &[DVec3], rounding: f64) -> Option<f64> {
+    let size = Box3::of(points.iter().copied());
+    let size = size.max - size.min;
+    let axis = size.max_position();
+    let mut sorted = points.to_vec();
+    sorted.sort_unstable_by(|a, b| a[axis].total_cmp(&b[axis]).then(compare_points(*a, *b)));
+    sorted.dedup();
+    let mut least = f64::INFINITY;
+    for (k, p) in sorted.iter().enumerate() {
+        for q in &sorted[k + 1..] {
+            if q[axis] - p[axis] >= least {
+                break;
+            }
+            let d = p.distance(*q);
+            if d > rounding {
+                least = least.min(d);
+            }
+        }
+    }
+    least.is_finite().then_some(least)
 }
 
 /// Stations in order, hits of one passage through a node as one of them.

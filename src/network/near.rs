@@ -61,8 +61,10 @@ pub fn near_misses(curves: &[NetCurve], one: Option<usize>, tolerance: &Toleranc
     let mut all: Vec<Miss> = found.into_iter().flatten().collect();
     all.sort_by_key(|m| (m.curve, m.last, m.other));
     let mutual = |m: &Miss| m.other_end.is_some_and(|last| m.curve > m.other || (m.curve == m.other && m.last && !last));
+    // Ascending: an end misses another curve once.
     let keys: Vec<(usize, bool, usize, Option<bool>)> = all.iter().map(|m| (m.curve, m.last, m.other, m.other_end)).collect();
-    all.retain(|m| !(mutual(m) && m.other_end.is_some_and(|last| keys.contains(&(m.other, last, m.curve, Some(m.last))))));
+    let known = |key: (usize, bool, usize, Option<bool>)| keys.binary_search(&key).is_ok();
+    all.retain(|m| !(mutual(m) && m.other_end.is_some_and(|last| known((m.other, last, m.curve, Some(m.last))))));
     all.into_iter().map(|m| m.fault).collect()
 }
 
