@@ -16,7 +16,8 @@ pub fn entries(text: &str) -> Vec<String> {
     let mut open = String::new();
     for line in text.lines() {
         if !open.is_empty() {
-            if !begins(line) && Notebook::is_unfinished(&open) {
+            // Comments go with what follows.
+            if outline(&open).is_empty() || !begins(line) && Notebook::is_unfinished(&open) {
                 open.push('\n');
                 open.push_str(line);
                 continue;
@@ -29,10 +30,6 @@ pub fn entries(text: &str) -> Vec<String> {
         match line.trim_start().starts_with(':') {
             true => out.push(line.trim().to_owned()),
             false => open = line.to_owned(),
-        }
-        // Doc comments go with what follows.
-        if open.trim_start().starts_with("//") {
-            open.push('\n');
         }
     }
     if !open.trim().is_empty() {
@@ -87,7 +84,7 @@ mod tests {
         let found = entries(text);
         assert_eq!(
             found,
-            ["curve a = line(\n  (0, 0, 0),\n  (1, 0, 0))", "a.length", ":nodes", "let x = (1", "curve b = a", "/// Doc.\n\nlet y = 2"]
+            ["curve a = line(\n  (0, 0, 0),\n  (1, 0, 0))", "a.length", ":nodes", "let x = (1", "curve b = a", "/// Doc.\nlet y = 2"]
         );
     }
 }

@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn stretches_cover_the_file() {
         let text =
-            "// head\nunits m // metres\n\n/// The first.\ncurve a = line(A,\n  B) // end\nsurface s = coons(\nlet k = 2\n  // tail\n";
+            "// head\nunits m // metres\n\n/// The first.\ncurve a = line(A,\n  B) // end\nsurface s = coons(\ncurve k = s\n  // tail\n";
         let found = outline(text);
         let names: Vec<&str> = found.iter().map(|o| o.name.map_or("", |n| &text[n.start as usize..n.end as usize])).collect();
         assert_eq!(names, ["", "a", "s", "k"]);
