@@ -412,9 +412,11 @@ fn colours_are_asked_for() {
 fn a_new_model_runs() {
     let folder = Folder::new("new");
     assert_eq!(folder.loft(&["new", "hall"]).status, 0);
+    let test = folder.loft(&["test", "hall"]);
+    assert_eq!((test.status, test.out.as_str(), test.err.as_str()), (0, "ok          hall/model.loft\n\n1 ok\n", ""));
     let run = folder.loft(&["run", "hall/model.loft"]);
     assert_eq!((run.status, run.err.as_str()), (0, ""));
-    assert_eq!(folder.names(), ["hall/model.inp", "hall/model.loft", "hall/model.vtu"]);
+    assert_eq!(folder.names(), ["hall/model.golden", "hall/model.inp", "hall/model.loft", "hall/model.vtu"]);
     let again = folder.loft(&["new", "hall"]);
     assert!(again.status == 1 && again.err.contains("there is a model.loft already"), "{}", again.err);
 }

@@ -4,6 +4,9 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::golden;
+use crate::base::job::Job;
+
 /// A first model: a vault over four curves, meshed, checked and written for a solver.
 pub const SCRIPT: &str = r#"// A barrel vault: change `span`, run it again, or say `loft run model.loft --set span=12m`.
 
@@ -49,4 +52,16 @@ pub fn write(folder: &Path) -> io::Result<PathBuf> {
     })?;
     file.write_all(SCRIPT.as_bytes())?;
     Ok(script)
+}
+
+/// Runs the script and writes what it finds as its golden; gives the golden's path. The error is a sentence.
+pub fn write_golden(script: &Path, clock: &(dyn Fn() -> f64 + Sync), job: &Job) -> Result<PathBuf, String> {
+    let tests = golden::discover(&[script.to_owned()])?;
+    let settings = golden::Settings { accept: true, filter: None, jobs: 1, clock, job };
+    for test in &tests {
+        if let Some(bad) = golden::run_one(test, &settings).into_iter().find(|result| !result.verdict.is_good()) {
+            return Err(bad.message);
+        }
+    }
+    Ok(script.with_extension("golden"))
 }
