@@ -479,3 +479,62 @@ fn the_examples_of_all_functions_run() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+#[test]
+fn golden_tests_end_with_the_right_status() {
+    let folder = Folder::new("golden").with("a/plate.loft", PLATE).with("a/plain.loft", "curve c = line((0, 0), (1, 0))\n");
+    assert_eq!(folder.loft(&["test"]).status, 2, "there is nothing to test");
+    let missing = folder.loft(&["test", "a/plate.loft"]);
+    assert!(missing.status == 1 && missing.out.contains("missing     a/plate.loft\nE902 × a/plate.loft has no golden"), "{}", missing.out);
+    assert_eq!(folder.loft(&["test", "--accept", "a/plate.loft", "a/plain.loft"]).status, 0);
+    let list = folder.loft(&["test", "--list"]);
+    assert_eq!((list.status, list.out.as_str()), (0, "a/plain.loft\na/plate.loft\n"));
+    let before = folder.files();
+    let same = folder.loft(&["test", "--jobs", "2", "--junit", "report.xml"]);
+    assert_eq!((same.status, same.out.as_str()), (0, "ok          a/plain.loft\nok          a/plate.loft\n\n2 ok\n"));
+    assert!(String::from_utf8(folder.read("report.xml")).unwrap().contains("tests=\"2\" failures=\"0\" errors=\"0\""));
+    fs::remove_file(folder.path("report.xml")).unwrap();
+    assert_eq!(folder.files(), before, "a test writes nothing beside the script");
+    fs::write(folder.path("a/plate.loft"), PLATE.replace("(width, 3)", "(width, 4)")).unwrap();
+    let differs = folder.loft(&["test", "--filter", "plate"]);
+    assert!(differs.status == 1 && differs.out.contains("plate: area 12 → 14 m² (+17 %, allowed 1e-9"), "{}", differs.out);
+    assert_eq!(folder.loft(&["test", "--filter", "plain"]).status, 0);
+    assert_eq!(folder.loft(&["test", "--filter", "nothing"]).status, 2);
+    fs::remove_file(folder.path("a/plain.loft")).unwrap();
+    let orphan = folder.loft(&["test", "a"]);
+    assert!(orphan.status == 1 && orphan.out.contains("orphaned    a/plain.loft\nE902 × a/plain.golden has no script"), "{}", orphan.out);
+    assert!(orphan.out.ends_with("\n1 differs, 1 orphaned\n"), "{}", orphan.out);
+    let gone = folder.loft(&["test", "b.loft"]);
+    assert_eq!((gone.status, gone.err.as_str()), (2, "loft: cannot test \"b.loft\": there is no such file\n"));
+    let colors = folder.loft(&["--color", "always", "test", "a/plate.loft"]);
+    assert!(colors.out.contains("\u{1b}[31m  - surface plate") && colors.out.contains("\u{1b}[32m  + surface plate"), "{}", colors.out);
+}
+
+#[test]
+fn diff_says_what_changed() {
+    let plate = PLATE.replace("size: 1m", "size: 1.1m");
+    let folder = Folder::new("diff").with("a.loft", &plate).with("b.loft", plate.replace("(width, 3)", "(width, 3, 10mm)"));
+    let lines: Vec<&str> = plate.lines().collect();
+    let (head, tail) = lines.split_at(3);
+    let mut turned: Vec<&str> = tail.to_vec();
+    turned.reverse();
+    let folder = folder.with("c.loft", [head, &turned].concat().join("\n")).with("d.txt", "");
+    let same = folder.loft(&["diff", "a.loft", "c.loft"]);
+    assert_eq!((same.status, same.out.as_str(), same.err.as_str()), (0, "no difference\n", ""));
+    let moved = folder.loft(&["diff", "a.loft", "b.loft"]);
+    assert_eq!(moved.status, 1, "{}", moved.out);
+    for part in
+        ["  - a.loft\n  + b.loft\n", "plate: box, upper z 0.00 → 0.01 m", "mesh m: ", " nodes moved, farthest 0.01 m at (4.0, 3.0, 0.01)"]
+    {
+        assert!(moved.out.contains(part), "{part} in\n{}", moved.out);
+    }
+    folder.loft(&["test", "--accept", "a.loft", "b.loft"]);
+    let goldens = folder.loft(&["diff", "a.golden", "b.golden"]);
+    assert!(goldens.status == 1 && goldens.out.contains("east: length 3.00000 → 3.00002 m"), "{}", goldens.out);
+    assert_eq!(folder.loft(&["diff", "a.golden", "a.loft"]).status, 0);
+    assert_eq!(folder.loft(&["diff", "a.golden", "a.golden"]).status, 0);
+    for (a, b) in [("a.loft", "none.loft"), ("d.txt", "a.loft"), ("a.golden", "")] {
+        assert_eq!(folder.loft(&["diff", a, b]).status, 2, "{a} {b}");
+    }
+    assert_eq!(folder.names().len(), 6, "nothing else is written");
+}

@@ -2,6 +2,7 @@
 
 mod check;
 mod completions;
+mod diff;
 mod doc;
 mod explain;
 mod fmt;
@@ -44,6 +45,7 @@ const COMMANDS: &[&[Command]] = &[
         repl::COMMAND,
         render::COMMAND,
         test::COMMAND,
+        diff::COMMAND,
         new::COMMAND,
         fmt::COMMAND,
         explain::COMMAND,

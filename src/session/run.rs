@@ -1,5 +1,7 @@
 //! One run of a model: from text to report and files.
 
+use std::sync::Arc;
+
 use super::collect;
 use super::disk::{Disk, Outputs};
 use super::export;
@@ -18,6 +20,7 @@ use crate::lang::memory::Memory;
 use crate::lang::plans::PictureSpec;
 use crate::lang::run::Entry;
 use crate::lang::value::ModuleId;
+use crate::mesh::Mesh;
 
 /// What is to be run.
 pub struct Task<'a> {
@@ -55,6 +58,8 @@ pub struct Wanted {
 pub struct Outcome {
     /// All that was found out.
     pub report: Report,
+    /// The meshes by name, in the order of the report.
+    pub meshes: Vec<(String, Arc<Mesh>)>,
     /// Everything said about the script.
     pub diagnostics: Vec<Diagnostic>,
     /// The texts that diagnostics point into.
@@ -117,6 +122,7 @@ struct Run<'r> {
     task: &'r Task<'r>,
     disk: &'r Disk,
     report: Report,
+    meshes: Vec<(String, Arc<Mesh>)>,
     bug: Option<&'static str>,
     /// What has no place in the script.
     said: Option<Diagnostic>,
@@ -128,7 +134,7 @@ struct Run<'r> {
 impl<'r> Run<'r> {
     fn new(task: &'r Task<'r>, cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> Self {
         let report = Report { loft: VERSION, model: task.name.to_owned(), ..Report::default() };
-        Self { cx, stages, task, disk, report, bug: None, said: None, flows: Vec::new(), light: false }
+        Self { cx, stages, task, disk, report, meshes: Vec::new(), bug: None, said: None, flows: Vec::new(), light: false }
     }
 
     /// From the text to the end; `look` is shown what was evaluated.
@@ -239,6 +245,7 @@ impl<'r> Run<'r> {
             let mesh = self.cx.mesh(&value);
             if let Some(mesh) = self.take(mesh) {
                 self.report.meshes.push(self.stages.row(&name, &mesh, tolerance, self.task.full));
+                self.meshes.push((name.to_string(), mesh));
             }
         }
     }
@@ -335,6 +342,7 @@ impl<'r> Run<'r> {
         let sources = std::mem::take(&mut self.cx.sources);
         let outcome = Outcome {
             report: self.report,
+            meshes: self.meshes,
             diagnostics,
             sources,
             notes: self.flows.into_iter().chain(self.stages.notes()).collect(),

@@ -98,6 +98,14 @@ impl Shape {
         places.shape
     }
 
+    /// A mesh as it is: elements of all kinds, its nodes with their own numbers. Groups are compared elsewhere.
+    pub fn from_mesh(mesh: &Mesh) -> Self {
+        let cell = |closed: bool, nodes: &[u32]| Cell { group: String::new(), closed, nodes: nodes.to_vec() };
+        let lines = mesh.lines.iter().map(|n| cell(false, n));
+        let faces = mesh.triangles.iter().map(|n| cell(true, n)).chain(mesh.quads.iter().map(|n| cell(true, n)));
+        Self { nodes: mesh.nodes.clone(), cells: lines.chain(faces).collect() }
+    }
+
     /// Triangles that fill the cells; an edge is a triangle without width.
     fn triangles(&self) -> Vec<[DVec3; 3]> {
         let at = |n: u32| self.nodes[n as usize];

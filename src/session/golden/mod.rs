@@ -6,6 +6,7 @@
 
 mod compare;
 mod copies;
+mod diff;
 mod discover;
 mod file;
 mod geometry;
@@ -18,6 +19,7 @@ mod tell;
 mod tokens;
 mod words;
 
+pub use diff::{Difference, NoDiff, diff};
 pub use discover::{State, Test, discover};
 pub use file::{Flaw, Golden, Maker};
 pub use junit::text as junit_text;

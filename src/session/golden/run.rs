@@ -189,7 +189,8 @@ pub fn run_one(test: &Test, settings: &Settings) -> Vec<CaseResult> {
     if settings.accept { model.accept(&runs) } else { model.compare_all(&runs) }
 }
 
-fn said(error: &FileError) -> String {
+/// Why a file cannot be read.
+pub(super) fn said(error: &FileError) -> String {
     match error {
         FileError::Missing { .. } => "there is no such file".to_owned(),
         FileError::Outside => "it lies outside the allowed folders".to_owned(),
