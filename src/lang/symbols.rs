@@ -98,7 +98,9 @@ impl Cx<'_> {
                 MeshValue::Data(mesh, _) => about_mesh(mesh),
                 MeshValue::Declared { .. } => String::new(),
             },
-            Value::List(items) if items.len() > 1 && items.iter().all(|i| !matches!(i, Value::Number(_) | Value::Vector(..) | Value::Node(_))) => {
+            Value::List(items)
+                if items.len() > 1 && items.iter().all(|i| !matches!(i, Value::Number(_) | Value::Vector(..) | Value::Node(_))) =>
+            {
                 let ty = items[0].ty();
                 let alike = items.iter().all(|i| i.ty() == ty);
                 if alike && is_entity(&items[0]) { format!("{} × {}", items.len(), noun(ty)) } else { self.clipped(value) }
