@@ -82,6 +82,12 @@ impl Folder {
     }
 }
 
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
 const MODEL: &str = r#"units m
 param span = 4m
 curve south = line((0, 0, 0), (span, 0, 0))
