@@ -1,7 +1,7 @@
 //! What one run leaves for the next: values of declarations under keys made of all that they depend on.
 //!
 //! A value is taken over when its key is the same, and with it what was said, what it adds to the box that decides the
-//! tolerance, and the origins of its entities, which stay valid because declarations keep their [`Home`]s. Nothing else
+//! tolerance, and the origins of its entities, which stay valid because declarations keep their homes. Nothing else
 //! is assumed: a run with a memory gives the same bits as one without.
 
 use std::collections::BTreeMap;
