@@ -7,8 +7,7 @@ const fn later(name: &'static str, about: &'static str) -> Command {
 }
 
 /// Words that answer "not in this version".
-pub const COMMANDS: &[Command] =
-    &[later("view", "Live page in the browser (not in this version)"), later("lsp", "Language server (not in this version)")];
+pub const COMMANDS: &[Command] = &[later("view", "Live page in the browser (not in this version)")];
 
 fn anything(command: clap::Command) -> clap::Command {
     let rest = clap::Arg::new("rest").num_args(0..).trailing_var_arg(true).allow_hyphen_values(true).hide(true);

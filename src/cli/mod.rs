@@ -8,6 +8,7 @@ mod explain;
 mod fmt;
 mod interrupt;
 mod later;
+mod lsp;
 mod model;
 mod new;
 mod options;
@@ -43,6 +44,7 @@ const COMMANDS: &[&[Command]] = &[
         run::COMMAND,
         check::COMMAND,
         repl::COMMAND,
+        lsp::COMMAND,
         render::COMMAND,
         test::COMMAND,
         diff::COMMAND,

@@ -68,7 +68,7 @@ pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
         let methods = builtins().filter(|b| b.name.starts_with(word) && !b.params.is_empty());
         out.extend(methods.map(|b| pair(&format!("{}(", b.name), b.signature())));
     } else if !before.trim_start().starts_with(':') {
-        if let Some(builtin) = call_at(before) {
+        if let Some((builtin, _)) = call_at(before) {
             let arguments = builtin.params.iter().filter(|p| p.name.starts_with(word));
             out.extend(arguments.map(|p| pair(&format!("{}: ", p.name), format!("{}: {}", p.name, p.ty.signature()))));
         }
@@ -84,18 +84,22 @@ pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
     (start, out)
 }
 
-/// The function whose brackets the cursor is in.
-pub fn call_at(before: &str) -> Option<&'static Builtin> {
-    let mut depth = 0usize;
+/// The function whose brackets the cursor is in, and how many arguments stand before the one at the cursor.
+pub fn call_at(before: &str) -> Option<(&'static Builtin, usize)> {
+    let (mut depth, mut arguments) = (0usize, 0);
     for (at, c) in before.char_indices().rev() {
         match c {
             ')' | ']' | '}' => depth += 1,
-            '(' if depth == 0 => {
+            '(' | '[' | '{' if depth > 0 => depth -= 1,
+            '(' | '[' | '{' => {
                 let name = &before[word_start(&before[..at])..at];
-                return builtins().find(|b| b.name == name);
+                if c == '(' && !name.is_empty() {
+                    return builtins().find(|b| b.name == name).map(|b| (b, arguments));
+                }
+                // A tuple or list is one argument of what is around it.
+                arguments = 0;
             }
-            '[' | '{' if depth == 0 => return None,
-            '(' | '[' | '{' => depth -= 1,
+            ',' if depth == 0 => arguments += 1,
             _ => {}
         }
     }
@@ -148,8 +152,8 @@ mod tests {
 
     #[test]
     fn the_call_at_the_cursor_is_found() {
-        assert_eq!(call_at("curve a = line((0, 0, 0), ").map(|b| b.name), Some("line"));
-        assert_eq!(call_at("curve a = line((0, 0, 0)").map(|b| b.name), Some("line"));
-        assert_eq!(call_at("let a = [1, ").map(|b| b.name), None);
+        assert_eq!(call_at("curve a = line((0, 0, 0), (1, 2").map(|(b, n)| (b.name, n)), Some(("line", 1)));
+        assert_eq!(call_at("curve a = line((0, 0, 0)").map(|(b, n)| (b.name, n)), Some(("line", 0)));
+        assert!(call_at("let a = [1, ").is_none());
     }
 }

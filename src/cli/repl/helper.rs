@@ -59,7 +59,7 @@ impl Hinter for Line {
         if at < line.len() || line.is_empty() {
             return None;
         }
-        call_at(line).map(|builtin| format!("   {}", builtin.signature()))
+        call_at(line).map(|(builtin, _)| format!("   {}", builtin.signature()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `loft repl [MODEL]`: a session on a terminal, or the same from a pipe.
 
-mod complete;
+pub(super) mod complete;
 mod helper;
 mod history;
 mod script;

@@ -1,0 +1,126 @@
+//! What is answered from the text alone: outline, folds, colours, layout, completion, signatures.
+
+use serde_json::{Value, json};
+
+use super::document::Document;
+use crate::cli::repl::complete::{Known, call_at, candidates};
+use crate::lang::fmt::format;
+use crate::lang::syntax::ast::{Keyword, Span};
+use crate::lang::syntax::keywords::written;
+use crate::lang::syntax::outline::{Outline, Paint, outline, painted};
+
+/// Colours as the editor knows them, in the order of [`colour`].
+pub const COLOURS: [&str; 9] = ["keyword", "variable", "function", "property", "number", "string", "comment", "operator", "enumMember"];
+
+fn colour(paint: Paint) -> usize {
+    match paint {
+        Paint::Keyword => 0,
+        Paint::Name => 1,
+        Paint::Function => 2,
+        Paint::Property => 3,
+        Paint::Number => 4,
+        Paint::Text => 5,
+        Paint::Comment => 6,
+        Paint::Operator => 7,
+        Paint::Constant => 8,
+    }
+}
+
+/// The editor's number for what a keyword declares.
+fn symbol_kind(keyword: Keyword) -> u8 {
+    match keyword {
+        Keyword::Fn => 12,
+        Keyword::Param | Keyword::Let => 13,
+        Keyword::Use | Keyword::Import => 2,
+        Keyword::Point | Keyword::Curve | Keyword::ModelingCurve => 8,
+        Keyword::Surface | Keyword::Shell => 5,
+        Keyword::Mesh => 23,
+        Keyword::Group => 18,
+        _ => 14,
+    }
+}
+
+pub fn symbols(document: &Document) -> Value {
+    let symbol = |o: &Outline| {
+        let keyword = o.keyword?;
+        let name = match o.name {
+            Some(name) => document.slice(name).to_owned(),
+            None => document.slice(o.span).lines().next().unwrap_or("").to_owned(),
+        };
+        Some(json!({
+            "name": name, "detail": written(keyword), "kind": symbol_kind(keyword),
+            "range": document.range(o.span), "selectionRange": document.range(o.name.unwrap_or(o.span)),
+        }))
+    };
+    outline(&document.text).iter().filter_map(symbol).collect()
+}
+
+pub fn folds(document: &Document) -> Value {
+    let mut out = Vec::new();
+    for o in outline(&document.text) {
+        let (first, last) = (document.place(o.span.start as usize).0, document.place(o.span.end as usize).0);
+        if last > first {
+            out.push(json!({ "startLine": first, "endLine": last }));
+        }
+    }
+    Value::Array(out)
+}
+
+pub fn colours(document: &Document) -> Value {
+    let mut data: Vec<usize> = Vec::new();
+    let (mut line, mut column) = (0, 0);
+    for (span, paint) in painted(&document.text) {
+        let mut start = span.start as usize;
+        // What runs over several lines is told line by line.
+        for part in document.slice(span).split_inclusive('\n') {
+            let text = part.trim_end_matches(['\n', '\r']);
+            if !text.is_empty() {
+                let at = document.place(start);
+                let column_before = if at.0 == line { column } else { 0 };
+                if at.0 > line || at.1 >= column_before {
+                    data.extend([at.0 - line, at.1 - column_before, document.width(text), colour(paint), 0]);
+                    (line, column) = at;
+                }
+            }
+            start += part.len();
+        }
+    }
+    json!({ "data": data })
+}
+
+pub fn layout(document: &Document) -> Value {
+    let formatted = format(&document.text);
+    if !formatted.changed {
+        return json!([]);
+    }
+    let whole = Span { start: 0, end: document.text.len() as u32 };
+    json!([{ "range": document.range(whole), "newText": formatted.text }])
+}
+
+pub fn completion(document: &Document, position: &Value) -> Value {
+    let at = document.byte(position);
+    let before = &document.text[..at];
+    let known: Vec<Known> = outline(&document.text)
+        .iter()
+        .filter_map(|o| Some(Known { name: document.slice(o.name?).to_owned(), keyword: written(o.keyword?) }))
+        .collect();
+    // A colon that opens a command in a session is nothing special in a file.
+    let (start, found) = candidates(before, &known);
+    let range = document.range(Span { start: start as u32, end: at as u32 });
+    let item = |pair: rustyline::completion::Pair| {
+        let label = pair.replacement.trim_end_matches(['(', ' ', ':']).to_owned();
+        let kind = if pair.replacement.ends_with('(') { 3 } else { 6 };
+        json!({ "label": label, "kind": kind, "detail": pair.display, "textEdit": { "range": range, "newText": pair.replacement } })
+    };
+    Value::Array(found.into_iter().map(item).collect())
+}
+
+pub fn signature(document: &Document, position: &Value) -> Value {
+    let before = &document.text[..document.byte(position)];
+    let Some((builtin, active)) = call_at(before) else { return Value::Null };
+    let parameters: Vec<Value> = builtin.params.iter().map(|p| json!({ "label": p.name, "documentation": p.docs.trim() })).collect();
+    json!({
+        "signatures": [{ "label": builtin.signature(), "documentation": builtin.summary(), "parameters": parameters }],
+        "activeSignature": 0, "activeParameter": active.min(builtin.params.len().saturating_sub(1)),
+    })
+}
