@@ -142,7 +142,7 @@ export finer to \"finer.stl\"
         let back = sound(
             &folder,
             &format!(
-                "units m\nimport \"finer.obj\" (unit: m) as obj\nimport \"finer.stl\" (unit: m) as stl\nlet area = {:?} * 1m2\ncheck obj.mesh.area == area within 1e-9\ncheck stl.mesh.area == area within 1e-4\ncheck len(obj.points) >= 0\n",
+                "units m\nimport \"finer.obj\" (unit: m) as obj\nimport \"finer.stl\" (unit: m) as stl\nlet area = {:?} * 1m2\ncheck obj.mesh.area == area within 1e-9\ncheck stl.mesh.area == area within 1e-4\n",
                 finer.area.unwrap()
             ),
         );

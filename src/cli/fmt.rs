@@ -7,11 +7,10 @@ use clap::{Arg, ArgAction, ArgMatches};
 
 use super::{Command, Exit, Terminal};
 use crate::base::limits;
-use crate::io::FileError;
 use crate::lang::diag::Sources;
 use crate::lang::diag_render::render_all;
 use crate::lang::fmt::{Formatted, format};
-use crate::session::disk::{read_limited, read_stream};
+use crate::session::disk::{read_limited, read_stream, words};
 use crate::session::guard::guarded;
 use crate::session::staging::Staging;
 
@@ -81,7 +80,7 @@ impl Task<'_> {
         let source = match read_stream(std::io::stdin().lock(), limits::SOURCE_BYTES).map(String::from_utf8) {
             Ok(Ok(source)) => source,
             Ok(Err(_)) => return self.terminal.wrong_usage("cannot read \"-\": it is not UTF-8"),
-            Err(error) => return self.terminal.wrong_usage(&format!("cannot read \"-\": {}", said(&error))),
+            Err(error) => return self.terminal.wrong_usage(&format!("cannot read \"-\": {}", words(&error))),
         };
         match self.formatted("-", &source) {
             Ok((formatted, exit)) if self.check => exit.max(self.differs("-", &source, &formatted)),
@@ -98,7 +97,7 @@ impl Task<'_> {
         let source = match read_limited(path, limits::SOURCE_BYTES).map(String::from_utf8) {
             Ok(Ok(source)) => source,
             Ok(Err(_)) => return self.terminal.wrong_usage(&format!("cannot read {name:?}: it is not UTF-8")),
-            Err(error) => return self.terminal.wrong_usage(&format!("cannot read {name:?}: {}", said(&error))),
+            Err(error) => return self.terminal.wrong_usage(&format!("cannot read {name:?}: {}", words(&error))),
         };
         let (formatted, exit) = match self.formatted(&name, &source) {
             Ok(done) => done,
@@ -188,14 +187,4 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     staging.write(&real, &mut |out| out.write_all(text.as_bytes()))?;
     staging.permit(&permissions)?;
     staging.commit().map(drop)
-}
-
-fn said(error: &FileError) -> String {
-    match error {
-        FileError::Missing { similar } if similar.is_empty() => "there is no such file".to_owned(),
-        FileError::Missing { similar } => format!("there is no such file; there is a {:?}", similar[0]),
-        FileError::Outside => "it lies outside the allowed folders".to_owned(),
-        FileError::TooLarge(bytes) => format!("it has {bytes} bytes, the limit is {}", limits::SOURCE_BYTES),
-        FileError::Other(text) => text.clone(),
-    }
 }

@@ -10,7 +10,7 @@ use super::{Exit, Terminal, interrupt, summary};
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::io::FileError;
-use crate::session::disk::{Disk, Outputs, read_limited, read_stream};
+use crate::session::disk::{Disk, Outputs, read_limited, read_stream, words};
 use crate::session::guard::{Bug, guarded};
 use crate::session::json::{cases_text, report_text};
 use crate::session::kept::Kept;
@@ -63,7 +63,7 @@ pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
 /// Reads a script; the error is a sentence about the command line.
 pub fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Model<'a>, String> {
     let path = script_path(name);
-    let cannot = |error: FileError| format!("cannot read {}", said(name, &error));
+    let cannot = |error: FileError| format!("cannot read {name:?}: {}", words(&error));
     let text = match path {
         Some(path) => read_limited(path, limits::SOURCE_BYTES + 1),
         None => read_stream(std::io::stdin().lock(), limits::SOURCE_BYTES + 1),
@@ -75,16 +75,6 @@ pub fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Mo
     };
     let disk = Disk::new(path, options.out.as_deref(), &options.allow, outputs).map_err(|error| error.to_string())?;
     Ok(Model { name, text, disk })
-}
-
-fn said(name: &str, error: &FileError) -> String {
-    match error {
-        FileError::Missing { similar } if similar.is_empty() => format!("{name:?}: there is no such file"),
-        FileError::Missing { similar } => format!("{name:?}: there is no such file; there is a {:?}", similar[0]),
-        FileError::Outside => format!("{name:?}: it lies outside the allowed folders"),
-        FileError::TooLarge(bytes) => format!("{name:?}: it has {bytes} bytes, the limit is {}", limits::SOURCE_BYTES),
-        FileError::Other(text) => format!("{name:?}: {text}"),
-    }
 }
 
 /// Runs one case behind the wall and shows what it said; `None` after a bug.
@@ -180,7 +170,7 @@ pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
 fn variants(model: &Model, table: &Path, options: &Options, job: &Arc<Job>, terminal: &Terminal) -> (Exit, Vec<Case>) {
     let rows = match read_limited(table, limits::DATA_BYTES) {
         Ok(bytes) => crate::session::variants::rows(&bytes, &options.sets),
-        Err(error) => return (terminal.wrong_usage(&format!("cannot read {}", said(&table.to_string_lossy(), &error))), Vec::new()),
+        Err(error) => return (terminal.wrong_usage(&format!("cannot read {:?}: {}", table.to_string_lossy(), words(&error))), Vec::new()),
     };
     let rows = match rows {
         Ok(rows) => rows,

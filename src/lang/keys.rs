@@ -1,6 +1,6 @@
 //! Keys of declarations: their own tokens, the keys of what they name, and the bytes of the files they load.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::cx::Cx;
 use super::diag::FileId;
@@ -70,7 +70,7 @@ impl Cx<'_> {
         let mut taken: Vec<Home> = homes.clone();
         taken.sort_unstable();
         if taken.windows(2).any(|w| w[0] == w[1]) {
-            let mut seen = std::collections::BTreeSet::new();
+            let mut seen = BTreeSet::new();
             homes.iter_mut().for_each(|home| {
                 if !seen.insert(*home) {
                     *home = self.origins.new_home();
@@ -199,14 +199,14 @@ impl Cx<'_> {
     /// What the names of a declaration lead to, in order, each once.
     fn leads(&self, module: ModuleId, declaration: &Declaration) -> Vec<Lead> {
         let m = self.machine.at(module);
-        let mut names: Vec<(Name, bool)> = Vec::new();
+        let (mut names, mut seen) = (Vec::new(), BTreeSet::new());
         for node in &declaration.nodes {
             let found = match &node.expr {
                 Expr::Name(name) => (*name, true),
                 Expr::Call { name, .. } | Expr::Field { name, .. } => (*name, false),
                 _ => continue,
             };
-            if !names.contains(&found) {
+            if seen.insert(found) {
                 names.push(found);
             }
         }

@@ -1,5 +1,7 @@
 //! Which name means what: each place where a script says a name, with what it is bound to there.
 
+use std::collections::BTreeMap;
+
 use super::names::Name;
 use super::syntax::ast::{Arg, Clause, Declaration, DeclarationKind, Expr, ExprId, For, Script, Span, TextPart};
 
@@ -32,7 +34,9 @@ pub struct Occurrence {
 /// All names of a script, in order of place.
 pub fn occurrences(script: &Script) -> Vec<Occurrence> {
     let bound = |d: &Declaration| super::module::bound(d);
-    let declared: Vec<(Name, usize)> = script.declarations.iter().enumerate().filter_map(|(i, d)| Some((bound(d)?.name, i))).collect();
+    // Of two declarations of a name the first one counts.
+    let declared: BTreeMap<Name, usize> =
+        script.declarations.iter().enumerate().rev().filter_map(|(i, d)| Some((bound(d)?.name, i))).collect();
     let mut out = Vec::new();
     for (index, declaration) in script.declarations.iter().enumerate() {
         let mut walker = Walker { declaration, declared: &declared, script, locals: Vec::new(), out: &mut out };
@@ -47,7 +51,7 @@ pub fn occurrences(script: &Script) -> Vec<Occurrence> {
 
 struct Walker<'s> {
     declaration: &'s Declaration,
-    declared: &'s [(Name, usize)],
+    declared: &'s BTreeMap<Name, usize>,
     script: &'s Script,
     locals: Vec<(Name, Span)>,
     out: &'s mut Vec<Occurrence>,
@@ -113,7 +117,7 @@ impl Walker<'_> {
 
     fn says(&mut self, name: Name, span: Span, value: bool) {
         let local = self.locals.iter().rev().find(|l| l.0 == name).filter(|_| value);
-        let declared = self.declared.iter().find(|d| d.0 == name).map(|d| d.1);
+        let declared = self.declared.get(&name).copied();
         // What is called is a function, whatever else has its name.
         let fits = |d: &usize| value || matches!(self.script.declarations[*d].kind, DeclarationKind::Fn { .. });
         let binding = match (local, declared.filter(fits)) {
@@ -128,9 +132,9 @@ impl Walker<'_> {
     fn behind_dot(&mut self, of: ExprId, name: Name, span: Span) {
         self.says(name, span, false);
         let Expr::Name(before) = self.declaration.nodes[of.index()].expr else { return };
-        let module = self.declared.iter().find(|d| d.0 == before && !self.locals.iter().any(|l| l.0 == before));
+        let module = self.declared.get(&before).filter(|_| !self.locals.iter().any(|l| l.0 == before));
         if let (Some(last), Some(module)) = (self.out.last_mut(), module) {
-            last.of = Some(module.1);
+            last.of = Some(*module);
         }
     }
 

@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::similar::similar_names;
 use super::staging::{Counted, Staging};
+use crate::base::limits;
 use crate::io::{FileError, Files};
 
 /// What a run does with its outputs.
@@ -195,7 +196,7 @@ pub fn words(error: &FileError) -> String {
         FileError::Missing { similar } if similar.is_empty() => "there is no such file".to_owned(),
         FileError::Missing { similar } => format!("there is no such file; there is a {:?}", similar[0]),
         FileError::Outside => "it lies outside the allowed folders".to_owned(),
-        FileError::TooLarge(bytes) => format!("it has {bytes} bytes, which is too many"),
+        FileError::TooLarge(bytes) => format!("it has {bytes} bytes, the limit is {}", limits::SOURCE_BYTES),
         FileError::Other(text) => text.clone(),
     }
 }

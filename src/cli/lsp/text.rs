@@ -107,12 +107,12 @@ pub fn completion(document: &Document, position: &Value) -> Value {
     // A colon that opens a command in a session is nothing special in a file.
     let (start, found) = candidates(before, &known);
     let range = document.range(Span { start: start as u32, end: at as u32 });
-    let item = |pair: rustyline::completion::Pair| {
+    let items = found.into_iter().map(|pair| {
         let label = pair.replacement.trim_end_matches(['(', ' ', ':']).to_owned();
         let kind = if pair.replacement.ends_with('(') { 3 } else { 6 };
         json!({ "label": label, "kind": kind, "detail": pair.display, "textEdit": { "range": range, "newText": pair.replacement } })
-    };
-    Value::Array(found.into_iter().map(item).collect())
+    });
+    items.collect()
 }
 
 pub fn signature(document: &Document, position: &Value) -> Value {

@@ -149,7 +149,7 @@ impl Notebook {
         }
         if let Some(text) = shown {
             answer.say(text);
-        } else if said_nothing(&answer) {
+        } else if answer.parts.is_empty() {
             answer.failed = true;
             let because = "what it asks for was not built";
             answer.say(format!("no value: {because} (`:why NAME` tells more)"));
@@ -189,10 +189,6 @@ impl Notebook {
         let sets = self.state.sets.iter().filter(|s| !names.contains(&s.0)).cloned().collect();
         State { text: kept, sets }
     }
-}
-
-fn said_nothing(answer: &Answer) -> bool {
-    answer.parts.is_empty()
 }
 
 /// Labels behind byte `own` of the main script are moved to the entry.

@@ -85,7 +85,8 @@ impl Notebook {
             }
         };
         tree(&format!("{name} depends on"), &|at| self.symbols[at].needs.clone());
-        tree(&format!("what depends on {name}:"), &|at| self.users(at));
+        let users = self.users();
+        tree(&format!("what depends on {name}:"), &|at| users[at].clone());
         let mut answer = Answer::text(out.trim_end());
         if self.symbols[found].condition != Condition::Sound {
             answer.say(format!("{name} has no value: {}", self.reason(&self.symbols[found])));
@@ -93,9 +94,13 @@ impl Notebook {
         answer
     }
 
-    /// Declarations that name this one.
-    fn users(&self, of: usize) -> Vec<usize> {
-        (0..self.symbols.len()).filter(|s| *s != of && self.symbols[*s].needs.contains(&of)).collect()
+    /// For each declaration those that name it.
+    fn users(&self) -> Vec<Vec<usize>> {
+        let mut users = vec![Vec::new(); self.symbols.len()];
+        for (n, symbol) in self.symbols.iter().enumerate() {
+            symbol.needs.iter().filter(|need| **need != n).for_each(|need| users[*need].push(n));
+        }
+        users
     }
 
     /// Takes a declaration out, with all that stands on it when `all`; else only when nothing does.
@@ -104,15 +109,20 @@ impl Notebook {
             Ok(found) => found,
             Err(answer) => return answer,
         };
-        let mut gone = vec![found];
+        let users = self.users();
+        let (mut gone, mut met) = (vec![found], vec![false; users.len()]);
+        met[found] = true;
         let mut next = 0;
         while next < gone.len() {
-            let above: Vec<usize> = self.users(gone[next]).into_iter().filter(|u| !gone.contains(u)).collect();
-            gone.extend(above);
+            for &user in &users[gone[next]] {
+                if !std::mem::replace(&mut met[user], true) {
+                    gone.push(user);
+                }
+            }
             next += 1;
         }
         if gone.len() > 1 && !all {
-            let first: Vec<String> = self.users(found).iter().map(|u| format!("`{}`", self.title(&self.symbols[*u]))).collect();
+            let first: Vec<String> = users[found].iter().map(|u| format!("`{}`", self.title(&self.symbols[*u]))).collect();
             let mut order: Vec<String> = gone[1..].iter().rev().map(|g| self.title(&self.symbols[*g])).collect();
             order.truncate(12);
             return Answer::failure(format!(

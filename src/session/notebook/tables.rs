@@ -26,15 +26,18 @@ fn place(p: DVec3, tolerance: f64) -> Cell {
     Cell::List(p.to_array().map(|x| Cell::Number(shown(x))).to_vec())
 }
 
-/// Curves that have a link at the node, by name.
-fn meeting(network: &Network, node: usize) -> String {
-    let mut names: Vec<&str> = Vec::new();
+/// For each node the curves that run through it, by name.
+fn meeting(network: &Network) -> Vec<Vec<&str>> {
+    let mut names: Vec<Vec<&str>> = vec![Vec::new(); network.nodes.len()];
     for curve in &network.curves {
-        if curve.nodes.iter().any(|n| n.index() == node) {
-            names.push(&curve.name);
+        for node in &curve.nodes {
+            let of = &mut names[node.index()];
+            if of.last() != Some(&curve.name.as_str()) {
+                of.push(&curve.name);
+            }
         }
     }
-    names.join(", ")
+    names
 }
 
 fn curves(network: &Network, unit: &str) -> Table {
@@ -48,8 +51,9 @@ fn curves(network: &Network, unit: &str) -> Table {
 }
 
 fn nodes(network: &Network, (unit, tolerance): (&str, f64)) -> Table {
+    let names = meeting(network);
     let row = |(n, node): (usize, &crate::network::graph::Node)| {
-        vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(node.ends.len() as f64), text(meeting(network, n))]
+        vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(node.ends.len() as f64), text(names[n].join(", "))]
     };
     let columns = vec![column("node", None), column("at", Some(unit)), column("links", None), column("of", None)];
     Table { title: String::new(), columns, rows: network.nodes.iter().enumerate().map(row).collect() }
