@@ -17,3 +17,4 @@ pub mod solve;
 pub mod text;
 pub mod tolerance;
 pub mod triangulate;
+pub mod xml;

@@ -15,6 +15,7 @@ use super::raster::Image;
 use super::scene::{Kind, Scene};
 use super::{font, png};
 use crate::base::text::real;
+use crate::base::xml::escaped;
 
 /// Pixels between two places of a line where it is asked whether it is seen.
 const STEP: f64 = 1.0;
@@ -167,23 +168,6 @@ fn short(x: f64) -> String {
     real((x * 100.0).round() / 100.0)
 }
 
-/// Text as XML takes it; signs that XML has no place for become a box.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            c if (c as u32) < 0x20 || matches!(c as u32, 0xfffe | 0xffff) => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 /// Bytes as text of 64 signs.
 pub fn base64(bytes: &[u8]) -> String {
     const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -209,10 +193,5 @@ mod tests {
         for (plain, coded) in pairs {
             assert_eq!(base64(plain.as_bytes()), coded);
         }
-    }
-
-    #[test]
-    fn text_is_made_fit_for_xml() {
-        assert_eq!(escaped("a<b & \"c\"\u{1}지\n"), "a&lt;b &amp; &quot;c&quot;\u{fffd}지 ");
     }
 }

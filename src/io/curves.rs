@@ -10,6 +10,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
 use crate::base::text::{push_count, push_real, real};
+use crate::base::xml::escaped;
 
 /// A curve as the points that stand for it, in units of the file.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,8 +108,7 @@ fn write_svg(drawing: &Drawing, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     )?;
     let mut names = Names::new(Naming::Free);
     for curve in drawing.curves {
-        let id = names.give(&curve.name).replace('&', "&amp;").replace('<', "&lt;");
-        let mut text = format!("<path id=\"{id}\" d=\"").into_bytes();
+        let mut text = format!("<path id=\"{}\" d=\"", escaped(&names.give(&curve.name))).into_bytes();
         for (k, p) in curve.points.iter().enumerate() {
             let p = p.to_array();
             text.extend_from_slice(if k == 0 { b"M" } else { b" L" });

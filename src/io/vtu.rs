@@ -9,6 +9,7 @@ use super::deck::{Deck, Encoding, Format, Loss};
 use super::ply::{coordinates, integers};
 use super::sets::{KINDS, Kind, Naming, Set, sets};
 use crate::base::text::{push_count, push_real};
+use crate::base::xml::escaped;
 use crate::mesh::Mesh;
 
 /// Binary by default.
@@ -119,10 +120,6 @@ impl<'a> Array<'a> {
     fn new(name: &'a str, kind: &'static str, components: usize, content: Content<'a>) -> Self {
         Self { name, kind, components, content }
     }
-}
-
-fn escaped(name: &str) -> String {
-    name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// VTK's number of a cell type.

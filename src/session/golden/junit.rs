@@ -1,6 +1,7 @@
 //! Results for continuous integration, in the XML that JUnit made common.
 
 use super::run::{CaseResult, Verdict};
+use crate::base::xml::escaped;
 
 /// One suite with a case for each run, in their order; ends in a line break.
 pub fn text(results: &[CaseResult]) -> String {
@@ -35,24 +36,6 @@ fn case(result: &CaseResult, out: &mut String) {
     let (kind, message) = (result.verdict.word(), escaped(&result.message));
     out.push_str(&format!(">\n      <{tag} type=\"{kind}\" message=\"{message}\">{}</{tag}>\n", escaped(&format!("{said}{help}"))));
     out.push_str("    </testcase>\n");
-}
-
-/// Text that XML holds in elements and attributes; what XML cannot hold at all becomes `U+FFFD`.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' => out.push_str("&#10;"),
-            '\t' => out.push_str("&#9;"),
-            '\u{0}'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]
