@@ -2,6 +2,7 @@
 
 use super::{ANSWER, Answer, ENTRY, Notebook, Part, State, bug_answer, ended};
 use crate::base::fault::Severity;
+use crate::lang::cx::Cx;
 use crate::lang::diag::{Diagnostic, FileId, Label, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::names::Names;
@@ -67,11 +68,8 @@ impl Notebook {
                 named.push(name.to_owned());
             }
         }
-        let mut answer = self.change(State { text, sets: self.state.sets.clone() }, &named);
-        if found.iter().any(|p| matches!(p.keyword, Some(Keyword::Check | Keyword::Report))) && !answer.failed {
-            self.outputs(entry, &found, &mut answer);
-        }
-        answer
+        let entered: Vec<&str> = found.iter().map(|piece| slice(entry, piece.span)).collect();
+        self.change_and_look(State { text, sets: self.state.sets.clone() }, &named, &entered)
     }
 
     /// What a text says that does not parse.
@@ -83,32 +81,6 @@ impl Notebook {
         let mut sources = Sources::default();
         sources.add(ENTRY, entry);
         Some(Answer { parts: vec![Part::Said(render_all(&said, &sources, self.color))], failed: true, quit: false })
-    }
-
-    /// Checks and reports just entered, with their results.
-    fn outputs(&mut self, entry: &str, found: &[Outline], answer: &mut Answer) {
-        let texts: Vec<String> = found.iter().map(|piece| slice(entry, piece.span).to_owned()).collect();
-        let (mut checks, mut tables) = (Vec::new(), Vec::new());
-        let state = self.state.clone();
-        let result = self.run(&state, Depth::Values, &mut |cx| {
-            let symbols = cx.symbols();
-            let entered = |keyword: Keyword| {
-                let of_kind = symbols.iter().filter(move |s| s.keyword == keyword);
-                of_kind.map(|s| texts.iter().any(|t| t == cx.sources.text(s.file, s.span))).collect::<Vec<bool>>()
-            };
-            let (own_checks, own_reports) = (entered(Keyword::Check), entered(Keyword::Report));
-            // One `check … for` gives several results; with any of those all results are shown.
-            let all = cx.checks();
-            let exact = own_checks.len() == all.len();
-            checks = all.into_iter().enumerate().filter(|(k, _)| !exact || own_checks[*k]).map(|(_, c)| c).collect();
-            let all = cx.reports();
-            let exact = own_reports.len() == all.len();
-            tables = all.iter().enumerate().filter(|(k, _)| !exact || own_reports[*k]).map(|(_, t)| collect::table(t)).collect();
-        });
-        if result.is_ok() {
-            checks.iter().for_each(|c| answer.say(format!("check {}: {}", c.label, if c.pass { "holds" } else { "fails" })));
-            answer.parts.extend(tables.into_iter().map(Part::Table));
-        }
     }
 
     /// The value of an expression.
@@ -189,6 +161,26 @@ impl Notebook {
         let sets = self.state.sets.iter().filter(|s| !names.contains(&s.0)).cloned().collect();
         State { text: kept, sets }
     }
+}
+
+/// Results of the checks and reports that were just entered, their texts given.
+pub(super) fn outputs(cx: &Cx<'_>, entered: &[&str]) -> Vec<Part> {
+    let symbols = cx.symbols();
+    let own = |keyword: Keyword| {
+        let of_kind = symbols.iter().filter(move |s| s.keyword == keyword);
+        of_kind.map(|s| entered.contains(&cx.sources.text(s.file, s.span))).collect::<Vec<bool>>()
+    };
+    let (own_checks, own_reports) = (own(Keyword::Check), own(Keyword::Report));
+    // One `check … for` gives several results; with any of those all results are shown.
+    let shown = |own: &[bool], all: usize, k: usize| own.contains(&true) && (own.len() != all || own[k]);
+    let all = cx.checks();
+    let checks = all.iter().enumerate().filter(|(k, _)| shown(&own_checks, all.len(), *k));
+    let mut parts: Vec<Part> =
+        checks.map(|(_, c)| Part::Text(format!("check {}: {}", c.label, if c.pass { "holds" } else { "fails" }))).collect();
+    let all = cx.reports();
+    let tables = all.iter().enumerate().filter(|(k, _)| shown(&own_reports, all.len(), *k));
+    parts.extend(tables.map(|(_, t)| Part::Table(collect::table(t))));
+    parts
 }
 
 /// Labels behind byte `own` of the main script are moved to the entry.

@@ -185,11 +185,18 @@ impl Notebook {
 
     /// Goes over to another state, tells about `named` and about what the change broke or repaired.
     fn change(&mut self, next: State, named: &[String]) -> Answer {
+        self.change_and_look(next, named, &[])
+    }
+
+    /// The same, and tells what became of the checks and reports among `entered`, texts of declarations.
+    fn change_and_look(&mut self, next: State, named: &[String], entered: &[&str]) -> Answer {
         let mut lines: Vec<String> = Vec::new();
+        let mut results: Vec<Part> = Vec::new();
         let mut symbols: Vec<Symbol> = Vec::new();
         let result = self.run(&next, Depth::Values, &mut |cx| {
             symbols = cx.symbols();
             lines = named.iter().filter_map(|name| cx.describe_name(name)).collect();
+            results = edit::outputs(cx, entered);
         });
         let outcome = match result {
             Ok(outcome) => outcome,
@@ -202,6 +209,9 @@ impl Notebook {
         self.tell_new(&outcome, &mut answer);
         lines.into_iter().for_each(|line| answer.say(line));
         self.tell_conditions(&symbols, named, &mut answer);
+        if !answer.failed {
+            answer.parts.extend(results);
+        }
         self.symbols = symbols;
         if next != self.state {
             self.past.push(std::mem::replace(&mut self.state, next));
