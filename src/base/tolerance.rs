@@ -46,6 +46,11 @@ pub const NEAR_MISS: f64 = 10.0;
 /// Curvature, as a share of the larger one, that a downhill step assumes where the function bends the other way.
 pub const LEAST_CURVATURE: f64 = 1e-3;
 
+/// Share of the tolerance to which places found by computing are told.
+const TOLD: f64 = 1e-3;
+/// Most decimals of a place that is told.
+const MOST_PLACES: f64 = 300.0;
+
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;
 const POINT_SHARE: f64 = 1e-6;
@@ -92,6 +97,18 @@ impl Tolerance {
         a.distance_squared(b) <= self.point * self.point
     }
 
+    /// A place that was computed, as it is told to people: whole multiples of a thousandth of the tolerance, so that `-4.9e-16`
+    /// is 0. The largest power of ten up to that thousandth is the step; a coordinate too large for it stays as it is.
+    pub fn told(&self, p: DVec3) -> DVec3 {
+        let places = -super::math::log10(self.point * TOLD).floor();
+        if !(0.0..=MOST_PLACES).contains(&places) {
+            return p;
+        }
+        let places = places as usize;
+        let one = |x: f64| format!("{x:.places$}").parse::<f64>().map_or(x, |told| told + 0.0);
+        DVec3::new(one(p.x), one(p.y), one(p.z))
+    }
+
     /// Whether a curve with these one-sided tangents (any length but zero) has a kink.
     pub fn is_kink(&self, before: DVec3, after: DVec3) -> bool {
         super::math::angle_between(before, after) > self.angle
@@ -106,6 +123,16 @@ fn power_of_ten(exponent: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn places_are_told_to_a_thousandth_of_the_tolerance() {
+        let (tolerance, thousand) = (Tolerance::new(1e-3, 1e3), Tolerance::new(1e6, 1e12));
+        for (x, told) in [(-4.9e-16, 0.0_f64), (0.1 + 0.2, 0.3), (12.3456789012, 12.345679), (-1.5e300, -1.5e300), (2e-6, 2e-6)] {
+            let found = tolerance.told(DVec3::splat(x));
+            assert_eq!((found.x.to_bits(), found.z), (told.to_bits(), told), "{x}");
+        }
+        assert_eq!(thousand.told(DVec3::splat(1.5)), DVec3::splat(1.5));
+    }
 
     #[test]
     fn default_is_a_power_of_ten_at_or_below_a_millionth() {

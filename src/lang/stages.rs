@@ -195,7 +195,13 @@ pub(super) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
     // What is wrong with the curves or surfaces was said when the whole was asked for; some may be fine without the rest.
     let network = match network(cx, module) {
         Ok(network) => network,
-        Err(_) => cx.pipeline.network(cx, module, &parts).unwrap_or_default(),
+        Err(_) => {
+            // What is odd about a part of the curves may be right with the rest.
+            let sink = std::mem::take(&mut cx.sink);
+            let network = cx.pipeline.network(cx, module, &parts).unwrap_or_default();
+            cx.sink = sink;
+            network
+        }
     };
     let named = |s: &Declared<Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
     let model = Model::build(parts.surfaces.iter().map(named).collect(), &network, &tolerance, cx.job)?;

@@ -13,7 +13,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Sound, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::memory::Memory;
@@ -202,35 +202,12 @@ impl<'r> Run<'r> {
     fn collect(&mut self) {
         let main = ModuleId::MAIN;
         let Some(tolerance) = self.cx.tolerance_used() else { return };
-        let mut bounds = Box3::EMPTY;
-        if let Some(network) = {
-            let n = self.cx.network(main);
-            self.take(n)
-        } {
-            self.report.network = collect::network_counts(&network);
-            self.report.curves = collect::curves(&network);
-            if self.task.full {
-                bounds = network.curves.iter().fold(bounds, |bounds, c| bounds.union(c.curve.bbox()));
-            }
-            if let Some(parts) = {
-                let p = self.cx.parts(main);
-                self.take(p)
-            } {
-                self.report.modeling = collect::modeling(&self.cx, &parts, &network, &tolerance);
-            }
-        }
-        let model = self.cx.model(main);
-        if let Some(model) = self.take(model) {
-            self.report.surfaces = collect::surfaces(&model, &mut |surface| (!self.light).then(|| self.stages.area(surface)));
-            self.flows = collect::flows(&self.cx, &model);
-            self.report.topology = collect::topology(&model, 0);
-            if self.task.full {
-                for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(&model)) {
-                    row.corners = collect::corners(found);
-                    bounds = row.corners.map_or(bounds, |_| bounds.union(found));
-                }
-            }
-        }
+        let whole = self.cx.model(main);
+        self.take(whole);
+        let bounds = match self.cx.sound(main) {
+            Ok(sound) => self.geometry(&sound, &tolerance),
+            Err(_) => Box3::EMPTY,
+        };
         self.report.bounds = collect::corners(bounds);
         if !self.light {
             self.shells(&tolerance);
@@ -238,6 +215,26 @@ impl<'r> Run<'r> {
         }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();
         self.report.checks = self.cx.checks().iter().map(|check| collect::check(check, &self.cx.sources)).collect();
+    }
+
+    /// Rows of network and surface model, where something failed of what is sound; gives the box of all, where it is asked for.
+    fn geometry(&mut self, sound: &Sound, tolerance: &Tolerance) -> Box3 {
+        let Sound { parts, network, model } = sound;
+        self.report.network = collect::network_counts(network);
+        self.report.curves = collect::curves(network);
+        self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
+        self.report.surfaces = collect::surfaces(model, &mut |surface| (!self.light).then(|| self.stages.area(surface)));
+        self.flows = collect::flows(&self.cx, model);
+        self.report.topology = collect::topology(model, 0);
+        if !self.task.full {
+            return Box3::EMPTY;
+        }
+        let mut bounds = network.curves.iter().fold(Box3::EMPTY, |bounds, c| bounds.union(c.curve.bbox()));
+        for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(model)) {
+            row.corners = collect::corners(found);
+            bounds = row.corners.map_or(bounds, |_| bounds.union(found));
+        }
+        bounds
     }
 
     fn meshes(&mut self, tolerance: &Tolerance) {

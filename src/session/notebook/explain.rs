@@ -1,7 +1,7 @@
 //! How a name of the model came about: its statement, what it stands on, how it was ordered, counted and meshed.
 
 use super::{Answer, Notebook, Part, bug_answer};
-use crate::lang::cx::Cx;
+use crate::lang::cx::{Cx, Sound};
 use crate::lang::value::{ModuleId, Value};
 use crate::network::Network;
 use crate::session::live::Depth;
@@ -65,7 +65,7 @@ impl Notebook {
 
 /// What the network knows of a value.
 fn about(cx: &mut Cx<'_>, value: &Value, out: &mut Vec<String>) {
-    let Ok(network) = cx.network(ModuleId::MAIN) else { return };
+    let Ok(Sound { network, .. }) = cx.sound(ModuleId::MAIN) else { return };
     let Some(tolerance) = cx.tolerance_used() else { return };
     match value {
         Value::Curve(chain) => {

@@ -3,14 +3,12 @@
 use glam::DVec3;
 
 use super::{Answer, Notebook, Part, bug_answer};
-use crate::lang::cx::{Cx, Stop};
+use crate::base::tolerance::Tolerance;
+use crate::lang::cx::Cx;
 use crate::lang::value::{ModuleId, Value};
 use crate::network::{LinkId, Network};
 use crate::session::live::Depth;
 use crate::session::report::{Cell, Column, Table};
-
-/// Share of the tolerance that is shown as zero.
-const NOTHING: f64 = 0.001;
 
 fn column(name: &str, unit: Option<&str>) -> Column {
     Column { name: name.to_owned(), unit: unit.map(str::to_owned) }
@@ -20,10 +18,9 @@ fn text(text: impl Into<String>) -> Cell {
     Cell::Text(text.into())
 }
 
-/// A point; coordinates far below the tolerance are shown as zero.
-fn place(p: DVec3, tolerance: f64) -> Cell {
-    let shown = |x: f64| if x.abs() < tolerance * NOTHING { 0.0 } else { x };
-    Cell::List(p.to_array().map(|x| Cell::Number(shown(x))).to_vec())
+/// A place as far as the tolerance tells it.
+fn place(p: DVec3, tolerance: &Tolerance) -> Cell {
+    Cell::List(tolerance.told(p).to_array().map(Cell::Number).to_vec())
 }
 
 /// For each node the curves that run through it, by name.
@@ -50,7 +47,7 @@ fn curves(network: &Network, unit: &str) -> Table {
     Table { title, columns, rows: network.curves.iter().map(row).collect() }
 }
 
-fn nodes(network: &Network, (unit, tolerance): (&str, f64)) -> Table {
+fn nodes(network: &Network, (unit, tolerance): (&str, &Tolerance)) -> Table {
     let names = meeting(network);
     let row = |(n, node): (usize, &crate::network::graph::Node)| {
         vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(node.ends.len() as f64), text(names[n].join(", "))]
@@ -59,7 +56,7 @@ fn nodes(network: &Network, (unit, tolerance): (&str, f64)) -> Table {
     Table { title: String::new(), columns, rows: network.nodes.iter().enumerate().map(row).collect() }
 }
 
-fn links(network: &Network, of: &[(LinkId, bool)], (unit, tolerance): (&str, f64)) -> Table {
+fn links(network: &Network, of: &[(LinkId, bool)], (unit, tolerance): (&str, &Tolerance)) -> Table {
     let row = |(id, against): &(LinkId, bool)| {
         let link = &network.links[id.index()];
         let (a, b) = if *against { (link.nodes.1, link.nodes.0) } else { link.nodes };
@@ -85,6 +82,11 @@ fn links(network: &Network, of: &[(LinkId, bool)], (unit, tolerance): (&str, f64
     Table { title: String::new(), columns, rows: of.iter().map(row).collect() }
 }
 
+/// What stands before a remark behind a title.
+fn title_before(title: &str) -> String {
+    if title.is_empty() { String::new() } else { format!("{title}, ") }
+}
+
 impl Notebook {
     pub(super) fn network(&mut self, _: &str) -> Answer {
         self.tabled(&mut |cx, network| Ok(curves(network, cx.unit().name)))
@@ -92,8 +94,8 @@ impl Notebook {
 
     pub(super) fn nodes(&mut self, _: &str) -> Answer {
         self.tabled(&mut |cx, network| {
-            let tolerance = cx.tolerance_used().map_or(0.0, |t| t.point);
-            Ok(nodes(network, (cx.unit().name, tolerance)))
+            let tolerance = cx.tolerance_used().ok_or("the model has no tolerance yet")?;
+            Ok(nodes(network, (cx.unit().name, &tolerance)))
         })
     }
 
@@ -102,19 +104,22 @@ impl Notebook {
             let Some(Value::Curve(chain)) = cx.value_of(name) else { return Err(format!("`{name}` is no curve of this model")) };
             let tolerance = cx.tolerance_used().ok_or("the model has no tolerance yet")?;
             match network.links_of(&chain, &tolerance) {
-                Some(found) => Ok(links(network, &found, (cx.unit().name, tolerance.point))),
+                Some(found) => Ok(links(network, &found, (cx.unit().name, &tolerance))),
                 None => Err(format!("`{name}` is not in the network")),
             }
         })
     }
 
     fn tabled(&mut self, make: &mut (dyn FnMut(&mut Cx<'_>, &Network) -> Result<Table, String> + Send)) -> Answer {
-        let mut made = Err("there is no network: some curves could not be made".to_owned());
+        let mut made = Err("there is no network yet".to_owned());
         let state = self.state.clone();
         let result = self.run(&state, Depth::Values, &mut |cx| {
-            let network: Result<_, Stop> = cx.network(ModuleId::MAIN);
-            if let Ok(network) = network {
-                made = make(cx, &network);
+            let whole = cx.network(ModuleId::MAIN).is_ok();
+            if let Ok(sound) = cx.sound(ModuleId::MAIN) {
+                made = make(cx, &sound.network);
+                if let (false, Ok(table)) = (whole, &mut made) {
+                    table.title = format!("{}{}", title_before(&table.title), "without what could not be made");
+                }
             }
         });
         match (result, made) {
