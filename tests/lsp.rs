@@ -236,3 +236,17 @@ fn scripts_are_laid_out_and_strange_requests_survived() {
     assert_eq!(said[0]["code"], "E101");
     editor.stop();
 }
+
+/// `LOFT_ACCEPT=1` writes the grammar for editors that colour by patterns.
+#[test]
+fn the_grammar_of_editors_is_current() {
+    let said = Command::new(env!("CARGO_BIN_EXE_loft")).args(["doc", "--textmate"]).output().unwrap();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("editors/vscode/syntaxes/loft.tmLanguage.json");
+    if std::env::var_os("LOFT_ACCEPT").is_some() {
+        fs::write(&path, &said.stdout).unwrap();
+    }
+    let kept = fs::read(&path).unwrap();
+    assert!(said.stdout == kept, "the grammar is not current: LOFT_ACCEPT=1 cargo test --test lsp grammar");
+    let package: Value = serde_json::from_slice(&fs::read(path.parent().unwrap().with_file_name("package.json")).unwrap()).unwrap();
+    assert_eq!(package["version"], env!("CARGO_PKG_VERSION"));
+}

@@ -21,4 +21,5 @@ mod similar;
 pub mod stages;
 pub mod staging;
 pub mod starter;
+pub mod textmate;
 pub mod variants;
