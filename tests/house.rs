@@ -44,10 +44,10 @@ const DOORS: &[(&str, &[&str])] = &[
 const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "eprintln!"];
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
-/// fault of the kernel, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, all words with their documentation,
+/// fault of the kernel and what all writers of text share, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, all words with their documentation,
 /// and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 4_500),
+    ("base", 5_000),
     ("geometry", 5_500),
     ("network", 3_500),
     ("surface", 5_500),
