@@ -44,10 +44,11 @@ const DOORS: &[(&str, &[&str])] = &[
 const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "eprintln!"];
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
-/// fault of the kernel and what all writers of text share, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, all words with their documentation,
+/// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
+/// results, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, all words with their documentation,
 /// and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 5_000),
+    ("base", 5_500),
     ("geometry", 5_500),
     ("network", 3_500),
     ("surface", 5_500),
@@ -56,7 +57,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("io", 6_000),
     ("draw", 3_000),
     ("lang", 18_500),
-    ("session", 8_000),
+    ("session", 8_800),
     ("cli", 3_500),
 ];
 

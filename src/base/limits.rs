@@ -39,6 +39,8 @@ limits! {
     pub const LIST_NESTING: usize = 1_000;
     /// Evaluation steps of one run.
     pub const EVALUATION_STEPS: u64 = 1_000_000_000;
+    /// Bytes of results in the folder of `--cache`; those that were not used for longest go first.
+    pub const CACHE_BYTES: u64 = 4 << 30;
     /// Reports of one code that one declaration or stage says one by one; further ones are counted.
     pub const REPORTS_OF_A_KIND: usize = 1_000;
     /// Reports printed in full in one run.

@@ -2,6 +2,7 @@
 
 pub mod bbox;
 pub mod boxtree;
+pub mod bytes;
 pub mod digest;
 pub mod fault;
 pub mod ids;

@@ -17,6 +17,8 @@ pub struct Tolerance {
     pub parameter: f64,
 }
 
+crate::content!(Tolerance { point, rounding, angle, parameter });
+
 /// Relative accuracy of a stored arc length (math.md section 4).
 pub const LENGTH_ACCURACY: f64 = 1e-13;
 /// Absolute error that a stretch of a stored arc length may always have, model length units (math notes §4).

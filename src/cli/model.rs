@@ -10,6 +10,7 @@ use super::{Exit, Terminal, interrupt, summary};
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::io::FileError;
+use crate::session::cache::Cache;
 use crate::session::disk::{Disk, Outputs, read_limited, read_stream, words};
 use crate::session::guard::{Bug, guarded};
 use crate::session::json::{cases_text, report_text};
@@ -37,14 +38,16 @@ pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
             Err(text) => return terminal.wrong_usage(&text),
         }
     }
+    let cache = options.cache.as_deref().map(|folder| Arc::new(Cache::new(folder)));
     let several = models.len() > 1;
     let mut cases = Cases { loft: VERSION, cases: Vec::new() };
     let mut worst = Exit::Fine;
     for model in &models {
         let (exit, rows) = match &options.table {
-            Some(table) => variants(model, table, options, &job, terminal),
-            None => one(model, &options.sets, several, options, &job, terminal),
+            Some(table) => variants(model, (table, cache.as_ref()), options, &job, terminal),
+            None => one(model, several, (options, cache.as_ref()), &job, terminal),
         };
+        complain(cache.as_deref(), options, terminal);
         worst = worst.max(exit);
         cases.cases.extend(rows);
         if exit >= Exit::Usage {
@@ -127,16 +130,23 @@ pub fn exit_of(outcome: &Outcome) -> Exit {
     }
 }
 
+/// Says once that the folder of `--cache` is of no use; the results are the same without it.
+fn complain(cache: Option<&Cache>, options: &Options, terminal: &Terminal) {
+    if let (Some(why), Some(folder)) = (cache.and_then(Cache::trouble), &options.cache) {
+        terminal.tell(&format!("loft: nothing is kept in {:?} (--cache): {why}\n", folder.to_string_lossy()));
+    }
+}
+
 fn one(
     model: &Model,
-    sets: &[(String, String)],
     several: bool,
-    options: &Options,
+    (options, cache): (&Options, Option<&Arc<Cache>>),
     job: &Arc<Job>,
     terminal: &Terminal,
 ) -> (Exit, Vec<Case>) {
     let watched = terminal.watched && !options.json;
-    let outcome = match with_progress(job, watched, || case(model, (&model.disk, sets), options, job, None)) {
+    let mut kept = cache.map(|cache| Kept::on(Some(cache.clone())));
+    let outcome = match with_progress(job, watched, || case(model, (&model.disk, &options.sets), options, job, kept.as_mut())) {
         Ok(outcome) => outcome,
         Err(caught) => return (bug(&caught, model, terminal), Vec::new()),
     };
@@ -157,7 +167,10 @@ pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
     }
     if options.timings {
         let t = &outcome.report.timings;
-        let reused = if outcome.reused > 0 { format!("; {} results taken over from before", outcome.reused) } else { String::new() };
+        let mut reused = if outcome.reused > 0 { format!("; {} results taken over from before", outcome.reused) } else { String::new() };
+        if options.cache.is_some() {
+            reused.push_str(&format!("; {} from the cache", outcome.from_cache));
+        }
         let (parse, evaluate, mesh, write) = (t.parse, t.evaluate, t.mesh, t.write);
         let line = format!("parse {parse:.3} s, evaluate {evaluate:.3} s, mesh {mesh:.3} s, write {write:.3} s{reused}\n");
         terminal.tell(&line);
@@ -167,7 +180,13 @@ pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
     }
 }
 
-fn variants(model: &Model, table: &Path, options: &Options, job: &Arc<Job>, terminal: &Terminal) -> (Exit, Vec<Case>) {
+fn variants(
+    model: &Model,
+    (table, cache): (&Path, Option<&Arc<Cache>>),
+    options: &Options,
+    job: &Arc<Job>,
+    terminal: &Terminal,
+) -> (Exit, Vec<Case>) {
     let rows = match read_limited(table, limits::DATA_BYTES) {
         Ok(bytes) => crate::session::variants::rows(&bytes, &options.sets),
         Err(error) => return (terminal.wrong_usage(&format!("cannot read {:?}: {}", table.to_string_lossy(), words(&error))), Vec::new()),
@@ -179,7 +198,7 @@ fn variants(model: &Model, table: &Path, options: &Options, job: &Arc<Job>, term
     let mut worst = Exit::Fine;
     let mut cases = Vec::new();
     // Rows differ in few params: what does not depend on those is taken over.
-    let mut kept = Kept::default();
+    let mut kept = Kept::on(cache.cloned());
     for row in rows {
         let disk = model.disk.with_subfolder(&row.name);
         let watched = terminal.watched && !options.json;

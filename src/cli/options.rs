@@ -14,6 +14,8 @@ pub struct Options {
     pub sets: Vec<(String, String)>,
     /// Table of variants.
     pub table: Option<PathBuf>,
+    /// Folder where results are kept between runs.
+    pub cache: Option<PathBuf>,
     /// Warnings are errors.
     pub strict: bool,
     /// Seconds of each phase are shown.
@@ -39,7 +41,7 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
         .arg(if several { model.num_args(1..) } else { model })
         .arg(path("out", "DIR", "Folder for outputs [default: the script's]").short('o'))
         .arg(path("table", "FILE.csv", "One run for each row; the header names params"))
-        .arg(path("cache", "DIR", "Not in this version").hide(true))
+        .arg(path("cache", "DIR", "Keeps meshes there from run to run; made when it does not exist"))
         .arg(flag("json", "Prints the report as JSON"))
         .arg(flag("keep-going", "Writes what is sound although something failed"));
     add_shared(command)
@@ -87,12 +89,10 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 impl Options {
     /// Reads them; the error is a sentence about the command line.
     pub fn read(matches: &ArgMatches) -> Result<Self, String> {
-        if matches.contains_id("cache") && matches.get_one::<PathBuf>("cache").is_some() {
-            return Err("`--cache` is not in this version".to_owned());
-        }
         Ok(Self {
             out: matches.get_one::<PathBuf>("out").cloned(),
             table: matches.get_one::<PathBuf>("table").cloned(),
+            cache: matches.get_one::<PathBuf>("cache").cloned(),
             json: matches.get_flag("json"),
             keep_going: matches.get_flag("keep-going"),
             ..Self::read_shared(matches)?
@@ -107,6 +107,7 @@ impl Options {
             out: matches.get_one::<PathBuf>("out").map(folder),
             sets: matches.get_many::<(String, String)>("set").into_iter().flatten().cloned().collect(),
             table: None,
+            cache: None,
             strict: matches.get_flag("strict"),
             timings: matches.get_flag("timings"),
             json: false,

@@ -26,6 +26,8 @@ pub struct EllipticArc {
     pub radius: Option<f64>,
 }
 
+crate::content!(EllipticArc { center, u, v, sweep, radius });
+
 impl EllipticArc {
     /// Recognises circles up to rounding.
     pub fn new(center: DVec3, u: DVec3, v: DVec3, sweep: f64) -> Self {

@@ -14,6 +14,8 @@ pub struct Composite {
     starts: OnceLock<Vec<f64>>,
 }
 
+crate::content!(Composite { pieces, breaks } but { starts });
+
 impl Composite {
     /// Pieces in a row; composite ones are taken apart.
     pub fn new(pieces: impl IntoIterator<Item = Curve>) -> Self {

@@ -13,6 +13,7 @@ use super::nurbs::Nurbs;
 use super::offset::Offset;
 use super::pieces::Pieces;
 use crate::base::bbox::Box3;
+use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 
@@ -118,6 +119,28 @@ struct Inner {
     through: Option<DVec3>,
     lengths: OnceLock<Arc<Lengths>>,
     pieces: OnceLock<Arc<Pieces>>,
+}
+
+crate::content_of_word!(Kind);
+crate::content!(Inner { shape, kind, through } but { origin, lengths, pieces });
+
+impl Content for Shape {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Line(a, b) => (0u8, *a, *b).tell(to),
+            Self::Arc(arc) => (1u8, arc).tell(to),
+            Self::Nurbs(nurbs) => (2u8, nurbs).tell(to),
+            Self::Helix(helix) => (3u8, helix).tell(to),
+            Self::Offset(offset) => (4u8, offset).tell(to),
+            Self::Composite(composite) => (5u8, composite).tell(to),
+        }
+    }
+}
+
+impl Content for Curve {
+    fn tell(&self, to: &mut Digester) {
+        self.0.tell(to);
+    }
 }
 
 impl Curve {

@@ -22,6 +22,8 @@ pub struct Helix {
     pub sweep: f64,
 }
 
+crate::content!(Helix { center, u, v, rise, sweep });
+
 impl Helix {
     /// Point and derivatives at angle `t`.
     pub fn jet(&self, t: f64) -> Jet {

@@ -23,6 +23,8 @@ pub struct Nurbs {
     pub polynomial: bool,
 }
 
+crate::content!(Nurbs { degree, knots, poles, polynomial });
+
 /// The pole `p` with weight `w` in homogeneous form.
 pub fn weighted(p: DVec3, w: f64) -> DVec4 {
     (p * w).extend(w)

@@ -18,6 +18,8 @@ pub struct Offset {
     pub normal: DVec3,
 }
 
+crate::content!(Offset { base, distance, normal });
+
 impl Offset {
     /// Point and derivatives from those of the base.
     pub fn jet_of(&self, base: Jet, third: DVec3) -> Jet {

@@ -20,20 +20,9 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::par;
-use crate::model::PatchId;
 
 /// Refinements of whole faces before a limit counts as out of reach.
 const ROUNDS: usize = 40;
-
-/// Which faces to mesh together.
-pub struct Request<'a> {
-    /// Patches, `true` where the other side is up.
-    pub patches: &'a [(PatchId, bool)],
-    /// Whether the plan's curves and points belong to these faces.
-    pub with_lines: bool,
-    /// Target size where no rule says another, model units.
-    pub size: f64,
-}
 
 /// The mesh of some faces, with what is needed to name its parts.
 pub struct Part {
@@ -51,12 +40,12 @@ pub struct Part {
     pub sizing: Sizing,
 }
 
-/// Divides, refines until every limit is kept, and fills.
-pub fn assemble(input: &Input, request: &Request, job: &Job) -> Result<Part> {
-    let mut layout = Layout::new(input, request.patches, request.with_lines);
+/// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
+/// another, model units.
+pub fn assemble(input: &Input, mut layout: Layout, size: f64, job: &Job) -> Result<Part> {
     faces::refuse(input, &layout)?;
     lines::refuse_inside(input, &layout)?;
-    let mut sizing = Sizing::new(input, &mut layout, request.size)?;
+    let mut sizing = Sizing::new(input, &mut layout, size)?;
     let limits = faces::limits_of(input);
     let wishes = wishes(input, &layout, &sizing, &limits);
     let mut relations = Relations::new(&layout, &wishes);

@@ -1,15 +1,17 @@
-//! From a plan to a mesh: the one entry point for the floors above.
+//! From a plan to a mesh: the entry points for the floors above.
 
 use glam::DVec3;
 
-use super::assemble::{Part, Request, assemble};
+use super::assemble::{Part, assemble};
 use super::data::Mesh;
 use super::explain::Explanation;
 use super::layout::Layout;
 use super::nodes::Nodes;
 use super::plan::{Method, Plan};
-use super::sets;
+use super::sizing::Remark;
+use super::{key, sets};
 use crate::base::bbox::Box3;
+use crate::base::digest::Digest;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
@@ -42,32 +44,66 @@ pub struct Built {
     pub mesh: Mesh,
     /// How it came about.
     pub explanation: Explanation,
+    /// What is to be said about its rules.
+    pub remarks: Vec<Remark>,
 }
 
 /// Makes the mesh. Warnings and notes go to `sink`.
 ///
-/// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
-/// E217 (too many elements), E715 (turned elements).
+/// Fails as [`Outline::new`] and [`Outline::build`] do.
 pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
-    let patches: Vec<(PatchId, bool)> =
-        input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
-    refuse_later(input)?;
-    let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
-    let groups: Vec<(Vec<(PatchId, bool)>, bool)> = if input.plan.conforming {
-        vec![(patches, true)]
-    } else {
-        // Each face by itself, then the curves and points.
-        patches.iter().map(|p| (vec![*p], false)).chain(std::iter::once((Vec::new(), true))).collect()
-    };
-    let mut parts: Vec<Part> = Vec::new();
-    for (patches, with_lines) in &groups {
-        parts.push(assemble(input, &Request { patches, with_lines: *with_lines, size }, job)?);
+    let built = Outline::new(input)?.build(input, job)?;
+    sink.extend(built.remarks.iter().map(|remark| remark.fault(&input.plan.rules)));
+    Ok(built)
+}
+
+/// What a mesh stands on, laid out; nothing is divided yet. Enough to tell whether a mesh that was made before is this one.
+pub struct Outline {
+    layouts: Vec<Layout>,
+    size: f64,
+}
+
+impl Outline {
+    /// Lays out the faces, curves and points of a plan.
+    ///
+    /// Fails with E230 for methods of a later version.
+    pub fn new(input: &Input) -> Result<Self> {
+        let patches: Vec<(PatchId, bool)> =
+            input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
+        refuse_later(input)?;
+        let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
+        let layouts = if input.plan.conforming {
+            vec![Layout::new(input, &patches, true)]
+        } else {
+            // Each face by itself, then the curves and points.
+            let lines = std::iter::once_with(|| Layout::new(input, &[], true));
+            patches.iter().map(|p| Layout::new(input, &[*p], false)).chain(lines).collect()
+        };
+        Ok(Self { layouts, size })
     }
-    if let Some((first, others)) = parts.split_first_mut() {
-        others.iter().for_each(|part| first.sizing.join(&part.sizing));
-        first.sizing.report(&input.plan.rules, sink);
+
+    /// A digest of all that the mesh depends on, of its content alone: in every run and on every machine the same mesh has
+    /// the same key. Where things stand in a script, and what the mesh does not touch, is no part of it.
+    pub fn key(&self, input: &Input) -> Digest {
+        key::of(input, &self.layouts, self.size)
     }
-    Ok(merge(input, parts))
+
+    /// Makes the mesh.
+    ///
+    /// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
+    /// E217 (too many elements), E715 (turned elements).
+    pub fn build(self, input: &Input, job: &Job) -> Result<Built> {
+        let mut parts: Vec<Part> = Vec::new();
+        for layout in self.layouts {
+            parts.push(assemble(input, layout, self.size, job)?);
+        }
+        let mut remarks = Vec::new();
+        if let Some((first, others)) = parts.split_first_mut() {
+            others.iter().for_each(|part| first.sizing.join(&part.sizing));
+            remarks = first.sizing.remarks();
+        }
+        Ok(Built { remarks, ..merge(input, parts) })
+    }
 }
 
 /// Parts one after the other as one mesh, with its named sets.

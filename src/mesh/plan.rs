@@ -87,34 +87,6 @@ pub struct GroupRequest {
     pub members: Vec<Target>,
 }
 
-impl Target {
-    fn is(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Chain(a), Self::Chain(b)) => a.is(b),
-            (Self::Surface(a), Self::Surface(b)) => a == b,
-            (Self::Point(a), Self::Point(b)) => a == b,
-            _ => false,
-        }
-    }
-}
-
-impl Rule {
-    fn is(&self, other: &Self) -> bool {
-        let Self { target, count, size, bias, elements, method, origin } = self;
-        target.is(&other.target)
-            && (count, size, bias) == (&other.count, &other.size, &other.bias)
-            && (elements, method, origin) == (&other.elements, &other.method, &other.origin)
-    }
-}
-
-impl GroupRequest {
-    fn is(&self, other: &Self) -> bool {
-        self.name == other.name
-            && self.members.len() == other.members.len()
-            && self.members.iter().zip(&other.members).all(|(a, b)| a.is(b))
-    }
-}
-
 /// All that is asked of one mesh.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -167,19 +139,5 @@ impl Plan {
             rules: Vec::new(),
             groups: Vec::new(),
         }
-    }
-
-    /// Whether two plans ask for the same mesh of one model, of the same entities.
-    pub fn is(&self, other: &Self) -> bool {
-        fn all<T>(a: &[T], b: &[T], same: impl Fn(&T, &T) -> bool) -> bool {
-            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
-        }
-        let Self { name, origin, surfaces, curves, points, size, chord_error, angle_error, .. } = self;
-        (name, origin, surfaces, points) == (&other.name, &other.origin, &other.surfaces, &other.points)
-            && (size, chord_error, angle_error) == (&other.size, &other.chord_error, &other.angle_error)
-            && (self.elements, self.order, self.method, self.conforming) == (other.elements, other.order, other.method, other.conforming)
-            && all(curves, &other.curves, |a, b| a.0 == b.0 && a.1.is(&b.1))
-            && all(&self.rules, &other.rules, Rule::is)
-            && all(&self.groups, &other.groups, GroupRequest::is)
     }
 }

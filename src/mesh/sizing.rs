@@ -8,6 +8,7 @@ use super::plan::{Elements, Rule, Target};
 use super::strips::Stretch;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
+use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::model::atoms::Use;
@@ -281,20 +282,20 @@ impl Sizing {
     }
 
     /// W706 for rules overridden by equal ones, W701 for rules that decide nothing.
-    pub fn report(&self, rules: &[Rule], sink: &mut Vec<Fault>) {
+    pub fn remarks(&self) -> Vec<Remark> {
         let mut pairs = self.overridden.clone();
         pairs.sort_unstable();
         pairs.dedup();
-        for &(earlier, later, key) in &pairs {
-            sink.push(MeshFault::RuleOverridden { key, earlier: rules[earlier].origin, later: rules[later].origin }.into());
-        }
-        for (index, rule) in rules.iter().enumerate() {
-            if self.taken[index] || pairs.iter().any(|p| p.0 == index) {
+        let overridden = pairs.iter().map(|&(earlier, later, key)| Remark::Overridden { key: key.to_owned(), earlier, later });
+        let mut remarks: Vec<Remark> = overridden.collect();
+        for (rule, taken) in self.taken.iter().enumerate() {
+            if *taken || pairs.iter().any(|p| p.0 == rule) {
                 continue;
             }
-            let why = self.homeless[index].clone().unwrap_or_else(|| "other settings ask for more, or inner rules say it all".to_owned());
-            sink.push(MeshFault::RuleUnused { rule: rule.origin, why }.into());
+            let why = self.homeless[rule].clone().unwrap_or_else(|| "other settings ask for more, or inner rules say it all".to_owned());
+            remarks.push(Remark::Unused { rule, why });
         }
+        remarks
     }
 
     /// Joins what another layout of the same mesh has taken (faces that share no nodes).
@@ -309,6 +310,44 @@ impl Sizing {
             }
         }
         self.overridden.extend(&other.overridden);
+    }
+}
+
+/// What is to be said about the rules of a plan, by their places in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// W701: a rule that decides nothing.
+    Unused {
+        /// The rule.
+        rule: usize,
+        /// Why, in words.
+        why: String,
+    },
+    /// W706: of two equal rules the later one holds.
+    Overridden {
+        /// The setting.
+        key: String,
+        /// The rule that loses.
+        earlier: usize,
+        /// The rule that holds.
+        later: usize,
+    },
+}
+
+/// Settings of which one rule may override another.
+const KEYS: [&str; 5] = ["count", "size", "bias", "elements", "method"];
+
+impl Remark {
+    /// The warning, at the places of the rules.
+    pub fn fault(&self, rules: &[Rule]) -> Fault {
+        let origin = |rule: usize| rules.get(rule).map_or(Origin::NONE, |r| r.origin);
+        match self {
+            Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
+            Self::Overridden { key, earlier, later } => {
+                let key = KEYS.into_iter().find(|k| k == key).unwrap_or("a setting");
+                MeshFault::RuleOverridden { key, earlier: origin(*earlier), later: origin(*later) }.into()
+            }
+        }
     }
 }
 
@@ -342,18 +381,23 @@ fn shapes(layout: &Layout) -> Vec<u32> {
 /// Stretches along a chain, and the range of them on each of its links that has some.
 fn stretches_of(input: &Input, layout: &Layout, chain: &Chain) -> (Vec<Use>, Vec<LinkRange>) {
     let uses = layout.along(input, chain);
-    let Some(links) = input.network.links_of(chain, input.tolerance) else {
+    let Some(links) = links_of(input, chain) else {
         return (uses, Vec::new());
     };
     let (mut ranges, mut start, mut from) = (Vec::new(), 0.0, 0);
-    for (link, _) in links {
-        let s = input.network.links[link.index()].s;
+    for s in links {
         let end = start + (s.1 - s.0);
         let to = from + uses[from..].iter().take_while(|u| 0.5 * (u.s.0 + u.s.1) < end).count();
         ranges.push(LinkRange { length: s.1 - s.0, uses: from..to });
         (start, from) = (end, to);
     }
     (uses, ranges)
+}
+
+/// Arc lengths of the links of a chain on their curves.
+pub fn links_of(input: &Input, chain: &Chain) -> Option<Vec<(f64, f64)>> {
+    let links = input.network.links_of(chain, input.tolerance)?;
+    Some(links.into_iter().map(|(link, _)| input.network.links[link.index()].s).collect())
 }
 
 /// One link of a chain with its stretches.

@@ -29,6 +29,8 @@ pub struct Atom {
     pub s: (f64, f64),
 }
 
+crate::content!(Atom { ends, track, s });
+
 impl Atom {
     /// Arc length, model units.
     pub fn length(&self) -> f64 {
@@ -47,6 +49,8 @@ pub struct Use {
     pub s: (f64, f64),
 }
 
+crate::content!(Use { atom, against, s });
+
 /// All tracks in pieces.
 #[derive(Clone, Debug, Default)]
 pub struct Atoms {
@@ -60,6 +64,8 @@ pub struct Atoms {
     pub of_anchor: Vec<Option<usize>>,
 }
 
+crate::content!(Atoms { junctions, atoms, of_track, of_anchor });
+
 /// A track with what its user knows of it.
 #[derive(Clone, Debug)]
 pub struct Part {
@@ -70,6 +76,8 @@ pub struct Part {
     /// Tracks of lower rank give the geometry of atoms that several share (0: links).
     pub rank: u8,
 }
+
+crate::content!(Part { track, cuts, rank });
 
 /// An atom with its probes.
 type Known = (usize, [DVec3; 3]);

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::topology::EdgeCurve;
+use crate::base::digest::{Content, Digester};
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::MEASURE_ACCURACY;
 use crate::network::{Chain, Network};
@@ -22,6 +23,9 @@ pub struct Trace {
     panels: Vec<Panel>,
     length: f64,
 }
+
+// The panels follow from the rest.
+crate::content!(Trace { surface, from, to } but { panels, length });
 
 /// One stretch whose length is a known polynomial of the place.
 #[derive(Clone, Debug)]
@@ -127,6 +131,15 @@ pub enum Track {
     },
     /// A line on a surface.
     Iso(Trace),
+}
+
+impl Content for Track {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Links { chains, starts, span } => (0u8, (chains, starts, *span)).tell(to),
+            Self::Iso(trace) => (1u8, trace).tell(to),
+        }
+    }
 }
 
 impl Track {

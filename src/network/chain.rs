@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::slice;
 use super::spread::{self, ChainSpread};
 use crate::base::bbox::Box3;
+use crate::base::digest::{Content, Digester};
 use crate::base::fault::{NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -29,6 +30,8 @@ pub struct Run {
     /// Arc length where it ends.
     pub s1: f64,
 }
+
+crate::content!(Run { curve, s0, s1 });
 
 impl Run {
     /// Arc length of the run.
@@ -75,6 +78,14 @@ struct Inner {
     straight: Vec<Option<(DVec3, DVec3)>>,
     length: f64,
     origin: Origin,
+}
+
+crate::content!(Inner { runs, joints, length } but { rates, straight, origin });
+
+impl Content for Chain {
+    fn tell(&self, to: &mut Digester) {
+        self.0.tell(to);
+    }
 }
 
 impl Chain {

@@ -202,7 +202,7 @@ pub fn words(error: &FileError) -> String {
 }
 
 /// The system's words without its number, in lower case.
-fn plain(error: &io::Error) -> String {
+pub(super) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     let text = text.split(" (os error").next().unwrap_or_default();
     let mut letters = text.chars();

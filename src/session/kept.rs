@@ -1,18 +1,23 @@
 //! What a session keeps from one run to the next beside values: the stages over everything declared, and what was
 //! measured of their results.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::cache::Cache;
 use super::report::MeshRow;
+use crate::base::bytes;
+use crate::base::digest::{Digest, Digester};
 use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::memory::Memory;
 use crate::lang::value::ModuleId;
-use crate::mesh::{Mesh, Plan};
+use crate::mesh::sizing::Remark;
+use crate::mesh::{Built, Mesh, record};
 use crate::model::topology::Named;
 use crate::model::{Model, measure};
 use crate::network::Network;
@@ -32,16 +37,25 @@ pub struct Kept {
     pub(super) stages: KeptStages,
 }
 
+impl Kept {
+    /// Nothing yet but what a folder holds, where results of this session will be kept as well.
+    pub fn on(cache: Option<Arc<Cache>>) -> Self {
+        Self { stages: KeptStages { cache, ..KeptStages::default() }, ..Self::default() }
+    }
+}
+
 /// Stages of the last run, each with all that it was made from.
 #[derive(Debug, Default)]
 pub(super) struct KeptStages {
     pub networks: BTreeMap<ModuleId, KeptNetwork>,
     pub models: BTreeMap<ModuleId, KeptModel>,
-    pub meshes: BTreeMap<(ModuleId, Arc<str>), KeptMesh>,
+    /// Meshes by their keys.
+    pub meshes: BTreeMap<Digest, KeptMesh>,
     pub areas: BTreeMap<Origin, (Surface, f64)>,
     pub rows: Vec<(Arc<Mesh>, bool, MeshRow)>,
     /// Meshes that the run asked for.
-    pub asked: BTreeSet<(ModuleId, Arc<str>)>,
+    pub asked: BTreeSet<Digest>,
+    pub cache: Option<Arc<Cache>>,
     run: u64,
 }
 
@@ -63,7 +77,16 @@ impl KeptStages {
         if let Some((.., row)) = self.rows.iter().find(|(m, f, row)| Arc::ptr_eq(m, mesh) && *f == full && row.name == name) {
             return row.clone();
         }
-        let row = measure();
+        let key = self.meshes.iter().find(|(_, kept)| Arc::ptr_eq(&kept.mesh, mesh)).map(|(key, _)| *key);
+        let key = key.map(|key| Digester::new("row").digest(key).text(name).number(u64::from(full)).finish());
+        let cache = self.cache.clone().zip(key);
+        let row = cache.as_ref().and_then(|(cache, key)| cache.get("row", *key, bytes::read)).unwrap_or_else(|| {
+            let row = measure();
+            if let Some((cache, key)) = &cache {
+                cache.put("row", *key, &bytes::bytes_of(&row));
+            }
+            row
+        });
         self.rows.push((mesh.clone(), full, row.clone()));
         row
     }
@@ -75,10 +98,13 @@ impl KeptStages {
             let areas = std::mem::take(&mut self.areas);
             self.areas = areas.into_iter().filter(|(_, (surface, _))| live(surface)).collect();
         }
+        if let Some(cache) = &self.cache {
+            cache.tidy();
+        }
         self.run += 1;
         let Self { meshes, rows, asked, run, .. } = self;
-        for place in std::mem::take(asked) {
-            if let Some(mesh) = meshes.get_mut(&place) {
+        for key in std::mem::take(asked) {
+            if let Some(mesh) = meshes.get_mut(&key) {
                 mesh.used = *run;
             }
         }
@@ -125,18 +151,46 @@ impl KeptModel {
 
 #[derive(Debug)]
 pub(super) struct KeptMesh {
-    pub plan: Plan,
-    pub model: Arc<Model>,
-    pub network: Arc<Network>,
-    pub tolerance: Tolerance,
     pub mesh: Arc<Mesh>,
-    pub said: Vec<Fault>,
+    pub remarks: Vec<Remark>,
     pub lines: Vec<String>,
     pub used: u64,
 }
 
 impl KeptMesh {
-    pub fn fits(&self, plan: &Plan, (model, network): (&Arc<Model>, &Arc<Network>), tolerance: &Tolerance) -> bool {
-        self.tolerance == *tolerance && Arc::ptr_eq(&self.model, model) && Arc::ptr_eq(&self.network, network) && self.plan.is(plan)
+    fn of(built: Built) -> Self {
+        let Built { mesh, explanation, remarks } = built;
+        Self { mesh: Arc::new(mesh), remarks, lines: explanation.lines, used: 0 }
+    }
+}
+
+impl KeptStages {
+    /// The mesh of a key: of this session, or from the folder, where its faces lie on `surfaces`.
+    pub fn mesh(&mut self, key: Digest, surfaces: &[&Surface]) -> Option<&KeptMesh> {
+        self.asked.insert(key);
+        if let Entry::Vacant(slot) = self.meshes.entry(key)
+            && let Some(cache) = &self.cache
+            && let Some(built) = cache.get("mesh", key, |bytes| record::read(bytes, surfaces))
+        {
+            slot.insert(KeptMesh::of(built));
+        }
+        self.meshes.get(&key)
+    }
+
+    /// Keeps a mesh that was made.
+    pub fn keep_mesh(&mut self, key: Digest, built: Built, surfaces: &[&Surface]) -> &KeptMesh {
+        if let Some(cache) = &self.cache
+            && let Some(bytes) = record::write(&built, surfaces)
+        {
+            cache.put("mesh", key, &bytes);
+        }
+        let made = KeptMesh::of(built);
+        match self.meshes.entry(key) {
+            Entry::Vacant(slot) => slot.insert(made),
+            Entry::Occupied(mut slot) => {
+                slot.insert(made);
+                slot.into_mut()
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Floor 8: a model from script to files, as commands and other programs use it.
 
+pub mod cache;
 mod collect;
 mod cuts;
 pub mod disk;

@@ -156,6 +156,24 @@ pub struct MeshRow {
     pub groups: Vec<GroupRow>,
 }
 
+crate::plain!(MeshRow {
+    name,
+    nodes,
+    triangles,
+    quads,
+    order,
+    min_angle,
+    max_angle,
+    mean_quality,
+    min_quality,
+    max_aspect,
+    area,
+    chord_error,
+    watertight,
+    hash,
+    groups,
+});
+
 /// A set of a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[allow(missing_docs)]
@@ -164,6 +182,8 @@ pub struct GroupRow {
     pub nodes: usize,
     pub elements: usize,
 }
+
+crate::plain!(GroupRow { name, nodes, elements });
 
 /// A check.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -74,6 +74,8 @@ pub struct Outcome {
     pub bug: bool,
     /// Declarations and stages whose results were taken over from the run before.
     pub reused: usize,
+    /// Results that came from the folder of `--cache`.
+    pub from_cache: usize,
 }
 
 impl Outcome {
@@ -105,12 +107,14 @@ pub struct Again<'k> {
 pub fn run_again(task: &Task, disk: &Disk, job: &Job, again: Again) -> Outcome {
     let Again { kept, light, look } = again;
     let Kept { memory, stages } = std::mem::take(kept);
+    let found = stages.cache.as_ref().map_or(0, |cache| cache.found());
     let stages = Stages::recalling(task.clock, stages);
     let mut cx = Cx::new(disk, &stages, job);
     cx.recall_from(memory);
     let (mut outcome, memory) = Run { light, ..Run::new(task, cx, disk, &stages) }.whole(look);
     outcome.reused = memory.reused() + stages.reused();
     let mut stages = stages.into_kept();
+    outcome.from_cache = stages.cache.as_ref().map_or(0, |cache| cache.found()) - found;
     stages.tidy();
     *kept = Kept { memory, stages };
     outcome
@@ -347,6 +351,7 @@ impl<'r> Run<'r> {
             interrupted,
             bug,
             reused: 0,
+            from_cache: 0,
         };
         (outcome, self.cx.into_memory())
     }

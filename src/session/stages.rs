@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use crate::base::fault::{CurveEnd, Fault, Say};
+use crate::base::job::Job;
 use crate::base::limits::REPORTS_OF_A_KIND;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -13,6 +14,7 @@ use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
 use crate::lang::plans::MeshSpec;
 use crate::lang::scene::Scene;
 use crate::lang::value::ModuleId;
+use crate::mesh::sizing::Remark;
 use crate::mesh::{self, Mesh};
 use crate::model::topology::Named;
 use crate::model::{Model, measure};
@@ -183,32 +185,44 @@ impl Pipeline for Stages<'_> {
     fn mesh(&self, cx: &mut Cx, module: ModuleId, spec: &MeshSpec) -> Result<Arc<Mesh>, Stop> {
         let (tolerance, start) = (cx.tolerance()?, (self.clock)());
         let mut sink = Vec::new();
-        let (plan, scene) = plan::of(cx, module, spec, &mut sink)?;
-        let place = (module, spec.name.clone());
-        if let Some(mut kept) = self.kept() {
-            kept.asked.insert(place.clone());
-        }
-        if let Some(kept) = self.kept()
-            && let Some(before) = kept.meshes.get(&place).filter(|m| m.fits(&plan, (&scene.model, &scene.network), &tolerance))
-        {
-            self.count_reused();
-            say_all(cx, &before.said);
-            self.note(before.lines.iter().cloned());
-            return Ok(before.mesh.clone());
-        }
-        let input = mesh::build::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
-        let built = mesh::build::build(&input, cx.job, &mut sink);
-        say_all(cx, &sink);
+        let (plan, Scene { model, network }) = plan::of(cx, module, spec, &mut sink)?;
+        let input = mesh::Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance };
+        let made = self.made(&input, cx.job);
         self.found().mesh_seconds += (self.clock)() - start;
-        let mesh::build::Built { mesh, explanation } = built?;
-        let lines: Vec<String> = explanation.lines.into_iter().map(|line| format!("mesh {}: {line}", spec.name)).collect();
-        self.note(lines.iter().cloned());
-        let mesh = Arc::new(mesh);
-        if let Some(mut kept) = self.kept() {
-            let Scene { model, network } = scene;
-            kept.meshes.insert(place, KeptMesh { plan, model, network, tolerance, mesh: mesh.clone(), said: sink, lines, used: 0 });
+        // What the plan has to say comes first, also when the mesh fails.
+        let made = made.inspect_err(|_| say_all(cx, &sink))?;
+        sink.extend(made.remarks.iter().map(|remark| remark.fault(&plan.rules)));
+        say_all(cx, &sink);
+        self.note(made.lines.iter().map(|line| format!("mesh {}: {line}", spec.name)));
+        Ok(made.mesh)
+    }
+}
+
+/// A mesh with what is said about it.
+struct Made {
+    mesh: Arc<Mesh>,
+    remarks: Vec<Remark>,
+    lines: Vec<String>,
+}
+
+impl Stages<'_> {
+    /// The mesh of a plan: one that was made before, or a new one.
+    fn made(&self, input: &mesh::Input, job: &Job) -> Result<Made, Fault> {
+        let outline = mesh::Outline::new(input)?;
+        let of = |kept: &KeptMesh| Made { mesh: kept.mesh.clone(), remarks: kept.remarks.clone(), lines: kept.lines.clone() };
+        let Some(kept) = &self.kept else {
+            let mesh::Built { mesh, explanation, remarks } = outline.build(input, job)?;
+            return Ok(Made { mesh: Arc::new(mesh), remarks, lines: explanation.lines });
+        };
+        let kept = || kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = outline.key(input);
+        let surfaces: Vec<&Surface> = input.plan.surfaces.iter().map(|(id, _)| &input.model.surfaces[id.index()].surface).collect();
+        if let Some(before) = kept().mesh(key, &surfaces) {
+            self.count_reused();
+            return Ok(of(before));
         }
-        Ok(mesh)
+        let built = outline.build(input, job)?;
+        Ok(of(kept().keep_mesh(key, built, &surfaces)))
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Blend {
     corners: Vec<DVec3>,
 }
 
+crate::content!(Blend { u, v, along_v, along_u, corners });
+
 impl Blend {
     /// A surface from its rails: `along_v` one per node of `u` (or none: ruled), `along_u` one per node of `v`.
     ///

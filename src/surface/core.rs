@@ -9,6 +9,7 @@ use super::rail::Rail;
 use super::reparam::Map;
 use super::shape::Shape;
 use crate::base::bbox::Box3;
+use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{POLE_STEP, SINGULAR, Tolerance};
 use crate::geometry::Motion;
@@ -157,6 +158,27 @@ pub(super) struct Parts {
     pub generated: Vec<Chain>,
     /// The shape is read with v backwards (a triangle: with u and v exchanged).
     pub flipped: bool,
+}
+
+crate::content_of_word!(SurfaceKind, Domain);
+crate::content!(Border { side, map, turned });
+crate::content!(Parts { kind, flow, domain, closed, shape, borders, kinks, chains, generated, flipped } but { origin });
+
+impl Content for Side {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Chain { chain, from, to: end } => (0u8, (chain, *from, *end)).tell(to),
+            Self::Pole(p) => (1u8, *p).tell(to),
+            Self::Seam => 2u8.tell(to),
+            Self::Free => 3u8.tell(to),
+        }
+    }
+}
+
+impl Content for Surface {
+    fn tell(&self, to: &mut Digester) {
+        self.0.tell(to);
+    }
 }
 
 impl Surface {

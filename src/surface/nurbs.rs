@@ -29,6 +29,8 @@ pub struct NurbsSurface {
     pub counts: (usize, usize),
 }
 
+crate::content!(NurbsSurface { degree, knots, poles, counts });
+
 /// Rows of points made by one thread at a time.
 const ROWS: usize = 16;
 

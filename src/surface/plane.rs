@@ -36,6 +36,8 @@ pub struct Frame {
     pub ev: DVec3,
 }
 
+crate::content!(Frame { origin, eu, ev });
+
 impl Frame {
     /// Point and derivatives.
     pub fn jet(&self, u: f64, v: f64) -> Jet2 {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::reparam::Map;
+use crate::base::digest::{Content, Digester};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::{Jet, Motion};
 use crate::network::Chain;
@@ -47,6 +48,17 @@ pub enum Rail {
         /// The constant parameter is v.
         along_u: bool,
     },
+}
+
+impl Content for Rail {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Chain { chain, map, kinks } => (0u8, (chain, map, kinks)).tell(to),
+            Self::Point(p) => (1u8, *p).tell(to),
+            #[cfg(test)]
+            Self::Formula { at, along_u, .. } => (2u8, (*at, *along_u)).tell(to),
+        }
+    }
 }
 
 impl Rail {

@@ -27,6 +27,8 @@ pub struct Map {
     linear: bool,
 }
 
+crate::content!(Map { x, y, slope, linear });
+
 impl Map {
     /// The map through `(x[i], y[i])`, `x` ascending, `y` strictly monotone, at least two nodes.
     ///

@@ -11,6 +11,7 @@ use super::rail::Lean;
 use super::sweep::Sweep;
 use super::trilateral::Trilateral;
 use crate::base::bbox::Box3;
+use crate::base::digest::{Content, Digester};
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Motion;
 
@@ -28,6 +29,18 @@ pub enum Shape {
     Plane(Frame),
     /// A net.
     Nurbs(NurbsSurface),
+}
+
+impl Content for Shape {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Blend(blend) => (0u8, blend).tell(to),
+            Self::Trilateral(trilateral) => (1u8, trilateral).tell(to),
+            Self::Sweep(sweep) => (2u8, sweep).tell(to),
+            Self::Plane(frame) => (3u8, frame).tell(to),
+            Self::Nurbs(net) => (4u8, net).tell(to),
+        }
+    }
 }
 
 impl Shape {

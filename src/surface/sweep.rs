@@ -10,6 +10,7 @@ use super::line::Line;
 use super::rail::{Lean, Rail};
 use super::spread::Spread;
 use crate::base::bbox::Box3;
+use crate::base::digest::{Content, Digester};
 use crate::base::fault::{CurveFault, Result};
 use crate::base::math;
 use crate::base::origin::Origin;
@@ -56,6 +57,17 @@ pub enum Path {
 pub struct Sweep {
     profile: Rail,
     path: Path,
+}
+
+crate::content!(Sweep { profile, path });
+
+impl Content for Path {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Straight { by } => (0u8, *by).tell(to),
+            Self::Turn { about, axis, angle } => (1u8, (*about, *axis, *angle)).tell(to),
+        }
+    }
 }
 
 /// A rotation about an axis, made once per column.

@@ -22,6 +22,8 @@ pub struct Trilateral {
     corners: [DVec3; 3],
 }
 
+crate::content!(Trilateral { sides, corners });
+
 /// A function of two variables with its derivatives: value, ∂b, ∂c, ∂bb, ∂bc, ∂cc.
 struct Term([DVec3; 6]);
 

@@ -22,6 +22,9 @@ pub struct Axis {
     pub rule: Rule,
 }
 
+crate::content_of_word!(Rule);
+crate::content!(Axis { nodes, rule });
+
 /// Curves that take part at one parameter: those from `first` on, each with value, first and second derivative.
 #[derive(Clone, Debug)]
 pub struct Weights {

@@ -1,0 +1,138 @@
+//! Keys of meshes: everything that the mesher reads, by content.
+//!
+//! Entities are told as seen from the plan (its surfaces in order, their patches from the first), so that numbers given to
+//! them by a model or network that grew elsewhere do not matter.
+
+use std::collections::BTreeMap;
+
+use super::build::Input;
+use super::layout::{Border, Face, Layout};
+use super::plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
+use super::sizing::links_of;
+use crate::base::digest::{Content, Digest, Digester};
+use crate::model::{PatchId, SurfaceId};
+use crate::network::Chain;
+
+/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another.
+pub fn of(input: &Input, layouts: &[Layout], size: f64) -> Digest {
+    let mut to = Digester::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(super::VERSION));
+    input.tolerance.tell(&mut to);
+    let mut places = BTreeMap::new();
+    input.plan.surfaces.iter().enumerate().for_each(|(place, (surface, _))| {
+        places.entry(*surface).or_insert(place);
+    });
+    let teller = Teller { input, layouts, places };
+    teller.plan(size, &mut to);
+    layouts.len().tell(&mut to);
+    layouts.iter().for_each(|layout| teller.layout(layout, &mut to));
+    to.finish()
+}
+
+crate::content_of_word!(Elements);
+crate::content!(Border { uses, pole, length });
+
+impl Content for Method {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Auto => 0u8.tell(to),
+            Self::Mapped => 1u8.tell(to),
+            Self::Later(word) => (2u8, *word).tell(to),
+        }
+    }
+}
+
+struct Teller<'a> {
+    input: &'a Input<'a>,
+    layouts: &'a [Layout],
+    /// Where each surface stands first in the plan.
+    places: BTreeMap<SurfaceId, usize>,
+}
+
+impl Teller<'_> {
+    fn plan(&self, size: f64, to: &mut Digester) {
+        let Plan {
+            name,
+            origin: _,
+            surfaces,
+            curves,
+            points,
+            size: _,
+            chord_error,
+            angle_error,
+            elements,
+            order,
+            method,
+            conforming,
+            rules,
+            groups,
+        } = self.input.plan;
+        (name, size, (chord_error.map(|c| c.0), angle_error.map(|a| a.0))).tell(to);
+        (*elements, *order, (*method, *conforming)).tell(to);
+        surfaces.len().tell(to);
+        for (id, flipped) in surfaces {
+            let named = &self.input.model.surfaces[id.index()];
+            (self.places.get(id), *flipped, (&named.name, &named.surface)).tell(to);
+        }
+        (curves, points).tell(to);
+        rules.len().tell(to);
+        rules.iter().for_each(|rule| self.rule(rule, to));
+        groups.len().tell(to);
+        for GroupRequest { name, members } in groups {
+            (name, members.len()).tell(to);
+            members.iter().for_each(|member| self.target(member, to));
+        }
+    }
+
+    fn rule(&self, rule: &Rule, to: &mut Digester) {
+        let Rule { target, count, size, bias, elements, method, origin: _ } = rule;
+        self.target(target, to);
+        (count.map(|c| c.0), size.map(|s| s.0), bias.map(|b| b.0)).tell(to);
+        (elements.map(|e| e.0), method.map(|m| m.0)).tell(to);
+    }
+
+    /// What a rule or group speaks of, and what of the mesh that is.
+    fn target(&self, target: &Target, to: &mut Digester) {
+        match target {
+            Target::Chain(chain) => self.chain(chain, to),
+            Target::Surface(_) | Target::Patches(_) => {
+                matches!(target, Target::Surface(_)).tell(to);
+                for face in self.layouts.iter().flat_map(|l| &l.faces) {
+                    target.faces(face.patch, face.surface).tell(to);
+                }
+            }
+            Target::Point(point) => (2u8, *point).tell(to),
+        }
+    }
+
+    fn chain(&self, chain: &Chain, to: &mut Digester) {
+        (3u8, chain, links_of(self.input, chain)).tell(to);
+        self.layouts.iter().for_each(|layout| layout.along(self.input, chain).tell(to));
+    }
+
+    fn layout(&self, layout: &Layout, to: &mut Digester) {
+        let Layout { faces, parts, pieces, of_link, curves, points } = layout;
+        faces.len().tell(to);
+        faces.iter().for_each(|face| self.face(face, to));
+        (parts, pieces, (curves, points)).tell(to);
+        of_link.len().tell(to);
+        for (link, uses) in of_link {
+            let network = self.input.network;
+            let curve = network.links[link.index()].curve;
+            (&network.curves[curve.index()].name, uses).tell(to);
+        }
+    }
+
+    fn face(&self, face: &Face, to: &mut Digester) {
+        let Face { patch, surface, flipped, elements, method, size, sides } = face;
+        let record = &self.input.model.patches[patch.index()];
+        (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).tell(to);
+        (*flipped, *elements, (*method, size.0, size.1)).tell(to);
+        sides.tell(to);
+    }
+
+    /// The number of a patch on its surface.
+    fn patch(&self, surface: SurfaceId, patch: PatchId) -> usize {
+        let first = self.input.model.patches_of(surface).next().map_or(0, |p| p.index());
+        patch.index() - first
+    }
+}
