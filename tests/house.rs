@@ -45,8 +45,8 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
-/// results, `draw` an alphabet, and `lang` the grammar's tree, the evaluator, its memory between runs, all words with their documentation,
-/// and the formatter.
+/// results, `draw` an alphabet, and `lang` the grammar over tokens and its tree, the evaluator, its memory between runs, all words with
+/// their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_500),
     ("geometry", 5_500),
@@ -56,7 +56,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("mesh", 6_500),
     ("io", 6_000),
     ("draw", 3_000),
-    ("lang", 18_500),
+    ("lang", 19_500),
     ("session", 8_800),
     ("cli", 3_500),
 ];
