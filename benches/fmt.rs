@@ -1,4 +1,5 @@
-//! Layout of 10 MB of script: many short declarations, declarations that must be broken, and one list of points.
+//! Layout of 10 MB of script: many short declarations, declarations that must be broken, one list of points, and
+//! declarations that are all of another shape.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use std::fmt::Write as _;
@@ -49,10 +50,38 @@ fn points() -> String {
     text
 }
 
+/// Declarations of which hardly two have the same tokens in the same order.
+fn new_shapes() -> String {
+    let (mut text, mut seed) = (String::new(), 1_u64);
+    let mut random = |below: u64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) % below
+    };
+    for i in 0.. {
+        let _ = write!(text, "let v{i} = a");
+        for _ in 0..random(40) {
+            let operator = ["+", "-", "*", "/"][random(4) as usize];
+            let operand = ["b1", "2.5", "3m", "(1, 2, 3m)", "p.x", "f(a, of: b)", "[a, b]", "c[i]", "(a - 1)"][random(9) as usize];
+            let _ = write!(text, " {operator} {operand}");
+        }
+        text.push('\n');
+        if text.len() > BYTES {
+            break;
+        }
+    }
+    text
+}
+
 fn layout(c: &mut Criterion) {
     let mut group = c.benchmark_group("fmt");
     group.sample_size(10);
-    for (name, text) in [("short declarations", declarations()), ("long declarations", long_declarations()), ("one list", points())] {
+    let scripts = [
+        ("short declarations", declarations()),
+        ("long declarations", long_declarations()),
+        ("one list", points()),
+        ("new shapes", new_shapes()),
+    ];
+    for (name, text) in scripts {
         group.throughput(Throughput::Bytes(text.len() as u64));
         group.bench_function(name, |b| b.iter(|| format(&text)));
     }

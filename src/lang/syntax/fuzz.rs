@@ -187,11 +187,44 @@ fn the_grammar_agrees(text: &str, script: &Script, found: &[Diagnostic]) {
     assert_eq!(count, script.declarations.len(), "{text}");
 }
 
+/// Each declaration matches over tokens as pest matches its characters, rule by rule and place by place.
+fn tokens_match_as_characters(text: &str, script: &Script) {
+    for declaration in script.declarations.iter().take(40) {
+        let alone = &text[declaration.span.start as usize..declaration.span.end as usize];
+        let tokens = scan::scan(alone);
+        let mut marks = Marks::default();
+        let pair = marks.declaration(&tokens, 0, tokens.len()).unwrap_or_else(|| panic!("{alone}"));
+        let mut found = Vec::new();
+        collect(pair, &mut found);
+        let token = |byte: usize| tokens.starts.partition_point(|&start| (start as usize) < byte);
+        let told: Vec<Rule> = peg::RULES.as_ref().unwrap().iter().filter_map(|rule| rule.told).collect();
+        let pairs = Grammar::parse(Rule::single, alone).unwrap_or_else(|e| panic!("{e}")).flatten();
+        let pairs = pairs.filter(|p| told.contains(&p.as_rule()));
+        let expected: Vec<(Rule, usize, usize)> =
+            pairs.map(|p| (p.as_rule(), token(p.as_span().start()), token(p.as_span().end()))).collect();
+        assert_eq!(found, expected, "{alone}");
+    }
+}
+
+fn collect(pair: matching::Pair<'_>, out: &mut Vec<(Rule, usize, usize)>) {
+    let Span { start, end } = pair.extent();
+    out.push((pair.as_rule(), start as usize, end as usize + 1));
+    pair.into_inner().for_each(|inner| collect(inner, out));
+}
+
+/// The rules over tokens are all of those that a declaration needs.
+#[test]
+fn the_grammar_is_read() {
+    let rules = peg::RULES.as_ref().expect("the grammar holds only what is read here");
+    assert!(rules.len() > 40 && rules.iter().all(|rule| !matches!(rule.op, peg::Op::Nothing)), "{rules:?}");
+}
+
 fn check(text: &str) -> Result<(), TestCaseError> {
     let mut names = Names::default();
     let (script, found) = parse(text, FileId(0), &mut names);
     spans_lie_in(text, &script, &found);
     the_grammar_agrees(text, &script, &found);
+    tokens_match_as_characters(text, &script);
     shapes_change_nothing(text, &script, &mut names);
     let mut sources = crate::lang::diag::Sources::default();
     sources.add("fuzz.loft", text);

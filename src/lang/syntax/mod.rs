@@ -1,7 +1,7 @@
 //! Text to tree. The only place that knows pest.
 //!
 //! ```text
-//! bytes → tokens (scan) → pieces (split) → shapes (pest, tree, climb; each shape once) → declarations (shape)
+//! bytes → tokens (scan) → pieces (split) → shapes (peg, matching, tree, climb; each shape once) → declarations (shape)
 //! ```
 //!
 //! Parsing never stops at a mistake: every piece stands for itself, the sound ones are kept, and the names of broken
@@ -11,9 +11,11 @@ pub mod ast;
 mod climb;
 mod expected;
 pub mod keywords;
+mod matching;
 mod mistake;
 pub mod number;
 pub mod outline;
+mod peg;
 mod scan;
 mod shape;
 mod split;
@@ -29,6 +31,7 @@ use crate::base::limits::SOURCE_BYTES;
 use crate::lang::diag::{Diagnostic, FileId};
 use crate::lang::names::Names;
 use ast::{Bound, Script, Span};
+use matching::Marks;
 use mistake::Mistake;
 pub(crate) use scan::Tokens;
 use shape::{Filler, Shape, Shapes};
@@ -48,14 +51,14 @@ use grammar::{Grammar, Rule};
 ///
 /// The reports are sorted by place. The tree refers to `names`, where new names are entered.
 pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
-    let Read { script, found, .. } = read(source, file, names);
+    let Read { script, found, .. } = read_as(source, file, names, true);
     (script, found)
 }
 
 /// A script as the formatter needs it: with its tokens and comments.
 pub(crate) struct Read {
-    /// What [`parse`] gives.
-    pub script: Script,
+    /// What [`parse`] gives; the formatter leaves it empty.
+    script: Script,
     /// What is wrong, sorted by place.
     pub found: Vec<Diagnostic>,
     /// All tokens; none when the source is too large.
@@ -64,8 +67,12 @@ pub(crate) struct Read {
     pub sound: Vec<Range<usize>>,
 }
 
-/// Parses a script and keeps its tokens.
+/// Checks a script and keeps its tokens.
 pub(crate) fn read(source: &str, file: FileId, names: &mut Names) -> Read {
+    read_as(source, file, names, false)
+}
+
+fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> Read {
     if source.len() as u64 > SOURCE_BYTES {
         let found = vec![Mistake::TooLarge { bytes: source.len() }.diagnose(source, file)];
         return Read { script: Script::default(), found, tokens: Tokens::default(), sound: Vec::new() };
@@ -77,7 +84,9 @@ pub(crate) fn read(source: &str, file: FileId, names: &mut Names) -> Read {
         file,
         tokens: &tokens,
         shapes: Shapes::default(),
+        marks: Marks::default(),
         names,
+        fills,
         script: Script::default(),
         found: Vec::new(),
         sound: Vec::with_capacity(pieces.len()),
@@ -104,7 +113,10 @@ struct Parser<'a> {
     file: FileId,
     tokens: &'a Tokens,
     shapes: Shapes,
+    marks: Marks,
     names: &'a mut Names,
+    /// Whether declarations are wanted, not only what is wrong with them.
+    fills: bool,
     script: Script,
     found: Vec<Diagnostic>,
     /// Tokens of the declarations.
@@ -113,7 +125,7 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     fn run(mut self, pieces: Vec<Piece>, mistakes: Vec<Mistake>) -> (Script, Vec<Diagnostic>, Vec<Range<usize>>) {
-        self.script.declarations.reserve(pieces.len());
+        self.script.declarations.reserve(if self.fills { pieces.len() } else { 0 });
         self.mistakes(mistakes);
         let (mut own, mut docs) = (self.tokens.mistakes.iter().peekable(), 0);
         for mut piece in pieces {
@@ -191,8 +203,10 @@ impl Parser<'_> {
             let mistake = Mistake::UnitPower { span, power };
             self.found.extend(mistake.is_meant_otherwise(self.source).then(|| mistake.diagnose(self.source, self.file)));
         }
-        let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
-        self.script.declarations.push(declaration);
+        if self.fills {
+            let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
+            self.script.declarations.push(declaration);
+        }
         self.sound.push(base..base + shape.declaration.span.end as usize + 1);
     }
 
@@ -211,16 +225,27 @@ impl Parser<'_> {
         })
     }
 
-    /// Asks pest.
-    fn shape(&self, base: usize, end: usize) -> Result<Shape, Box<Diagnostic>> {
-        let span = self.tokens.stretch(base, end - 1);
-        let text = &self.source[span.start as usize..span.end as usize];
-        let pairs = Grammar::parse(Rule::single, text).map_err(|error| {
-            let failure = expected::Failure { source: self.source, file: self.file, tokens: self.tokens, base, end };
-            Box::new(failure.diagnose(&error))
-        })?;
+    /// Matches the grammar; where it does not match, pest says why.
+    fn shape(&mut self, base: usize, end: usize) -> Result<Shape, Box<Diagnostic>> {
         let place = |s: Span| self.tokens.stretch(base + s.start as usize, base + s.end as usize);
-        tree::build(pairs, self.tokens, base, end).map_err(|refused| Box::new(refused.diagnose(self.source, self.file, place)))
+        let refused = match self.marks.declaration(self.tokens, base, end) {
+            Some(pair) => match tree::build(pair, self.tokens, base, end) {
+                Ok(shape) => return Ok(shape),
+                Err(refused) => refused,
+            },
+            None => {
+                let span = self.tokens.stretch(base, end - 1);
+                let text = &self.source[span.start as usize..span.end as usize];
+                match Grammar::parse(Rule::single, text) {
+                    Err(error) => {
+                        let failure = expected::Failure { source: self.source, file: self.file, tokens: self.tokens, base, end };
+                        return Err(Box::new(failure.diagnose(&error)));
+                    }
+                    Ok(_) => mistake::Refused::whole("a declaration", 0, (end - base - 1) as u32),
+                }
+            }
+        };
+        Err(Box::new(refused.diagnose(self.source, self.file, place)))
     }
 
     /// A piece that starts with no keyword.

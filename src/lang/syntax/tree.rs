@@ -1,10 +1,9 @@
-//! The pairs of pest to a [`Shape`].
-
-use pest::iterators::{Pair, Pairs};
+//! What matched to a [`Shape`].
 
 use super::Rule;
 use super::ast::*;
 use super::climb::{Climber, Term};
+use super::matching::Pair;
 use super::mistake::Refused;
 use super::scan::Tokens;
 use super::shape::Shape;
@@ -17,17 +16,13 @@ pub(super) type Result<T> = std::result::Result<T, Refused>;
 pub(super) struct Builder<'a> {
     tokens: &'a Tokens,
     base: usize,
-    end: usize,
     pub nodes: Vec<Node>,
     stretches: Vec<Vec<u32>>,
 }
 
-/// The shape of the declaration in tokens `base..end`, from the pairs of `single`.
-pub(super) fn build(pairs: Pairs<'_, Rule>, tokens: &Tokens, base: usize, end: usize) -> Result<Shape> {
-    let mut builder = Builder { tokens, base, end, nodes: Vec::new(), stretches: Vec::new() };
-    let Some(declaration) = pairs.flat_map(Pair::into_inner).find(|p| p.as_rule() != Rule::EOI) else {
-        return Err(Refused::whole("an empty declaration", 0, 0));
-    };
+/// The shape of the declaration in tokens `base..end`, from the rule that matched it.
+pub(super) fn build(declaration: Pair<'_>, tokens: &Tokens, base: usize, end: usize) -> Result<Shape> {
+    let mut builder = Builder { tokens, base, nodes: Vec::new(), stretches: Vec::new() };
     let kind = builder.declaration(declaration)?;
     let keyword = tokens.kinds[base].keyword().ok_or_else(|| Refused::whole("no keyword", 0, 0))?;
     let keyword_end = u32::from(keyword == Keyword::ModelingCurve);
@@ -40,16 +35,9 @@ pub(super) fn build(pairs: Pairs<'_, Rule>, tokens: &Tokens, base: usize, end: u
 }
 
 impl Builder<'_> {
-    /// Number of the token that begins at or behind this byte, counted from the declaration's first.
-    fn token_at(&self, byte: usize) -> u32 {
-        let byte = byte as u32 + self.tokens.starts[self.base];
-        self.tokens.starts[self.base..self.end].partition_point(|&start| start < byte) as u32
-    }
-
     /// First and last token of a pair.
-    pub fn extent(&self, pair: &Pair<'_, Rule>) -> Span {
-        let span = pair.as_span();
-        Span { start: self.token_at(span.start()), end: self.token_at(span.end()).saturating_sub(1) }
+    pub fn extent(&self, pair: &Pair<'_>) -> Span {
+        pair.extent()
     }
 
     pub fn kind(&self, token: u32) -> Kind {
@@ -61,19 +49,19 @@ impl Builder<'_> {
         ExprId::at(self.nodes.len() - 1)
     }
 
-    fn name(&self, pair: &Pair<'_, Rule>) -> (Name, Span) {
+    fn name(&self, pair: &Pair<'_>) -> (Name, Span) {
         let span = self.extent(pair);
         (Name(span.start), span)
     }
 
-    fn bound(&self, pair: &Pair<'_, Rule>) -> Bound {
+    fn bound(&self, pair: &Pair<'_>) -> Bound {
         let (name, span) = self.name(pair);
         Bound { name, span }
     }
 
     // ---- declarations
 
-    fn declaration(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
+    fn declaration(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
         match pair.as_rule() {
             Rule::units => Ok(DeclarationKind::Units(self.only_bound(pair, Rule::unit_name)?)),
             Rule::tolerance => Ok(DeclarationKind::Tolerance(self.exprs(pair)?)),
@@ -87,18 +75,18 @@ impl Builder<'_> {
         }
     }
 
-    fn only_bound(&self, pair: Pair<'_, Rule>, rule: Rule) -> Result<Bound> {
+    fn only_bound(&self, pair: Pair<'_>, rule: Rule) -> Result<Bound> {
         let found = pair.into_inner().find(|p| p.as_rule() == rule);
         found.map(|p| self.bound(&p)).ok_or_else(|| Refused::whole("a name is missing", 0, 0))
     }
 
     /// All expressions that stand directly in a pair.
-    fn exprs(&mut self, pair: Pair<'_, Rule>) -> Result<Vec<ExprId>> {
+    fn exprs(&mut self, pair: Pair<'_>) -> Result<Vec<ExprId>> {
         pair.into_inner().filter(|p| p.as_rule() == Rule::expr).map(|p| self.expr(p)).collect()
     }
 
-    fn load(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
-        let bound = self.only_bound(pair.clone(), Rule::name)?;
+    fn load(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
+        let bound = self.only_bound(pair, Rule::name)?;
         let (mut path, mut args) = (ExprId(0), Vec::new());
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -110,8 +98,8 @@ impl Builder<'_> {
         Ok(DeclarationKind::Load { path, args, bound })
     }
 
-    fn param(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
-        let bound = self.only_bound(pair.clone(), Rule::name)?;
+    fn param(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
+        let bound = self.only_bound(pair, Rule::name)?;
         let (mut ty, mut value, mut allowed) = (None, ExprId(0), None);
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -128,11 +116,11 @@ impl Builder<'_> {
         Ok(DeclarationKind::Param { bound, ty, value, allowed })
     }
 
-    fn ty(&self, pair: Pair<'_, Rule>) -> TypeName {
+    fn ty(&self, pair: Pair<'_>) -> TypeName {
         let span = self.extent(&pair);
         let (mut lists, mut inner) = (0u8, pair);
         loop {
-            let part = inner.clone().into_inner().find(|p| matches!(p.as_rule(), Rule::type_ | Rule::word));
+            let part = inner.into_inner().find(|p| matches!(p.as_rule(), Rule::type_ | Rule::word));
             match part {
                 Some(part) if part.as_rule() == Rule::type_ => {
                     lists = lists.saturating_add(1);
@@ -144,8 +132,8 @@ impl Builder<'_> {
         }
     }
 
-    fn function(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
-        let bound = self.only_bound(pair.clone(), Rule::name)?;
+    fn function(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
+        let bound = self.only_bound(pair, Rule::name)?;
         let (mut params, mut returns, mut body) = (Vec::new(), None, ExprId(0));
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -162,8 +150,8 @@ impl Builder<'_> {
         Ok(DeclarationKind::Fn { bound, params, returns, body })
     }
 
-    fn parameter(&mut self, pair: Pair<'_, Rule>) -> Result<FnParam> {
-        let bound = self.only_bound(pair.clone(), Rule::name)?;
+    fn parameter(&mut self, pair: Pair<'_>) -> Result<FnParam> {
+        let bound = self.only_bound(pair, Rule::name)?;
         let (mut ty, mut default) = (None, None);
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -175,8 +163,8 @@ impl Builder<'_> {
         Ok(FnParam { bound, ty, default })
     }
 
-    fn value(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
-        let bound = self.only_bound(pair.clone(), Rule::name)?;
+    fn value(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
+        let bound = self.only_bound(pair, Rule::name)?;
         let (mut family, mut value) = (Vec::new(), ExprId(0));
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -188,8 +176,8 @@ impl Builder<'_> {
         Ok(DeclarationKind::Value { bound, family, value })
     }
 
-    fn collection(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
-        let bound = self.only_bound(pair.clone(), Rule::name)?;
+    fn collection(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
+        let bound = self.only_bound(pair, Rule::name)?;
         let (mut family, mut things, mut settings, mut clauses) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -202,7 +190,7 @@ impl Builder<'_> {
         Ok(DeclarationKind::Collection { bound, family, things, settings, clauses })
     }
 
-    fn block(&mut self, pair: Pair<'_, Rule>, settings: &mut Vec<Setting>, clauses: &mut Vec<MeshClause>) -> Result<()> {
+    fn block(&mut self, pair: Pair<'_>, settings: &mut Vec<Setting>, clauses: &mut Vec<MeshClause>) -> Result<()> {
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::setting => settings.push(self.setting(part)?),
@@ -213,13 +201,13 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn setting(&mut self, pair: Pair<'_, Rule>) -> Result<Setting> {
-        let Bound { name: key, span: key_span } = self.only_bound(pair.clone(), Rule::word)?;
+    fn setting(&mut self, pair: Pair<'_>) -> Result<Setting> {
+        let Bound { name: key, span: key_span } = self.only_bound(pair, Rule::word)?;
         let value = self.exprs(pair)?[0];
         Ok(Setting { key, key_span, value })
     }
 
-    fn clause(&mut self, pair: Pair<'_, Rule>) -> Result<MeshClause> {
+    fn clause(&mut self, pair: Pair<'_>) -> Result<MeshClause> {
         let span = self.extent(&pair);
         let word = match self.kind(span.start) {
             Kind::On => ClauseWord::On,
@@ -237,7 +225,7 @@ impl Builder<'_> {
         Ok(MeshClause { word, span, things, settings })
     }
 
-    fn output(&mut self, pair: Pair<'_, Rule>) -> Result<DeclarationKind> {
+    fn output(&mut self, pair: Pair<'_>) -> Result<DeclarationKind> {
         let (mut label, mut things, mut family, mut to, mut settings) = (None, Vec::new(), Vec::new(), None, Vec::new());
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -259,12 +247,12 @@ impl Builder<'_> {
 
     // ---- expressions
 
-    pub fn expr(&mut self, pair: Pair<'_, Rule>) -> Result<ExprId> {
+    pub fn expr(&mut self, pair: Pair<'_>) -> Result<ExprId> {
         self.term(pair).map(|t| t.id)
     }
 
     /// An expression with what its climber knows about it.
-    fn term(&mut self, pair: Pair<'_, Rule>) -> Result<Term> {
+    fn term(&mut self, pair: Pair<'_>) -> Result<Term> {
         let mut climber = Climber::default();
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -284,7 +272,7 @@ impl Builder<'_> {
         climber.end(self)
     }
 
-    fn primary(&mut self, pair: Pair<'_, Rule>) -> Result<Term> {
+    fn primary(&mut self, pair: Pair<'_>) -> Result<Term> {
         let span = self.extent(&pair);
         let expr = match pair.as_rule() {
             Rule::number => Expr::Number(0.0),
@@ -300,7 +288,7 @@ impl Builder<'_> {
                 Expr::If { condition: parts[0], then: parts[1], otherwise: parts[2] }
             }
             Rule::local => {
-                let Bound { name, span: name_span } = self.only_bound(pair.clone(), Rule::name)?;
+                let Bound { name, span: name_span } = self.only_bound(pair, Rule::name)?;
                 let parts = self.exprs(pair)?;
                 Expr::Let { name, name_span, value: parts[0], body: parts[1] }
             }
@@ -319,15 +307,15 @@ impl Builder<'_> {
         Ok(Term::new(self.node(span, expr), span))
     }
 
-    fn reference(&mut self, pair: Pair<'_, Rule>) -> Result<Expr> {
-        let Bound { name, span: name_span } = self.only_bound(pair.clone(), Rule::name)?;
+    fn reference(&mut self, pair: Pair<'_>) -> Result<Expr> {
+        let Bound { name, span: name_span } = self.only_bound(pair, Rule::name)?;
         match pair.into_inner().find(|p| p.as_rule() == Rule::args) {
             Some(args) => Ok(Expr::Call { name, name_span, of: None, args: self.args(args)? }),
             None => Ok(Expr::Name(name)),
         }
     }
 
-    fn record(&mut self, pair: Pair<'_, Rule>) -> Result<Vec<(Name, ExprId)>> {
+    fn record(&mut self, pair: Pair<'_>) -> Result<Vec<(Name, ExprId)>> {
         let mut pairs = Vec::new();
         for one in pair.into_inner().filter(|p| p.as_rule() == Rule::pair) {
             let setting = self.setting(one)?;
@@ -336,7 +324,7 @@ impl Builder<'_> {
         Ok(pairs)
     }
 
-    fn comprehension(&mut self, pair: Pair<'_, Rule>) -> Result<Expr> {
+    fn comprehension(&mut self, pair: Pair<'_>) -> Result<Expr> {
         let (mut clauses, mut body) = (Vec::new(), ExprId(0));
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -349,13 +337,13 @@ impl Builder<'_> {
         Ok(Expr::Comprehension { clauses, body })
     }
 
-    fn for_clause(&mut self, pair: Pair<'_, Rule>) -> Result<For> {
-        let Bound { name, span: name_span } = self.only_bound(pair.clone(), Rule::name)?;
+    fn for_clause(&mut self, pair: Pair<'_>) -> Result<For> {
+        let Bound { name, span: name_span } = self.only_bound(pair, Rule::name)?;
         let list = self.exprs(pair)?[0];
         Ok(For { name, name_span, list })
     }
 
-    fn args(&mut self, pair: Pair<'_, Rule>) -> Result<Vec<Arg>> {
+    fn args(&mut self, pair: Pair<'_>) -> Result<Vec<Arg>> {
         let mut args = Vec::new();
         for arg in pair.into_inner().filter(|p| p.as_rule() == Rule::arg) {
             let mut name = None;
@@ -370,10 +358,10 @@ impl Builder<'_> {
         Ok(args)
     }
 
-    fn postfix(&mut self, of: Term, pair: Pair<'_, Rule>) -> Result<Term> {
+    fn postfix(&mut self, of: Term, pair: Pair<'_>) -> Result<Term> {
         let span = Span { start: of.span.start, end: self.extent(&pair).end };
         let expr = if pair.as_rule() == Rule::field {
-            let Bound { name, span: name_span } = self.only_bound(pair.clone(), Rule::word)?;
+            let Bound { name, span: name_span } = self.only_bound(pair, Rule::word)?;
             match pair.into_inner().find(|p| p.as_rule() == Rule::args) {
                 Some(args) => Expr::Call { name, name_span, of: Some(of.id), args: self.args(args)? },
                 None => Expr::Field { of: of.id, name, name_span },
@@ -389,7 +377,7 @@ impl Builder<'_> {
     }
 
     /// `A..B` in an index is a slice, whichever ends are written.
-    fn slice(&mut self, pair: Pair<'_, Rule>) -> Result<ExprId> {
+    fn slice(&mut self, pair: Pair<'_>) -> Result<ExprId> {
         let span = self.extent(&pair);
         let (mut ends, mut run_at) = (Vec::new(), None);
         for part in pair.into_inner() {
@@ -418,7 +406,7 @@ impl Builder<'_> {
     }
 
     /// Stretches and values in turn; the stretches are found among the tokens around the values.
-    fn string(&mut self, pair: Pair<'_, Rule>) -> Result<ExprId> {
+    fn string(&mut self, pair: Pair<'_>) -> Result<ExprId> {
         let span = self.extent(&pair);
         let (mut parts, mut stretches) = (vec![TextPart::Literal(Box::default())], vec![span.start]);
         for part in pair.into_inner().filter(|p| p.as_rule() == Rule::expr) {
