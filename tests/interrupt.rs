@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const SCRIPT: &str = "units m
 curve south = line((0, 0, 0), (4, 0, 0))
@@ -41,6 +41,7 @@ fn outputs(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found: Vec<(String, Vec<u8>)> = fs::read_dir(folder)
         .unwrap()
         .map(|e| e.unwrap().path())
+        .filter(|p| p.is_file())
         .filter(|p| p.file_name().is_some_and(|n| n != "model.loft"))
         .map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read(&p).unwrap()))
         .collect();
@@ -88,20 +89,97 @@ fn ctrl_c_ends_with_130_and_leaves_nothing_half() {
     assert!(stopped > 0, "no run was caught");
 }
 
+/// How often each kind of run is killed; `.ci/run` asks for more.
+fn kills() -> usize {
+    std::env::var("LOFT_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(5)
+}
+
+/// Starts a command and kills it at a moment chosen by `dice` within 1.2 times what a whole run takes.
+fn kill(mut command: Command, whole: Duration, dice: &mut u64) {
+    *dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    let mut child = command.spawn().unwrap();
+    sleep(whole.mul_f64(1.2 * (*dice >> 33) as f64 / (1u64 << 31) as f64));
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+fn temporary(files: &[(String, Vec<u8>)]) -> Vec<&str> {
+    files.iter().map(|f| f.0.as_str()).filter(|name| name.ends_with(".tmp")).collect()
+}
+
 #[test]
-fn a_killed_run_leaves_whole_files_only() {
+fn a_killed_run_leaves_whole_files_and_the_next_one_cleans_up() {
     let folder = folder("kill");
-    assert!(loft(&folder).status().unwrap().success());
+    let cached = || {
+        let mut command = loft(&folder);
+        command.args(["--cache", "kept"]);
+        command
+    };
+    let begun = Instant::now();
+    assert!(cached().status().unwrap().success());
+    let took = begun.elapsed();
     let whole = outputs(&folder);
-    for millis in [20, 60, 120, 250] {
+    let kept = outputs(&folder.join("kept"));
+    assert_eq!((whole.len(), kept.len()), (4, 2));
+    let (mut dice, mut left, mut torn) = (3, 0, 0);
+    for round in 0..kills() {
         for (name, _) in &whole {
             fs::write(folder.join(name), "old").unwrap();
         }
-        stop_after(&folder, millis, "-KILL");
-        for (name, bytes) in outputs(&folder) {
-            let expected = whole.iter().find(|w| w.0 == name).map(|w| &w.1);
-            // Under a name of an output stands the old file or the new one; what was on its way has a temporary name.
-            assert!(expected.is_none_or(|new| bytes == b"old" || bytes == *new), "{name} is neither old nor new");
+        if round % 2 == 0 {
+            fs::remove_dir_all(folder.join("kept")).unwrap();
         }
+        kill(cached(), took, &mut dice);
+        let found = outputs(&folder);
+        for (name, bytes) in found.iter().filter(|f| !f.0.ends_with(".tmp")) {
+            let new = &whole.iter().find(|w| w.0 == *name).unwrap().1;
+            assert!(bytes == b"old" || bytes == new, "{name} is neither old nor new");
+        }
+        let found_kept = if folder.join("kept").exists() { outputs(&folder.join("kept")) } else { Vec::new() };
+        for (name, bytes) in found_kept.iter().filter(|f| !f.0.ends_with(".tmp")) {
+            let new = &kept.iter().find(|w| w.0 == *name).unwrap().1;
+            assert!(bytes == new, "{name} is not whole");
+        }
+        left += temporary(&found).len() + temporary(&found_kept).len();
+        torn += usize::from(found.iter().any(|f| f.1 == b"old"));
+        assert!(cached().status().unwrap().success());
+        assert!(outputs(&folder) == whole, "the next run leaves what a run leaves");
+        // One that had nothing to write there leaves the folder of results as it is.
+        let again = outputs(&folder.join("kept"));
+        assert!(again.iter().filter(|f| !f.0.ends_with(".tmp")).eq(&kept), "the next run keeps what a run keeps");
     }
+    assert!(torn > 0, "no run was caught");
+    assert!(kills() < 50 || left > 0, "no run was caught while it wrote");
+}
+
+#[test]
+fn a_killed_accept_leaves_whole_goldens() {
+    let folder = folder("accept");
+    let accept = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_loft"));
+        command.args(["test", "--accept", "model.loft"]).current_dir(&folder).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    fs::write(folder.join("model.loft"), SCRIPT.replace("20mm", "60mm")).unwrap();
+    let begun = Instant::now();
+    assert!(accept().status().unwrap().success());
+    let took = begun.elapsed();
+    let new = fs::read(folder.join("model.golden")).unwrap();
+    // A golden of the same model before somebody changed it.
+    fs::write(folder.join("model.loft"), SCRIPT.replace("20mm", "70mm")).unwrap();
+    assert!(accept().status().unwrap().success());
+    let old = fs::read(folder.join("model.golden")).unwrap();
+    assert!(old != new);
+    fs::write(folder.join("model.loft"), SCRIPT.replace("20mm", "60mm")).unwrap();
+    let (mut dice, mut caught) = (5, 0);
+    for _ in 0..kills() {
+        fs::write(folder.join("model.golden"), &old).unwrap();
+        kill(accept(), took, &mut dice);
+        let found = fs::read(folder.join("model.golden")).unwrap();
+        assert!(found == old || found == new, "the golden is neither old nor new");
+        caught += usize::from(found == old);
+    }
+    assert!(caught > 0, "no run was caught");
+    assert!(accept().status().unwrap().success());
+    assert_eq!(outputs(&folder), [("model.golden".to_owned(), new)]);
 }

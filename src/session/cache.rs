@@ -44,6 +44,7 @@ const HEAD: usize = 8 + 4 + 16 + 8 + 16;
 pub struct Cache {
     folder: PathBuf,
     limit: u64,
+    staging: Staging,
     state: Mutex<State>,
 }
 
@@ -64,7 +65,7 @@ impl Cache {
 
     fn with_limit(folder: &Path, limit: u64) -> Self {
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        let cache = Self { folder, limit, state: Mutex::default() };
+        let cache = Self { folder, limit, staging: Staging::default(), state: Mutex::default() };
         if let Err(error) = fs::create_dir_all(&cache.folder) {
             cache.complain(&error);
         }
@@ -128,12 +129,11 @@ impl Cache {
             return;
         }
         let head = Head { magic: MAGIC, format: FORMAT, key: key.0, length: body.len() as u64, checksum: checksum_of(kind)(body) };
-        let staging = Staging::default();
-        let written = staging.write(&self.place(kind, key), &mut |out| {
+        let written = self.staging.write(&self.place(kind, key), &mut |out| {
             out.write_all(&bytes_of(&head))?;
             out.write_all(body)
         });
-        match written.and_then(|_| staging.commit()) {
+        match written.and_then(|_| self.staging.commit()) {
             Ok(_) => self.state().written = true,
             Err(error) => self.complain(&error),
         }

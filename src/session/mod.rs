@@ -22,5 +22,6 @@ mod similar;
 pub mod stages;
 pub mod staging;
 pub mod starter;
+mod sweep;
 pub mod textmate;
 pub mod variants;

@@ -1,10 +1,13 @@
 //! Outputs on their way: written under a temporary name beside their place, and renamed all together at the end.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::sweep::{sweep, temporary_name};
 
 /// Bytes gathered before the system is asked to write.
 const BUFFER: usize = 1 << 18;
@@ -35,6 +38,8 @@ pub struct Staging(Arc<Inner>);
 struct Inner {
     files: Mutex<Vec<Staged>>,
     announced: AtomicU64,
+    /// Folders where nothing is left of runs that were killed.
+    swept: Mutex<BTreeSet<PathBuf>>,
 }
 
 impl Inner {
@@ -66,6 +71,9 @@ impl Staging {
         }
         let folder = place.parent().unwrap_or(Path::new("."));
         fs::create_dir_all(folder)?;
+        if self.0.swept.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+            sweep(folder);
+        }
         let temporary = self.announce(place, folder);
         let written = fill_file(&temporary, fill);
         let mut files = self.0.files();
@@ -83,7 +91,7 @@ impl Staging {
         let number = self.0.announced.fetch_add(1, Ordering::Relaxed);
         let mut files = self.0.files();
         let name = place.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let temporary = folder.join(format!(".{name}.{}-{}.tmp", std::process::id(), number));
+        let temporary = folder.join(temporary_name(&name, number));
         files.push(Staged { temporary: temporary.clone(), place: place.to_owned(), finished: false });
         temporary
     }
