@@ -98,6 +98,23 @@ impl Editor {
         }
     }
 
+    /// The newest diagnostics of a version, once they are as wanted.
+    fn last_diagnostics(&mut self, uri: &str, version: i64, wanted: impl Fn(&[Value]) -> bool) -> Vec<Value> {
+        let started = Instant::now();
+        loop {
+            let fits = |n: &&Value| {
+                n["method"] == "textDocument/publishDiagnostics" && n["params"]["uri"] == uri && n["params"]["version"] == version
+            };
+            let newest = self.notes.iter().rev().find(fits).map(|n| n["params"]["diagnostics"].as_array().unwrap().clone());
+            match newest {
+                Some(said) if wanted(&said) => return said,
+                other => assert!(started.elapsed() < PATIENCE, "of version {version} came {other:?}"),
+            }
+            let _ = self.whole("textDocument/foldingRange", json!({ "textDocument": { "uri": uri } }));
+            std::thread::sleep(Duration::from_millis(30));
+        }
+    }
+
     fn open(&mut self, uri: &str, text: &str) {
         self.tell("textDocument/didOpen", json!({ "textDocument": { "uri": uri, "languageId": "loft", "version": 1, "text": text } }));
     }
@@ -155,11 +172,163 @@ fn an_editor_is_told_what_is_wrong_while_typing() {
     let change = json!({ "textDocument": { "uri": uri, "version": 3 }, "contentChanges": [{ "range": range, "text": "south" }] });
     editor.tell("textDocument/didChange", change);
     assert_eq!(editor.diagnostics(uri, 3), Vec::<Value>::new());
-    let lenses = editor.of("textDocument/codeLens", uri);
-    let titles: Vec<&str> = lenses.as_array().unwrap().iter().map(|l| l["command"]["title"].as_str().unwrap()).collect();
-    assert!(titles.contains(&"1 check passes"), "{titles:?}");
+    let titles = lenses(&mut editor, uri);
+    assert!(titles.contains(&"1 check passes".to_owned()), "{titles:?}");
     assert!(titles.iter().any(|t| t.contains("12 m2")), "{titles:?}");
     editor.stop();
+}
+
+#[test]
+fn meshes_are_told_and_checked() {
+    let mut editor = Editor::start();
+    let uri = "file:///nowhere/meshed.loft";
+    let text = format!("{MODEL}check \"fine enough\": fine.min_angle > 50deg\n");
+    editor.open(uri, &text);
+    // A hover of a mesh waits until it is made.
+    let hover = editor.at("textDocument/hover", uri, 7, 6)["contents"]["value"].as_str().unwrap().to_owned();
+    assert!(hover.contains("mesh fine: 63 nodes, 96 triangles, quality 0.8") && hover.contains("angles 45.0° to 90.0°"), "{hover}");
+    let titles: Vec<String> = lenses(&mut editor, uri);
+    assert!(titles.contains(&"1 of 2 checks pass".to_owned()), "{titles:?}");
+    assert!(titles.iter().any(|t| t.starts_with("63 nodes, 96 triangles, quality")), "{titles:?}");
+    // A fault of the mesher shows while the text rests, and goes at once when the text is mended.
+    let change =
+        |version: i64, text: &str| json!({ "textDocument": { "uri": uri, "version": version }, "contentChanges": [{ "text": text }] });
+    let wrong = format!("{MODEL}mesh rough of roof {{ chord_error: 1mm  on south {{ count: 3 }}  on north {{ count: 5 }} }}\n");
+    editor.tell("textDocument/didChange", change(2, &wrong));
+    let said = editor.last_diagnostics(uri, 2, |said| !said.is_empty());
+    assert_eq!(said[0]["code"], "E702", "{said:?}");
+    editor.tell("textDocument/didChange", change(3, MODEL));
+    assert_eq!(editor.diagnostics(uri, 3), Vec::<Value>::new());
+    editor.stop();
+}
+
+fn lenses(editor: &mut Editor, uri: &str) -> Vec<String> {
+    let lenses = editor.of("textDocument/codeLens", uri);
+    lenses.as_array().unwrap().iter().map(|l| l["command"]["title"].as_str().unwrap().to_owned()).collect()
+}
+
+/// A model that takes long to mesh.
+const LONG: &str = "units m
+curve a = spline([(0, 0, 0), (1, 0, 0.3), (2, 0, 0)])
+curve c = spline([(0, 2, 0), (1, 2, 0.5), (2, 2, 0)])
+surface s = ruled(a, c)
+mesh huge of s { size: 0.4mm }
+";
+
+#[test]
+fn requests_are_answered_while_a_model_is_meshed() {
+    let mut editor = Editor::start();
+    let uri = "file:///nowhere/long.loft";
+    editor.open(uri, LONG);
+    assert_eq!(editor.diagnostics(uri, 1), Vec::<Value>::new());
+    // It waits for the mesh and so sees the mesh begin.
+    let ask = |id: i64| json!({ "jsonrpc": "2.0", "id": id, "method": "textDocument/hover", "params": { "textDocument": { "uri": uri }, "position": { "line": 4, "character": 6 } } });
+    editor.send(&ask(7001));
+    editor.send(&ask(7002));
+    std::thread::sleep(Duration::from_millis(100));
+    let started = Instant::now();
+    assert!(!editor.of("textDocument/semanticTokens/full", uri)["data"].as_array().unwrap().is_empty());
+    assert!(editor.at("textDocument/hover", uri, 3, 9)["contents"]["value"].as_str().unwrap().contains("surface s"));
+    editor.tell("$/cancelRequest", json!({ "id": 7001 }));
+    let change = json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": [{ "text": "let a = b\n" }] });
+    editor.tell("textDocument/didChange", change);
+    assert_eq!(editor.diagnostics(uri, 2)[0]["code"], "E201");
+    assert!(started.elapsed() < Duration::from_secs(20), "the mesh was waited for");
+    let code = |id: i64| editor.notes.iter().find(|n| n["id"] == id).map(|n| n["error"]["code"].clone());
+    // Taken back, and out of date.
+    assert_eq!((code(7001), code(7002)), (Some(json!(-32800)), Some(json!(-32801))));
+    editor.stop();
+}
+
+#[test]
+fn scripts_that_use_each_other_are_read_as_they_stand() {
+    let folder = folder("unsaved");
+    for (name, text) in [("a.loft", "use \"b.loft\" as b\nlet x = b.height\n"), ("b.loft", "let height = 2\n")] {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let uri = |name: &str| format!("file://{}", folder.join(name).display());
+    let (a, b) = (uri("a.loft"), uri("b.loft"));
+    let mut editor = Editor::start();
+    editor.open(&a, &fs::read_to_string(folder.join("a.loft")).unwrap());
+    editor.open(&b, "let height = 3\n");
+    let value = |editor: &mut Editor| editor.at("textDocument/hover", &a, 1, 4)["contents"]["value"].as_str().unwrap_or("").to_owned();
+    assert!(value(&mut editor).contains("let x: 3"), "{}", value(&mut editor));
+    // Renaming from where it is used, in the text as it stands.
+    let change =
+        |version: i64, text: &str| json!({ "textDocument": { "uri": b, "version": version }, "contentChanges": [{ "text": text }] });
+    editor.tell("textDocument/didChange", change(2, "/* 😀 */ let height = 4\n"));
+    let rename = json!({ "textDocument": { "uri": a }, "position": { "line": 1, "character": 11 }, "newName": "rise" });
+    let edits = editor.ask("textDocument/rename", rename.clone());
+    assert_eq!(edits["changes"][&b][0]["range"]["start"], json!({ "line": 0, "character": 13 }));
+    assert_eq!(edits["changes"][&a][0]["range"]["start"], json!({ "line": 1, "character": 10 }));
+    assert!(value(&mut editor).contains("let x: 4"));
+    // Each uses the other: told, in both.
+    editor.tell("textDocument/didChange", change(3, "use \"a.loft\" as a\nlet height = a.x\n"));
+    assert!(editor.last_diagnostics(&a, 1, |said| !said.is_empty()).iter().any(|d| d["code"] == "E809"));
+    assert!(editor.diagnostics(&b, 3).iter().any(|d| d["code"] == "E809"));
+    // Closed, the file on the disk counts again; deleted, there is none.
+    editor.tell("textDocument/didClose", json!({ "textDocument": { "uri": b } }));
+    assert_eq!(editor.last_diagnostics(&a, 1, <[Value]>::is_empty), Vec::<Value>::new());
+    assert!(value(&mut editor).contains("let x: 2"));
+    fs::remove_file(folder.join("b.loft")).unwrap();
+    fs::remove_file(folder.join("a.loft")).unwrap();
+    editor.tell("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
+    assert!(editor.last_diagnostics(&a, 1, |said| !said.is_empty()).iter().any(|d| d["code"] == "E801"));
+    let own = json!({ "textDocument": { "uri": a }, "position": { "line": 1, "character": 4 }, "newName": "y" });
+    assert_eq!(editor.ask("textDocument/rename", own)["changes"][&a].as_array().unwrap().len(), 1);
+    assert!(editor.whole("textDocument/rename", rename).get("error").is_some());
+    editor.stop();
+}
+
+#[test]
+fn large_and_strange_texts_are_served() {
+    let mut editor = Editor::start();
+    let uri = "file:///nowhere/large.loft";
+    let line = format!("let wide = [{}\"😀\"]", "\"a😀\", ".repeat(90_000));
+    editor.open(uri, &line);
+    let started = Instant::now();
+    let colours = editor.of("textDocument/semanticTokens/full", uri);
+    let data: Vec<u64> = colours["data"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+    let last: u64 = data.chunks(5).map(|c| c[1]).sum();
+    assert_eq!(last as usize, line.encode_utf16().count() - 1);
+    for method in ["documentSymbol", "foldingRange", "formatting"] {
+        editor.of(&format!("textDocument/{method}"), uri);
+    }
+    // Ranges out of order, beyond the end, inside a letter and inside a line end; all in one message.
+    let place = |line: u64, character: u64| json!({ "line": line, "character": character });
+    let put = |from: Value, to: Value, text: &str| json!({ "range": { "start": from, "end": to }, "text": text });
+    let changes = [
+        json!({ "text": "let a = \"😀\"\r\n\tlet b = a\rlet c = 1" }),
+        put(place(2, 9), place(2, 3), "!"),
+        put(place(0, 10), place(0, 10), "x"),
+        put(place(0, 400), place(0, 500), " // tail"),
+        put(place(77, 0), place(99, 9), "\r\nlet d = lost"),
+    ];
+    editor.tell("textDocument/didChange", json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": changes }));
+    let said = editor.diagnostics(uri, 2);
+    assert!(said.iter().any(|d| d["range"]["start"]["line"] == 3 && d["message"].as_str().unwrap().contains("lost")), "{said:?}");
+    assert!(started.elapsed() < Duration::from_secs(40));
+    editor.stop();
+}
+
+#[test]
+fn the_end_of_a_session_is_clean() {
+    // Requests behind `shutdown` are refused, `exit` ends it.
+    let mut editor = Editor::start();
+    editor.ask("shutdown", Value::Null);
+    assert_eq!(editor.whole("textDocument/hover", json!({}))["error"]["code"], -32600);
+    editor.tell("textDocument/didOpen", json!({ "textDocument": { "uri": "untitled:2", "version": 1, "text": "" } }));
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.child.wait().unwrap().code(), Some(0));
+    // `exit` without `shutdown` is an error by the protocol; a pipe that closes is the end of the session.
+    let mut editor = Editor::start();
+    editor.open("file:///nowhere/left.loft", LONG);
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.child.wait().unwrap().code(), Some(1));
+    let mut editor = Editor::start();
+    editor.ask("shutdown", Value::Null);
+    drop(editor.to);
+    assert_eq!(editor.child.wait().unwrap().code(), Some(0));
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! Files on the disk: where scripts and data may be read from and outputs may go.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 use super::similar::similar_names;
 use super::staging::{Counted, Staging};
@@ -18,6 +20,9 @@ pub enum Outputs {
     Counted,
 }
 
+/// Texts that stand in an editor, by resolved path: what is read instead of the files of these names.
+pub type Unsaved = Arc<BTreeMap<PathBuf, Arc<str>>>;
+
 /// The folders one run may use.
 ///
 /// Reading is confined to the script's folder and below and to what `--allow` names, writing to the output folder;
@@ -30,6 +35,7 @@ pub struct Disk {
     out: PathBuf,
     outputs: Outputs,
     staging: Staging,
+    unsaved: Unsaved,
 }
 
 impl Disk {
@@ -47,7 +53,12 @@ impl Disk {
             roots.push(path.canonicalize().map_err(|error| io::Error::new(error.kind(), format!("--allow {}: {error}", path.display())))?);
         }
         let out = std::path::absolute(out.unwrap_or(&home))?;
-        Ok(Self { home, shown_home, roots, out, outputs, staging: Staging::default() })
+        Ok(Self { home, shown_home, roots, out, outputs, staging: Staging::default(), unsaved: Unsaved::default() })
+    }
+
+    /// The same folders with texts that are not saved.
+    pub fn with_unsaved(self, unsaved: Unsaved) -> Self {
+        Self { unsaved, ..self }
     }
 
     /// The same folders for one row of a table, whose outputs go to a folder of their own.
@@ -59,6 +70,7 @@ impl Disk {
             out: self.out.join(name),
             outputs: self.outputs,
             staging: Staging::default(),
+            unsaved: self.unsaved.clone(),
         }
     }
 
@@ -134,7 +146,11 @@ impl Files for Disk {
     }
 
     fn read(&self, resolved: &str, limit: u64) -> Result<Vec<u8>, FileError> {
-        read_limited(Path::new(resolved), limit)
+        match self.unsaved.get(Path::new(resolved)) {
+            Some(text) if text.len() as u64 > limit => Err(FileError::TooLarge(text.len() as u64)),
+            Some(text) => Ok(text.as_bytes().to_vec()),
+            None => read_limited(Path::new(resolved), limit),
+        }
     }
 
     fn write(&self, path: &str, fill: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<u64, FileError> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::disk::{Disk, Outputs};
+use super::disk::{Disk, Outputs, Unsaved};
 use super::guard::{Bug, guarded};
 use super::kept::Kept;
 use super::run::{Again, Outcome, Task, run_again};
@@ -31,12 +31,19 @@ pub struct Live {
     allow: Vec<PathBuf>,
     kept: Kept,
     clock: Clock,
+    unsaved: Unsaved,
 }
 
 impl Live {
     /// A model shown as `name`; its imports are looked for beside `script`, or in the current folder.
     pub fn new(name: &str, script: Option<&Path>, allow: &[PathBuf], clock: Clock) -> Self {
-        Self { name: name.to_owned(), script: script.map(Path::to_owned), allow: allow.to_vec(), kept: Kept::default(), clock }
+        let (name, script, allow) = (name.to_owned(), script.map(Path::to_owned), allow.to_vec());
+        Self { name, script, allow, kept: Kept::default(), clock, unsaved: Unsaved::default() }
+    }
+
+    /// Texts that the next runs read instead of the files of their names.
+    pub fn set_unsaved(&mut self, unsaved: Unsaved) {
+        self.unsaved = unsaved;
     }
 
     /// Its name.
@@ -56,6 +63,7 @@ impl Live {
     ) -> Result<Outcome, Bug> {
         let outputs = if depth == Depth::Files { Outputs::Written } else { Outputs::Counted };
         let disk = Disk::new(self.script.as_deref(), None, &self.allow, outputs).map_err(|error| Bug { what: error.to_string() })?;
+        let disk = disk.with_unsaved(self.unsaved.clone());
         let clock = self.clock.clone();
         let clock = move || clock();
         let task = Task {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::lang::syntax::ast::Span;
 
 /// An open file.
+#[derive(Clone)]
 pub struct Document {
     /// As the editor names it.
     pub uri: String,
@@ -16,22 +17,29 @@ pub struct Document {
     pub text: String,
     /// The editor's count of changes.
     pub version: i64,
-    /// First byte of each line.
+    /// Our own count of changes, of what it reads from other files too.
+    pub revision: u64,
+    /// First byte of each line: behind `\n`, `\r\n` and, as editors count, `\r` alone.
     lines: Vec<usize>,
+    /// A column is a byte either way.
+    plain: bool,
     /// Columns count bytes, as was agreed on; UTF-16 units otherwise.
     bytes: bool,
 }
 
 impl Document {
     pub fn new(uri: &str, text: String, version: i64, bytes: bool) -> Self {
-        let mut document = Self { uri: uri.to_owned(), path: path_of(uri), text, version, lines: Vec::new(), bytes };
+        let (uri, path) = (uri.to_owned(), path_of(uri));
+        let mut document = Self { uri, path, text, version, revision: 0, lines: Vec::new(), plain: false, bytes };
         document.count();
         document
     }
 
     fn count(&mut self) {
-        let ends = self.text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
-        self.lines = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
+        let letters = self.text.as_bytes();
+        let is_end = |at: &usize| letters[*at] == b'\n' || letters[*at] == b'\r' && letters.get(at + 1) != Some(&b'\n');
+        self.lines = std::iter::once(0).chain((0..letters.len()).filter(is_end).map(|at| at + 1)).collect();
+        self.plain = self.bytes || self.text.is_ascii();
     }
 
     /// Takes over a change: a stretch of text, or the whole.
@@ -45,6 +53,7 @@ impl Document {
             _ => self.text = text.to_owned(),
         }
         self.count();
+        self.revision += 1;
     }
 
     /// The byte at a place as the editor counts; places beyond a line's end are its end.
@@ -52,7 +61,8 @@ impl Document {
         let line = position["line"].as_u64().unwrap_or(0) as usize;
         let column = position["character"].as_u64().unwrap_or(0) as usize;
         let Some(&start) = self.lines.get(line) else { return self.text.len() };
-        let end = self.lines.get(line + 1).map_or(self.text.len(), |next| next - 1);
+        let whole = &self.text[start..self.lines.get(line + 1).copied().unwrap_or(self.text.len())];
+        let end = start + whole.trim_end_matches(['\n', '\r']).len();
         let mut counted = 0;
         for (at, c) in self.text[start..end].char_indices() {
             if counted >= column {
@@ -71,7 +81,7 @@ impl Document {
         }
         let line = self.lines.partition_point(|start| *start <= byte).saturating_sub(1);
         let before = &self.text[self.lines[line]..byte];
-        (line, if self.bytes { before.len() } else { before.encode_utf16().count() })
+        (line, if self.plain { before.len() } else { before.encode_utf16().count() })
     }
 
     /// A stretch as the editor writes it.
@@ -90,7 +100,13 @@ impl Document {
 
     /// How many columns a stretch of one line has.
     pub fn width(&self, text: &str) -> usize {
-        if self.bytes { text.len() } else { text.encode_utf16().count() }
+        if self.plain { text.len() } else { text.encode_utf16().count() }
+    }
+
+    /// First byte of the line behind a byte; the end of the text behind the last line.
+    pub fn next_line(&self, byte: usize) -> usize {
+        let next = self.lines.partition_point(|start| *start <= byte);
+        self.lines.get(next).copied().unwrap_or(self.text.len())
     }
 }
 
@@ -142,6 +158,15 @@ mod tests {
         assert_eq!(wide.byte(&json!({ "line": 9, "character": 0 })), wide.text.len());
         let bytes = Document::new("file:///a.loft", wide.text.clone(), 1, true);
         assert_eq!(bytes.place(x), (0, x));
+    }
+
+    #[test]
+    fn all_line_ends_of_editors_count() {
+        let document = Document::new("file:///a.loft", "a\r\nb\rc\n😀d".to_owned(), 1, false);
+        let at = |line: u64, character: u64| document.byte(&json!({ "line": line, "character": character }));
+        // Nothing is put between the two letters of a line end, or inside a letter.
+        assert_eq!([at(0, 9), at(1, 0), at(1, 9), at(2, 0), at(3, 1), at(3, 2), at(3, 9)], [1, 3, 4, 5, 11, 11, 12]);
+        assert_eq!([document.place(5), document.place(9), document.place(11)], [(2, 0), (3, 0), (3, 2)]);
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Which name means what: definitions, references, renaming, and what is known of a word.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::answers::Others;
 use super::document::{Document, uri_of};
 use crate::lang::diag::FileId;
 use crate::lang::names::Names;
@@ -47,6 +49,11 @@ impl Read {
         self.names.text(occurrence.name)
     }
 
+    /// Where a name of the whole script is declared.
+    fn declared(&self, name: &str) -> Option<&Occurrence> {
+        self.found.iter().find(|o| o.binds && matches!(o.binding, Binding::Declaration(_)) && self.text_of(o) == name)
+    }
+
     /// The file that a `use` loads.
     fn module(&self, declaration: usize, from: &Path) -> Option<PathBuf> {
         let declaration = self.script.declarations.get(declaration).filter(|d| d.keyword == Keyword::Use)?;
@@ -61,20 +68,18 @@ impl Read {
     }
 }
 
-fn neighbour(path: &Path) -> Option<Document> {
+/// A file as it is on the disk.
+pub fn on_disk(path: &Path) -> Option<Document> {
     let bytes = read_limited(path, crate::base::limits::SOURCE_BYTES).ok()?;
     Some(Document::new(&uri_of(path), String::from_utf8(bytes).ok()?, 0, false))
 }
 
-pub fn definition(document: &Document, position: &Value) -> Value {
+pub fn definition(document: &Document, position: &Value, others: &Others<'_>) -> Value {
     let read = Read::new(&document.text);
     let Some(found) = read.at(document.byte(position)) else { return Value::Null };
     if let Some(path) = found.of.zip(document.path.as_deref()).and_then(|(of, path)| read.module(of, path)) {
-        let Some(module) = neighbour(&path) else { return Value::Null };
-        let inside = Read::new(&module.text);
-        let wanted = read.text_of(found);
-        let place = inside.found.iter().find(|o| o.binds && matches!(o.binding, Binding::Declaration(_)) && inside.text_of(o) == wanted);
-        let span = place.map_or(Span::default(), |o| o.span);
+        let Some(module) = others.find(&path) else { return Value::Null };
+        let span = Read::new(&module.text).declared(read.text_of(found)).map_or(Span::default(), |o| o.span);
         return json!({ "uri": module.uri, "range": module.range(span) });
     }
     match read.place_of(found.binding) {
@@ -83,24 +88,30 @@ pub fn definition(document: &Document, position: &Value) -> Value {
     }
 }
 
-/// Every place that means what the name at a place means, by file; other scripts of the folder that use this one too.
-fn meanings(document: &Document, position: &Value) -> Option<Vec<(String, Vec<Value>)>> {
+/// Places by file.
+type Places = Vec<(String, Vec<Value>)>;
+
+/// Every place that means what the name at a place means, by file, scripts that use it too; and the script that declares it.
+fn meanings(document: &Document, position: &Value, others: &Others<'_>) -> Option<(Places, Read)> {
     let read = Read::new(&document.text);
     let found = *read.at(document.byte(position))?;
-    if found.binding == Binding::Free {
-        return None;
+    if let Some(path) = found.of.zip(document.path.as_deref()).and_then(|(of, path)| read.module(of, path)) {
+        let module = others.find(&path)?;
+        let inside = Read::new(&module.text);
+        let declared = *inside.declared(read.text_of(&found))?;
+        return Some((meanings_of(&module, &inside, &declared, others), inside));
     }
+    (found.binding != Binding::Free).then(|| (meanings_of(document, &read, &found, others), read))
+}
+
+fn meanings_of(document: &Document, read: &Read, found: &Occurrence, others: &Others<'_>) -> Places {
     let same = read.found.iter().filter(|o| o.binding == found.binding);
     let mut out = vec![(document.uri.clone(), same.map(|o| document.range(o.span)).collect())];
-    if let (Binding::Declaration(_), Some(path)) = (found.binding, document.path.as_deref()) {
-        let wanted = read.text_of(&found);
-        let own = path.canonicalize().ok()?;
-        let entries = std::fs::read_dir(path.parent()?).ok()?.flatten().map(|e| e.path());
-        let mut files: Vec<PathBuf> =
-            entries.filter(|p| p.extension().is_some_and(|e| e == "loft") && *p != path).take(NEIGHBOURS).collect();
-        files.sort();
-        for file in files {
-            let Some(other) = neighbour(&file) else { continue };
+    let own = document.path.as_deref().and_then(|path| path.canonicalize().ok());
+    if let (Binding::Declaration(_), Some(own)) = (found.binding, own) {
+        let wanted = read.text_of(found);
+        for file in around(&own, others) {
+            let Some(other) = others.find(&file) else { continue };
             let inside = Read::new(&other.text);
             let means = |o: &&Occurrence| {
                 inside.text_of(o) == wanted && o.of.is_some_and(|of| inside.module(of, &file).as_deref() == Some(own.as_path()))
@@ -111,25 +122,34 @@ fn meanings(document: &Document, position: &Value) -> Option<Vec<(String, Vec<Va
             }
         }
     }
-    Some(out)
+    out
 }
 
-pub fn references(document: &Document, position: &Value) -> Value {
-    let all = meanings(document, position).unwrap_or_default();
+/// Scripts that may use one: those of its folder, and those that are open.
+fn around(own: &Path, others: &Others<'_>) -> BTreeSet<PathBuf> {
+    let beside = own.parent().and_then(|folder| std::fs::read_dir(folder).ok());
+    let beside = beside.into_iter().flatten().flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "loft"));
+    let mut found: BTreeSet<PathBuf> = beside.take(NEIGHBOURS).filter_map(|p| p.canonicalize().ok()).collect();
+    found.extend(others.paths().map(Path::to_owned));
+    found.remove(own);
+    found
+}
+
+pub fn references(document: &Document, position: &Value, others: &Others<'_>) -> Value {
+    let all = meanings(document, position, others).map_or(Places::new(), |found| found.0);
     all.into_iter().flat_map(|(uri, ranges)| ranges.into_iter().map(move |range| json!({ "uri": uri, "range": range }))).collect()
 }
 
 /// The edits that give a name another text, or why there are none.
-pub fn rename(document: &Document, position: &Value, name: &str) -> Result<Value, String> {
+pub fn rename(document: &Document, position: &Value, name: &str, others: &Others<'_>) -> Result<Value, String> {
     let sound = crate::lang::syntax::outline::outline(&format!("let {name} = 0"));
     let is_name = sound.first().and_then(|o| o.name).is_some_and(|n| n.start == 4 && n.end as usize == 4 + name.len());
     if !is_name || sound.len() != 1 {
         return Err(format!("`{name}` is no name"));
     }
-    let all = meanings(document, position).ok_or("this is no name of the script")?;
-    let read = Read::new(&document.text);
+    let (all, read) = meanings(document, position, others).ok_or("this is no name of the script")?;
     if read.found.iter().any(|o| read.text_of(o) == name) {
-        return Err(format!("`{name}` stands in this script already"));
+        return Err(format!("`{name}` stands in the script already"));
     }
     let edits = |ranges: Vec<Value>| ranges.into_iter().map(|range| json!({ "range": range, "newText": name })).collect::<Vec<Value>>();
     let changes: serde_json::Map<String, Value> = all.into_iter().map(|(uri, ranges)| (uri, Value::Array(edits(ranges)))).collect();

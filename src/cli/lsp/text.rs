@@ -1,9 +1,11 @@
 //! What is answered from the text alone: outline, folds, colours, layout, completion, signatures.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
 use super::document::Document;
-use crate::cli::repl::complete::{Known, call_at, candidates};
+use crate::cli::repl::complete::{Known, call_at, candidates_in_script};
 use crate::lang::fmt::format;
 use crate::lang::syntax::ast::{Keyword, Span};
 use crate::lang::syntax::keywords::written;
@@ -68,21 +70,23 @@ pub fn folds(document: &Document) -> Value {
 
 pub fn colours(document: &Document) -> Value {
     let mut data: Vec<usize> = Vec::new();
-    let (mut line, mut column) = (0, 0);
+    // The last place that was told, and its byte: counting from there, a line is walked over once.
+    let (mut line, mut column, mut before) = (0, 0, 0);
     for (span, paint) in painted(&document.text) {
-        let mut start = span.start as usize;
+        let (mut start, end) = (span.start as usize, span.end as usize);
         // What runs over several lines is told line by line.
-        for part in document.slice(span).split_inclusive('\n') {
-            let text = part.trim_end_matches(['\n', '\r']);
-            if !text.is_empty() {
-                let at = document.place(start);
-                let column_before = if at.0 == line { column } else { 0 };
-                if at.0 > line || at.1 >= column_before {
-                    data.extend([at.0 - line, at.1 - column_before, document.width(text), colour(paint), 0]);
-                    (line, column) = at;
-                }
+        while start < end {
+            let next = document.next_line(start).min(end);
+            let text = document.text[start..next].trim_end_matches(['\n', '\r']);
+            if !text.is_empty() && start >= before {
+                let here = match document.text[before..start].contains(['\n', '\r']) {
+                    true => document.place(start),
+                    false => (line, column + document.width(&document.text[before..start])),
+                };
+                data.extend([here.0 - line, here.1 - if here.0 == line { column } else { 0 }, document.width(text), colour(paint), 0]);
+                (line, column, before) = (here.0, here.1, start);
             }
-            start += part.len();
+            start = next;
         }
     }
     json!({ "data": data })
@@ -104,8 +108,8 @@ pub fn completion(document: &Document, position: &Value) -> Value {
         .iter()
         .filter_map(|o| Some(Known { name: document.slice(o.name?).to_owned(), keyword: written(o.keyword?) }))
         .collect();
-    // A colon that opens a command in a session is nothing special in a file.
-    let (start, found) = candidates(before, &known);
+    let folder = document.path.as_deref().and_then(Path::parent).unwrap_or(Path::new("."));
+    let (start, found) = candidates_in_script(before, &known, folder);
     let range = document.range(Span { start: start as u32, end: at as u32 });
     let items = found.into_iter().map(|pair| {
         let label = pair.replacement.trim_end_matches(['(', ' ', ':']).to_owned();

@@ -47,8 +47,9 @@ fn open_text(before: &str) -> Option<usize> {
     open
 }
 
-/// The start of what is replaced and what it may be replaced by.
+/// The start of what is replaced and what it may be replaced by, in a session: commands too.
 pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
+    let here = Path::new(".");
     if let Some(word) = before.trim_start().strip_prefix(':')
         && !word.contains(char::is_whitespace)
     {
@@ -57,8 +58,21 @@ pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
         return (start, fits.map(|c| pair(&format!("{} ", c.word), format!(":{} {}  {}", c.word, c.takes, c.docs))).collect());
     }
     let is_file_command = [":load ", ":save "].iter().find(|c| before.trim_start().starts_with(*c));
-    if let Some(start) = open_text(before).or_else(|| is_file_command.map(|c| before.find(c).unwrap_or(0) + c.len())) {
-        return files(before, start);
+    if let Some(start) = is_file_command.map(|c| before.find(c).unwrap_or(0) + c.len()) {
+        return files(before, start, here);
+    }
+    if before.trim_start().starts_with(':') {
+        let start = word_start(before);
+        let fits = known.iter().filter(|k| k.name.starts_with(&before[start..]));
+        return (start, fits.map(|k| pair(&k.name, format!("{}  {}", k.name, k.keyword))).collect());
+    }
+    candidates_in_script(before, known, here)
+}
+
+/// The start of what is replaced and what it may be replaced by; files are named as seen from `folder`.
+pub fn candidates_in_script(before: &str, known: &[Known], folder: &Path) -> (usize, Vec<Pair>) {
+    if let Some(start) = open_text(before) {
+        return files(before, start, folder);
     }
     let start = word_start(before);
     let word = &before[start..];
@@ -67,7 +81,7 @@ pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
         out.extend(fields().filter(|f| f.name.starts_with(word)).map(|f| pair(f.name, format!("{}  {}", f.name, f.summary()))));
         let methods = builtins().filter(|b| b.name.starts_with(word) && !b.params.is_empty());
         out.extend(methods.map(|b| pair(&format!("{}(", b.name), b.signature())));
-    } else if !before.trim_start().starts_with(':') {
+    } else {
         if let Some((builtin, _)) = call_at(before) {
             let arguments = builtin.params.iter().filter(|p| p.name.starts_with(word));
             out.extend(arguments.map(|p| pair(&format!("{}: ", p.name), format!("{}: {}", p.name, p.ty.signature()))));
@@ -76,8 +90,6 @@ pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
         out.extend(names.map(|k| pair(&k.name, format!("{}  {}", k.name, k.keyword))));
         out.extend(WORDS.iter().filter(|w| w.word.starts_with(word)).map(|w| pair(w.word, w.word.to_owned())));
         out.extend(builtins().filter(|b| b.name.starts_with(word)).map(|b| pair(&format!("{}(", b.name), b.signature())));
-    } else {
-        out.extend(known.iter().filter(|k| k.name.starts_with(word)).map(|k| pair(&k.name, format!("{}  {}", k.name, k.keyword))));
     }
     out.sort_by(|a, b| a.replacement.cmp(&b.replacement));
     out.dedup_by(|a, b| a.replacement == b.replacement);
@@ -107,10 +119,10 @@ pub fn call_at(before: &str) -> Option<(&'static Builtin, usize)> {
 }
 
 /// Files and folders whose names begin as written.
-fn files(before: &str, start: usize) -> (usize, Vec<Pair>) {
+fn files(before: &str, start: usize, home: &Path) -> (usize, Vec<Pair>) {
     let written = &before[start..];
     let (folder, stem) = written.rfind('/').map_or(("", written), |at| (&written[..=at], &written[at + 1..]));
-    let Ok(entries) = std::fs::read_dir(if folder.is_empty() { Path::new(".") } else { Path::new(folder) }) else {
+    let Ok(entries) = std::fs::read_dir(home.join(folder)) else {
         return (start, Vec::new());
     };
     let mut names: Vec<String> = entries
