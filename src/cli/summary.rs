@@ -1,5 +1,6 @@
 //! The report of a run for people: aligned tables on standard output.
 
+use crate::base::tolerance::Tolerance;
 use crate::session::report::{Cases, Cell, Report, Table};
 
 /// Significant digits of a number in a summary; the JSON report has all.
@@ -86,7 +87,10 @@ pub fn text(report: &Report, tolerance: Option<f64>, color: bool) -> String {
     }
     for table in &report.reports {
         out.push('\n');
-        print_table(table, &mut out, color);
+        match tolerance {
+            Some(point) => print_table(&table.clone().told(&Tolerance::new(point, 0.0), &report.units), &mut out, color),
+            None => print_table(table, &mut out, color),
+        }
     }
     if !report.checks.is_empty() {
         out.push('\n');

@@ -276,7 +276,7 @@ impl Cx<'_> {
         }
     }
 
-    /// Columns with the unit that all their numbers share; where they differ, cells are texts with their units.
+    /// Columns with the unit that all their numbers and points share; where they differ, cells are texts with their units.
     fn with_units(&self, title: String, mut names: Vec<String>, mut rows: Vec<Vec<Value>>) -> ReportTable {
         let width = rows.iter().map(Vec::len).max().unwrap_or(0).max(names.len());
         names.extend((names.len()..width).map(|i| (i + 1).to_string()));
@@ -284,6 +284,8 @@ impl Cx<'_> {
         for (k, name) in names.into_iter().enumerate() {
             let mut dims = rows.iter().filter_map(|r| match r.get(k) {
                 Some(Value::Number(q)) => Some(q.dim),
+                Some(Value::Vector(_, dim)) => Some(*dim),
+                Some(Value::Node(_)) => Some(Dim::LENGTH),
                 _ => None,
             });
             let dim = dims.next();
@@ -295,6 +297,8 @@ impl Cx<'_> {
                 }
                 let plain = match &row[k] {
                     Value::Number(q) => one || q.dim.is_none(),
+                    Value::Vector(_, dim) => one || dim.is_none(),
+                    Value::Node(_) => one,
                     Value::None | Value::Bool(_) | Value::Text(_) => true,
                     _ => false,
                 };

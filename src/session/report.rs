@@ -2,6 +2,7 @@
 //!
 //! The order of fields is the order of keys. Lengths are in model units, angles in degrees.
 
+use crate::base::tolerance::Tolerance;
 use serde::Serialize;
 
 /// Version of the report's shape.
@@ -219,6 +220,22 @@ pub struct Column {
 }
 
 /// A value of a table.
+impl Table {
+    /// The table as people see it: coordinates of points in this unit, the model's, as far as the tolerance tells them.
+    pub fn told(mut self, tolerance: &Tolerance, unit: &str) -> Self {
+        for row in &mut self.rows {
+            for (cell, column) in row.iter_mut().zip(&self.columns) {
+                if let (Cell::List(items), Some(true)) = (cell, column.unit.as_ref().map(|u| u == unit))
+                    && let [Cell::Number(x), Cell::Number(y), Cell::Number(z)] = items[..]
+                {
+                    *items = tolerance.told(glam::DVec3::new(x, y, z)).to_array().map(Cell::Number).to_vec();
+                }
+            }
+        }
+        self
+    }
+}
+
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 #[allow(missing_docs)]

@@ -6,11 +6,13 @@ use crate::lang::cx::Cx;
 use crate::lang::diag::{Diagnostic, FileId, Label, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::names::Names;
+use crate::lang::plans::ReportTable;
 use crate::lang::syntax::ast::{Keyword, Span};
 use crate::lang::syntax::outline::{Outline, outline};
 use crate::lang::syntax::parse;
 use crate::session::collect;
 use crate::session::live::Depth;
+use crate::session::report::Table;
 
 /// Head lines that a script has once.
 const SINGLE: &[Keyword] = &[Keyword::Units, Keyword::Tolerance, Keyword::Snap];
@@ -97,7 +99,7 @@ impl Notebook {
                 let about = cx.describe(&value);
                 let kind = cx.kind(&value);
                 shown = Some(if about.is_empty() { kind } else { about });
-                table = cx.table_of(&value);
+                table = cx.table_of(&value).map(|t| told(cx, &t));
             }
         });
         let outcome = match result {
@@ -126,7 +128,7 @@ impl Notebook {
             let because = "what it asks for was not built";
             answer.say(format!("no value: {because} (`:why NAME` tells more)"));
         }
-        answer.parts.extend(table.map(|t| Part::Table(collect::table(&t))));
+        answer.parts.extend(table.map(Part::Table));
         answer
     }
 
@@ -163,6 +165,15 @@ impl Notebook {
     }
 }
 
+/// A table as it is shown.
+pub(super) fn told(cx: &Cx<'_>, table: &ReportTable) -> Table {
+    let made = collect::table(table);
+    match cx.tolerance_used() {
+        Some(tolerance) => made.told(&tolerance, cx.unit().name),
+        None => made,
+    }
+}
+
 /// Results of the checks and reports that were just entered, their texts given.
 pub(super) fn outputs(cx: &Cx<'_>, entered: &[&str]) -> Vec<Part> {
     let symbols = cx.symbols();
@@ -179,7 +190,7 @@ pub(super) fn outputs(cx: &Cx<'_>, entered: &[&str]) -> Vec<Part> {
         checks.map(|(_, c)| Part::Text(format!("check {}: {}", c.label, if c.pass { "holds" } else { "fails" }))).collect();
     let all = cx.reports();
     let tables = all.iter().enumerate().filter(|(k, _)| shown(&own_reports, all.len(), *k));
-    parts.extend(tables.map(|(_, t)| Part::Table(collect::table(t))));
+    parts.extend(tables.map(|(_, t)| Part::Table(told(cx, t))));
     parts
 }
 

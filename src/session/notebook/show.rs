@@ -1,5 +1,6 @@
 //! What a session tells about names: values, dependencies, meshes, and whether they may be removed.
 
+use super::edit::told;
 use super::{Answer, Notebook, Part, bug_answer, ended};
 use crate::lang::symbols::{Condition, Symbol, about_mesh};
 use crate::lang::syntax::ast::{DeclarationKind, Keyword};
@@ -39,7 +40,7 @@ impl Notebook {
         let state = self.state.clone();
         let result = self.run(&state, Depth::Values, &mut |cx| {
             line = cx.describe_name(name);
-            table = cx.value_of(name).and_then(|value| cx.table_of(&value));
+            table = cx.value_of(name).and_then(|value| cx.table_of(&value)).map(|t| told(cx, &t));
         });
         if let Err(bug) = result {
             return bug_answer(&bug);
@@ -48,7 +49,7 @@ impl Notebook {
         answer.parts.extend(symbol.doc.map(Part::Text));
         answer.say(text);
         answer.parts.extend(line.map(Part::Text));
-        answer.parts.extend(table.map(|t| Part::Table(crate::session::collect::table(&t))));
+        answer.parts.extend(table.map(Part::Table));
         answer
     }
 
