@@ -8,9 +8,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use lofting::base::job::Job;
-use lofting::session::golden::{CaseResult, Golden, Settings, Verdict, discover, junit_text, run_all};
+use lofting::session::golden::{CaseResult, Golden, Settings, Verdict, discover, run_all};
 
 /// Runs the goldens below a path.
 fn test(path: &Path, accept: bool, jobs: usize) -> Vec<CaseResult> {
@@ -46,10 +47,59 @@ fn examples_are_as_their_goldens_say() {
     assert_eq!(failures(&results), "");
 }
 
+/// Whatever a run leaves: its files and its report, the seconds apart.
+fn traces(model: &Path, threads: usize) -> Vec<(PathBuf, Vec<u8>)> {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("threads-{threads}")).join(model.with_extension(""));
+    let _ = fs::remove_dir_all(&out);
+    let loft = Command::new(env!("CARGO_BIN_EXE_loft"))
+        .args(["run", "--json", "--keep-going", "--threads", &threads.to_string(), "-o"])
+        .args([&out, model])
+        .output()
+        .unwrap();
+    let mut report: serde_json::Value = serde_json::from_slice(&loft.stdout).unwrap_or_else(|e| panic!("{model:?}: {e}"));
+    assert!(report.as_object_mut().unwrap().remove("timings").is_some());
+    let mut found = vec![(PathBuf::from("report"), report.to_string().into_bytes()), (PathBuf::from("said"), loft.stderr)];
+    let mut folders = vec![out.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            match entry.file_type().unwrap().is_dir() {
+                true => folders.push(entry.path()),
+                false => found.push((entry.path().strip_prefix(&out).unwrap().to_owned(), fs::read(entry.path()).unwrap())),
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn models(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            models(&path, out);
+        } else if path.extension().is_some_and(|e| e == "loft") {
+            out.push(path);
+        }
+    }
+}
+
+/// Reports, messages, meshes, decks and pictures have the same bytes on one thread, on two and on eight.
 #[test]
 fn threads_change_nothing() {
-    let [one, eight] = [1, 8].map(|jobs| junit_text(&test(Path::new("tests/golden"), false, jobs)));
-    assert!(one == eight);
+    let mut all = Vec::new();
+    ["tests/golden", "examples"].iter().for_each(|folder| models(Path::new(folder), &mut all));
+    all.sort();
+    let mut files = 0;
+    for model in &all {
+        let one = traces(model, 1);
+        files += one.len() - 2;
+        for threads in [2, 8] {
+            for (a, b) in one.iter().zip(traces(model, threads)) {
+                assert!(*a == b, "{}: {} is another one on {threads} threads", model.display(), a.0.display());
+            }
+        }
+    }
+    assert!(files >= 15, "{files} files of {} models", all.len());
 }
 
 /// A folder with one model, which goes when the test ends.
@@ -101,6 +151,7 @@ group supports of south
 group corner of west
 mesh fine of roof { elements: triangles  size: 500mm }
 check "long enough": south.length >= 3m
+report "sides": [for c in [south, north]: {long: c.length, ends: c.end, name: "side"}]
 export fine to "fine.obj"
 export fine to "fine.inp"
 "#;
@@ -116,6 +167,12 @@ const BREAKS: &[(&str, &str, &str)] = &[
     ("through: (span / 2, 3, 1)", "through: (span / 2, 3, 1.1)", "roof: area"),
     ("through: (span / 2, 3, 1)", "through: (span / 2, 3, 1.1)", "roof: box, upper z 1.0 → 1.1 m"),
     ("coons(south, east, north, west)", "plane(south, east, line((span, 3, 0), (0, 3, 0)), west)", "roof: kind coons → plane"),
+    ("coons(south, east, north, west)", "coons(south, east, line((span, 3, 0), (0, 0, 0)))", "roof: flow quadrilateral → "),
+    ("through: (span / 2, 3, 1)", "through: (span / 2, 3, 1.1)", "row \"sides 2\": cells 4.63648 m | (0, 3, 0) m | side → 4.7633 m | "),
+    ("[south, north]", "[south, north, east]", "report sides: rows 2 → 3"),
+    ("[south, north]", "[south, north, east]", "row \"sides 3\" is new"),
+    ("name: \"side\"", "name: \"edge\"", "row \"sides 1\": cells"),
+    ("long: c.length", "length: c.length", "report sides: columns long [m]"),
     ("shell cover of roof\n", "", "cover is gone"),
     ("shell cover of roof\n", "", "topology: shells 1 → 0"),
     ("through: (span / 2, 3, 1)", "through: (span / 2, 3, 1.1)", "cover: area"),
@@ -172,6 +229,84 @@ fn a_compared_mesh_catches_a_move_of_two_tolerances() {
     folder.write(&MODEL.replace("size: 500mm", "size: 400mm"));
     let said = folder.said();
     assert!(said.contains("fine.obj: 88 → 117 nodes, 140 → 192 elements") && said.contains("Hausdorff distance"), "{said}");
+}
+
+/// Changes the stored copy of `fine.obj` and gives what is said about it.
+fn with_copy(name: &str, within: &str, change: &dyn Fn(&mut Vec<String>)) -> String {
+    let folder = Folder::accepted(name, MODEL, &format!("compare \"fine.obj\" within {within}\n"));
+    let copy = folder.0.join("model.golden.d/fine.obj");
+    let mut lines: Vec<String> = fs::read_to_string(&copy).unwrap().lines().map(str::to_owned).collect();
+    change(&mut lines);
+    fs::write(&copy, lines.join("\n") + "\n").unwrap();
+    folder.said()
+}
+
+/// Lines that begin with a word: their places.
+fn places(lines: &[String], word: &str) -> Vec<usize> {
+    (0..lines.len()).filter(|k| lines[*k].split(' ').next() == Some(word)).collect()
+}
+
+#[test]
+fn one_node_moved_by_two_tolerances_is_caught() {
+    let moved = |by: f64| {
+        move |lines: &mut Vec<String>| {
+            let at = places(lines, "v")[40];
+            let mut xyz: Vec<f64> = lines[at].split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
+            xyz[2] += by;
+            lines[at] = format!("v {} {} {}", xyz[0], xyz[1], xyz[2]);
+        }
+    };
+    let said = with_copy("node", "1e-3mm", &moved(2e-6));
+    assert!(said.contains("fine.obj: 1 node moved") && said.contains("(2 tolerances)"), "{said}");
+    assert_eq!(with_copy("node", "1e-3mm", &moved(0.5e-6)), "");
+}
+
+#[test]
+fn one_flipped_edge_is_caught() {
+    let said = with_copy("flipped", "1e-3mm", &|lines| {
+        let faces = places(lines, "f");
+        let nodes = |k: usize| -> Vec<String> { lines[k].split(' ').skip(1).map(str::to_owned).collect() };
+        // Two triangles with a common edge get the other diagonal of their quadrilateral.
+        let (a, b, common) = faces
+            .iter()
+            .flat_map(|&a| faces.iter().map(move |&b| (a, b)))
+            .map(|(a, b)| (a, b, nodes(a).into_iter().filter(|n| nodes(b).contains(n)).collect::<Vec<_>>()))
+            .find(|(a, b, common)| a < b && common.len() == 2)
+            .unwrap();
+        let other = |k: usize| nodes(k).into_iter().find(|n| !common.contains(n)).unwrap();
+        let (p, q) = (other(a), other(b));
+        let at = nodes(a).iter().position(|n| *n == p).unwrap();
+        let (next, last) = (nodes(a)[(at + 1) % 3].clone(), nodes(a)[(at + 2) % 3].clone());
+        (lines[a], lines[b]) = (format!("f {p} {next} {q}"), format!("f {p} {q} {last}"));
+    });
+    assert!(said.contains("fine.obj: the nodes are the same, but 2 elements became 2 others"), "{said}");
+}
+
+#[test]
+fn a_lost_group_is_caught() {
+    let said = with_copy("group", "1e-3mm", &|lines| {
+        let at = *places(lines, "g").last().unwrap();
+        lines[at] = "g other".to_owned();
+    });
+    assert!(said.contains("fine.obj: ") && said.contains("other"), "{said}");
+}
+
+#[test]
+fn other_numbers_of_nodes_and_elements_change_nothing() {
+    let said = with_copy("renumbered", "1e-6mm", &|lines| {
+        let (nodes, faces) = (places(lines, "v"), places(lines, "f"));
+        let n = nodes.len();
+        // 7 and the number of nodes have no factor in common, so this is a permutation.
+        assert!(n % 7 != 0);
+        let to = |k: usize| (7 * k + 3) % n;
+        let old = lines.clone();
+        nodes.iter().enumerate().for_each(|(k, at)| lines[nodes[to(k)]] = old[*at].clone());
+        for (k, at) in faces.iter().rev().enumerate() {
+            let corners: Vec<usize> = old[*at].split(' ').skip(1).map(|x| to(x.parse::<usize>().unwrap() - 1) + 1).collect();
+            lines[faces[k]] = format!("f {} {} {}", corners[1], corners[2], corners[0]);
+        }
+    });
+    assert_eq!(said, "");
 }
 
 #[test]

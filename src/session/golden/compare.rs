@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::cells;
 use super::line::Line;
 use super::words::{self, Kind, Measure, Value};
 
@@ -58,7 +59,7 @@ impl Allowance {
     }
 
     /// How many times the allowed change lies between the two; `None` when they are equal enough.
-    fn excess(&self, measure: Measure, old: f64, new: f64) -> Option<f64> {
+    pub(super) fn excess(&self, measure: Measure, old: f64, new: f64) -> Option<f64> {
         let (change, allowed) = ((new - old).abs(), self.of(measure, old));
         (change > allowed).then(|| if allowed > 0.0 { change / allowed } else { f64::INFINITY })
     }
@@ -158,6 +159,7 @@ fn excess(kind: Kind, old: &Value, new: &Value, allowance: Allowance) -> Option<
             let pairs = a.iter().flatten().zip(b.iter().flatten());
             pairs.filter_map(|(a, b)| allowance.excess(Measure::Length(1), *a, *b)).reduce(f64::max)
         }
+        (Kind::Cells, Value::Cells(a), Value::Cells(b)) => cells::excess(a, b, allowance),
         (Kind::Groups, Value::Groups(a), Value::Groups(b)) => {
             let sorted = |groups: &[(String, u64)]| groups.iter().cloned().collect::<BTreeMap<_, _>>();
             (sorted(a) != sorted(b)).then_some(f64::INFINITY)

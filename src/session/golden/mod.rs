@@ -4,6 +4,7 @@
 //! into lines, `file` reads and writes the golden, `compare` matches lines, `tell` says in words what moved; `copies`
 //! compares exported files, meshes as geometry.
 
+mod cells;
 mod compare;
 mod copies;
 mod diff;

@@ -1,15 +1,20 @@
 //! What a run found, as the lines of a golden file.
 
+use super::cells::{self, Entry, measure_of};
 use super::compare::Allowance;
 use super::line::{Line, on_one_line};
 use super::words::{Measure, Value, unit_of};
 use crate::base::tolerance::ROUNDING_SHARE;
 use crate::lang::diag::{Diagnostic, Sources};
-use crate::session::report::{Corners, CurveRow, MeshRow, ModelingRow, Report, ShellRow, SurfaceRow};
+use crate::session::report::{Cell, Column, Corners, CurveRow, MeshRow, ModelingRow, Report, ShellRow, SurfaceRow, Table};
 use crate::session::run::Outcome;
 
 /// Characters of quoted source; a longer stretch is cut, with `…` for what is left out.
 const SOURCE: usize = 100;
+/// Rows of a reported table that stand in a golden; of longer ones the number is compared and the first rows are.
+const ROWS: usize = 1000;
+/// Significant digits of numbers in lists inside lists, which are compared as they are written.
+const INNER: usize = 6;
 
 /// The lines of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,6 +54,7 @@ fn of_report(report: &Report, size: f64) -> Vec<Line> {
     lines.extend(report.surfaces.iter().map(|row| make.surface(row)));
     lines.extend(report.shells.iter().map(|row| make.shell(row)));
     lines.extend(report.meshes.iter().map(|row| make.mesh(row)));
+    lines.extend(report.reports.iter().flat_map(|table| make.table(table)));
     let check = |row: &crate::session::report::CheckRow| line("check", &row.label).word("", if row.pass { "pass" } else { "fail" });
     lines.extend(report.checks.iter().map(check));
     lines.into_iter().map(|line| line.0).collect()
@@ -131,6 +137,43 @@ impl Maker<'_> {
         let made = made.maybe("area", self.length(row.area, 2)).maybe("volume", self.length(row.volume, 3));
         let made = made.maybe("gap", self.length(row.gap, 1)).maybe("angle", self.angle(row.angle));
         made.maybe("box", self.corners(row.corners))
+    }
+
+    /// A reported table and its rows.
+    fn table(&self, table: &Table) -> Vec<Growing> {
+        let column = |c: &Column| c.unit.as_ref().map_or_else(|| c.name.clone(), |unit| format!("{} [{unit}]", c.name));
+        let columns: Vec<String> = table.columns.iter().map(column).collect();
+        let head = line("report", &table.title).count("rows", table.rows.len()).word("columns", &columns.join(", "));
+        let row = |(k, row): (usize, &Vec<Cell>)| {
+            let unit = |c: usize| table.columns.get(c).and_then(|c| c.unit.as_deref()).unwrap_or("");
+            let cells = row.iter().enumerate().map(|(c, cell)| self.cell(cell, unit(c))).collect();
+            line("row", &format!("{} {}", table.title, k + 1)).put("cells", Value::Cells(cells))
+        };
+        std::iter::once(head).chain(table.rows.iter().take(ROWS).enumerate().map(row)).collect()
+    }
+
+    fn cell(&self, cell: &Cell, unit: &str) -> Entry {
+        let measure = measure_of(unit);
+        let numbers = |list: bool, all: Vec<f64>| {
+            let all = all.into_iter().map(|x| self.clean(x, measure)).collect();
+            Entry::Numbers { list, all, unit: unit.to_owned() }
+        };
+        match cell {
+            Cell::Missing => Entry::Text("-".to_owned()),
+            Cell::Bool(is) => Entry::Text(is.to_string()),
+            Cell::Number(x) => numbers(false, vec![*x]),
+            Cell::Text(text) => Entry::Text(text.clone()),
+            Cell::List(items) => {
+                let plain = |item: &Cell| if let Cell::Number(x) = item { Some(*x) } else { None };
+                match items.iter().map(plain).collect::<Option<Vec<f64>>>() {
+                    Some(all) if !all.is_empty() => numbers(true, all),
+                    _ => {
+                        let inside: Vec<Entry> = items.iter().map(|item| self.cell(item, unit)).collect();
+                        Entry::Text(format!("({})", cells::text(&inside, INNER)))
+                    }
+                }
+            }
+        }
     }
 
     fn mesh(&self, row: &MeshRow) -> Growing {

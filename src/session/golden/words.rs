@@ -1,5 +1,6 @@
 //! The words of a golden file: every kind of line with its words and what stands behind each of them.
 
+use super::cells::{self, Entry};
 use crate::lang::units::{length_unit, number_text};
 
 /// What a real measures; its allowed change grows with the model's size to this power.
@@ -26,6 +27,8 @@ pub enum Kind {
     Groups,
     /// `(x, y, z) (x, y, z) unit`: two corners of a box.
     Corners,
+    /// Cells of a row of a reported table, between ` | `.
+    Cells,
     /// `pass` or `fail`, standing alone.
     Verdict,
     /// A stretch of source between backquotes.
@@ -126,6 +129,8 @@ pub const KINDS: &[LineKind] = &[
             field("hash", Kind::Word),
         ],
     },
+    LineKind { word: "report", named: true, spoken: true, fields: &[count("rows"), field("columns", Kind::Word)] },
+    LineKind { word: "row", named: true, spoken: true, fields: &[field("cells", Kind::Cells)] },
     LineKind { word: "check", named: true, spoken: true, fields: &[field("", Kind::Verdict)] },
 ];
 
@@ -161,6 +166,8 @@ pub enum Value {
     Groups(Vec<(String, u64)>),
     /// Two corners and their unit.
     Corners([[f64; 3]; 2], String),
+    /// A row of a table.
+    Cells(Vec<Entry>),
 }
 
 /// The unit of a measure in a model of this unit.
@@ -190,6 +197,7 @@ impl Value {
             Self::Count(n) => n.to_string(),
             Self::Real(x, unit) => with_unit(number(x), unit),
             Self::Groups(groups) => groups.iter().map(|(name, n)| format!("{}:{n}", label(name))).collect::<Vec<_>>().join(" "),
+            Self::Cells(row) => cells::text(row, digits),
             Self::Corners(corners, unit) => {
                 let point = |p: &[f64; 3]| format!("({})", p.iter().map(number).collect::<Vec<_>>().join(", "));
                 with_unit(format!("{} {}", point(&corners[0]), point(&corners[1])), unit)
@@ -209,12 +217,14 @@ impl Value {
             Kind::Count => text.parse().map(Self::Count).map_err(|_| "a whole number".to_owned()),
             Kind::Real(measure) => real(measure, text),
             Kind::Groups => groups(text),
+            Kind::Cells => cells::parse(text).map(Self::Cells),
             Kind::Corners => corners(text).ok_or_else(|| "two corners and a unit: `(0, 0, 0) (4, 3, 1) m`".to_owned()),
         }
     }
 }
 
-fn number(text: &str) -> Option<f64> {
+/// A finite number.
+pub fn number(text: &str) -> Option<f64> {
     crate::base::text::parse_real(text).filter(|x| x.is_finite())
 }
 

@@ -1,0 +1,143 @@
+//! Rows of reported tables: cells between ` | `, numbers with their unit.
+
+use super::compare::Allowance;
+use super::words::{Measure, end_of_quote, number, quoted, rounded, unquoted};
+use crate::lang::units::length_unit;
+
+/// One cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Entry {
+    /// A word, a text, `true`, or `-` for nothing.
+    Text(String),
+    /// A number, or a short list of them.
+    Numbers {
+        /// Whether they stand between brackets.
+        list: bool,
+        /// The numbers, in `unit`.
+        all: Vec<f64>,
+        /// Their unit; empty for bare ones.
+        unit: String,
+    },
+}
+
+/// What a unit measures; what is neither a length nor an angle is compared like a ratio.
+pub fn measure_of(unit: &str) -> Measure {
+    let powers = [(unit, 1), (unit.strip_suffix('2').unwrap_or(""), 2), (unit.strip_suffix('3').unwrap_or(""), 3)];
+    match powers.iter().find(|(name, _)| length_unit(name).is_some()) {
+        Some((_, power)) => Measure::Length(*power),
+        None if unit == "deg" => Measure::Angle,
+        None => Measure::Ratio,
+    }
+}
+
+impl Entry {
+    fn text(&self, digits: usize) -> String {
+        match self {
+            Self::Text(text) => {
+                let odd = text.is_empty() || text != text.trim() || text.contains("  ") || text.contains(['|', '"', '\\']);
+                let read = Self::parse(text);
+                if odd || text.contains(char::is_control) || text.contains("//") || read.as_ref() != Ok(self) {
+                    quoted(text)
+                } else {
+                    text.clone()
+                }
+            }
+            Self::Numbers { list, all, unit } => {
+                let all: Vec<String> = all.iter().map(|x| rounded(*x, digits)).collect();
+                let all = if *list { format!("({})", all.join(", ")) } else { all.join(", ") };
+                if unit.is_empty() { all } else { format!("{all} {unit}") }
+            }
+        }
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        if text.starts_with('"') {
+            return unquoted(text).map(Self::Text);
+        }
+        let (inside, behind) = match text.strip_prefix('(').and_then(|t| t.split_once(')')) {
+            Some((inside, behind)) => (Some(inside), behind),
+            None => (None, text.split_once(' ').map_or("", |(_, unit)| unit)),
+        };
+        let numbers: Option<Vec<f64>> = match inside {
+            Some(inside) => inside.split(',').map(|x| number(x.trim())).collect(),
+            None => number(text.split(' ').next().unwrap_or("")).map(|x| vec![x]),
+        };
+        let unit = behind.trim();
+        Ok(match numbers {
+            Some(all) if !unit.contains(' ') => Self::Numbers { list: inside.is_some(), all, unit: unit.to_owned() },
+            _ => Self::Text(text.to_owned()),
+        })
+    }
+
+    /// How many times the allowed change lies between the two; `None` when they are equal enough.
+    fn excess(&self, other: &Self, allowance: Allowance) -> Option<f64> {
+        match (self, other) {
+            (Self::Numbers { all: a, unit: u, list: l }, Self::Numbers { all: b, unit: v, list: m })
+                if (u, l) == (v, m) && a.len() == b.len() =>
+            {
+                let measure = measure_of(u);
+                a.iter().zip(b).filter_map(|(a, b)| allowance.excess(measure, *a, *b)).reduce(f64::max)
+            }
+            _ => (self != other).then_some(f64::INFINITY),
+        }
+    }
+}
+
+/// A row as written.
+pub fn text(row: &[Entry], digits: usize) -> String {
+    row.iter().map(|entry| entry.text(digits)).collect::<Vec<_>>().join(" | ")
+}
+
+/// A row read; the error is what was expected instead.
+pub fn parse(text: &str) -> Result<Vec<Entry>, String> {
+    let (mut row, mut rest) = (Vec::new(), text.trim());
+    loop {
+        let end = match rest.starts_with('"') {
+            true => end_of_quote(rest).ok_or("cells between ` | `, texts in quotes closed")?,
+            false => rest.find('|').unwrap_or(rest.len()),
+        };
+        row.push(Entry::parse(rest[..end].trim())?);
+        rest = rest[end..].trim_start();
+        match rest.strip_prefix('|') {
+            Some(more) => rest = more.trim_start(),
+            None if rest.is_empty() => return Ok(row),
+            None => return Err("cells between ` | `".to_owned()),
+        }
+    }
+}
+
+/// The largest change of a row in allowed ones; infinite where nothing is allowed.
+pub fn excess(old: &[Entry], new: &[Entry], allowance: Allowance) -> Option<f64> {
+    if old.len() != new.len() {
+        return Some(f64::INFINITY);
+    }
+    old.iter().zip(new).filter_map(|(a, b)| a.excess(b, allowance)).reduce(f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_read_back() {
+        for row in
+            ["12.5 m | 0 | (0, -1.5, 2e-7) mm | spline | -", "true | \"1.5 m\" | \"a | b\" | \"\" | 7850 kg/m3", "a long name | \"a  b\""]
+        {
+            let read = parse(row).unwrap_or_else(|e| panic!("{row}: {e}"));
+            assert_eq!(text(&read, 17), row);
+        }
+        assert!(parse("\"a\" b").is_err() && parse("\"a").is_err());
+    }
+
+    #[test]
+    fn numbers_have_a_tolerance_and_words_have_none() {
+        let allowance = Allowance { tolerance: 1e-9, size: 10.0 };
+        let check = |a: &str, b: &str| excess(&parse(a).unwrap(), &parse(b).unwrap(), allowance);
+        assert_eq!(check("12 m | a", "12.000000001 m | a"), None);
+        assert!(check("12 m", "12.0000001 m").is_some_and(|times| times.is_finite() && times > 5.0));
+        assert_eq!(check("1000 m3", "1000.0000005 m3"), None);
+        for (a, b) in [("12 m", "12 mm"), ("a", "b"), ("1", "1 | 2"), ("1", "(1)"), ("(1, 2)", "(1, 2, 3)"), ("3", "x")] {
+            assert_eq!(check(a, b), Some(f64::INFINITY), "{a} {b}");
+        }
+    }
+}
