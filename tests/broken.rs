@@ -191,6 +191,84 @@ fn check_page(code: &str, path: &Path, page: &str, accept: bool) -> Result<(), S
     if again.is_empty() { Ok(()) } else { Err(format!("the repaired script reports\n{}", render_all(&again, &sources, false))) }
 }
 
+/// Codes whose page offers something to type.
+const FIXED: &[&str] = &[
+    "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E201", "E202", "E212", "E214", "E219", "W220", "E221", "E303", "E305",
+    "E403", "E405", "E407", "E412", "E501", "E508", "W514", "E621", "E623", "E655", "W701", "E702", "E703", "E704", "W706", "E801", "E805",
+];
+
+/// What is offered on a page is typed, and then the report is gone and no error is new.
+#[test]
+fn fixes_of_pages_mend_them() {
+    let (mut fixed, mut wrong) = (Vec::new(), Vec::new());
+    for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
+        let page = fs::read_to_string(format!("docs/codes/{}.md", info.code)).expect("a page can be read");
+        let model = folder_of_page(info.code, &page).with_file_name("fixed.loft");
+        let (offered, said) = mended(&model, fences(&page, "loft")[0], true);
+        wrong.extend(said);
+        if offered.iter().any(|code| code == info.code) {
+            fixed.push(info.code);
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(fixed, FIXED);
+}
+
+/// The same for scripts with many mistakes: what a repair brings to light was hidden behind it. A mistake of the grammar is
+/// hidden only behind a bracket, string or comment without end.
+#[test]
+fn fixes_of_broken_scripts_mend_them() {
+    let mut wrong = Vec::new();
+    let mut fixes = 0;
+    for path in scripts("tests/broken", "loft") {
+        let text = fs::read_to_string(&path).expect("a broken script can be read");
+        let (offered, said) = mended(&path, &text, false);
+        fixes += offered.len();
+        wrong.extend(said);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(fixes > 90, "{fixes} fixes were offered");
+}
+
+/// Applies each fix that is offered for a script, alone; the codes that had one, and what is wrong afterwards.
+fn mended(path: &Path, text: &str, whole: bool) -> (Vec<String>, Vec<String>) {
+    let key = |d: &Diagnostic| (d.code.0, d.message.clone());
+    let (mut offered, mut wrong) = (Vec::new(), Vec::new());
+    let (found, _) = reports(path, text);
+    let times = |all: &[Diagnostic], one: &Diagnostic| all.iter().filter(|d| key(d) == key(one)).map(|d| 1 + d.more).sum::<usize>();
+    for diagnostic in &found {
+        for fix in diagnostic.fixes.iter().filter(|f| f.file.index() == 0) {
+            let Some(change) = fix.change(text) else {
+                wrong.push(format!("{}: nothing comes of {fix:?} for {}", path.display(), diagnostic.message));
+                continue;
+            };
+            offered.push(diagnostic.code.0.to_owned());
+            let (start, end) = (change.span.start as usize, change.span.end as usize);
+            let typed = format!("{}{}{}", &text[..start], change.text, &text[end..]);
+            let (after, sources) = reports(path, &typed);
+            let new = |d: &&Diagnostic| {
+                d.severity() == Severity::Error
+                    && !found.iter().any(|old| old.code == d.code)
+                    && (whole || d.code.0.starts_with("E1") && !["E101", "E103", "E104"].contains(&diagnostic.code.0))
+            };
+            let stays = times(&after, diagnostic) >= times(&found, diagnostic);
+            if let Some(worse) = after.iter().find(|d| stays && key(d) == key(diagnostic)).or_else(|| after.iter().find(new)) {
+                let line = typed[..start].lines().count().max(1) - 1;
+                let line = typed.lines().nth(line).unwrap_or("");
+                wrong.push(format!(
+                    "{}: {} after {} ({:?})\n{line}\n{}",
+                    path.display(),
+                    diagnostic.code.0,
+                    change.title,
+                    fix.edit,
+                    render(worse, &sources, false)
+                ));
+            }
+        }
+    }
+    (offered, wrong)
+}
+
 #[test]
 fn announcements_are_read() {
     let text = "let a = b // error: E201 \"b\" E202 \"c d\"\n// error below: E101 \"x\"\nlet y\nlet z // W220 \"no\"\n";

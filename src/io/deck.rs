@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::{bdf, inp, msh, obj, ply, stl, vtu};
-use crate::base::fault::FileFault;
+use crate::base::fault::{Edit, FileFault};
 use crate::base::origin::Origin;
 use crate::mesh::Mesh;
 
@@ -192,7 +192,12 @@ impl Format {
                 Encoding::Text => ("text", "binary"),
             };
             let what = format!("{} has no {asked} encoding", self.name.to_uppercase());
-            return Err(FileFault::Unsupported { of, what, help: Some(format!("encoding: {has}")) });
+            return Err(FileFault::Unsupported {
+                of,
+                what,
+                help: Some(format!("encoding: {has}")),
+                edits: vec![Edit::Set("encoding", has.to_owned())],
+            });
         }
         deck.options.elements.iter().try_for_each(|name| self.element_shape(of, deck, name))
     }
@@ -201,25 +206,29 @@ impl Format {
     fn element_shape(&self, of: Origin, deck: &Deck, name: &str) -> Result<(), FileFault> {
         if self.elements.is_empty() {
             let what = format!("{} has no element names, got `element: {name}`", self.name.to_uppercase());
-            return Err(FileFault::Unsupported { of, what, help: None });
+            return Err(FileFault::Unsupported { of, what, help: None, edits: Vec::new() });
         }
         let shapes = Shape::of_order(deck.mesh.order);
         let counts = [deck.mesh.lines.len(), deck.mesh.triangles.len(), deck.mesh.quads.len()];
         let present: Vec<Shape> = shapes.iter().zip(counts).filter(|(_, n)| *n > 0).map(|(shape, _)| *shape).collect();
         let fitting = |shape: Option<Shape>| {
             let names = self.elements.iter().filter(|(_, s)| shape.map_or(present.contains(s), |one| *s == one)).map(|(n, _)| *n);
-            Some(format!("use one of {}", names.collect::<Vec<_>>().join(" ")))
+            let names: Vec<&str> = names.collect();
+            let edits = names.iter().map(|name| Edit::Set("element", (*name).to_owned())).collect();
+            (Some(format!("use one of {}", names.join(" "))), edits)
         };
         let Some((_, shape)) = self.elements.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) else {
             let what = format!("{} has no element `{name}`", self.name.to_uppercase());
-            return Err(FileFault::Unsupported { of, what, help: fitting(None) });
+            let (help, edits) = fitting(None);
+            return Err(FileFault::Unsupported { of, what, help, edits });
         };
         if present.contains(shape) {
             return Ok(());
         }
         let has = present.iter().map(|shape| shape.words()).collect::<Vec<_>>().join(" and ");
         let what = format!("`element: {name}` is for {}, but `{}` has {has}", shape.words(), deck.mesh.name);
-        Err(FileFault::Unsupported { of, what, help: fitting(None) })
+        let (help, edits) = fitting(None);
+        Err(FileFault::Unsupported { of, what, help, edits })
     }
 
     /// The name for elements of a shape: the one asked for, else the default.

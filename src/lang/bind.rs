@@ -208,7 +208,9 @@ impl Cx<'_> {
         let near = nearest(name, signature.params.iter().copied()).map(str::to_owned);
         let text = format!("`{}` has no argument `{name}`", signature.name);
         match near {
-            Some(near) => self.error(code, "E303", text, span, format!("did you mean `{near}`?")).help(format!("`{near}:`")).stop(),
+            Some(near) => {
+                self.error(code, "E303", text, span, format!("did you mean `{near}`?")).help(format!("`{near}:`")).put(span, near).stop()
+            }
             None => self.error(code, "E303", text, span, "no such argument").help(format!("`{}`", signature.shown)).stop(),
         }
     }

@@ -315,7 +315,7 @@ impl Cx<'_> {
                 let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
                 let draft = self.error(code, "E214", format!("`{label}` declares no `{text}`"), span, "not in that script");
                 Err(match near {
-                    Some(near) => draft.help(format!("`{label}.{near}`")).stop(),
+                    Some(near) => draft.help(format!("`{label}.{near}`")).put(span, near).stop(),
                     None => draft.stop(),
                 })
             }
@@ -337,7 +337,7 @@ impl Cx<'_> {
         let near = nearest(&text, fields.iter().map(String::as_str)).map(str::to_owned);
         let draft = self.error(code, "E214", format!("{kind} has no `{text}`"), span, "no such field");
         match near {
-            Some(near) => draft.help(format!("`.{near}`")).stop(),
+            Some(near) => draft.help(format!("`.{near}`")).put(span, near).stop(),
             None if fields.is_empty() || fields.len() > 24 => draft.stop(),
             None => draft.note(format!("it has {}", fields.join(", "))).stop(),
         }

@@ -220,8 +220,8 @@ impl Cx<'_> {
                     _ => "deg".into(),
                 };
                 match code.expr(id) {
-                    Expr::Number(_) => draft.help(format!("`{source}{unit}`")).stop(),
-                    _ => draft.help(format!("`({source}) * 1{unit}`")).stop(),
+                    Expr::Number(_) => draft.help(format!("`{source}{unit}`")).put(span, format!("{source}{unit}")).stop(),
+                    _ => draft.help(format!("`({source}) * 1{unit}`")).put(span, format!("({source}) * 1{unit}")).stop(),
                 }
             }
             _ => {
@@ -229,13 +229,14 @@ impl Cx<'_> {
                 let label = found.strip_prefix("a ").or_else(|| found.strip_prefix("an ")).unwrap_or(&found).to_owned();
                 let text = format!("{subject} is {wanted}, got {found}");
                 let help = match (ty, value) {
-                    (Ty::Choice(_), Value::Text(t)) => Some(format!("a word stands bare: `{t}`")),
-                    (Ty::Curve | Ty::Surface, Value::List(_)) => Some("take one member: `[i]`".to_owned()),
+                    (Ty::Choice(_), Value::Text(t)) => Some((format!("a word stands bare: `{t}`"), Some(t.to_string()))),
+                    (Ty::Curve | Ty::Surface, Value::List(_)) => Some(("take one member: `[i]`".to_owned(), None)),
                     _ => None,
                 };
                 let draft = self.error(code, "E211", text, span, label);
                 match help {
-                    Some(help) => draft.help(help).stop(),
+                    Some((help, Some(word))) => draft.help(help).put(span, word).stop(),
+                    Some((help, None)) => draft.help(help).stop(),
                     None => draft.stop(),
                 }
             }
@@ -249,7 +250,7 @@ impl Cx<'_> {
         let list = words.join(", ");
         let draft = self.error(code, "E213", format!("{subject} is one of {list}, got `{word}`"), code.span(id), "no such choice");
         match near {
-            Some(near) => draft.help(format!("`{near}`")).stop(),
+            Some(near) => draft.help(format!("`{near}`")).put(code.span(id), near).stop(),
             None => draft.stop(),
         }
     }

@@ -267,9 +267,9 @@ impl Cx<'_> {
         }
         let near = nearest(key, table.iter().map(|s| s.key)).map(str::to_owned);
         let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("a {word}") });
-        let label = near.map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
+        let label = near.as_ref().map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
         let keys: Vec<&str> = table.iter().map(|s| s.key).collect();
-        let draft = self.error(code, "E303", text, span, label);
+        let draft = self.error(code, "E303", text, span, label).puts(span, near);
         if keys.is_empty() { draft.stop() } else { draft.note(format!("it takes {}", keys.join(", "))).stop() }
     }
 

@@ -123,7 +123,7 @@ impl Cx<'_> {
             let span = self.machine.at(code.module).script.declarations[code.declaration as usize].keyword_span;
             let span = bound(&self.machine.at(code.module).script.declarations[code.declaration as usize]).map_or(span, |b| b.span);
             let draft = self.error(code, "E202", format!("`{text}` is a function of the language"), span, "taken");
-            gather.take::<()>(Err(draft.help(format!("another name: `my_{text}`")).stop()));
+            gather.take::<()>(Err(draft.help(format!("another name: `my_{text}`")).put(span, format!("my_{text}")).stop()));
         }
         for (i, param) in params.iter().enumerate() {
             if let Some(ty) = &param.ty {
@@ -150,7 +150,7 @@ impl Cx<'_> {
         let near = super::names::nearest(&text, TYPE_NAMES.iter().copied());
         let draft = self.error(code, "E213", format!("there is no type `{text}`"), ty.span, "no such type");
         Err(match near {
-            Some(near) => draft.help(format!("`{near}`")).stop(),
+            Some(near) => draft.help(format!("`{near}`")).put(ty.span, near).stop(),
             None => draft.help(format!("one of {}", TYPE_NAMES.join(", "))).stop(),
         })
     }

@@ -2,8 +2,9 @@
 
 use std::sync::OnceLock;
 
-use crate::base::fault::{Code, Describe, Fault, Report, Say, Severity, Subject};
+use crate::base::fault::{Code, Describe, Edit, Fault, Report, Say, Severity, Subject};
 use crate::lang::syntax::ast::Span;
+use crate::lang::syntax::fixes::Fix;
 
 crate::ids! {
     /// A file of the run: the main script is 0, modules follow.
@@ -34,6 +35,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Further lines: call chain, what was not built.
     pub notes: Vec<String>,
+    /// The help as edits; several are other ways.
+    pub fixes: Vec<Fix>,
     /// How many further reports like it this one stands for.
     pub more: usize,
 }
@@ -47,13 +50,14 @@ impl Diagnostic {
             labels: vec![Label { file, span, text: label.into() }],
             help: None,
             notes: Vec::new(),
+            fixes: Vec::new(),
             more: 0,
         }
     }
 
     /// A report that no place in a script belongs to.
     pub fn without_place(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), more: 0 }
+        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), fixes: Vec::new(), more: 0 }
     }
 
     /// The one bridge from the kernel: `find` turns subjects into places, `say` speaks of entities and quantities as
@@ -64,7 +68,9 @@ impl Diagnostic {
 
     /// A described fault with its subjects found. Labels on one place are joined.
     pub fn from_report(report: Report, find: impl Fn(Subject) -> Option<(FileId, Span)>) -> Self {
-        let Report { code, message, labels: subjects, help, notes } = report;
+        let Report { code, message, labels: subjects, help, notes, edits } = report;
+        let fix = |(subject, edit)| find(subject).map(|(file, span)| Fix { file, span, edit });
+        let fixes = edits.into_iter().filter_map(fix).collect();
         let mut labels: Vec<Label> = Vec::with_capacity(subjects.len());
         for (subject, text) in subjects {
             let Some((file, span)) = find(subject) else { continue };
@@ -77,7 +83,7 @@ impl Diagnostic {
         if labels.is_empty() {
             labels.extend(find(Subject::Call).map(|(file, span)| Label { file, span, text: "here".to_owned() }));
         }
-        Self { code, message, labels, help, notes, more: 0 }
+        Self { code, message, labels, help, notes, fixes, more: 0 }
     }
 
     /// With one more label.
@@ -90,6 +96,30 @@ impl Diagnostic {
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
+    }
+
+    /// With an edit in the file of its first label.
+    pub fn fix(mut self, span: Span, edit: Edit) -> Self {
+        let file = self.labels.first().map_or(FileId(0), |l| l.file);
+        self.fixes.push(Fix { file, span, edit });
+        self
+    }
+
+    /// With help that is this text in the place of that stretch.
+    pub fn put(self, span: Span, text: impl Into<String>) -> Self {
+        self.fix(span, Edit::Put(text.into()))
+    }
+
+    /// The same with all its places moved.
+    pub fn moved(&self, place: impl Fn(FileId, Span) -> (FileId, Span)) -> Self {
+        let mut moved = self.clone();
+        for label in &mut moved.labels {
+            (label.file, label.span) = place(label.file, label.span);
+        }
+        for fix in &mut moved.fixes {
+            (fix.file, fix.span) = place(fix.file, fix.span);
+        }
+        moved
     }
 
     /// With a further line.

@@ -58,12 +58,16 @@ impl Cx<'_> {
             let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, "a function, not a value");
             return Err(draft.help(format!("call it: `{text}(…)`")).stop());
         }
-        let label = match self.near_name(code.module, &text) {
+        let found = self.near_name(code.module, &text);
+        let near = found.as_ref().map(|found| found.0.clone());
+        let label = match found {
             Some((near, Some((keyword, line)))) => format!("did you mean `{near}` ({keyword}, line {line})?"),
             Some((near, None)) => format!("did you mean `{near}`?"),
             None => "no such name".to_owned(),
         };
-        Err(self.error(code, "E201", format!("`{text}` is not defined"), span, label).stop())
+        let used = near.is_none() && self.files.resolve(&self.machine.at(code.module).path, &format!("{text}.loft")).is_ok();
+        let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, label).puts(span, near);
+        Err(if used { draft.used(span, &text).stop() } else { draft.stop() })
     }
 
     /// E201 or E230: a function that is none.
@@ -96,8 +100,8 @@ impl Cx<'_> {
                 .map(|b| self.names.text(b.name).to_owned()),
         );
         let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
-        let label = near.map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
-        self.error(code, "E201", format!("there is no function `{text}`"), span, label).stop()
+        let label = near.as_ref().map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
+        self.error(code, "E201", format!("there is no function `{text}`"), span, label).puts(span, near).stop()
     }
 
     /// The nearest name in sight, with keyword and line when it is declared.

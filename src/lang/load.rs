@@ -33,7 +33,8 @@ impl Cx<'_> {
             let text = self.names.text(b.name);
             let diagnostic = Diagnostic::new("E202", format!("`{text}` is defined twice"), file, b.span, "again here")
                 .label(file, a.span, "first here")
-                .help(format!("another name: `{text}_2`"));
+                .help(format!("another name: `{text}_2`"))
+                .put(b.span, format!("{text}_2"));
             self.machine.filed.push((Some((id, second)), diagnostic));
         }
         id
@@ -63,6 +64,7 @@ impl Cx<'_> {
                     let label = near.map_or_else(|| "no such unit".to_owned(), |n| format!("did you mean `{n}`?"));
                     let message = format!("`{text}` is not a unit of length");
                     let diagnostic = Diagnostic::new("E213", message, file, bound.span, label).help(format!("one of {}", known.join(", ")));
+                    let diagnostic = near.into_iter().fold(diagnostic, |d, near| d.put(bound.span, near));
                     self.machine.filed.push((owner, diagnostic));
                 }
             }
@@ -104,7 +106,7 @@ impl Cx<'_> {
         for (name, span, value) in given {
             let name = self.names.text(name).to_owned();
             if let Err(diagnostic) = self.give(id, &name, Given::Value(value, file, span)) {
-                self.sink.push(diagnostic);
+                self.sink.push(*diagnostic);
             }
         }
         Ok(Value::Module(id))

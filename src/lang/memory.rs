@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::diag::{Diagnostic, FileId, Label};
+use super::diag::{Diagnostic, FileId};
 use super::names::Names;
 use super::origins::{Home, Origins};
 use super::plans::{CheckResult, MeshSpec, ReportTable};
@@ -147,17 +147,16 @@ impl Memory {
 
 /// What was said with places counted from `start`; `None` when it speaks of places outside the stretch.
 pub(super) fn detached(said: &[Diagnostic], file: FileId, span: Span) -> Option<Vec<Diagnostic>> {
-    let inside = |l: &Label| l.file == file && l.span.start >= span.start && l.span.end <= span.end;
-    said.iter().all(|d| d.labels.iter().all(inside)).then(|| {
-        let moved = |l: &Label| Label { file, span: Span { start: l.span.start - span.start, end: l.span.end - span.start }, ..l.clone() };
-        said.iter().map(|d| Diagnostic { labels: d.labels.iter().map(moved).collect(), ..d.clone() }).collect()
-    })
+    let inside = |f: FileId, s: Span| f == file && s.start >= span.start && s.end <= span.end;
+    let all_inside = |d: &Diagnostic| d.labels.iter().all(|l| inside(l.file, l.span)) && d.fixes.iter().all(|f| inside(f.file, f.span));
+    let moved = |_, s: Span| (file, Span { start: s.start - span.start, end: s.end - span.start });
+    said.iter().all(all_inside).then(|| said.iter().map(|d| d.moved(moved)).collect())
 }
 
 /// The opposite of [`detached`].
 pub(super) fn attached(said: &[Diagnostic], file: FileId, start: u32) -> Vec<Diagnostic> {
-    let moved = |l: &Label| Label { file, span: Span { start: l.span.start + start, end: l.span.end + start }, ..l.clone() };
-    said.iter().map(|d| Diagnostic { labels: d.labels.iter().map(moved).collect(), ..d.clone() }).collect()
+    let moved = |_, s: Span| (file, Span { start: s.start + start, end: s.end + start });
+    said.iter().map(|d| d.moved(moved)).collect()
 }
 
 /// What an evaluation asked for beside the values of other declarations.

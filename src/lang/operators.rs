@@ -159,7 +159,9 @@ impl Cx<'_> {
             (Value::Vector(..), Value::Vector(..)) if times => {
                 let (a, b) = (self.source(at.code, at.a), self.source(at.code, at.b));
                 let draft = self.error(at.code, "E211", "two vectors have two products", at.op_span, "which one?");
-                Err(draft.help(format!("`dot({a}, {b})` or `cross({a}, {b})`")).stop())
+                let (dot, cross) = (format!("dot({a}, {b})"), format!("cross({a}, {b})"));
+                let (whole, help) = (at.code.span(at.id), format!("`{dot}` or `{cross}`"));
+                Err(draft.help(help).put(whole, dot).put(whole, cross).stop())
             }
             (a, b) => Err(self.misfit_operands(at, &a, &b)),
         }
@@ -243,7 +245,8 @@ impl Cx<'_> {
             None if measured(left) && measured(right) => {
                 let help = format!("`{} within 0.1%`", self.source(at.code, at.id));
                 let draft = self.error(at.code, "E221", "two measured values are never equal", at.op_span, "needs `within`");
-                Err(draft.help(help).stop())
+                let end = at.code.span(at.id).end;
+                Err(draft.help(help).put(Span { start: end, end }, " within 0.1%").stop())
             }
             None => Err(self.misfit_operands(at, left, right)),
         }
@@ -302,6 +305,7 @@ impl Cx<'_> {
             .and(at.code.span(bare), "a bare number")
             .and(at.code.span(other), words)
             .help(format!("`{a} {} {b}{within}`", symbol(at.op)))
+            .put(at.code.span(at.id), format!("{a} {} {b}{within}", symbol(at.op)))
             .stop()
     }
 

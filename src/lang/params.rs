@@ -198,7 +198,7 @@ impl Cx<'_> {
     }
 
     /// Params that a `--set`, a table or a `use` names, each checked to exist; E219 with the nearest one.
-    pub(super) fn give(&mut self, module: ModuleId, name: &str, given: Given) -> Result<(), Diagnostic> {
+    pub(super) fn give(&mut self, module: ModuleId, name: &str, given: Given) -> Result<(), Box<Diagnostic>> {
         let script = self.machine.at(module).script.clone();
         let params = || script.declarations.iter().filter(|d| d.keyword == Keyword::Param).filter_map(bound);
         if let Some(b) = params().find(|b| self.names.text(b.name) == name) {
@@ -213,10 +213,12 @@ impl Cx<'_> {
         let near = nearest(name, names.iter().copied());
         let label = near.map_or_else(|| "no such param".to_owned(), |n| format!("did you mean `{n}`?"));
         let diagnostic = Diagnostic::new("E219", format!("there is no param `{name}`"), file, span, label);
+        let diagnostic = near.into_iter().fold(diagnostic, |d, near| d.put(span, near));
         Err(match names.is_empty() {
             true => diagnostic.note("this script has no params"),
             false => diagnostic.note(format!("its params are {}", names.join(", "))),
-        })
+        }
+        .into())
     }
 
     /// Params from outside as `name = literal` texts, each with a pseudo-file of its own.
@@ -225,7 +227,7 @@ impl Cx<'_> {
             let text: Arc<str> = format!("{name}={value}").into();
             let file = self.sources.add("--set", &*text);
             if let Err(diagnostic) = self.give(module, name, Given::Text(text, file)) {
-                self.machine.filed.push((None, diagnostic));
+                self.machine.filed.push((None, *diagnostic));
             }
         }
     }

@@ -5,7 +5,7 @@ use std::io::Write;
 use glam::DVec3;
 
 use super::report::OutputRow;
-use crate::base::fault::{FileFault, Say};
+use crate::base::fault::{Edit, FileFault, Say};
 use crate::base::origin::Origin;
 use crate::io::curves::{Drawing, Polyline, curve_format_for};
 use crate::io::json::{self, Json};
@@ -40,7 +40,7 @@ type Written = (u64, Vec<Loss>);
 
 fn unsupported(of: Origin, what: String) -> Stop {
     let help = Some("export meshes, curves, or a list of records".to_owned());
-    FileFault::Unsupported { of, what, help }.into()
+    FileFault::Unsupported { of, what, help, edits: Vec::new() }.into()
 }
 
 /// Writes through `fill`; a failure names the path.
@@ -87,7 +87,7 @@ fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, St
 fn one_thing(spec: &ExportSpec) -> Stop {
     let second = spec.things.get(1).map_or(spec.origin, |thing| thing.1);
     let help = Some("one `export` for each, or one mesh of both".to_owned());
-    FileFault::Unsupported { of: second, what: "a file holds one mesh".to_owned(), help }.into()
+    FileFault::Unsupported { of: second, what: "a file holds one mesh".to_owned(), help, edits: Vec::new() }.into()
 }
 
 /// Settings that mean something for meshes only.
@@ -96,7 +96,7 @@ fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
     match said {
         Some((key, of)) => {
             let what = format!("`{key}:` is for meshes");
-            Err(FileFault::Unsupported { of, what, help: Some(format!("remove `{key}:`")) }.into())
+            Err(FileFault::Unsupported { of, what, help: Some(format!("remove `{key}:`")), edits: vec![Edit::DropSetting] }.into())
         }
         None => Ok(()),
     }
@@ -152,7 +152,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
     no_mesh_settings(spec)?;
     if let Some((_, of)) = spec.units {
         let what = "`units:` is for meshes and curves; records carry their units".to_owned();
-        return Err(FileFault::Unsupported { of, what, help: Some("remove `units:`".to_owned()) }.into());
+        return Err(FileFault::Unsupported { of, what, help: Some("remove `units:`".to_owned()), edits: vec![Edit::DropSetting] }.into());
     }
     let mut rows = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {

@@ -111,7 +111,7 @@ pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&d
 }
 
 fn unsupported(of: Origin, what: &str, help: &str) -> Stop {
-    FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()) }.into()
+    FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()
 }
 
 fn format_of(spec: &PictureSpec) -> Result<Format, Stop> {
@@ -320,7 +320,7 @@ fn add_network(drawing: &mut Drawing, network: &Network, stage: &Stage) {
 /// What a command line asks for: some names of the script, or everything it declares.
 ///
 /// Everything is its meshes, the surfaces that none of them covers, and its curves; without faces the network.
-pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Diagnostic> {
+pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Box<Diagnostic>> {
     let mut spec = wanted.spec.clone();
     spec.things = values_of(cx, &wanted.names)?;
     spec.zoom = values_of(cx, &wanted.zoom)?;
@@ -332,7 +332,7 @@ pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Diagnostic> 
 }
 
 /// Things by their names in the script; E201 for one that is not declared, E805 for one that cannot be drawn.
-fn values_of(cx: &mut Cx, names: &[String]) -> Result<Vec<(Value, Origin)>, Diagnostic> {
+fn values_of(cx: &mut Cx, names: &[String]) -> Result<Vec<(Value, Origin)>, Box<Diagnostic>> {
     let mut out = Vec::new();
     for name in names {
         if name == "network" {
@@ -342,7 +342,7 @@ fn values_of(cx: &mut Cx, names: &[String]) -> Result<Vec<(Value, Origin)>, Diag
         let Some(value) = cx.value_of(name) else {
             let failed = cx.names.find(name).is_some();
             let text = if failed { format!("`{name}` has no value to draw") } else { format!("`{name}` is not defined") };
-            return Err(Diagnostic::without_place("E201", text).help("a name that the script declares, or `network`"));
+            return Err(Diagnostic::without_place("E201", text).help("a name that the script declares, or `network`").into());
         };
         let before = out.len();
         let _ = value.for_each_flat::<()>(&mut |v| {
@@ -352,7 +352,7 @@ fn values_of(cx: &mut Cx, names: &[String]) -> Result<Vec<(Value, Origin)>, Diag
             Ok(())
         });
         if out.len() == before {
-            return Err(Diagnostic::without_place("E805", format!("`{name}` is {}, which cannot be drawn", value.ty().words())));
+            return Err(Diagnostic::without_place("E805", format!("`{name}` is {}, which cannot be drawn", value.ty().words())).into());
         }
     }
     Ok(out)

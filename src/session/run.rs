@@ -307,7 +307,7 @@ impl<'r> Run<'r> {
                 let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
                 self.written(row);
             }
-            Err(message) => self.said = Some(message),
+            Err(message) => self.said = Some(*message),
         }
     }
 

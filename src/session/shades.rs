@@ -96,7 +96,7 @@ fn values(drawing: &Drawing) -> impl Iterator<Item = f64> + '_ {
 fn needs(drawing: &Drawing, of: Origin, what: &str, help: &str) -> Result<(), Stop> {
     match values(drawing).next() {
         Some(_) => Ok(()),
-        None => Err(FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()) }.into()),
+        None => Err(FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say, Subject};
+use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// What can be wrong with a curve.
@@ -206,11 +206,13 @@ impl Describe for CurveFault {
             }
             Self::Rho { rho, .. } => Report::new("E405", format!("`rho` must be between 0 and 1, ends excluded, got {rho}"))
                 .label(Subject::Argument("rho"), "below 0.5 an ellipse, 0.5 a parabola, above a hyperbola")
-                .help("rho: 0.5"),
+                .help("rho: 0.5")
+                .edit(Subject::Argument("rho"), Edit::Put("0.5".to_owned())),
             Self::Knots { what, .. } => knots(*what, &name),
             Self::Weight { index, weight, .. } => Report::new("E407", format!("weight {index} of {name} is {weight}, it must be above 0"))
                 .label(Subject::Item("weights", *index), "not above 0")
-                .help("a weight of 1 leaves its pole as it is"),
+                .help("a weight of 1 leaves its pole as it is")
+                .edit(Subject::Argument("weights"), Edit::Member(*index, Some("1".to_owned()))),
             Self::NonFinite { argument, index, .. } => {
                 let (subject, which) = match index {
                     Some(i) => (Subject::Item(argument, *i), format!("number {i} of `{argument}`")),
@@ -233,6 +235,7 @@ impl Describe for CurveFault {
                 Report::new("E412", format!("`{argument}` is {}, more than one turn", say.angle(*angle)))
                     .label(Subject::Argument(argument), "at most 360°")
                     .help("360deg is the whole circle; a helix may turn further")
+                    .edit(Subject::Argument(argument), Edit::Put("360deg".to_owned()))
             }
             Self::NotConverged { of, what, at } => {
                 Report::new("E413", format!("{what} could not be settled near {}", say.point(*at))).at(*of, "on this curve")
@@ -264,7 +267,8 @@ fn duplicate_points(fault: &CurveFault, say: &dyn Say) -> Report {
     };
     let report = Report::new("E403", format!("points {index} and {next} of {name} {how}, at {}", say.point(*at)))
         .label(Subject::Item("points", next), format!("same as point {index}"))
-        .at(*of, "through these points");
+        .at(*of, "through these points")
+        .edit(Subject::Argument("points"), Edit::Member(next, None));
     match (next, *tolerance == 0.0) {
         (0, _) => report.help("leave the last point out: a closed curve returns to its first by itself"),
         (_, true) => report.help(format!("leave point {next} out")),

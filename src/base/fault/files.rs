@@ -1,6 +1,6 @@
 //! Family 8: files that cannot be read or written, and what a format could not hold.
 
-use super::{Describe, Report, Say};
+use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// A place in a data file where it stops making sense.
@@ -90,6 +90,8 @@ pub enum FileFault {
         what: String,
         /// What can be typed instead.
         help: Option<String>,
+        /// The same as edits at `of`.
+        edits: Vec<Edit>,
     },
     /// W806: the format has no place for something.
     LeftOut {
@@ -172,11 +174,14 @@ impl FileFault {
                     why => (format!("cannot read \"{path}\": {why}"), "named here"),
                 };
                 let report = Report::new("E801", message).at(*of, label);
-                match similar.as_slice() {
+                let report = match similar.as_slice() {
                     [] => report,
                     [one] => report.help(format!("there is {} \"{one}\"", article(one))),
                     [first, rest @ ..] => report.help(format!("there are \"{first}\"{}", quoted_tail(rest))),
-                }
+                };
+                let folder = path.rfind('/').map_or("", |at| &path[..=at]);
+                let named = similar.iter().map(|name| Edit::Instead { of: format!("\"{path}\""), put: format!("\"{folder}{name}\"") });
+                named.fold(report, |report, edit| report.edit(Subject::Entity(*of), edit))
             }
             Self::Outside { of, path } => Report::new("E802", format!("\"{path}\" lies outside the allowed folders"))
                 .at(*of, "only the script's folder and what is below it are open, links followed")
@@ -208,8 +213,9 @@ impl FileFault {
             Self::LaterFormat { of, format } => {
                 Report::new("E230", format!("the format {format} is not in this version")).at(*of, "asked for here")
             }
-            Self::Unsupported { of, what, help } => {
+            Self::Unsupported { of, what, help, edits } => {
                 let report = Report::new("E805", what.clone()).at(*of, "asked for here");
+                let report = edits.iter().fold(report, |report, edit| report.edit(Subject::Entity(*of), edit.clone()));
                 match help {
                     Some(help) => report.help(help.clone()),
                     None => report,

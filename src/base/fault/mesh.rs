@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say};
+use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
@@ -167,14 +167,15 @@ impl Describe for MeshFault {
 fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
     use MeshFault as F;
     Some(match fault {
-        F::RuleUnused { rule, why } => {
-            Report::new("W701", format!("this rule decides nothing: {why}")).at(*rule, "has no effect").help("remove it")
-        }
+        F::RuleUnused { rule, why } => Report::new("W701", format!("this rule decides nothing: {why}"))
+            .at(*rule, "has no effect")
+            .help("remove it")
+            .edit(Subject::Entity(*rule), Edit::DropRule(None)),
         F::CountsDiffer { a, b, surface, at } => {
             let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
             for (count, origin) in [a, b] {
                 if origin.is_some() {
-                    report = report.at(*origin, steps(*count));
+                    report = report.at(*origin, steps(*count)).edit(Subject::Entity(*origin), Edit::DropSetting);
                 }
             }
             report
@@ -187,7 +188,7 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
             let mut report = Report::new("E702", format!("no quads fill a face with {a}, {b} and {c} elements on its three sides"))
                 .at(*surface, "this face");
             for (count, origin) in written {
-                report = report.at(*origin, steps(*count));
+                report = report.at(*origin, steps(*count)).edit(Subject::Entity(*origin), Edit::DropSetting);
             }
             report
                 .note("the sum must be even, and each side must have fewer elements than the other two together")
@@ -198,24 +199,29 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .at(count.1, steps(count.0))
                 .at(*says, format!("asks for at least {needed}"))
                 .help(format!("count: {needed}"))
+                .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
         }
         F::CountTooFew { count, needed, at } => {
             Report::new("E703", format!("{} would fall on each other at {}", steps(count.0), say.point(*at)))
                 .at(count.1, steps(count.0))
                 .note("a closed curve takes at least 3 steps; of two curves with the same ends the longer takes at least 2")
                 .help(format!("count: {needed}"))
+                .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
         }
-        F::MethodLater { of, method } => {
-            Report::new("E230", format!("`method: {method}` is not in this version")).at(*of, "asked for here").help("method: mapped")
-        }
+        F::MethodLater { of, method } => Report::new("E230", format!("`method: {method}` is not in this version"))
+            .at(*of, "asked for here")
+            .help("method: mapped")
+            .edit(Subject::Entity(*of), Edit::Set("method", "mapped".to_owned())),
         F::CountBelowLinks { count, links } => Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
             .at(count.1, steps(count.0))
-            .help(format!("count: {links}")),
+            .help(format!("count: {links}"))
+            .edit(Subject::Entity(count.1), Edit::Put(links.to_string())),
         F::RuleOverridden { key, earlier, later } => {
             Report::new("W706", format!("`{key}` is set twice for the same part of the mesh; the later rule holds"))
                 .at(*earlier, "has no effect")
                 .at(*later, "holds")
                 .help("remove the first of the two")
+                .edit(Subject::Entity(*earlier), Edit::DropRule(Some(key)))
         }
         F::NotReached { limit, says, surface, reached, at } => {
             let reached = if *limit == "angle_error" { say.angle(*reached) } else { say.length(*reached) };
@@ -241,7 +247,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 let plural = if *count == 1 { "" } else { "s" };
                 report = report.at(*surface, format!("{count} triangle{plural} at {}", say.point(*at)));
             }
-            report.help("elements: mixed")
+            report.help("elements: mixed").edit(Subject::Entity(*mesh), Edit::Set("elements", "mixed".to_owned()))
         }
         F::CannotMap { surface, why, at } => {
             Report::new("E705", format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))

@@ -7,6 +7,7 @@
 //! the value.
 
 mod curves;
+mod edit;
 mod files;
 mod mesh;
 mod network;
@@ -19,6 +20,7 @@ use std::mem::discriminant;
 use glam::DVec3;
 
 pub use curves::{CurveFault, KnotFault};
+pub use edit::Edit;
 pub use files::{FileFault, Malformed};
 pub use mesh::MeshFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
@@ -101,12 +103,14 @@ pub struct Report {
     pub help: Option<String>,
     /// Further lines.
     pub notes: Vec<String>,
+    /// The help as it would be typed; several are other ways.
+    pub edits: Vec<(Subject, Edit)>,
 }
 
 impl Report {
     /// A report with a sentence and nothing else yet.
     pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new() }
+        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), edits: Vec::new() }
     }
 
     /// Adds a label.
@@ -123,6 +127,12 @@ impl Report {
     /// Sets the help.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
+        self
+    }
+
+    /// Adds an edit that does what the help says.
+    pub fn edit(mut self, subject: Subject, edit: Edit) -> Self {
+        self.edits.push((subject, edit));
         self
     }
 

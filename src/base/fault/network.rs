@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say, Subject};
+use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::math;
 use crate::base::origin::Origin;
 
@@ -35,6 +35,8 @@ pub enum NetworkFault {
         b: CurveEnd,
         /// Whether the second part reversed would fit.
         reversed_fits: bool,
+        /// Whether both parts are so much longer than the gap that `snap` can close it.
+        snaps: bool,
         /// The tolerance applied.
         tolerance: f64,
     },
@@ -195,6 +197,12 @@ pub fn round_up(length: f64) -> f64 {
     step * decade
 }
 
+/// The next number of the row 1, 2, 5, 10, … above a positive length: ends closer than it are joined.
+pub fn round_above(length: f64) -> f64 {
+    let up = round_up(length);
+    if up > length * (1.0 + crate::base::tolerance::EPSILON) { up } else { round_up(up * 1.5) }
+}
+
 /// The next number of the row 1, 2, 5, 10, … below a positive length.
 pub fn round_down(length: f64) -> f64 {
     let decade = math::pow(10.0, math::log10(length).floor());
@@ -217,7 +225,7 @@ impl Describe for NetworkFault {
         match self {
             Self::EndsMiss { a, b, tolerance } => ends_miss(a, b, *tolerance, say),
             Self::BoundaryOpen { a, b, tolerance } => boundary_open(a, b, *tolerance, say),
-            Self::ChainBroken { a, b, reversed_fits, tolerance } => chain_broken(a, b, *reversed_fits, *tolerance, say),
+            Self::ChainBroken { a, b, reversed_fits, snaps, tolerance } => chain_broken(a, b, (*reversed_fits, *snaps), *tolerance, say),
             Self::ChainRepeats { a, b, stretch } => chain_repeats(*a, *b, *stretch, say),
             Self::ChainAmbiguous { of, at, candidates } => chain_ambiguous(*of, *at, candidates, say),
             Self::ClusterAmbiguous { points, count, diameter, tolerance, smaller } => {
@@ -233,7 +241,8 @@ impl Describe for NetworkFault {
                 for (point, of) in points {
                     report = report.at(*of, format!("through {}", say.point(*point)));
                 }
-                report.help(format!("`tolerance {}` keeps them apart", typed(say, *smaller)))
+                let smaller = typed(say, *smaller);
+                report.help(format!("`tolerance {smaller}` keeps them apart")).edit(Subject::Call, Edit::Declare("tolerance", smaller))
             }
             Self::NoMeeting { a, b, tolerance } => no_meeting(*a, *b, *tolerance, say),
             Self::PointOff { of, point, nearest, tolerance } => Report::new(
@@ -317,7 +326,7 @@ fn tolerance_note(tolerance: f64, say: &dyn Say) -> String {
 
 fn ends_miss(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
-    let wanted = typed(say, round_up(gap));
+    let wanted = typed(say, round_above(gap));
     Report::new(
         "E501",
         format!(
@@ -332,6 +341,7 @@ fn ends_miss(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Repor
     .at(b.of, b.verb())
     .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
     .help(format!("end both at one point, or declare `snap {wanted}`"))
+    .edit(Subject::Entity(a.of), Edit::Declare("snap", wanted.clone()))
     .note(format!("the other curve {} at {}", if b.last { "ends" } else { "starts" }, say.point(b.at)))
     .note(format!("a tolerance of {wanted} would take them as one point"))
 }
@@ -357,7 +367,7 @@ fn boundary_open(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> R
     .note(format!("the gap is {}; the model's tolerance is {}", say.length(gap), say.length(tolerance)))
 }
 
-fn chain_broken(a: &CurveEnd, b: &CurveEnd, reversed_fits: bool, tolerance: f64, say: &dyn Say) -> Report {
+fn chain_broken(a: &CurveEnd, b: &CurveEnd, (reversed_fits, snaps): (bool, bool), tolerance: f64, say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
     let report = Report::new(
         "E503",
@@ -375,13 +385,18 @@ fn chain_broken(a: &CurveEnd, b: &CurveEnd, reversed_fits: bool, tolerance: f64,
     .note(tolerance_note(tolerance, say));
     let name = say.name(b.of);
     if reversed_fits {
-        report.help(if name.is_empty() {
-            "run the second part backwards, with `-` before it".to_owned()
-        } else {
-            format!("run it backwards: `-{name}`")
-        })
+        report
+            .help(if name.is_empty() {
+                "run the second part backwards, with `-` before it".to_owned()
+            } else {
+                format!("run it backwards: `-{name}`")
+            })
+            .edit(Subject::Call, Edit::Instead { put: format!("-{name}"), of: name })
+    } else if !snaps {
+        report.help("end both at one node")
     } else {
-        report.help(format!("end both at one node, or declare `snap {}`", typed(say, round_up(gap))))
+        let wanted = typed(say, round_above(gap));
+        report.help(format!("end both at one node, or declare `snap {wanted}`")).edit(Subject::Call, Edit::Declare("snap", wanted))
     }
 }
 
@@ -443,7 +458,10 @@ fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn
     if name_a.is_empty() || name_b.is_empty() {
         report.help("pick one: `meet(a, b)[0]`, or `nearest(meet(a, b), P)`")
     } else {
-        report.help(format!("pick one: `meet({name_a}, {name_b})[0]`, or `nearest(meet({name_a}, {name_b}), P)`"))
+        let picked = format!("meet({name_a}, {name_b})[0]");
+        report
+            .help(format!("pick one: `{picked}`, or `nearest(meet({name_a}, {name_b}), P)`"))
+            .edit(Subject::Call, Edit::Instead { of: format!("{name_a} & {name_b}"), put: picked })
     }
 }
 
@@ -471,7 +489,8 @@ fn in_use(of: Origin, users: &[Origin], say: &dyn Say) -> Report {
 fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: &dyn Say) -> Report {
     let (of, nearest, is_end) = other;
     let gap = end.at.distance(nearest);
-    Report::new(
+    let wanted = typed(say, round_above(gap));
+    let report = Report::new(
         "W514",
         format!(
             "the {} of {} at {} misses {}{} by {}",
@@ -485,8 +504,18 @@ fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: 
     )
     .at(end.of, end.verb())
     .at(of, format!("passes {}", say.point(nearest)))
-    .help(format!("if they should meet, declare `snap {0}` or `tolerance {0}`", typed(say, round_up(gap))))
-    .note(tolerance_note(tolerance, say))
+    .note(tolerance_note(tolerance, say));
+    // `snap` moves ends to ends.
+    if is_end {
+        report
+            .help(format!("if they should meet, declare `snap {wanted}` or `tolerance {wanted}`"))
+            .edit(Subject::Entity(end.of), Edit::Declare("snap", wanted.clone()))
+            .edit(Subject::Entity(end.of), Edit::Declare("tolerance", wanted))
+    } else {
+        report
+            .help(format!("if they should meet, declare `tolerance {wanted}`"))
+            .edit(Subject::Entity(end.of), Edit::Declare("tolerance", wanted))
+    }
 }
 
 #[cfg(test)]
@@ -498,6 +527,7 @@ mod tests {
     fn round_numbers_bracket_their_length() {
         for (length, up, down) in [(0.3, 0.5, 0.2), (0.5, 0.5, 0.2), (1.0, 1.0, 0.5), (7.0, 10.0, 5.0), (1.5e-4, 2e-4, 1e-4)] {
             assert!((round_up(length) / up - 1.0).abs() < 1e-12, "{length} up to {}", round_up(length));
+            assert!(round_above(length) > length && round_above(up) > up);
             assert!((round_down(length) / down - 1.0).abs() < 1e-12, "{length} down to {}", round_down(length));
         }
     }

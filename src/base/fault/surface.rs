@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say, Subject};
+use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// Why curves span no flow, nearest to success first.
@@ -523,7 +523,8 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
             format!("the axis {} is not straight: {} off at {}", say.quoted(*axis, "of the rotation"), say.length(*off), say.point(*at)),
         )
         .at(*axis, "must be one straight line")
-        .help("axis: line((0, 0, 0), (0, 0, 1))"),
+        .help("axis: line((0, 0, 0), (0, 0, 1))")
+        .edit(Subject::Call, Edit::Set("axis", "line((0, 0, 0), (0, 0, 1))".to_owned())),
         F::GeneratrixOnAxis { profile, from, to } => Report::new(
             "E622",
             format!("{} lies in the axis from {} to {}", say.quoted(*profile, "the profile"), say.point(*from), say.point(*to)),
@@ -540,7 +541,11 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
             ),
         )
         .at(*profile, "meets the axis")
-        .help(format!("turn one side of it only: `profile[0%..{:.6}%]`", fraction * 100.0)),
+        .help(format!("turn one side of it only: `profile[0%..{:.6}%]`", fraction * 100.0))
+        .edit(
+            Subject::Argument("profile"),
+            Edit::Instead { of: say.name(*profile), put: format!("{}[0%..{:.6}%]", say.name(*profile), fraction * 100.0) },
+        ),
         F::SweepDegenerate { profile, from, to } => Report::new(
             "E624",
             format!(
@@ -573,7 +578,8 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
             ),
         )
         .at(*curve, "leaves the plane of the others")
-        .help("`coons` takes borders that are not flat"),
+        .help("`coons` takes borders that are not flat")
+        .edit(Subject::Call, Edit::Instead { of: "plane".to_owned(), put: "coons".to_owned() }),
         _ => return None,
     })
 }

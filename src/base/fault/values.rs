@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say, Subject};
+use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// A plain value that an entity cannot be made from.
@@ -108,7 +108,11 @@ impl Describe for ValueFault {
             Self::Exclusive { function, what, arguments, example } => {
                 let report = Report::new("E305", format!("`{function}` takes {what}")).help(*example);
                 let labels = arguments.iter().enumerate();
-                labels.fold(report, |r, (i, a)| r.label(Subject::Argument(a), if i == 0 { "remove one of these" } else { "or this" }))
+                labels.fold(report, |r, (i, a)| {
+                    let words = if i == 0 { "remove one of these" } else { "or this" };
+                    let r = r.label(Subject::Argument(a), words);
+                    if i + 1 == arguments.len() { r.edit(Subject::Argument(a), Edit::DropArgument) } else { r }
+                })
             }
             Self::NoLinks { of } => {
                 let message = format!("{} is construction geometry and has no links", say.quoted(*of, "this curve"));

@@ -7,6 +7,7 @@ use super::model::Facts;
 use crate::base::fault::Severity;
 use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::lang::syntax::ast::{Keyword, Span};
+use crate::lang::syntax::fixes::Change;
 use crate::session::report::MeshRow;
 
 /// Lenses over one script.
@@ -119,17 +120,22 @@ pub fn hover(facts: &Facts, name: &str) -> Option<String> {
 pub fn actions(facts: &Facts, document: &Document, range: &Value) -> Value {
     let (start, end) = (document.byte(&range["start"]), document.byte(&range["end"]));
     let near = |span: &Span| span.start as usize <= end && start <= span.end as usize;
-    let action = |(span, text, title): (Span, String, String)| {
-        let edit = json!({ "range": document.range(span), "newText": text });
-        json!({ "title": title, "kind": "quickfix", "edit": { "changes": { document.uri.clone(): [edit] } } })
-    };
-    facts.diagnostics.iter().filter_map(fix).filter(|f| near(&f.0)).map(action).collect()
-}
-
-/// What a report offers to put in the place of what it marks: place, new text, title.
-fn fix(diagnostic: &Diagnostic) -> Option<(Span, String, String)> {
-    let label = diagnostic.labels.first().filter(|l| l.file == FileId(0))?;
-    let said = [Some(label.text.as_str()), diagnostic.help.as_deref()];
-    let meant = said.into_iter().flatten().find_map(|text| text.split_once("did you mean `")?.1.split_once('`').map(|t| t.0))?;
-    Some((label.span, meant.to_owned(), format!("Change to `{meant}`")))
+    let mut out = Vec::new();
+    for diagnostic in &facts.diagnostics {
+        let own = || diagnostic.labels.iter().filter(|l| l.file == FileId(0));
+        if !own().any(|l| near(&l.span)) {
+            continue;
+        }
+        let changes: Vec<Change> =
+            diagnostic.fixes.iter().filter(|f| f.file == FileId(0)).filter_map(|f| f.change(&document.text)).collect();
+        for change in &changes {
+            let edit = json!({ "range": document.range(change.span), "newText": change.text });
+            out.push(json!({
+                "title": change.title, "kind": "quickfix", "isPreferred": changes.len() == 1,
+                "diagnostics": [row(diagnostic, document, &facts.sources)],
+                "edit": { "changes": { document.uri.clone(): [edit] } },
+            }));
+        }
+    }
+    Value::Array(out)
 }

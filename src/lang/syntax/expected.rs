@@ -95,10 +95,16 @@ impl Failure<'_> {
 
     /// Adds the first repair that makes the declaration parse.
     fn repaired(&self, report: Diagnostic, repairs: &[(Span, &str, String)]) -> Diagnostic {
-        match repairs.iter().find(|(span, text, _)| self.parses_with(*span, text)) {
-            Some((_, _, help)) => report.help(help.clone()),
-            None => report,
+        let Some((span, text, help)) = repairs.iter().find(|(span, text, _)| self.parses_with(*span, text)) else { return report };
+        let (report, word) = (report.help(help.clone()), text.trim());
+        if span.start < span.end {
+            return report.put(*span, word);
         }
+        // Behind the token before it.
+        let before = self.tokens.starts.partition_point(|start| *start < span.start).saturating_sub(1);
+        let end = self.tokens.ends[before];
+        let blank = if matches!(word, "," | ":") { "" } else { " " };
+        report.put(Span { start: end, end }, format!("{blank}{word}"))
     }
 
     fn let_without_in(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
@@ -135,7 +141,10 @@ impl Failure<'_> {
         };
         let report = Diagnostic::new("E108", "this `let` has no `in`", self.file, self.tokens.span(token), "a `let` inside an expression")
             .label(self.file, self.place(stop.at), label);
-        Some(report.help(format!("let {name} = … in …")))
+        let report = report.help(format!("let {name} = … in …"));
+        let place = self.place(stop.at);
+        let gap = Span { start: place.start, end: place.start };
+        Some(if self.parses_with(gap, " in ") { report.put(gap, "in ") } else { report })
     }
 
     /// Whether an `in` belongs to `for name in`.
@@ -158,10 +167,12 @@ impl Failure<'_> {
             format!("the `{what}` of an index stands on the line of what it belongs to")
         };
         let message = if what == "(" && !call { "something is missing before this `(`".to_owned() } else { message };
-        Some(
-            self.e102(message, stop.at, "on a line of its own")
-                .help(format!("write `{owner}{what}` on one line, or an operator or `,` between them")),
-        )
+        let report = self
+            .e102(message, stop.at, "on a line of its own")
+            .help(format!("write `{owner}{what}` on one line, or an operator or `,` between them"));
+        let between = Span { start: self.tokens.ends[stop.at - 1], end: self.tokens.starts[stop.at] };
+        let joins = self.slice(between).trim().is_empty() && self.parses_with(between, "");
+        Some(if joins { report.put(between, "") } else { report })
     }
 
     fn reserved_word(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
@@ -171,7 +182,8 @@ impl Failure<'_> {
         if (stop.wants(Rule::name) || stop.wants(Rule::parameter)) && !stop.wants_value() {
             return Some(
                 self.e102(format!("`{word}` is a reserved word and cannot be a name"), stop.at, "reserved")
-                    .help(format!("call it `{word}_1`, or anything else")),
+                    .help(format!("call it `{word}_1`, or anything else"))
+                    .put(self.place(stop.at), format!("{word}_1")),
             );
         }
         if !stop.wants_value() || matches!(kind, Kind::Then | Kind::Else | Kind::In | Kind::To | Kind::As | Kind::Of | Kind::On) {
@@ -214,7 +226,10 @@ impl Failure<'_> {
             self.e102(format!("expected {wanted}, but the declaration ends here"), stop.at, &format!("{wanted} is missing"))
         };
         if let Some(help) = self.usual(stop) {
-            return report.help(help);
+            // The whole declaration, where nothing is left to be filled in.
+            let whole = self.tokens.stretch(self.base, self.end - 1);
+            let typed = super::is_declaration(&help);
+            return if typed { report.help(help.clone()).put(whole, help) } else { report.help(help) };
         }
         let before = if stop.at > self.base { self.text(stop.at - 1) } else { "" };
         let gap = Span { start: place.start, end: place.start };

@@ -73,7 +73,10 @@ impl Refused {
             .help(format!("{} == … within …", text(*left))),
             Self::Chain { span, left, middle, right } => {
                 let help = format!("{} and {} {} {}", text(*left), text(*middle), text(*span), text(*right));
-                Diagnostic::new("E102", "comparisons do not chain", file, place(*span), "a second comparison").help(help)
+                let gap = Span { start: place(*span).start, end: place(*span).start };
+                Diagnostic::new("E102", "comparisons do not chain", file, place(*span), "a second comparison")
+                    .help(help)
+                    .put(gap, format!("and {} ", text(*middle)))
             }
             Self::Whole { what, span } => Diagnostic::new("E102", *what, file, place(*span), "here"),
         }
@@ -131,16 +134,20 @@ impl Mistake {
         match self {
             Self::OpenString { inside, .. } => {
                 let label = Span { start: at.start, end: at.start + 1 };
-                Diagnostic::new("E103", "this string has no end", file, label, "opened here")
-                    .label(file, Span { start: at.end, end: at.end }, "the line ends here, and a string ends on its line")
-                    .help(if *inside {
-                        "add `}\"` where the value and the string end".to_owned()
-                    } else {
-                        format!("add `\"`: {}\"", tail(text(at)))
-                    })
+                let end = Span { start: at.end, end: at.end };
+                let report = Diagnostic::new("E103", "this string has no end", file, label, "opened here");
+                let report = report.label(file, end, "the line ends here, and a string ends on its line");
+                if *inside {
+                    report.help("add `}\"` where the value and the string end").put(end, "}\"")
+                } else {
+                    report.help(format!("add `\"`: {}\"", tail(text(at)))).put(end, "\"")
+                }
             }
             Self::OpenComment { .. } => {
-                Diagnostic::new("E104", "this comment has no end", file, at, "opened here").help("add `*/` where it ends")
+                let line = source[at.start as usize..].lines().next().unwrap_or("");
+                let end = at.start + line.len() as u32;
+                let report = Diagnostic::new("E104", "this comment has no end", file, at, "opened here");
+                report.help("add `*/` where it ends").put(Span { start: end, end }, " */")
             }
             Self::DeepComment { .. } => Self::too_deep(file, at, "comments", 256),
             Self::StrangeSign { .. } => strange_sign(text(at), file, at),
@@ -156,6 +163,7 @@ impl Mistake {
                 };
                 let (before, behind) = (Span { start: piece.start, end: last.end }, Span { start: last.end, end: piece.end });
                 let works = super::is_declaration(&format!("{}{closers}{}", text(before), text(behind)));
+                let report = report.put(Span { start: last.end, end: last.end }, closers.as_str());
                 report.help(if works { format!("add `{closers}` after `{}`", text(*last)) } else { format!("close it with `{closers}`") })
             }
             Self::StrayBracket { inside, .. } => {
@@ -165,9 +173,11 @@ impl Mistake {
                         Diagnostic::new("E102", format!("`{found}` cannot close `{open}`"), file, at, "closes something else")
                             .label(file, span, "opened here")
                             .help(format!("write `{}`", closing(open)))
+                            .put(first_of(at), closing(open))
                     }
                     None => Diagnostic::new("E102", format!("this `{found}` closes nothing"), file, at, "nothing is open here")
-                        .help(format!("delete the `{found}`")),
+                        .help(format!("delete the `{found}`"))
+                        .put(first_of(at), ""),
                 }
             }
             Self::TooDeep { what, limit, .. } => Self::too_deep(file, at, what, *limit),
@@ -175,11 +185,13 @@ impl Mistake {
                 Diagnostic::new("E105", "two declarations on one line", file, *second, "a second declaration starts here")
                     .label(file, *first, "the first one starts here")
                     .help(format!("start a new line before `{}`", text(*second)))
+                    .put(blank_before(source, second.start), "\n")
             }
             Self::NoKeyword { next, binds, .. } => no_keyword(source, file, at, *next, *binds),
             Self::UnitPower { power, .. } => {
                 let (digits, unit) = number::split_unit(text(at));
-                let (whole, power) = (text(Span { start: at.start, end: power.end }), text(*power));
+                let whole_at = Span { start: at.start, end: power.end };
+                let (whole, power) = (text(whole_at), text(*power));
                 Diagnostic::new(
                     "W220",
                     format!("`{whole}` is the square of {digits}{unit}").replace("square", if power == "2" { "square" } else { "cube" }),
@@ -188,6 +200,8 @@ impl Mistake {
                     "the power takes the number along",
                 )
                 .help(format!("write `{digits}{unit}{power}`, or `({digits}{unit})^{power}` if this is meant"))
+                .put(whole_at, format!("{digits}{unit}{power}"))
+                .put(whole_at, format!("({digits}{unit})^{power}"))
             }
             Self::TooLarge { bytes } => Diagnostic::new("E110", format!("the script has {bytes} bytes"), file, at, "too large")
                 .help(format!("the limit is {} MiB; move data to a csv file and `import` it", SOURCE_BYTES >> 20)),
@@ -198,6 +212,17 @@ impl Mistake {
         Diagnostic::new("E109", format!("nested too deep: more than {limit} {what}"), file, at, format!("number {} starts here", limit + 1))
             .help("give the inner parts names of their own with `let`")
     }
+}
+
+/// The first letter of a stretch.
+fn first_of(at: Span) -> Span {
+    Span { start: at.start, end: at.start + 1 }
+}
+
+/// The blanks before a byte.
+fn blank_before(source: &str, byte: u32) -> Span {
+    let before = &source[..byte as usize];
+    Span { start: before.trim_end_matches([' ', '\t']).len() as u32, end: byte }
 }
 
 /// The last forty characters of a text.
@@ -252,7 +277,33 @@ fn strange_sign(sign: &str, file: FileId, at: Span) -> Diagnostic {
             .help("delete it, or put it inside a string");
         }
     };
-    Diagnostic::new("E102", format!("`{sign}` is not part of the language"), file, at, "not expected here").help(help)
+    let report = Diagnostic::new("E102", format!("`{sign}` is not part of the language"), file, at, "not expected here").help(help);
+    match meant_sign(sign) {
+        Some(meant) => report.put(at, meant),
+        None => report,
+    }
+}
+
+/// What a sign of other languages is in this one.
+fn meant_sign(sign: &str) -> Option<&'static str> {
+    Some(match sign {
+        ";" => "",
+        "#" => "//",
+        "!" => "not ",
+        "&&" => "and",
+        "|" | "||" => "or",
+        "**" => "^",
+        "->" | "=>" => ":",
+        "×" | "·" => "*",
+        "÷" => "/",
+        "−" | "–" | "—" => "-",
+        "≤" => "<=",
+        "≥" => ">=",
+        "≠" => "!=",
+        "…" => "..",
+        "°" => "deg",
+        _ => return None,
+    })
 }
 
 /// A character as it can be printed.
@@ -264,11 +315,17 @@ fn bad_number(text: &str, unit: usize, fault: Fault, file: FileId, at: Span) -> 
     let (digits, unit) = text.split_at(unit.min(text.len()));
     let report = |message: String, label: &str| Diagnostic::new("E107", message, file, at, label);
     match fault {
-        Fault::LeadingDot => report(format!("`{text}` is not a number"), "a digit is missing before the dot").help(format!("0{text}")),
+        Fault::LeadingDot => report(format!("`{text}` is not a number"), "a digit is missing before the dot")
+            .help(format!("0{text}"))
+            .put(at, format!("0{text}")),
         Fault::TrailingDot => {
-            report(format!("`{text}` is not a number"), "a digit is missing behind the dot").help(text.replacen('.', ".0", 1))
+            let meant = text.replacen('.', ".0", 1);
+            report(format!("`{text}` is not a number"), "a digit is missing behind the dot").help(meant.clone()).put(at, meant)
         }
-        Fault::Underscore => report(format!("`{text}` is not a number"), "`_` stands between two digits").help(number::repaired(text)),
+        Fault::Underscore => {
+            let meant = number::repaired(text);
+            report(format!("`{text}` is not a number"), "`_` stands between two digits").help(meant.clone()).put(at, meant)
+        }
         Fault::SecondDot => report(format!("`{text}` has two decimal points"), "one number, one dot"),
         Fault::TooLarge => {
             report(format!("`{text}` is too large for a number"), "not finite").help("the largest number is about 1.797e308")
@@ -277,7 +334,7 @@ fn bad_number(text: &str, unit: usize, fault: Fault, file: FileId, at: Span) -> 
             let label = Span { start: at.start + digits.len() as u32, end: at.end };
             let report = Diagnostic::new("E107", format!("`{unit}` is not a unit"), file, label, "no such unit");
             match number::meant(unit) {
-                Some(meant) => report.help(format!("{digits}{meant}")),
+                Some(meant) => report.help(format!("{digits}{meant}")).put(at, format!("{digits}{meant}")),
                 None => report.help("the units are um mm cm m km in ft (also squared and cubed: mm2, m3), deg rad, kg t, kg/m3 and %"),
             }
         }
@@ -290,14 +347,22 @@ fn no_keyword(source: &str, file: FileId, at: Span, next: Option<Span>, binds: b
     if binds {
         // `x = 3`
         return Diagnostic::new("E106", format!("`{word}` is declared without a keyword"), file, at, "a declaration starts with a keyword")
-            .help(format!("let {word} = …, or `point`, `curve`, `surface` for what belongs to the model"));
+            .help(format!("let {word} = …, or `point`, `curve`, `surface` for what belongs to the model"))
+            .put(Span { start: at.start, end: at.start }, "let ");
     }
     let report = Diagnostic::new("E106", format!("`{word}` is not a keyword"), file, at, "no declaration starts with this");
     let two = next.map(|n| source[at.start as usize..n.end as usize].split_whitespace().collect::<Vec<_>>().join(" "));
     let words = || openers().into_iter().map(KeywordDoc::written);
     let found = two.as_deref().filter(|t| t.ends_with(" curve")).and_then(|t| nearest(t, words())).or_else(|| nearest(word, words()));
+    let word_at = match (next, found) {
+        // Both words of `modeling curve`.
+        (Some(next), Some(meant)) if meant.contains(' ') && two.as_deref().is_some_and(|t| t.ends_with(" curve")) => {
+            Span { start: at.start, end: next.end }
+        }
+        _ => at,
+    };
     match found {
-        Some(meant) => report.help(format!("did you mean `{meant}`?")),
+        Some(meant) => report.help(format!("did you mean `{meant}`?")).put(word_at, meant),
         None => report.help(format!("the keywords are {}", words().collect::<Vec<_>>().join(" "))),
     }
 }

@@ -10,6 +10,7 @@
 pub mod ast;
 mod climb;
 mod expected;
+pub mod fixes;
 pub mod keywords;
 mod matching;
 mod mistake;

@@ -3,7 +3,7 @@
 use super::{ANSWER, Answer, ENTRY, Notebook, Part, State, bug_answer, ended};
 use crate::base::fault::Severity;
 use crate::lang::cx::Cx;
-use crate::lang::diag::{Diagnostic, FileId, Label, Sources};
+use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::names::Names;
 use crate::lang::plans::ReportTable;
@@ -143,7 +143,7 @@ impl Notebook {
         let (_, said) = parse(&format!("{head}{entry}"), FileId(0), &mut Names::default());
         let mut sources = Sources::default();
         let file = sources.add(ENTRY, entry);
-        let said: Vec<Diagnostic> = said.into_iter().map(|d| relabelled(d, head.len() as u32, file)).collect();
+        let said: Vec<Diagnostic> = said.iter().map(|d| relabelled(d, head.len() as u32, file)).collect();
         (!said.is_empty()).then(|| Answer { parts: vec![Part::Said(render_all(&said, &sources, self.color))], failed: true, quit: false })
     }
 
@@ -152,7 +152,7 @@ impl Notebook {
         let mut sources = Sources::default();
         sources.add(self.live.name(), &*self.state.text);
         let file = sources.add(ENTRY, entry);
-        (said.into_iter().map(|d| relabelled(d, own, file)).collect(), sources)
+        (said.iter().map(|d| relabelled(d, own, file)).collect(), sources)
     }
 
     /// Takes declarations out of the script.
@@ -195,10 +195,9 @@ pub(super) fn outputs(cx: &Cx<'_>, entered: &[&str]) -> Vec<Part> {
 }
 
 /// Labels behind byte `own` of the main script are moved to the entry.
-fn relabelled(diagnostic: Diagnostic, own: u32, file: FileId) -> Diagnostic {
-    let moved = |l: Label| match l.file == FileId(0) && l.span.start >= own {
-        true => Label { file, span: Span { start: l.span.start - own, end: l.span.end.saturating_sub(own) }, text: l.text },
-        false => l,
-    };
-    Diagnostic { labels: diagnostic.labels.into_iter().map(moved).collect(), ..diagnostic }
+fn relabelled(diagnostic: &Diagnostic, own: u32, file: FileId) -> Diagnostic {
+    diagnostic.moved(|at, span| match at == FileId(0) && span.start >= own {
+        true => (file, Span { start: span.start - own, end: span.end.saturating_sub(own) }),
+        false => (at, span),
+    })
 }
