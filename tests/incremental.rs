@@ -13,6 +13,13 @@ use lofting::session::kept::Kept;
 use lofting::session::run::{Again, Outcome, Task, run, run_again};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
+/// What a run took over: results, and of these the faces of meshes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Reused {
+    all: usize,
+    faces: usize,
+}
+
 /// A folder with the examples' data beside the script.
 struct Folder(PathBuf);
 
@@ -29,7 +36,7 @@ impl Folder {
         Self(folder)
     }
 
-    fn run(&self, text: &str, out: &str, kept: Option<&mut Kept>) -> (String, Vec<(String, Vec<u8>)>, usize) {
+    fn run(&self, text: &str, out: &str, kept: Option<&mut Kept>) -> (String, Vec<(String, Vec<u8>)>, Reused) {
         let script = self.0.join("model.loft");
         let out = self.0.join(out);
         let disk = Disk::new(Some(&script), Some(&out), &[], Outputs::Written).unwrap();
@@ -59,11 +66,16 @@ impl Folder {
             outcome.notes.join("\n"),
             outcome.tolerance
         );
-        (said, files, outcome.reused)
+        (said, files, Reused { all: outcome.reused, faces: outcome.reused_faces })
     }
 
     /// Runs both ways and compares; the number of results that were taken over.
     fn check(&self, text: &str, kept: &mut Kept) -> usize {
+        self.reused(text, kept).all
+    }
+
+    /// The same with what was taken over.
+    fn reused(&self, text: &str, kept: &mut Kept) -> Reused {
         let (cold, cold_files, _) = self.run(text, "cold", None);
         let (warm, warm_files, reused) = self.run(text, "warm", Some(kept));
         if let Some((a, b)) = cold.lines().zip(warm.lines()).find(|(a, b)| a != b) {
@@ -167,4 +179,54 @@ fn what_did_not_change_is_taken_over() {
     assert!(all >= 20, "{all} results were taken over");
     let commented = base.replace("surface ", "// a comment\nsurface ");
     assert_eq!(folder.check(&commented, &mut kept), all);
+}
+
+/// A sheet of 5 × 10 faces whose borders stay; inside one of them a curve is lifted by `lift`. A second mesh has chord and
+/// angle limits, a third is of quads, a fourth of order 2 on three-sided faces.
+fn sheet(lift: f64) -> String {
+    // The mast keeps the size of the model, and with it the tolerance.
+    let mut text = format!("units m\nparam lift = {lift}m\ncurve mast = line((9, 9, 0), (9, 9, 5))\n");
+    for j in 0..=10 {
+        for i in 0..=5 {
+            let at = |i: usize, j: usize| format!("({i}, {j}, 0)");
+            if i < 5 {
+                text += &format!("curve u{i}_{j} = arc({}, {}, through: ({i}.5, {j}, 0.2))\n", at(i, j), at(i + 1, j));
+            }
+            if j < 10 {
+                text += &format!("curve v{i}_{j} = arc({}, {}, through: ({i}, {j}.5, 0.2))\n", at(i, j), at(i, j + 1));
+            }
+        }
+    }
+    text += "curve inner = arc(v2_4.at(0.5), v3_4.at(0.5), through: (2.5, 4.5, 400mm + lift))\n";
+    let mut names = Vec::new();
+    for j in 0..10 {
+        for i in 0..5 {
+            let more = if (i, j) == (2, 4) { ", inner" } else { "" };
+            text += &format!("surface s{i}_{j} = coons(u{i}_{j}, v{}_{j}, u{i}_{}, v{i}_{j}{more})\n", i + 1, j + 1);
+            names.push(format!("s{i}_{j}"));
+        }
+    }
+    let all = names.join(", ");
+    text += "curve slant = line((0, 0, 0), (0.5, -1, 0))\ncurve back = line((0.5, -1, 0), (1, 0, 0))\nsurface beak = coons(u0_0, slant, back)\n";
+    text += &format!("mesh plain of {all} {{ size: 0.5 }}\nmesh close of {all} {{ size: 0.6  chord_error: 10mm  angle_error: 20deg }}\n");
+    text + &format!(
+        "mesh squares of {all} {{ size: 0.5  elements: quads }}\nmesh six of {all}, beak {{ size: 0.5  order: 2 }}\nexport six to \"six.vtu\"\n"
+    )
+}
+
+#[test]
+fn faces_that_did_not_change_are_taken_over() {
+    let folder = Folder::new("faces");
+    let mut kept = Kept::default();
+    // The rounds of one mesh share faces too.
+    let first = folder.reused(&sheet(0.0), &mut kept);
+    assert_eq!(first.all, first.faces);
+    let same = folder.reused(&sheet(0.0), &mut kept);
+    assert_eq!(same.faces, 0, "whole meshes are taken over");
+    let changed = folder.reused(&sheet(0.01), &mut kept);
+    // 49 of each of the first three and 50 of the last one; further rounds meet their faces again.
+    assert!(changed.faces - first.faces >= 49 * 3 + 50, "{first:?} {changed:?}");
+    assert!(changed.all - changed.faces > 160, "{changed:?}");
+    // What was taken back is there as a whole.
+    assert_eq!(folder.reused(&sheet(0.0), &mut kept).faces, 0);
 }

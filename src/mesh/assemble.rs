@@ -13,9 +13,11 @@ use super::limits::{self, Finished, Verdict};
 use super::nodes::Nodes;
 use super::plan::Elements;
 use super::relations::Relations;
+use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Sizing};
 use super::{lines, second_order, shape_check, strips};
+use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
@@ -42,12 +44,12 @@ pub struct Part {
 
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
 /// another, model units.
-pub fn assemble(input: &Input, mut layout: Layout, size: f64, job: &Job) -> Result<Part> {
+pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
     faces::refuse(input, &layout)?;
     lines::refuse_inside(input, &layout)?;
-    let mut sizing = Sizing::new(input, &mut layout, size)?;
+    let mut sizing = Sizing::new(input, &mut layout, size, known)?;
     let limits = faces::limits_of(input);
-    let wishes = wishes(input, &layout, &sizing, &limits);
+    let wishes = wishes(input, &layout, &sizing, &limits, known);
     let mut relations = Relations::new(&layout, &wishes);
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
@@ -60,12 +62,16 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, job: &Job) -> Resu
         refuse_too_many(input, &layout, &relations, &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
         let prepared = prepare(input, &layout, &nodes, &relations, &counts)?;
-        let mesh = fill(input, &layout, &nodes, &prepared, job)?;
+        let border = nodes.points(&layout, &input.plan.points);
+        let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
+        let keys: Vec<Digest> = known.map(key).unwrap_or_default();
+        let keyed = known.map(|known| (known, keys.as_slice()));
+        let mesh = fill(input, border, &prepared, keyed, job)?;
         if !settled {
-            verdicts = limits::check(input, &limits, &mesh, &finished(&layout, &sizing, &prepared, &wishes));
+            verdicts = limits::check(input, &limits, &mesh, &finished(&layout, &sizing, &prepared, &wishes), keyed);
         }
         if settled || verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
-            shape_check::refuse_turned(input, &prepared, &mesh)?;
+            shape_check::refuse_turned(input, &prepared, &mesh, keyed)?;
             sizing.take(&counts);
             let explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
             return Ok(finish(input, Whole { layout, nodes, prepared, sizing }, mesh, explanation));
@@ -77,7 +83,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, job: &Job) -> Resu
 }
 
 /// What the rows of each face want; nothing where all is written and no limit is set.
-fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits) -> Vec<[Wish; 2]> {
+fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, known: Option<&Known>) -> Vec<[Wish; 2]> {
     par::map(layout.faces.len(), |f| {
         let face = &layout.faces[f];
         let no_limit = limits.chord.is_none() && limits.angle.is_none();
@@ -85,7 +91,9 @@ fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits) -> V
             return [Wish::default(); 2];
         }
         let patch = &input.model.patches[face.patch.index()];
-        rows::wishes(&input.model.surfaces[face.surface.index()].surface, patch.u, patch.v, face.size.0, limits)
+        let key = |known: &Known| known.on("wishes", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
+        let surface = &input.model.surfaces[face.surface.index()].surface;
+        recalled(known, |reuse| &reuse.wishes, key, || rows::wishes(surface, patch.u, patch.v, face.size.0, limits))
     })
 }
 
@@ -131,16 +139,36 @@ fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, relations: &Relations,
 /// One face being filled: its parts of the arrays.
 struct Fill<'a> {
     ready: &'a Prepared,
+    key: Option<(&'a Known<'a>, Digest)>,
     nodes: &'a mut [DVec3],
     triangles: &'a mut [[u32; 3]],
     quads: &'a mut [[u32; 4]],
     result: Result<()>,
 }
 
+impl Fill<'_> {
+    fn fill(&mut self, input: &Input, border: &[DVec3]) {
+        if let Some(inside) = self.key.and_then(|(known, key)| known.inside(key))
+            && inside.nodes.len() == self.nodes.len()
+        {
+            self.nodes.copy_from_slice(&inside.nodes);
+            return self.ready.fill(&inside.diagonals, self.triangles, self.quads);
+        }
+        let surface = &input.model.surfaces[self.ready.surface.index()].surface;
+        self.ready.points(surface, self.nodes);
+        let (first, own) = (self.ready.first, &*self.nodes);
+        let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
+        let diagonals = self.ready.diagonals(surface, &node, input.tolerance.point);
+        self.ready.fill(&diagonals, self.triangles, self.quads);
+        if let Some((known, key)) = self.key {
+            known.keep_inside(key, Inside { nodes: self.nodes.to_vec(), diagonals });
+        }
+    }
+}
+
 /// All nodes and elements; faces and rows of large faces on several threads.
-fn fill(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared], job: &Job) -> Result<Mesh> {
+fn fill(input: &Input, mut border: Vec<DVec3>, prepared: &[Prepared], keyed: Option<(&Known, &[Digest])>, job: &Job) -> Result<Mesh> {
     let sum = |f: &dyn Fn(&Prepared) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
-    let mut border = nodes.points(layout, &input.plan.points);
     let on_border = border.len();
     border.reserve_exact(sum(&|p| p.inner));
     border.resize(on_border + sum(&|p| p.inner), DVec3::ZERO);
@@ -150,24 +178,20 @@ fn fill(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared], jo
     let (border, mut inner) = mesh.nodes.split_at_mut(on_border);
     let (border, mut triangles, mut quads) = (&*border, mesh.triangles.as_mut_slice(), mesh.quads.as_mut_slice());
     let mut work = Vec::new();
-    for ready in prepared {
+    for (k, ready) in prepared.iter().enumerate() {
         let own;
         (own, inner) = inner.split_at_mut(ready.inner as usize);
         let (t, q);
         (t, triangles) = triangles.split_at_mut(ready.triangles as usize);
         (q, quads) = quads.split_at_mut(ready.quads as usize);
-        work.push(Fill { ready, nodes: own, triangles: t, quads: q, result: Ok(()) });
+        work.push(Fill { ready, key: keyed.map(|(known, keys)| (known, keys[k])), nodes: own, triangles: t, quads: q, result: Ok(()) });
     }
     job.expect(work.len() as u64);
     par::chunks_mut(&mut work, 1, |_, faces| {
         for face in faces {
             face.result = job.go_on();
             if face.result.is_ok() {
-                let surface = &input.model.surfaces[face.ready.surface.index()].surface;
-                face.ready.points(surface, face.nodes);
-                let (first, own) = (face.ready.first, &*face.nodes);
-                let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
-                face.ready.fill(surface, &node, input.tolerance.point, face.triangles, face.quads);
+                face.fill(input, border);
                 job.advance(1);
             }
         }

@@ -1,5 +1,7 @@
 //! From a plan to a mesh: the entry points for the floors above.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::assemble::{Part, assemble};
@@ -8,10 +10,11 @@ use super::explain::Explanation;
 use super::layout::Layout;
 use super::nodes::Nodes;
 use super::plan::{Method, Plan};
+use super::reuse::{Known, Reuse};
 use super::sizing::Remark;
 use super::{key, sets};
 use crate::base::bbox::Box3;
-use crate::base::digest::Digest;
+use crate::base::digest::{Digest, Digester};
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
@@ -52,7 +55,7 @@ pub struct Built {
 ///
 /// Fails as [`Outline::new`] and [`Outline::build`] do.
 pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
-    let built = Outline::new(input)?.build(input, job)?;
+    let built = Outline::new(input)?.build(input, None, job)?;
     sink.extend(built.remarks.iter().map(|remark| remark.fault(&input.plan.rules)));
     Ok(built)
 }
@@ -61,6 +64,7 @@ pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
 pub struct Outline {
     layouts: Vec<Layout>,
     size: f64,
+    surfaces: BTreeMap<SurfaceId, Digest>,
 }
 
 impl Outline {
@@ -79,23 +83,27 @@ impl Outline {
             let lines = std::iter::once_with(|| Layout::new(input, &[], true));
             patches.iter().map(|p| Layout::new(input, &[*p], false)).chain(lines).collect()
         };
-        Ok(Self { layouts, size })
+        let surfaces = &input.model.surfaces;
+        let digest = |s: SurfaceId| Digester::new("surface").with(&surfaces[s.index()].surface).finish();
+        let surfaces = input.plan.surfaces.iter().map(|(s, _)| (*s, digest(*s))).collect();
+        Ok(Self { layouts, size, surfaces })
     }
 
     /// A digest of all that the mesh depends on, of its content alone: in every run and on every machine the same mesh has
     /// the same key. Where things stand in a script, and what the mesh does not touch, is no part of it.
     pub fn key(&self, input: &Input) -> Digest {
-        key::of(input, &self.layouts, self.size)
+        key::of(input, &self.layouts, self.size, &self.surfaces)
     }
 
-    /// Makes the mesh.
+    /// Makes the mesh, with parts of others in `reuse` and its own left there.
     ///
     /// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
     /// E217 (too many elements), E715 (turned elements).
-    pub fn build(self, input: &Input, job: &Job) -> Result<Built> {
+    pub fn build(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
+        let known = reuse.map(|reuse| Known { reuse, surfaces: &self.surfaces });
         let mut parts: Vec<Part> = Vec::new();
         for layout in self.layouts {
-            parts.push(assemble(input, layout, self.size, job)?);
+            parts.push(assemble(input, layout, self.size, (known.as_ref(), job))?);
         }
         let mut remarks = Vec::new();
         if let Some((first, others)) = parts.split_first_mut() {

@@ -256,21 +256,22 @@ impl Prepared {
         }
     }
 
-    /// Elements by global ids. `node` gives points of border and inner nodes, `even` the distance below which both
-    /// diagonals of a cell are as good.
-    pub fn fill(
-        &self,
-        surface: &Surface,
-        node: &(dyn Fn(u32) -> DVec3 + Sync),
-        even: f64,
-        triangles: &mut [[u32; 3]],
-        quads: &mut [[u32; 4]],
-    ) {
+    /// For each cell of a grid of triangles whether its other diagonal is the better one. `node` gives points of border and
+    /// inner nodes, `even` the distance below which both diagonals of a cell are as good.
+    pub fn diagonals(&self, surface: &Surface, node: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
         match (&self.chart.frame, &self.chart.shape) {
-            (Frame::Grid(frame), Shape::Grid(grid)) => {
-                let diagonals =
-                    if self.elements == Elements::Triangles { mapped::diagonals(grid, frame, surface, node, even) } else { Vec::new() };
-                mapped::fill(frame, self.elements, self.chart.flipped, &diagonals, triangles, quads);
+            (Frame::Grid(frame), Shape::Grid(grid)) if self.elements == Elements::Triangles => {
+                mapped::diagonals(grid, frame, surface, node, even)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Elements by global ids, with these [`Self::diagonals`].
+    pub fn fill(&self, diagonals: &[bool], triangles: &mut [[u32; 3]], quads: &mut [[u32; 4]]) {
+        match (&self.chart.frame, &self.chart.shape) {
+            (Frame::Grid(frame), Shape::Grid(_)) => {
+                mapped::fill(frame, self.elements, self.chart.flipped, diagonals, triangles, quads);
             }
             (Frame::Lattice(frame), Shape::Lattice(lattice)) => {
                 for (slot, t) in triangles.iter_mut().zip(LatticeFrame::triangles(lattice.size())) {

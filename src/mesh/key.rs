@@ -13,15 +13,16 @@ use crate::base::digest::{Content, Digest, Digester};
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 
-/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another.
-pub fn of(input: &Input, layouts: &[Layout], size: f64) -> Digest {
+/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another,
+/// `surfaces` the digests of the plan's surfaces.
+pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<SurfaceId, Digest>) -> Digest {
     let mut to = Digester::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(super::VERSION));
     input.tolerance.tell(&mut to);
     let mut places = BTreeMap::new();
     input.plan.surfaces.iter().enumerate().for_each(|(place, (surface, _))| {
         places.entry(*surface).or_insert(place);
     });
-    let teller = Teller { input, layouts, places };
+    let teller = Teller { input, layouts, surfaces, places };
     teller.plan(size, &mut to);
     layouts.len().tell(&mut to);
     layouts.iter().for_each(|layout| teller.layout(layout, &mut to));
@@ -44,6 +45,7 @@ impl Content for Method {
 struct Teller<'a> {
     input: &'a Input<'a>,
     layouts: &'a [Layout],
+    surfaces: &'a BTreeMap<SurfaceId, Digest>,
     /// Where each surface stands first in the plan.
     places: BTreeMap<SurfaceId, usize>,
 }
@@ -71,7 +73,7 @@ impl Teller<'_> {
         surfaces.len().tell(to);
         for (id, flipped) in surfaces {
             let named = &self.input.model.surfaces[id.index()];
-            (self.places.get(id), *flipped, (&named.name, &named.surface)).tell(to);
+            (self.places.get(id), *flipped, (&named.name, self.surfaces.get(id))).tell(to);
         }
         (curves, points).tell(to);
         rules.len().tell(to);

@@ -9,7 +9,9 @@ use super::data::Mesh;
 use super::edges::Limits;
 use super::faces::{Frame, Prepared};
 use super::layout::Face;
+use super::reuse::{Known, recalled};
 use super::rows::{SIZE_ROOM, Wish};
+use crate::base::digest::{Digest, Digester};
 use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
@@ -66,27 +68,37 @@ pub struct Finished<'a> {
 }
 
 /// The verdict on each face.
-pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished]) -> Vec<Verdict> {
+pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], keyed: Option<(&Known, &[Digest])>) -> Vec<Verdict> {
     par::map(faces.len(), |k| {
         let finished = &faces[k];
-        let surface = &input.model.surfaces[finished.face.surface.index()].surface;
-        let mut verdict = Verdict::FINE;
-        sizes(finished, mesh, &mut verdict);
-        if let Some(limit) = limits.chord {
-            let measured =
-                chord::of_face(surface, &finished.ready.chart, &mesh.triangles[finished.triangles.clone()], &mesh.nodes, input.tolerance);
-            let over = measured * SEEN / limit;
-            if over > 1.0 {
-                let share = directions(finished);
-                verdict.limit = share.map(|dominates| if dominates { over.sqrt().min(2.0) } else { 1.0 });
-                (verdict.broken, verdict.reached) = ("chord_error", measured);
-            }
-        }
-        if let Some(limit) = limits.angle {
-            turns(surface, finished, limit, &mut verdict);
-        }
-        verdict
+        let key = |_: &Known| {
+            let start = Digester::new("verdict").with(&keyed.map(|keyed| keyed.1[k]));
+            start
+                .with(&(limits, finished.face.size.0, (finished.written, finished.wishes, (input.tolerance, finished.ready.chart.flipped))))
+                .finish()
+        };
+        recalled(keyed.map(|keyed| keyed.0), |reuse| &reuse.verdicts, key, || verdict_on(input, limits, mesh, finished))
     })
+}
+
+fn verdict_on(input: &Input, limits: &Limits, mesh: &Mesh, finished: &Finished) -> Verdict {
+    let surface = &input.model.surfaces[finished.face.surface.index()].surface;
+    let mut verdict = Verdict::FINE;
+    sizes(finished, mesh, &mut verdict);
+    if let Some(limit) = limits.chord {
+        let measured =
+            chord::of_face(surface, &finished.ready.chart, &mesh.triangles[finished.triangles.clone()], &mesh.nodes, input.tolerance);
+        let over = measured * SEEN / limit;
+        if over > 1.0 {
+            let share = directions(finished);
+            verdict.limit = share.map(|dominates| if dominates { over.sqrt().min(2.0) } else { 1.0 });
+            (verdict.broken, verdict.reached) = ("chord_error", measured);
+        }
+    }
+    if let Some(limit) = limits.angle {
+        turns(surface, finished, limit, &mut verdict);
+    }
+    verdict
 }
 
 /// Which directions bend enough to be worth refining: the larger one, and the other when it adds half as much.

@@ -25,6 +25,7 @@ pub mod plan;
 pub mod quality;
 pub mod record;
 mod relations;
+pub mod reuse;
 mod rows;
 mod second_order;
 mod sets;

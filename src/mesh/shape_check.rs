@@ -6,6 +6,8 @@ use super::build::Input;
 use super::chart::Shape;
 use super::data::Mesh;
 use super::faces::{Frame, Prepared};
+use super::reuse::{Known, recalled};
+use crate::base::digest::Digest;
 use crate::base::fault::{MeshFault, Result};
 use crate::base::par;
 use crate::surface::Surface;
@@ -13,11 +15,15 @@ use crate::surface::Surface;
 /// Cells of a face that are compared with the surface's normal, along each direction.
 const PROBES: usize = 16;
 
+/// Turned cells of a face: how many, and (u, v) of the first.
+pub type Turned = (u64, (f64, f64));
+
 /// Fails when a face has turned elements, with their number and the first place.
-pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh) -> Result<()> {
+pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh, keyed: Option<(&Known, &[Digest])>) -> Result<()> {
     let found = par::map(prepared.len(), |k| {
         let surface = &input.model.surfaces[prepared[k].surface.index()].surface;
-        turned(surface, &prepared[k], mesh)
+        let key = |_: &Known| keyed.map_or_else(Digest::default, |keyed| keyed.1[k]);
+        recalled(keyed.map(|keyed| keyed.0), |reuse| &reuse.turned, key, || turned(surface, &prepared[k], mesh))
     });
     for (ready, bad) in prepared.iter().zip(found) {
         if let Some((count, uv)) = bad {
@@ -30,7 +36,7 @@ pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh) -> Resul
 }
 
 /// Cells on a coarse selection of rows and columns whose normal stands against the surface's.
-fn turned(surface: &Surface, ready: &Prepared, mesh: &Mesh) -> Option<(u64, (f64, f64))> {
+fn turned(surface: &Surface, ready: &Prepared, mesh: &Mesh) -> Option<Turned> {
     let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.chart.shape, &ready.chart.frame) else {
         return None;
     };

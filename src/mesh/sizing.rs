@@ -5,7 +5,9 @@ use super::counts::share;
 use super::edges::{Limits, least_steps, wanted_steps};
 use super::layout::Layout;
 use super::plan::{Elements, Rule, Target};
+use super::reuse::{Known, recalled_if_sound};
 use super::strips::Stretch;
+use crate::base::digest::Digester;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::origin::Origin;
@@ -81,7 +83,7 @@ fn settle<T>(slot: &mut Option<Ruled<T>>, new: Ruled<T>, key: &'static str, over
 
 impl Sizing {
     /// Decides every stretch of a layout; faces get their size, elements and method.
-    pub fn new(input: &Input, layout: &mut Layout, size: f64) -> Result<Self> {
+    pub fn new(input: &Input, layout: &mut Layout, size: f64, known: Option<&Known>) -> Result<Self> {
         let n = layout.pieces.atoms.len();
         let rules = &input.plan.rules;
         let mut sizing = Self { taken: vec![false; rules.len()], homeless: vec![None; rules.len()], ..Self::default() };
@@ -108,7 +110,14 @@ impl Sizing {
         let shape = shapes(layout);
         let least = par::try_map(n, |k| {
             let bias = bias[k].map_or(1.0, |b| b.value);
-            least_steps(layout, k, bias, &limits, MOST).map(|least| least.max(shape[k]))
+            let atom = &layout.pieces.atoms[k];
+            let key = |_: &Known| {
+                let track = &layout.parts[atom.track].track;
+                Digester::new("steps").with(&(track, atom.s, (bias, &limits))).finish()
+            };
+            // Without a limit there is nothing to find out, and a failure is found out again.
+            let known = known.filter(|_| limits.chord.is_some() || limits.angle.is_some());
+            recalled_if_sound(known, key, || least_steps(layout, k, bias, &limits, MOST)).map(|least| least.max(shape[k]))
         })?;
         for k in 0..n {
             let count = division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });

@@ -99,11 +99,26 @@ impl Network {
     /// Notes and warnings (shared runs N512, near misses W514) go to `sink`. Fails with E506 when it is not clear which
     /// hits are one node, with E401 for a curve of no length, and with what intersection fails with.
     pub fn build(inputs: Vec<Input>, points: &[DVec3], tolerance: &Tolerance, job: &Job, sink: &mut Vec<Fault>) -> Result<Self> {
+        Self::build_after(None, inputs, (points, tolerance), job, sink)
+    }
+
+    /// The same with the contacts of curves that a network `before`, of the same tolerance, holds already: made once and
+    /// copied, under the same names.
+    pub fn build_after(
+        before: Option<&Self>,
+        inputs: Vec<Input>,
+        (points, tolerance): (&[DVec3], &Tolerance),
+        job: &Job,
+        sink: &mut Vec<Fault>,
+    ) -> Result<Self> {
         let mut network = Self { points: points.to_vec(), ..Self::default() };
         for input in inputs {
             network.admit(input, tolerance)?;
         }
-        network.contacts = hits::all(&network.curves, tolerance, job)?;
+        network.contacts = match before {
+            Some(before) => hits::all_after(&network.curves, (&before.curves, &before.contacts), tolerance, job)?,
+            None => hits::all(&network.curves, tolerance, job)?,
+        };
         sink.extend(network.assemble(tolerance)?);
         sink.extend(near_misses(&network.curves, None, tolerance));
         Ok(network)

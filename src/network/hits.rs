@@ -2,6 +2,8 @@
 //!
 //! Pairs are asked in the order of names, so that a contact is the same to the last bit whatever was declared first.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::graph::NetCurve;
@@ -32,10 +34,47 @@ const CHUNK: usize = 256;
 
 /// All contacts of curves, in order of pairs.
 pub fn all(curves: &[NetCurve], tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
+    of_pairs(curves, &near(curves, tolerance), tolerance, job)
+}
+
+/// Pairs whose boxes touch, then curves that may meet themselves.
+fn near(curves: &[NetCurve], tolerance: &Tolerance) -> Vec<(u32, u32)> {
     let boxes: Vec<Box3> = curves.iter().map(|c| c.curve.bbox()).collect();
     let mut pairs = BoxTree::build(&boxes).pairs(tolerance.point);
     pairs.extend((0..curves.len() as u32).filter(|&k| may_meet_itself(&curves[k as usize].curve)).map(|k| (k, k)));
-    of_pairs(curves, &pairs, tolerance, job)
+    pairs
+}
+
+/// The same, with the contacts of pairs that were there before: curves made once and copied, under the same names.
+pub fn all_after(curves: &[NetCurve], before: (&[NetCurve], &[Contact]), tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
+    let (old, contacts) = before;
+    let by_name: BTreeMap<&str, u32> = old.iter().zip(0..).map(|(c, k)| (c.name.as_str(), k)).collect();
+    let same = |c: &NetCurve| by_name.get(c.name.as_str()).copied().filter(|k| old[*k as usize].curve.is(&c.curve));
+    let was: Vec<Option<u32>> = curves.iter().map(same).collect();
+    let unordered = |[a, b]: [u32; 2]| (a.min(b), a.max(b));
+    let mut known: Vec<&Contact> = contacts.iter().collect();
+    // Stable, so that the contacts of a pair keep their order.
+    known.sort_by_key(|c| unordered(c.curves));
+    let pairs = near(curves, tolerance);
+    let is_new = |pair: &&(u32, u32)| was[pair.0 as usize].is_none() || was[pair.1 as usize].is_none();
+    let new: Vec<(u32, u32)> = pairs.iter().filter(is_new).copied().collect();
+    let mut found = of_pairs(curves, &new, tolerance, job)?.into_iter().peekable();
+    let mut all = Vec::with_capacity(contacts.len());
+    for pair in &pairs {
+        if let (Some(a), Some(b)) = (was[pair.0 as usize], was[pair.1 as usize]) {
+            let key = unordered([a, b]);
+            let from = known.partition_point(|c| unordered(c.curves) < key);
+            let own = known[from..].iter().take_while(|c| unordered(c.curves) == key);
+            // The first by name is the same one as before.
+            let now = |k: u32| if k == a { pair.0 } else { pair.1 };
+            all.extend(own.map(|c| Contact { curves: c.curves.map(now), ..**c }));
+        } else {
+            while let Some(contact) = found.next_if(|c| unordered(c.curves) == unordered([pair.0, pair.1])) {
+                all.push(contact);
+            }
+        }
+    }
+    Ok(all)
 }
 
 /// Contacts of one curve with all others and itself.

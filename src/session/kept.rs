@@ -1,8 +1,8 @@
 //! What a session keeps from one run to the next beside values: the stages over everything declared, and what was
 //! measured of their results.
 
+use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -16,6 +16,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::memory::Memory;
 use crate::lang::value::ModuleId;
+use crate::mesh::reuse::Reuse;
 use crate::mesh::sizing::Remark;
 use crate::mesh::{Built, Mesh, record};
 use crate::model::topology::Named;
@@ -29,6 +30,16 @@ const AREAS: usize = 10_000;
 
 /// Runs for which a mesh is kept that none of them asked for.
 const RUNS: u64 = 16;
+
+/// The script and name of a mesh.
+pub(super) type Place = (ModuleId, Arc<str>);
+
+/// The keys of a mesh that was asked for, the last one first, and the run that asked last.
+#[derive(Debug)]
+struct Asked {
+    keys: [Digest; 2],
+    run: u64,
+}
 
 /// Everything kept; [`Default`] before the first run.
 #[derive(Debug, Default)]
@@ -53,8 +64,10 @@ pub(super) struct KeptStages {
     pub meshes: BTreeMap<Digest, KeptMesh>,
     pub areas: BTreeMap<Origin, (Surface, f64)>,
     pub rows: Vec<(Arc<Mesh>, bool, MeshRow)>,
-    /// Meshes that the run asked for.
-    pub asked: BTreeSet<Digest>,
+    /// The last two meshes of each declaration: a change that is taken back costs nothing.
+    asked: BTreeMap<Place, Asked>,
+    /// Parts of the last meshes.
+    pub reuse: Reuse,
     pub cache: Option<Arc<Cache>>,
     run: u64,
 }
@@ -101,14 +114,11 @@ impl KeptStages {
         if let Some(cache) = &self.cache {
             cache.tidy();
         }
+        self.reuse.end_run();
         self.run += 1;
         let Self { meshes, rows, asked, run, .. } = self;
-        for key in std::mem::take(asked) {
-            if let Some(mesh) = meshes.get_mut(&key) {
-                mesh.used = *run;
-            }
-        }
-        meshes.retain(|_, mesh| mesh.used + RUNS > *run);
+        asked.retain(|_, asked| asked.run + RUNS > *run);
+        meshes.retain(|key, _| asked.values().any(|asked| asked.keys.contains(key)));
         rows.retain(|(mesh, ..)| meshes.values().any(|m| Arc::ptr_eq(&m.mesh, mesh)));
     }
 }
@@ -154,20 +164,23 @@ pub(super) struct KeptMesh {
     pub mesh: Arc<Mesh>,
     pub remarks: Vec<Remark>,
     pub lines: Vec<String>,
-    pub used: u64,
 }
 
 impl KeptMesh {
     fn of(built: Built) -> Self {
         let Built { mesh, explanation, remarks } = built;
-        Self { mesh: Arc::new(mesh), remarks, lines: explanation.lines, used: 0 }
+        Self { mesh: Arc::new(mesh), remarks, lines: explanation.lines }
     }
 }
 
 impl KeptStages {
     /// The mesh of a key: of this session, or from the folder, where its faces lie on `surfaces`.
-    pub fn mesh(&mut self, key: Digest, surfaces: &[&Surface]) -> Option<&KeptMesh> {
-        self.asked.insert(key);
+    pub fn mesh(&mut self, place: &Place, key: Digest, surfaces: &[&Surface]) -> Option<&KeptMesh> {
+        let asked = self.asked.entry(place.clone()).or_insert(Asked { keys: [key; 2], run: self.run });
+        asked.run = self.run;
+        if asked.keys[0] != key {
+            asked.keys = [key, asked.keys[0]];
+        }
         if let Entry::Vacant(slot) = self.meshes.entry(key)
             && let Some(cache) = &self.cache
             && let Some(built) = cache.get("mesh", key, |bytes| record::read(bytes, surfaces))

@@ -72,8 +72,10 @@ pub struct Outcome {
     pub interrupted: bool,
     /// Something that cannot happen did.
     pub bug: bool,
-    /// Declarations and stages whose results were taken over from the run before.
+    /// Declarations, stages and faces of meshes whose results were taken over from the run before.
     pub reused: usize,
+    /// Of these the faces of meshes that are otherwise new.
+    pub reused_faces: usize,
     /// Results that came from the folder of `--cache`.
     pub from_cache: usize,
 }
@@ -112,7 +114,7 @@ pub fn run_again(task: &Task, disk: &Disk, job: &Job, again: Again) -> Outcome {
     let mut cx = Cx::new(disk, &stages, job);
     cx.recall_from(memory);
     let (mut outcome, memory) = Run { light, ..Run::new(task, cx, disk, &stages) }.whole(look);
-    outcome.reused = memory.reused() + stages.reused();
+    (outcome.reused, outcome.reused_faces) = (memory.reused() + stages.reused(), stages.reused_faces());
     let mut stages = stages.into_kept();
     outcome.from_cache = stages.cache.as_ref().map_or(0, |cache| cache.found()) - found;
     stages.tidy();
@@ -351,6 +353,7 @@ impl<'r> Run<'r> {
             interrupted,
             bug,
             reused: 0,
+            reused_faces: 0,
             from_cache: 0,
         };
         (outcome, self.cx.into_memory())

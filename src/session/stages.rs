@@ -24,7 +24,7 @@ use crate::network::snap::{SnapEnd, snap};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
-use super::kept::{KeptMesh, KeptModel, KeptNetwork, KeptStages};
+use super::kept::{KeptMesh, KeptModel, KeptNetwork, KeptStages, Place};
 use super::report::MeshRow;
 use super::{collect, plan};
 
@@ -41,6 +41,7 @@ struct Found {
     notes: Vec<String>,
     mesh_seconds: f64,
     reused: usize,
+    reused_faces: usize,
 }
 
 impl<'c> Stages<'c> {
@@ -68,9 +69,15 @@ impl<'c> Stages<'c> {
         self.found().reused += 1;
     }
 
-    /// Stages that were taken over from the run before.
+    /// Stages and faces that were taken over from the run before.
     pub fn reused(&self) -> usize {
-        self.found().reused
+        let found = self.found();
+        found.reused + found.reused_faces
+    }
+
+    /// Faces of new meshes that were taken over.
+    pub fn reused_faces(&self) -> usize {
+        self.found().reused_faces
     }
 
     fn found(&self) -> MutexGuard<'_, Found> {
@@ -157,7 +164,11 @@ impl Pipeline for Stages<'_> {
         }
         let mut said = Vec::new();
         let again = self.kept.as_ref().map(|_| inputs.clone());
-        let network = Arc::new(Network::build(inputs, &points, &tolerance, cx.job, &mut said)?);
+        let before = self.kept().and_then(|kept| {
+            let before = kept.networks.get(&module).filter(|before| before.tolerance == tolerance);
+            before.map(|before| before.network.clone())
+        });
+        let network = Arc::new(Network::build_after(before.as_deref(), inputs, (&points, &tolerance), cx.job, &mut said)?);
         say_all(cx, &said);
         if let (Some(mut kept), Some(inputs)) = (self.kept(), again) {
             kept.networks.insert(module, KeptNetwork { inputs, points, tolerance, network: network.clone(), said });
@@ -187,7 +198,7 @@ impl Pipeline for Stages<'_> {
         let mut sink = Vec::new();
         let (plan, Scene { model, network }) = plan::of(cx, module, spec, &mut sink)?;
         let input = mesh::Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance };
-        let made = self.made(&input, cx.job);
+        let made = self.made(&input, (module, spec.name.clone()), cx.job);
         self.found().mesh_seconds += (self.clock)() - start;
         // What the plan has to say comes first, also when the mesh fails.
         let made = made.inspect_err(|_| say_all(cx, &sink))?;
@@ -207,22 +218,27 @@ struct Made {
 
 impl Stages<'_> {
     /// The mesh of a plan: one that was made before, or a new one.
-    fn made(&self, input: &mesh::Input, job: &Job) -> Result<Made, Fault> {
+    fn made(&self, input: &mesh::Input, place: Place, job: &Job) -> Result<Made, Fault> {
         let outline = mesh::Outline::new(input)?;
         let of = |kept: &KeptMesh| Made { mesh: kept.mesh.clone(), remarks: kept.remarks.clone(), lines: kept.lines.clone() };
         let Some(kept) = &self.kept else {
-            let mesh::Built { mesh, explanation, remarks } = outline.build(input, job)?;
+            let mesh::Built { mesh, explanation, remarks } = outline.build(input, None, job)?;
             return Ok(Made { mesh: Arc::new(mesh), remarks, lines: explanation.lines });
         };
         let kept = || kept.lock().unwrap_or_else(PoisonError::into_inner);
         let key = outline.key(input);
         let surfaces: Vec<&Surface> = input.plan.surfaces.iter().map(|(id, _)| &input.model.surfaces[id.index()].surface).collect();
-        if let Some(before) = kept().mesh(key, &surfaces) {
+        if let Some(before) = kept().mesh(&place, key, &surfaces) {
             self.count_reused();
             return Ok(of(before));
         }
-        let built = outline.build(input, job)?;
-        Ok(of(kept().keep_mesh(key, built, &surfaces)))
+        let reuse = std::mem::take(&mut kept().reuse);
+        let faces = reuse.faces();
+        let built = outline.build(input, Some(&reuse), job);
+        self.found().reused_faces += reuse.faces() - faces;
+        let mut kept = kept();
+        kept.reuse = reuse;
+        Ok(of(kept.keep_mesh(key, built?, &surfaces)))
     }
 }
 

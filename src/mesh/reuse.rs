@@ -1,0 +1,186 @@
+//! Parts of meshes that were made before: divisions of stretches, and faces with what was measured of them.
+//!
+//! Every part has a key of all that it is made from, by content, so that one that is taken over is bit by bit the one
+//! that would be made.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+
+use super::chart::{Grid, Lattice, Shape};
+use super::edges::Limits;
+use super::faces::{Frame, Prepared};
+use super::limits::Verdict;
+use super::rows::Wish;
+use super::shape_check::Turned;
+use super::trilateral::Blocks;
+use crate::base::digest::{Content, Digest, Digester};
+use crate::base::fault::Result;
+use crate::model::SurfaceId;
+
+/// Runs that make meshes for which a part is kept that none of them used.
+const RUNS: u64 = 4;
+
+/// Parts of one kind by their keys, with the run that used each last.
+#[derive(Debug)]
+pub struct Store<T>(Mutex<BTreeMap<Digest, (T, u64)>>);
+
+impl<T> Default for Store<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T: Clone> Store<T> {
+    fn find(&self, key: Digest, run: u64) -> Option<T> {
+        let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let part = parts.get_mut(&key)?;
+        part.1 = run;
+        Some(part.0.clone())
+    }
+
+    fn keep(&self, key: Digest, part: T, run: u64) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, (part, run));
+    }
+
+    fn tidy(&self, run: u64) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|_, part| part.1 + RUNS > run);
+    }
+}
+
+/// The inside of a face.
+#[derive(Clone, Debug, Default)]
+pub struct Inside {
+    /// Points of its inner nodes.
+    pub nodes: Vec<DVec3>,
+    /// For each cell of a grid of triangles whether its other diagonal was taken.
+    pub diagonals: Vec<bool>,
+}
+
+/// Parts of the last meshes.
+#[derive(Debug, Default)]
+pub struct Reuse {
+    pub(super) steps: Store<u32>,
+    pub(super) wishes: Store<[Wish; 2]>,
+    pub(super) insides: Store<Arc<Inside>>,
+    pub(super) verdicts: Store<Verdict>,
+    pub(super) turned: Store<Option<Turned>>,
+    run: u64,
+    worked: AtomicBool,
+    faces: AtomicUsize,
+}
+
+impl Reuse {
+    /// Ends a run; when it made meshes, what was not used for long is forgotten.
+    pub fn end_run(&mut self) {
+        let Self { steps, wishes, insides, verdicts, turned, run, worked, faces: _ } = self;
+        if !std::mem::take(worked.get_mut()) {
+            return;
+        }
+        *run += 1;
+        steps.tidy(*run);
+        wishes.tidy(*run);
+        insides.tidy(*run);
+        verdicts.tidy(*run);
+        turned.tidy(*run);
+    }
+
+    /// Faces whose inside was taken over so far.
+    pub fn faces(&self) -> usize {
+        self.faces.load(Ordering::Relaxed)
+    }
+}
+
+/// What is known while a mesh is made: parts of others, and the digests of the surfaces.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// Parts made before, and the place for new ones.
+    pub reuse: &'a Reuse,
+    /// Digests of the surfaces of the plan.
+    pub surfaces: &'a BTreeMap<SurfaceId, Digest>,
+}
+
+impl Known<'_> {
+    /// Begins the key of something on a surface.
+    pub fn on(&self, what: &str, surface: SurfaceId) -> Digester {
+        Digester::new(what).with(&self.surfaces.get(&surface))
+    }
+
+    /// The inside of a face, when it was made before.
+    pub fn inside(&self, key: Digest) -> Option<Arc<Inside>> {
+        let found = self.reuse.insides.find(key, self.reuse.run)?;
+        self.reuse.faces.fetch_add(1, Ordering::Relaxed);
+        self.reuse.worked.store(true, Ordering::Relaxed);
+        Some(found)
+    }
+
+    /// Keeps the inside of a face.
+    pub fn keep_inside(&self, key: Digest, inside: Inside) {
+        self.reuse.worked.store(true, Ordering::Relaxed);
+        self.reuse.insides.keep(key, Arc::new(inside), self.reuse.run);
+    }
+
+    /// The key of a face: its surface, where its nodes lie, and the points of its border. `border` are the points of all
+    /// nodes on borders.
+    pub fn face(&self, ready: &Prepared, border: &[DVec3], even: f64) -> Digest {
+        let mut to = self.on("face", ready.surface);
+        (&ready.chart.shape, ready.elements, even).tell(&mut to);
+        let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).tell(&mut to));
+        match &ready.chart.frame {
+            Frame::Grid(frame) => frame.sides.iter().for_each(|side| points(side)),
+            Frame::Lattice(frame) => frame.sides.iter().for_each(|side| points(side)),
+            Frame::Blocks(places) => points(&places[ready.inner as usize..]),
+        }
+        if let Frame::Grid(frame) = &ready.chart.frame {
+            frame.poles.tell(&mut to);
+        }
+        to.finish()
+    }
+}
+
+crate::content!(Grid { u, v, sides, straight });
+crate::content!(Lattice { sides });
+crate::content!(Blocks { uv, inner, quads, sides });
+crate::content!(Limits { chord, angle });
+crate::content!(Wish { size, least, length, bend });
+
+impl Content for Shape {
+    fn tell(&self, to: &mut Digester) {
+        match self {
+            Self::Grid(grid) => (0u8, grid).tell(to),
+            Self::Lattice(lattice) => (1u8, lattice).tell(to),
+            Self::Blocks(blocks) => (2u8, blocks).tell(to),
+        }
+    }
+}
+
+/// The steps found before under the key, or what `make` finds; failures are not kept.
+pub fn recalled_if_sound(known: Option<&Known>, key: impl FnOnce(&Known) -> Digest, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
+    let Some(known) = known else { return make() };
+    let (key, run) = (key(known), known.reuse.run);
+    if let Some(found) = known.reuse.steps.find(key, run) {
+        return Ok(found);
+    }
+    let made = make()?;
+    known.reuse.steps.keep(key, made, run);
+    Ok(made)
+}
+
+/// What was found before under the key, or what `make` gives; without anything known no key is made.
+pub fn recalled<T: Clone>(
+    known: Option<&Known>,
+    store: impl Fn(&Reuse) -> &Store<T>,
+    key: impl FnOnce(&Known) -> Digest,
+    make: impl FnOnce() -> T,
+) -> T {
+    let Some(known) = known else { return make() };
+    let (key, run) = (key(known), known.reuse.run);
+    if let Some(found) = store(known.reuse).find(key, run) {
+        return found;
+    }
+    let made = make();
+    store(known.reuse).keep(key, made.clone(), run);
+    made
+}
