@@ -123,20 +123,21 @@ fn hash(text: &str) -> u32 {
 }
 
 /// The candidate that was probably meant by `word`: the fewest letters wrong, at most a third of them (two swapped
-/// neighbours count as one); of two equally near the first. Words that differ in case alone are nearest.
+/// neighbours count as one); of two equally near the one that begins like it for longer, then the first. Words that differ in case alone are nearest.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: Vec<char> = word.chars().take(64).collect();
     let allowed = wanted.len() / 3;
-    let mut best: Option<(usize, &str)> = None;
+    let mut best: Option<((usize, usize), &str)> = None;
     for candidate in candidates {
-        let limit = best.map_or(allowed * 2 + 2, |(d, _)| d);
+        let limit = best.map_or((allowed * 2 + 2, 0), |(rank, _)| rank);
         let letters: Vec<char> = candidate.chars().take(65).collect();
         if letters.len().abs_diff(wanted.len()) > allowed || candidate == word {
             continue;
         }
-        let distance = distance(&wanted, &letters);
-        if distance < limit {
-            best = Some((distance, candidate));
+        let alike = wanted.iter().zip(&letters).take_while(|(a, b)| a == b).count();
+        let rank = (distance(&wanted, &letters), wanted.len() - alike);
+        if rank < limit {
+            best = Some((rank, candidate));
         }
     }
     best.map(|(_, candidate)| candidate)
@@ -200,5 +201,8 @@ mod tests {
         assert_eq!(near("span"), None);
         assert_eq!(near("B"), None);
         assert_eq!(near("nroth"), Some("north"));
+        for order in [["min", "len", "line"], ["line", "len", "min"]] {
+            assert_eq!(nearest("lin", order.into_iter()), Some("line"));
+        }
     }
 }
