@@ -115,6 +115,23 @@ impl Editor {
         }
     }
 
+    /// What is said of a version once its meshes are made as well.
+    fn settled(&mut self, uri: &str, version: i64) -> Vec<Value> {
+        let started = Instant::now();
+        loop {
+            let fits = |n: &&Value| {
+                n["method"] == "textDocument/publishDiagnostics" && n["params"]["uri"] == uri && n["params"]["version"] == version
+            };
+            // First values alone, then all.
+            if let Some(found) = self.notes.iter().filter(fits).nth(1) {
+                return found["params"]["diagnostics"].as_array().unwrap().clone();
+            }
+            assert!(started.elapsed() < PATIENCE, "version {version} did not settle");
+            let message = self.receive();
+            self.notes.push(message);
+        }
+    }
+
     fn open(&mut self, uri: &str, text: &str) {
         self.tell("textDocument/didOpen", json!({ "textDocument": { "uri": uri, "languageId": "loft", "version": 1, "text": text } }));
     }
@@ -418,4 +435,137 @@ fn the_grammar_of_editors_is_current() {
     assert!(said.stdout == kept, "the grammar is not current: LOFT_ACCEPT=1 cargo test --test lsp grammar");
     let package: Value = serde_json::from_slice(&fs::read(path.parent().unwrap().with_file_name("package.json")).unwrap()).unwrap();
     assert_eq!(package["version"], env!("CARGO_PKG_VERSION"));
+}
+
+/// Numbers that come one after another, the same in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % n.max(1) as u64) as usize
+    }
+}
+
+/// Line and UTF-16 column of a byte, counted as the protocol says, letter by letter.
+fn position(text: &str, byte: usize) -> Value {
+    let (mut line, mut column) = (0, 0);
+    let mut letters = text[..byte].chars().peekable();
+    while let Some(c) = letters.next() {
+        let ends = c == '\n' || c == '\r' && letters.peek() != Some(&'\n') && !(letters.peek().is_none() && text[byte..].starts_with('\n'));
+        (line, column) = if ends { (line + 1, 0) } else { (line, column + c.len_utf16()) };
+    }
+    json!({ "line": line, "character": column })
+}
+
+/// Codes and places of all that a run from nothing says about a text.
+fn said_from_nothing(text: &str) -> Vec<(String, Value)> {
+    use lofting::base::job::Job;
+    use lofting::session::disk::{Disk, Outputs};
+    use lofting::session::run::{Task, run};
+    let disk = Disk::new(None, None, &[], Outputs::Counted).unwrap();
+    let task = Task {
+        name: "edited.loft",
+        text: text.as_bytes(),
+        sets: &[],
+        strict: false,
+        keep_going: false,
+        full: false,
+        picture: None,
+        clock: &|| 0.0,
+    };
+    let outcome = lofting::session::guard::guarded(|| run(&task, &disk, &Job::new())).unwrap();
+    let place = |d: &lofting::lang::diag::Diagnostic| position(text, d.labels.first().map_or(0, |l| l.span.start as usize));
+    outcome.diagnostics.iter().map(|d| (d.code.0.to_owned(), place(d))).collect()
+}
+
+/// Things that are typed.
+const TYPED: [&str; 24] = [
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    "\"",
+    "/*",
+    "*/",
+    "// ",
+    "\n",
+    "\r\n",
+    "😀",
+    "지붕",
+    " = ",
+    ", ",
+    ": ",
+    "let k = 2m\n",
+    "south",
+    "-",
+    "3",
+    "curve ",
+    "check area(roof) > 1m2\n",
+    "on south { count: 3 }",
+];
+
+/// Random edits in bursts, as fast as they can be sent; when the text rests, what is said of it is what a run from
+/// nothing says. `LOFT_EDITS` sets how many.
+#[test]
+fn random_edits_leave_nothing_stale() {
+    let edits = std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
+    let (mut editor, mut dice, uri) = (Editor::start(), Dice(7), "untitled:edited.loft");
+    editor.open(uri, MODEL);
+    let (mut text, mut version, mut sound) = (MODEL.to_owned(), 1, 0);
+    for burst in 0..edits / 20 {
+        for k in 0..20 {
+            let mut changes = Vec::new();
+            if k == 0 && burst % 3 > 0 {
+                text = MODEL.to_owned();
+                changes.push(json!({ "text": text }));
+            }
+            let at = |dice: &mut Dice, text: &str| {
+                let byte = dice.below(text.len() + 1);
+                (byte..=text.len()).find(|b| text.is_char_boundary(*b)).unwrap()
+            };
+            // The two letters of a line end are one place for editors.
+            let apart =
+                |text: &str, byte: usize| if text[..byte].ends_with('\r') && text[byte..].starts_with('\n') { byte - 1 } else { byte };
+            let from = apart(&text, at(&mut dice, &text));
+            let mut to = from;
+            if dice.below(3) == 0 {
+                to = apart(&text, (from + dice.below(12)).min(text.len()));
+                to = (to..=text.len()).find(|b| text.is_char_boundary(*b)).unwrap();
+            }
+            // One of three bursts undoes what it did, so that sound models are among those compared.
+            let put = TYPED[dice.below(TYPED.len())];
+            let range = json!({ "start": position(&text, from), "end": position(&text, to) });
+            changes.push(json!({ "range": range, "text": put }));
+            let before = text.clone();
+            text.replace_range(from..to, put);
+            if burst % 3 == 2 {
+                changes.push(json!({ "text": before }));
+                text = before;
+            }
+            version += 1;
+            let params = json!({ "textDocument": { "uri": uri, "version": version }, "contentChanges": changes });
+            editor.tell("textDocument/didChange", params);
+            if dice.below(4) == 0 {
+                let method = ["completion", "hover", "signatureHelp", "definition"][dice.below(4)];
+                editor.next += 1;
+                let params = json!({ "textDocument": { "uri": uri }, "position": position(&text, from) });
+                let id = editor.next;
+                editor.send(&json!({ "jsonrpc": "2.0", "id": id, "method": format!("textDocument/{method}"), "params": params }));
+            }
+        }
+        let said = editor.settled(uri, version);
+        let row = |d: &Value| (d["code"].as_str().unwrap().to_owned(), d["range"]["start"].clone());
+        let (mut said, mut wanted) = (said.iter().map(row).collect::<Vec<_>>(), said_from_nothing(&text));
+        let order = |a: &(String, Value), b: &(String, Value)| a.0.cmp(&b.0).then(a.1.to_string().cmp(&b.1.to_string()));
+        said.sort_by(order);
+        wanted.sort_by(order);
+        assert_eq!(said, wanted, "burst {burst}:\n{text}");
+        sound += usize::from(said.is_empty());
+        editor.notes.clear();
+    }
+    assert!(sound * 10 > edits / 20, "only {sound} sound models were compared");
+    editor.stop();
 }
