@@ -532,8 +532,8 @@ fn random_edits_leave_nothing_stale() {
             let from = apart(&text, at(&mut dice, &text));
             let mut to = from;
             if dice.below(3) == 0 {
-                to = apart(&text, (from + dice.below(12)).min(text.len()));
-                to = (to..=text.len()).find(|b| text.is_char_boundary(*b)).unwrap();
+                to = (from + dice.below(12)).min(text.len());
+                to = apart(&text, (to..=text.len()).find(|b| text.is_char_boundary(*b)).unwrap());
             }
             // One of three bursts undoes what it did, so that sound models are among those compared.
             let put = TYPED[dice.below(TYPED.len())];
