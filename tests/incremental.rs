@@ -143,8 +143,12 @@ fn edited(text: &str, kind: u8, place: usize, amount: u32) -> String {
 #[test]
 fn random_edits_of_the_examples_give_what_a_fresh_run_gives() {
     let folder = Folder::new("edits");
-    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(2);
-    for name in ["porch.loft", "barrel_vault.loft", "tank.loft", "canopy.loft", "wing.loft", "greenhouse.loft"] {
+    const EXAMPLES: &[&str] = &["porch.loft", "barrel_vault.loft", "tank.loft", "canopy.loft", "wing.loft", "greenhouse.loft"];
+    // Sequences of edits in all; `.ci/run` asks for 200.
+    let wanted: u32 = std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let cases = wanted.div_ceil(EXAMPLES.len() as u32);
+    let sequences = std::cell::Cell::new(0);
+    for name in EXAMPLES {
         let base = example(name);
         let config = Config { cases, max_shrink_iters: 40, failure_persistence: None, ..Config::default() };
         let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
@@ -152,6 +156,7 @@ fn random_edits_of_the_examples_give_what_a_fresh_run_gives() {
         let edits = proptest::collection::vec((0u8..8, 0usize..64, 0u32..100), 1..6);
         runner
             .run(&edits, |edits| {
+                sequences.set(sequences.get() + 1);
                 let mut kept = Kept::default();
                 let mut states = vec![base.clone()];
                 folder.check(&base, &mut kept);
@@ -166,6 +171,7 @@ fn random_edits_of_the_examples_give_what_a_fresh_run_gives() {
             })
             .unwrap();
     }
+    assert!(sequences.get() >= wanted, "{} sequences of edits", sequences.get());
 }
 
 #[test]
