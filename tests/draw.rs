@@ -313,6 +313,26 @@ fn render_draws_what_is_sound_and_the_same_with_any_threads() {
     assert!(status == 1 && said.contains("E201") && said.contains("`rof`"), "{said}");
 }
 
+/// What to draw is said by names and by paths of the script; a wrong path is told without a place in it.
+#[test]
+fn paths_are_drawn() {
+    let script = "units m\ncurve ribs for i in 0..3 = line((i, 0, 0), (i, 2, 0))\nsurface roof = ruled(ribs[0], ribs[2])";
+    let drawn = |of: &[&str]| {
+        let (status, said, folder) = loft("path", script, &[&["render", "model.loft", "-o", "a.png"], of].concat());
+        assert_eq!(status, 0, "{said}");
+        std::fs::read(folder.join("a.png")).unwrap()
+    };
+    let titled = |of: &str| drawn(&["--of", of, "--title", "a", "--no-borders", "--bare"]);
+    assert!(titled("roof.patches[0]") == titled("roof.patches[-1]"));
+    assert!(titled("ribs[0]") != titled("roof"));
+    assert!(drawn(&["--of", "roof"]) != drawn(&["--of", "roof", "--zoom", "ribs[1].start"]));
+    for (path, words) in [("ribs[7]", "E215"), ("ribs[", "E102"), ("rib[0]", "E201"), ("len(ribs)", "E805")] {
+        let (status, said, _) = loft("path", script, &["render", "model.loft", "-o", "a.png", "--of", path]);
+        assert_eq!(status, 1, "{said}");
+        assert!(said.starts_with(words) && said.matches(" × ").count() == 1 && !said.contains("asked_of"), "{said}");
+    }
+}
+
 /// How far a picture of the guide may be from what its command draws: share of pixels that differ visibly.
 const ALIKE: f64 = 0.03;
 

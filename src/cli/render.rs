@@ -38,11 +38,14 @@ fn arguments(command: clap::Command) -> clap::Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("The file to write; its ending, png or svg, chooses the format"),
         )
-        .arg(text("of", "NAME", "What to draw, `network` too [default: everything]").action(ArgAction::Append))
+        .arg(
+            text("of", "THING", "What to draw: a name, `network`, `ribs[3]`, `roof.patches[0]` [default: everything]")
+                .action(ArgAction::Append),
+        )
         .arg(text("view", "VIEW", "").help(format!("{number} [default: isometric]\n[words: {views}]")).allow_hyphen_values(true))
         .arg(text("up", "X,Y,Z", "Direction that is up in the picture [default: z]").allow_hyphen_values(true))
         .arg(text("shade", "SHADE", "What colours tell [default: plain]").value_parser(SHADES.to_vec()))
-        .arg(text("zoom", "NAME", "What fills the picture [default: everything drawn]").action(ArgAction::Append))
+        .arg(text("zoom", "THING", "What fills the picture [default: everything drawn]").action(ArgAction::Append))
         .arg(text("size", "WxH", "Pixels across and down [default: 1200x800]"))
         .arg(text("title", "TEXT", "Words above the picture [default: the model's name]"))
         .arg(flag("perspective", "Near things are larger"))

@@ -12,6 +12,7 @@ pub mod kept;
 pub mod live;
 pub mod notebook;
 mod picture_names;
+mod picture_paths;
 pub mod pictures;
 mod plan;
 pub mod reference;

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::disk::Outputs;
 use super::picture_names as names;
+use super::picture_paths::{ASKED, is_name};
 use super::report::OutputRow;
 use super::run::Wanted;
 use super::shades;
@@ -322,8 +323,9 @@ fn add_network(drawing: &mut Drawing, network: &Network, stage: &Stage) {
 /// Everything is its meshes, the surfaces that none of them covers, and its curves; without faces the network.
 pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Box<Diagnostic>> {
     let mut spec = wanted.spec.clone();
-    spec.things = values_of(cx, &wanted.names)?;
-    spec.zoom = values_of(cx, &wanted.zoom)?;
+    let mut asked = 0;
+    spec.things = values_of(cx, &wanted.names, &mut asked)?;
+    spec.zoom = values_of(cx, &wanted.zoom, &mut asked)?;
     spec.named = wanted.names.join(", ");
     if wanted.names.is_empty() {
         everything(cx, &mut spec);
@@ -331,16 +333,20 @@ pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Box<Diagnost
     Ok(spec)
 }
 
-/// Things by their names in the script; E201 for one that is not declared, E805 for one that cannot be drawn.
-fn values_of(cx: &mut Cx, names: &[String]) -> Result<Vec<(Value, Origin)>, Box<Diagnostic>> {
+/// Things by their names and paths in the script, `asked` paths of which were met before; E201 for one that is not declared, E805 for one that cannot be drawn.
+fn values_of(cx: &mut Cx, names: &[String], asked: &mut usize) -> Result<Vec<(Value, Origin)>, Box<Diagnostic>> {
     let mut out = Vec::new();
     for name in names {
         if name == "network" {
             out.push((Value::Network(ModuleId::MAIN), Origin::NONE));
             continue;
         }
-        let Some(value) = cx.value_of(name) else {
-            let failed = cx.names.find(name).is_some();
+        let hidden = (!is_name(name)).then(|| {
+            *asked += 1;
+            format!("{ASKED}{}", *asked - 1)
+        });
+        let Some(value) = cx.value_of(hidden.as_ref().unwrap_or(name)) else {
+            let failed = hidden.is_some() || cx.names.find(name).is_some();
             let text = if failed { format!("`{name}` has no value to draw") } else { format!("`{name}` is not defined") };
             return Err(Diagnostic::without_place("E201", text).help("a name that the script declares, or `network`").into());
         };

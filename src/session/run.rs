@@ -6,6 +6,7 @@ use super::collect;
 use super::disk::{Disk, Outputs};
 use super::export;
 use super::kept::Kept;
+use super::picture_paths;
 use super::pictures;
 use super::report::{OutputRow, Report, Timings, VERSION};
 use super::stages::Stages;
@@ -164,6 +165,14 @@ impl<'r> Run<'r> {
         let clock = self.task.clock;
         let start = clock();
         let name = if self.task.name == "-" { "<stdin>" } else { self.task.name };
+        let text = match self.task.picture.map_or(Ok(text.to_owned()), |wanted| picture_paths::with_paths(text, wanted)) {
+            Ok(text) => text,
+            Err(said) => {
+                self.said = Some(*said);
+                text.to_owned()
+            }
+        };
+        let text = text.as_str();
         self.cx.load(&Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets });
         self.report.units = self.cx.unit().name.to_owned();
         let parsed = clock();
@@ -300,7 +309,7 @@ impl<'r> Run<'r> {
 
     /// The one picture that was asked for.
     fn picture(&mut self, wanted: &Wanted) {
-        if self.cx.job.go_on().is_err() {
+        if self.cx.job.go_on().is_err() || self.said.is_some() {
             return;
         }
         let model = self.model_name();
@@ -317,7 +326,8 @@ impl<'r> Run<'r> {
     fn finish(mut self, said: Option<Diagnostic>) -> (Outcome, Memory) {
         let interrupted = self.cx.job.go_on().is_err();
         let mut diagnostics = self.cx.finish();
-        diagnostics.extend(said.or(self.said.take()));
+        let asked = self.task.picture.is_some_and(|wanted| picture_paths::about_paths(&mut diagnostics, wanted, self.task.text.len()));
+        diagnostics.extend(said.or(self.said.take()).filter(|_| !asked));
         let wrong = |d: &Diagnostic| d.severity() == Severity::Error || (self.task.strict && d.severity() == Severity::Warning);
         let mut ok = !diagnostics.iter().any(wrong) && self.report.checks.iter().all(|c| c.pass) && !interrupted;
         if let Some(what) = self.bug {
