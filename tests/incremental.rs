@@ -231,7 +231,7 @@ fn faces_that_did_not_change_are_taken_over() {
     assert_eq!(same.faces, 0, "whole meshes are taken over");
     let changed = folder.reused(&sheet(0.01), &mut kept);
     // 49 of each of the first three and 50 of the last one; further rounds meet their faces again.
-    assert!(changed.faces - first.faces >= 49 * 3 + 50, "{first:?} {changed:?}");
+    assert!(changed.faces >= 49 * 3 + 50 && first.faces < 49 * 3, "{first:?} {changed:?}");
     assert!(changed.all - changed.faces > 160, "{changed:?}");
     // What was taken back is there as a whole.
     assert_eq!(folder.reused(&sheet(0.0), &mut kept).faces, 0);
