@@ -7,6 +7,8 @@ use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY, LENGTH_FLOOR};
 
 /// A panel is halved at most this often.
 const DEPTH: u32 = 40;
+/// Panels for each span at most: where rounding is all there is, halving would never end.
+const PANELS: usize = 1 << 12;
 /// Newton corrections before the bracket's middle is taken.
 const ROUNDS: usize = 60;
 
@@ -40,6 +42,7 @@ impl Lengths {
         let mut table = Self { t: vec![splits[0]], s: vec![0.0], inside: Vec::new(), cusps: Vec::new(), stalled: None };
         let mut open = Vec::new();
         for span in splits.windows(2) {
+            let most = table.t.len() + PANELS;
             open.push((span[0], span[1], DEPTH));
             while let Some((a, b, left)) = open.pop() {
                 let panel = kronrod(a, b, |t| jet(t).d1.length());
@@ -50,7 +53,7 @@ impl Lengths {
                 }
                 let cusp = cusp_between(a, b, &panel, &jet);
                 let middle = cusp.unwrap_or(0.5 * (a + b));
-                if left == 0 || !(a < middle && middle < b) {
+                if left == 0 || table.t.len() + open.len() > most || !(a < middle && middle < b) {
                     table.stalled = Some(middle);
                     table.push(b, &panel);
                     continue;
@@ -198,4 +201,20 @@ fn cusp_between(a: f64, b: f64, panel: &Panel, jet: &impl Fn(f64) -> Jet) -> Opt
 /// Parameters at which the quadrature of a curve must be split: its ends and every distinct knot.
 pub(crate) fn lengths_of(curve: &Curve, splits: &[f64]) -> Lengths {
     Lengths::integrate(splits, |t| curve.jet(t))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn halving_ends_where_only_rounding_is_left() {
+        // A speed between 1 and 2 that changes from bit to bit of the parameter.
+        let noise = |t: f64| 1.0 + (t.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1_u64 << 53) as f64;
+        let table = Lengths::integrate(&[0.0, 1.0, 2.0], |t| Jet { d1: DVec3::X * noise(t), ..Jet::default() });
+        assert!(table.stalled.is_some() && table.t.len() < 3 * PANELS, "{} panels", table.t.len());
+        assert!((2.0..4.0).contains(&table.total()), "{}", table.total());
+    }
 }
