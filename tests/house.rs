@@ -54,7 +54,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("surface", 5_500),
     ("model", 2_500),
     ("mesh", 6_500),
-    ("io", 6_000),
+    ("io", 8_500),
     ("draw", 3_000),
     ("lang", 19_500),
     ("session", 8_800),
