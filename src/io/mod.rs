@@ -5,6 +5,7 @@ mod blocks;
 pub mod curves;
 pub mod deck;
 pub mod files;
+pub mod iges;
 mod inp;
 pub mod json;
 mod msh;

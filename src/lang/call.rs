@@ -11,7 +11,7 @@ use super::room::LIST_COST;
 use super::std::{self, Builtin};
 use super::syntax::ast::{Arg, DeclarationKind, Expr, ExprId, FnParam, Keyword, Span};
 use super::types::Ty;
-use super::value::{ModuleId, Value};
+use super::value::{ModuleId, Record, Value};
 use crate::base::limits;
 use crate::base::origin::Origin;
 
@@ -350,6 +350,20 @@ impl Cx<'_> {
             return self.slice_curve(code, id, value, index);
         }
         let value = if let Value::Table(t) = value { Value::List(t.rows.clone()) } else { value };
+        if let Value::Record(record) = &value
+            && !record.row
+            && !matches!(code.expr(index), Expr::Slice { .. })
+        {
+            return match self.eval(code, index)? {
+                Value::Text(key) => self.member(code, record, &key, index),
+                other => {
+                    let found = self.show_inside(&other);
+                    Err(self
+                        .error(code, "E211", format!("a record is indexed by a name in quotes, got {found}"), code.span(index), found)
+                        .stop())
+                }
+            };
+        }
         let Some(n) = value.len() else {
             let found = self.kind(&value);
             return Err(self.error(code, "E211", format!("{found} has no members to index"), code.span(of), found).stop());
@@ -374,8 +388,8 @@ impl Cx<'_> {
                     self.made(code, id, LIST_COST + clip(b).saturating_sub(clip(a)))?;
                     Ok(Value::list((clip(a)..clip(b).max(clip(a))).filter_map(|i| value.item(i)).collect()))
                 }
-                Value::Text(key) => match (&value, self.names.find(&key)) {
-                    (Value::Record(r), Some(key)) if r.get(key).is_some() => Ok(r.get(key).cloned().unwrap_or_default()),
+                Value::Text(key) => match &value {
+                    Value::Record(record) => self.member(code, record, &key, index),
                     _ => Err(self.error(code, "E214", format!("there is no \"{key}\""), code.span(index), "no such name").stop()),
                 },
                 other => {
@@ -384,6 +398,19 @@ impl Cx<'_> {
                 }
             },
         }
+    }
+
+    /// `part["deck"]`.
+    fn member(&mut self, code: Code<'_>, record: &Record, key: &str, index: ExprId) -> Result<Value, Stop> {
+        if let Some(value) = self.names.find(key).and_then(|name| record.get(name)) {
+            return Ok(value.clone());
+        }
+        let near = nearest(key, record.keys.iter().map(|name| self.names.text(*name))).map(str::to_owned);
+        let draft = self.error(code, "E214", format!("there is no \"{key}\""), code.span(index), "no such name");
+        Err(match near {
+            Some(near) => draft.help(format!("[\"{near}\"]")).stop(),
+            None => draft.stop(),
+        })
     }
 
     fn bound_of(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<usize, Stop> {

@@ -26,18 +26,18 @@ use crate::mesh::Mesh;
 /// Notes about one file that are said one by one; more are counted.
 const REPAIRS_SAID: usize = 5;
 /// Endings that can be imported.
-const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl"];
+const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl", "igs", "iges"];
 
 /// One file being imported.
-struct File<'f> {
+pub(super) struct File<'f> {
     path: &'f str,
-    origin: Origin,
-    unit: Option<LengthUnit>,
+    pub origin: Origin,
+    pub unit: Option<LengthUnit>,
     header: Option<bool>,
 }
 
 impl File<'_> {
-    fn malformed(&self, at: Malformed) -> Stop {
+    pub fn malformed(&self, at: Malformed) -> Stop {
         FileFault::Malformed { of: self.origin, path: self.path.to_owned(), at }.into()
     }
 
@@ -77,6 +77,7 @@ impl Cx<'_> {
                 let mesh = self.imported_mesh(&file, mesh);
                 Ok(self.record([("mesh", mesh)]))
             }
+            "igs" | "iges" => self.iges(&file, &bytes),
             _ => {
                 let layout = Layout::of_extension(&ending).unwrap_or(Layout::Blanks);
                 let table = io::table::read(&bytes, &Reading { layout, header: file.header, is_unit: &is_unit });
@@ -101,7 +102,7 @@ impl Cx<'_> {
         gather.done().map(|()| (header, unit))
     }
 
-    fn repaired(&mut self, file: &File, repairs: Vec<Malformed>) {
+    pub(super) fn repaired(&mut self, file: &File, repairs: Vec<Malformed>) {
         let more = repairs.len().saturating_sub(REPAIRS_SAID);
         for mut at in repairs.into_iter().take(REPAIRS_SAID) {
             if more > 0 && at.what.is_empty() {

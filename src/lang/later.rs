@@ -12,7 +12,7 @@ const FUNCTIONS: &[&str] =
 
 const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];
 
-const ENDINGS: &[&str] = &["igs", "iges", "stp", "step"];
+const ENDINGS: &[&str] = &["stp", "step"];
 
 /// Whether a later version has a function of this name.
 pub(super) fn is_function(name: &str) -> bool {

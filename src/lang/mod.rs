@@ -14,6 +14,7 @@ pub mod eval;
 mod expr;
 mod faults;
 pub mod fmt;
+mod import_part;
 mod imports;
 mod keys;
 mod later;

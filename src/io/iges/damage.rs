@@ -1,0 +1,43 @@
+//! Why one entity cannot be used.
+
+use glam::DVec3;
+
+use crate::base::fault::{Describe, Fault, Say};
+use crate::base::origin::Origin;
+use crate::base::text;
+
+/// What is wrong with an entity, in words; the rest of the file does not suffer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Damage(pub String);
+
+/// Damage in these words.
+pub fn damage(what: impl Into<String>) -> Damage {
+    Damage(what.into())
+}
+
+/// Says faults of the kernel in the numbers of the model.
+struct Plain;
+
+impl Say for Plain {
+    fn name(&self, _: Origin) -> String {
+        String::new()
+    }
+
+    fn length(&self, length: f64) -> String {
+        text::real(length)
+    }
+
+    fn point(&self, p: DVec3) -> String {
+        format!("({}, {}, {})", text::real(p.x), text::real(p.y), text::real(p.z))
+    }
+
+    fn angle(&self, radians: f64) -> String {
+        format!("{}°", text::real(radians.to_degrees()))
+    }
+}
+
+impl From<Fault> for Damage {
+    fn from(fault: Fault) -> Self {
+        Self(fault.describe(&Plain).message)
+    }
+}

@@ -1,0 +1,272 @@
+//! Trimmed surfaces: a base and the loops of curves on it.
+
+use glam::DVec3;
+
+use super::book::Book;
+use super::compose::composed;
+use super::curves::Place;
+use super::damage::{Damage, damage};
+use super::entities::{Data, EdgeData, LoopEdge, Pointer};
+use super::natural::is_natural;
+use super::surfaces::Base;
+use crate::base::bbox::Box3;
+use crate::base::tolerance::{NEAR_MISS, NUDGE};
+use crate::geometry::{Curve, closest};
+use crate::surface::{Nearest, Side, Surface};
+
+/// One curve of a loop.
+#[derive(Clone, Debug)]
+pub struct Border {
+    /// The curve in space, in the loop's direction; it counts.
+    pub space: Curve,
+    /// The same in the (u, v) of the base surface, z = 0, in any direction: where the file has it, it agrees with the curve in
+    /// space, and the file's parameters are the surface's in proportion.
+    pub uv: Option<Curve>,
+}
+
+/// A part of a surface inside an outer loop and outside inner ones.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// The surface it is part of.
+    pub base: Surface,
+    /// The outer loop; `None`: the surface's own border.
+    pub outer: Option<Vec<Border>>,
+    /// Loops of holes.
+    pub holes: Vec<Vec<Border>>,
+    /// The face looks the other way than the base.
+    pub flipped: bool,
+    /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
+    pub gap: f64,
+}
+
+impl Book {
+    /// The face that a pointer means: a trimmed (144) or bounded (143) surface, a bordered plane (108), a face of a shell (510).
+    pub fn face(&mut self, d: Pointer) -> Result<Face, Damage> {
+        let k = self.place(d)?;
+        let data = std::mem::replace(&mut self.decoded[k].data, Data::Busy);
+        let made = match &data {
+            Data::Trimmed { surface, outer, inner } => {
+                let borders: Vec<Pointer> = outer.iter().chain(inner).copied().collect();
+                self.walled(d, *surface, outer.is_some(), &borders)
+            }
+            Data::Bounded { surface, borders } => self.walled(d, *surface, !borders.is_empty(), borders),
+            Data::Face { surface, has_outer, loops } => self.walled(d, *surface, *has_outer, loops),
+            Data::Plane { border, .. } => {
+                // The plane is its own base.
+                let border = *border;
+                self.decoded[k].data = data.clone();
+                self.walled(d, d, true, &[border])
+            }
+            Data::Busy => Err(damage("it is made of itself")),
+            _ => Err(damage("it is no face")),
+        };
+        self.decoded[k].data = data;
+        made
+    }
+
+    fn walled(&mut self, d: Pointer, surface: Pointer, has_outer: bool, borders: &[Pointer]) -> Result<Face, Damage> {
+        let base = self.base(surface, 0).map_err(|Damage(why)| damage(format!("its surface at D{surface}: {why}")))?;
+        let mut loops = Vec::with_capacity(borders.len());
+        for border in borders {
+            let made = self.loop_of(d, *border, &base);
+            loops.push(made.map_err(|Damage(why)| damage(format!("its border at D{border}: {why}")))?);
+        }
+        let reach = loops.iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union);
+        let surface = self.surface(&base, &reach)?;
+        self.settle(d, &base, &surface, &mut loops);
+        let gap = gap(&surface, &loops);
+        for border in &mut loops {
+            self.cut_at_poles(&surface, border);
+        }
+        let mut loops = loops.into_iter();
+        let room = self.slack().max(2.0 * gap);
+        let outer = if has_outer { loops.next() } else { None };
+        let outer = outer.filter(|outer| !is_natural(&base, &surface, outer, room, &self.tolerance));
+        Ok(Face { base: surface, outer, holes: loops.collect(), flipped: false, gap })
+    }
+
+    /// The curves of a loop; (u, v) still in the file's parameters.
+    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<Vec<Border>, Damage> {
+        let k = self.place(d)?;
+        let data = std::mem::replace(&mut self.decoded[k].data, Data::Busy);
+        let made = match &data {
+            Data::CurveOnSurface { uv, space, .. } => self.on_surface(face, *uv, *space, base),
+            Data::Boundary { curves, .. } => {
+                let each = curves.iter().map(|c| {
+                    let pieces = self.paired(face, c.space, &c.uv, base)?;
+                    Ok(if c.reversed { backwards(pieces) } else { pieces })
+                });
+                each.collect::<Result<Vec<_>, Damage>>().map(|all| all.into_iter().flatten().collect())
+            }
+            Data::Loop(edges) => self.edges(face, edges, base),
+            // A plane's border may be a curve itself.
+            Data::Damaged => Err(damage("it is damaged")),
+            Data::Busy => Err(damage("it is made of itself")),
+            _ => {
+                self.decoded[k].data = data.clone();
+                self.on_surface(face, 0, d, base)
+            }
+        };
+        self.decoded[k].data = data;
+        let made = made?;
+        if made.is_empty() {
+            return Err(damage("it has no curves"));
+        }
+        Ok(made)
+    }
+
+    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<Vec<Border>, Damage> {
+        let uv = if uv == 0 { Vec::new() } else { vec![uv] };
+        self.paired(face, space, &uv, base)
+    }
+
+    /// A curve in space with its curves in (u, v), piece by piece; where the first is missing or damaged the others make it.
+    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<Vec<Border>, Damage> {
+        let in_uv: Result<Vec<Curve>, Damage> = uv.iter().map(|d| self.curve(*d, Place::UV)).collect();
+        let in_uv = in_uv.map(|curves| curves.iter().flat_map(pieces).collect::<Vec<Curve>>());
+        let in_space = if space == 0 { Err(damage("it has no curve in space")) } else { self.curve(space, Place::SPACE) };
+        match (in_space, in_uv) {
+            (Ok(curve), in_uv) => {
+                let pieces = pieces(&curve);
+                self.copy(pieces.len())?;
+                let in_uv = in_uv.ok().filter(|uv| uv.len() == pieces.len()).unwrap_or_default();
+                let uv = in_uv.into_iter().map(Some).chain(std::iter::repeat(None));
+                Ok(pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect())
+            }
+            (Err(Damage(why)), Ok(in_uv)) if !in_uv.is_empty() => {
+                if space != 0 {
+                    self.warn(face, format!("a curve of its border is rebuilt from its (u, v): {why}"));
+                }
+                let mut made = Vec::with_capacity(in_uv.len());
+                for uv in in_uv {
+                    self.copy(1)?;
+                    // A curve along a pole is one point in space.
+                    if let Some(space) = composed(base, &uv, &self.tolerance, self.origin)? {
+                        made.push(Border { space, uv: Some(uv) });
+                    }
+                }
+                Ok(made)
+            }
+            (Err(why), _) => Err(why),
+        }
+    }
+
+    /// A loop of edges of a solid.
+    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<Vec<Border>, Damage> {
+        let mut made = Vec::new();
+        for edge in edges.iter().filter(|e| !e.is_vertex) {
+            let (list, index) = edge.edge;
+            let Data::Edges(all) = self.data(list)? else {
+                return Err(damage(format!("{} is no list of edges", self.said(list))));
+            };
+            let found = index.checked_sub(1).and_then(|k| all.get(k)).copied();
+            let found = found.ok_or_else(|| damage(format!("the list at D{list} has no edge {index}")))?;
+            let mut pieces = self.paired(face, found.curve, &edge.uv, base)?;
+            if let [one] = pieces.as_mut_slice() {
+                one.space = self.between(&found, &one.space);
+            }
+            made.extend(if edge.reversed { backwards(pieces) } else { pieces });
+        }
+        Ok(made)
+    }
+
+    /// The part of an edge's curve between its vertices, which may be shorter than the curve.
+    fn between(&self, edge: &EdgeData, curve: &Curve) -> Curve {
+        let vertex = |(list, index): (Pointer, usize)| match self.data(list) {
+            Ok(Data::Vertices(points)) => index.checked_sub(1).and_then(|k| points.get(k)).map(|p| *p * self.scale),
+            _ => None,
+        };
+        let (Some(start), Some(end)) = (vertex(edge.start), vertex(edge.end)) else { return curve.clone() };
+        let room = NEAR_MISS * self.slack();
+        let near = |a: DVec3, b: DVec3| a.distance(b) <= room;
+        if near(curve.start(), start) && near(curve.end(), end) {
+            return curve.clone();
+        }
+        let (a, b) = (closest(curve, start), closest(curve, end));
+        if a.distance <= room && b.distance <= room && a.t < b.t { curve.part(a.t, b.t) } else { curve.clone() }
+    }
+
+    /// Cuts curves where they run through a pole of the surface: their (u, v) jump there.
+    fn cut_at_poles(&self, surface: &Surface, border: &mut Vec<Border>) {
+        let room = NEAR_MISS * self.slack();
+        for k in 0..surface.n_sides() {
+            let Side::Pole(pole) = surface.side(k) else { continue };
+            let mut cut = Vec::with_capacity(border.len());
+            for piece in border.drain(..) {
+                let found = closest(&piece.space, pole);
+                let inside = |end: DVec3| found.point.distance(end) > room;
+                if found.distance <= room && inside(piece.space.start()) && inside(piece.space.end()) {
+                    let (a, b) = piece.space.domain();
+                    cut.push(Border { space: piece.space.part(a, found.t), uv: None });
+                    cut.push(Border { space: piece.space.part(found.t, b), uv: None });
+                } else {
+                    cut.push(piece);
+                }
+            }
+            *border = cut;
+        }
+    }
+
+    /// Puts (u, v) into the parameters of the surface, and drops those that do not agree with the curve in space.
+    fn settle(&mut self, d: Pointer, base: &Base, surface: &Surface, loops: &mut [Vec<Border>]) {
+        let map = base.to_surface();
+        let room = NEAR_MISS * self.slack().max(NUDGE * surface.hull().diagonal());
+        let mut worst = 0.0_f64;
+        for border in loops.iter_mut().flatten() {
+            let moved = match (&map, &border.uv) {
+                (Some(m), Some(uv)) => super::curves::carried(uv, m, &self.tolerance).ok(),
+                _ => None,
+            };
+            border.uv = moved.filter(|uv| {
+                let off = disagreement(surface, uv, &border.space);
+                let agrees = off <= room;
+                worst = if agrees { worst } else { worst.max(off) };
+                agrees
+            });
+        }
+        if worst > 0.0 {
+            let worst = self.length(worst);
+            self.warn(d, format!("curves of its border in (u, v) are up to {worst} off those in space, which count"));
+        }
+    }
+}
+
+/// Places along a curve at which its distance from the surface is measured.
+const SAMPLES: usize = 8;
+
+/// Largest distance of the curves from the surface, and of the end of each from the start of the next one in its loop.
+fn gap(surface: &Surface, loops: &[Vec<Border>]) -> f64 {
+    let nearest = Nearest::new(surface);
+    let foot = |p: DVec3| match surface.flat_uv(p) {
+        Some((u, v)) => p.distance(surface.point(u, v)),
+        None => nearest.at(p).distance,
+    };
+    let mut widest = 0.0_f64;
+    for border in loops {
+        for (k, curve) in border.iter().enumerate() {
+            let (a, b) = curve.space.domain();
+            for i in 0..=SAMPLES {
+                widest = widest.max(foot(curve.space.point(a + (b - a) * i as f64 / SAMPLES as f64)));
+            }
+            widest = widest.max(curve.space.end().distance(border[(k + 1) % border.len()].space.start()));
+        }
+    }
+    widest
+}
+
+/// Largest distance of the ends of a curve in (u, v) from those of the curve in space, in the better direction.
+fn disagreement(surface: &Surface, uv: &Curve, space: &Curve) -> f64 {
+    let at = |p: DVec3| surface.point(p.x.clamp(0.0, 1.0), p.y.clamp(0.0, 1.0));
+    let (a, b) = (at(uv.start()), at(uv.end()));
+    let off = |c: DVec3, d: DVec3| a.distance(c).max(b.distance(d));
+    off(space.start(), space.end()).min(off(space.end(), space.start()))
+}
+
+/// The curves that a curve is made of.
+fn pieces(curve: &Curve) -> Vec<Curve> {
+    curve.composite().map_or_else(|| vec![curve.clone()], |c| c.pieces.clone())
+}
+
+fn backwards(borders: Vec<Border>) -> Vec<Border> {
+    borders.into_iter().rev().map(|b| Border { space: b.space.reversed(), uv: b.uv }).collect()
+}

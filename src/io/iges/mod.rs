@@ -1,0 +1,32 @@
+//! Reads IGES 5.3: records, then entities as numbers and pointers, then curves, surfaces and faces of the model.
+//!
+//! ```text
+//!   bytes → lines (S G D P T) → records (directory + parameters) → entities → book (curves, bases) → part (names, groups)
+//! ```
+//!
+//! A file that breaks the rules is read as far as it is clear what it means, with a warning each; a damaged entity costs itself
+//! and what stands on it. Pointers are followed to a fixed depth, and what may be copied is bounded by the size of the file.
+
+mod book;
+mod build;
+mod compose;
+mod conics;
+mod curves;
+mod damage;
+mod entities;
+mod entity_curves;
+mod entity_faces;
+mod entity_surfaces;
+mod faces;
+mod global;
+mod lines;
+mod natural;
+mod nets;
+mod params;
+mod part;
+mod records;
+mod surfaces;
+
+pub use book::Options;
+pub use faces::{Border, Face};
+pub use part::{Group, Item, Opened, Part, open};

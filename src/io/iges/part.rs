@@ -1,0 +1,438 @@
+//! What a file offers: points, curves, surfaces and groups by name.
+//!
+//! Offered is what can be seen and is not only a part of something else. A shell offers its faces and is a group of them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use super::book::{Book, NESTED, Options};
+use super::curves::Place;
+use super::damage::Damage;
+use super::entities::{Data, Pointer};
+use super::faces::Face;
+use super::records;
+use crate::base::bbox::Box3;
+use crate::base::fault::Malformed;
+use crate::base::limits;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::Curve;
+use crate::surface::Surface;
+
+/// Something of the file under its name.
+#[derive(Clone, Debug)]
+pub struct Item<T> {
+    /// The file's name for it, or its kind and number (`curve3`); no two of a file are the same.
+    pub name: String,
+    /// Red, green and blue from 0 to 1, where the file gives it a colour.
+    pub color: Option<[f64; 3]>,
+    /// Number of its directory line.
+    pub d: u32,
+    /// Line of the file where its parameters start.
+    pub line: u64,
+    /// The thing.
+    pub value: T,
+}
+
+/// Things under one name, as indices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// The file's name for it, or `group` and its number.
+    pub name: String,
+    /// Of [`Part::points`].
+    pub points: Vec<usize>,
+    /// Of [`Part::curves`].
+    pub curves: Vec<usize>,
+    /// Of [`Part::surfaces`].
+    pub surfaces: Vec<usize>,
+}
+
+/// What an IGES file holds, in file order and model units.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Points, one each, or rows of them.
+    pub points: Vec<Item<Vec<DVec3>>>,
+    /// Curves.
+    pub curves: Vec<Item<Curve>>,
+    /// Surfaces, trimmed or whole.
+    pub surfaces: Vec<Item<Face>>,
+    /// What [`Part::build`] made of them; none where it could not.
+    pub built: Vec<Option<Surface>>,
+    /// Groups, shells and solids.
+    pub groups: Vec<Group>,
+    /// What has the same colour, with red, green and blue from 0 to 1.
+    pub colors: Vec<(Group, [f64; 3])>,
+    /// The file's unit.
+    pub unit: &'static str,
+    /// What was repaired or skipped, by line.
+    pub warnings: Vec<Malformed>,
+}
+
+/// Kinds of entities that surfaces are.
+const SURFACES: &[u32] = &[108, 114, 118, 120, 122, 128, 140, 143, 144, 190, 192, 194, 196, 198];
+/// Kinds of entities that curves are.
+const CURVES: &[u32] = &[100, 102, 104, 110, 112, 126, 130];
+/// Purposes of what is a part of the model: geometry, other, construction.
+const PURPOSES: &[u8] = &[0, 3, 6];
+/// Colours by number, from 1.
+const COLORS: [([f64; 3], &str); 8] = [
+    ([0.0, 0.0, 0.0], "black"),
+    ([1.0, 0.0, 0.0], "red"),
+    ([0.0, 1.0, 0.0], "green"),
+    ([0.0, 0.0, 1.0], "blue"),
+    ([1.0, 1.0, 0.0], "yellow"),
+    ([1.0, 0.0, 1.0], "magenta"),
+    ([0.0, 1.0, 1.0], "cyan"),
+    ([1.0, 1.0, 1.0], "white"),
+];
+
+/// A file read as far as its numbers: entities with pointers, no geometry yet.
+#[derive(Debug)]
+pub struct Opened {
+    book: Book,
+}
+
+/// Reads a file, or says where it stops being one.
+pub fn open(bytes: &[u8], options: &Options) -> Result<Opened, Malformed> {
+    let records = records::read(bytes)?;
+    let last = records.entries.last().map_or(1, |e| e.line);
+    let book = Book::new(records, bytes.len(), options);
+    let is_used = |data: &Data| !matches!(data, Data::Damaged | Data::Silent);
+    if !book.decoded.iter().any(|d| is_used(&d.data)) {
+        let why = book.warnings.last().map_or(String::new(), |w| format!(": {}", w.what));
+        return Err(Malformed::line(last, format!("the file holds no entity that can be read{why}")));
+    }
+    Ok(Opened { book })
+}
+
+impl Opened {
+    /// How many entities of each type the file has.
+    pub fn counts(&self) -> BTreeMap<u32, usize> {
+        let mut counts = BTreeMap::new();
+        for entry in &self.book.entries {
+            *counts.entry(entry.kind).or_insert(0) += 1;
+        }
+        counts
+    }
+
+    /// A box that holds about all its points, model units: for the tolerance of the model.
+    pub fn reach(&self) -> Box3 {
+        let mut reach = Box3::EMPTY;
+        // Axes and the ground of faces reach beyond what is offered.
+        let mut hidden = BTreeSet::new();
+        for decoded in &self.book.decoded {
+            match &decoded.data {
+                Data::Revolution { axis, .. } => hidden.insert(*axis),
+                Data::Trimmed { surface, outer: Some(_), .. } | Data::Face { surface, has_outer: true, .. } => hidden.insert(*surface),
+                Data::CurveOnSurface { uv, .. } => hidden.insert(*uv),
+                _ => false,
+            };
+        }
+        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+            if entry.status.purpose == 5 || hidden.contains(&entry.d) {
+                continue;
+            }
+            let Ok(m) = self.book.placement(entry.transform) else { continue };
+            let mut see = |p: DVec3| {
+                let p = p * self.book.scale;
+                reach = reach.with(m.map_or(p, |m| m.transform_point3(p)));
+            };
+            let flat = |p: &[f64; 2], z: f64| DVec3::new(p[0], p[1], z);
+            match &decoded.data {
+                Data::Point(p) => see(*p),
+                Data::Points { points, .. } | Data::Vertices(points) => points.iter().for_each(|p| see(*p)),
+                Data::Line { start, end, .. } => [start, end].into_iter().for_each(|p| see(*p)),
+                Data::Spline(s) => s.points.iter().for_each(|p| see(*p)),
+                Data::Net(net) => net.points.iter().for_each(|p| see(*p)),
+                Data::Arc { z, center, start, end } => {
+                    [center, start, end].into_iter().for_each(|p| see(flat(p, *z)));
+                }
+                Data::ConicArc { z, start, end, .. } => [start, end].into_iter().for_each(|p| see(flat(p, *z))),
+                Data::Polynomials { pieces, .. } => pieces.iter().for_each(|[x, y, z]| see(DVec3::new(x[0], y[0], z[0]))),
+                _ => {}
+            }
+        }
+        reach
+    }
+
+    /// Makes curves and surfaces of the entities.
+    pub fn part(mut self, tolerance: Tolerance) -> Part {
+        self.book.tolerance = tolerance;
+        let part = Part { unit: self.book.unit, ..Part::default() };
+        let names = RESERVED.iter().map(|n| ((*n).to_owned(), 1)).collect();
+        Maker { book: self.book, part, made: BTreeMap::new(), names, shades: BTreeMap::new() }.run()
+    }
+}
+
+/// Names that the lists of a part have themselves.
+const RESERVED: &[&str] = &["points", "curves", "surfaces", "groups", "colors", "unit"];
+
+/// Where something made of an entity stands in the part.
+#[derive(Clone, Copy, Debug)]
+enum Made {
+    Point(usize),
+    Curve(usize),
+    Surface(usize),
+}
+
+struct Maker {
+    book: Book,
+    part: Part,
+    made: BTreeMap<Pointer, Made>,
+    /// Names given so far, and how often each was wanted.
+    names: BTreeMap<String, usize>,
+    /// Places of colours.
+    shades: BTreeMap<[u64; 3], usize>,
+}
+
+fn put(group: &mut Group, made: Made) {
+    match made {
+        Made::Point(k) => group.points.push(k),
+        Made::Curve(k) => group.curves.push(k),
+        Made::Surface(k) => group.surfaces.push(k),
+    }
+}
+
+impl Maker {
+    fn run(mut self) -> Part {
+        let (parts, members) = self.relations();
+        let mut groups = Vec::new();
+        for k in 0..self.book.entries.len() {
+            let entry = &self.book.entries[k];
+            let (d, kind, status) = (entry.d, entry.kind, entry.status);
+            let alone = !status.physically_dependent || members.contains(&d);
+            if status.blanked || !PURPOSES.contains(&status.purpose) || !alone || parts.contains(&d) {
+                continue;
+            }
+            match (kind, &self.book.decoded[k].data) {
+                (_, Data::Group(_) | Data::Shell(_) | Data::Solid { .. }) => groups.push(d),
+                (_, Data::Damaged) => {}
+                (_, Data::Point(p)) => {
+                    let points = vec![*p];
+                    self.points(d, points);
+                }
+                (_, Data::Points { points, is_line: false }) => {
+                    let points = points.clone();
+                    self.points(d, points);
+                }
+                _ if CURVES.contains(&kind) || kind == 106 => self.curve(d),
+                _ if SURFACES.contains(&kind) => self.surface(d, false),
+                _ => {}
+            }
+        }
+        for d in groups {
+            self.group(d);
+        }
+        self.unknown();
+        self.gaps();
+        self.part.warnings = std::mem::take(&mut self.book.warnings);
+        self.part
+    }
+
+    /// Surfaces that are only the ground of faces, and what visible groups hold.
+    fn relations(&self) -> (BTreeSet<Pointer>, BTreeSet<Pointer>) {
+        let (mut parts, mut members) = (BTreeSet::new(), BTreeSet::new());
+        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+            match &decoded.data {
+                Data::Trimmed { surface, .. }
+                | Data::Bounded { surface, .. }
+                | Data::Face { surface, .. }
+                | Data::OffsetSurface { base: surface, .. } => {
+                    parts.insert(*surface);
+                }
+                Data::Group(list) if !entry.status.blanked => members.extend(list),
+                _ => {}
+            }
+        }
+        (parts, members)
+    }
+
+    fn points(&mut self, d: Pointer, points: Vec<DVec3>) {
+        let matrix = match self.book.placement(self.book.entry(d).map_or(0, |e| e.transform)) {
+            Ok(matrix) => matrix,
+            Err(Damage(why)) => return self.skipped(d, &why),
+        };
+        let carry = |p: DVec3| matrix.map_or(p * self.book.scale, |m| m.transform_point3(p * self.book.scale));
+        let value: Vec<DVec3> = points.into_iter().map(carry).collect();
+        if value.iter().any(|p| p.abs().max_element() > limits::COORDINATE) {
+            return self.skipped(d, "its coordinates are too large");
+        }
+        self.made.insert(d, Made::Point(self.part.points.len()));
+        let item = self.item(d, "point", self.part.points.len(), value);
+        self.part.points.push(item);
+    }
+
+    fn curve(&mut self, d: Pointer) {
+        match self.book.curve(d, Place::SPACE) {
+            Ok(curve) if curve.length() <= self.book.tolerance.point => self.skipped(d, "it is shorter than the tolerance"),
+            Ok(curve) => {
+                self.made.insert(d, Made::Curve(self.part.curves.len()));
+                let item = self.item(d, "curve", self.part.curves.len(), curve);
+                self.part.curves.push(item);
+            }
+            Err(Damage(why)) => self.skipped(d, &why),
+        }
+    }
+
+    fn surface(&mut self, d: Pointer, flipped: bool) {
+        let is_face = matches!(
+            self.book.data(d),
+            Ok(Data::Trimmed { .. } | Data::Bounded { .. } | Data::Face { .. } | Data::Plane { border: 1.., .. })
+        );
+        let made = if is_face { self.book.face(d) } else { self.book.whole(d) };
+        match made {
+            Ok(mut face) => {
+                face.flipped = flipped;
+                self.made.insert(d, Made::Surface(self.part.surfaces.len()));
+                let item = self.item(d, "surface", self.part.surfaces.len(), face);
+                self.part.surfaces.push(item);
+            }
+            Err(Damage(why)) => self.skipped(d, &why),
+        }
+    }
+
+    fn skipped(&mut self, d: Pointer, why: &str) {
+        self.book.warn(d, format!("skipped: {why}"));
+    }
+
+    fn item<T>(&mut self, d: Pointer, word: &str, before: usize, value: T) -> Item<T> {
+        let name = self.name(d, word, before);
+        let color = self.color(d);
+        if let (Some((rgb, color_name)), Some(made)) = (&color, self.made.get(&d).copied()) {
+            put(self.colored(*rgb, color_name), made);
+        }
+        Item { name, color: color.map(|c| c.0), d, line: self.book.line(d), value }
+    }
+
+    /// The name property, else the label, else a word and a number; with another number where it is taken.
+    fn name(&mut self, d: Pointer, word: &str, before: usize) -> String {
+        let given = self.book.place(d).ok().and_then(|k| {
+            let names = self.book.decoded[k].properties.iter().filter_map(|p| match self.book.data(*p) {
+                Ok(Data::Name(name)) if !name.is_empty() => Some(name.clone()),
+                _ => None,
+            });
+            names.into_iter().next()
+        });
+        let label = self.book.entry(d).filter(|e| !e.label.is_empty()).map(|e| match e.subscript {
+            0 => e.label.clone(),
+            n => format!("{}{n}", e.label),
+        });
+        let wanted = given.or(label).unwrap_or_else(|| format!("{word}{}", before + 1));
+        let mut name = wanted.clone();
+        while let Some(times) = self.names.get_mut(&name) {
+            *times += 1;
+            name = format!("{wanted}_{times}");
+        }
+        self.names.insert(name.clone(), 1);
+        name
+    }
+
+    /// Colour with the file's name for it.
+    fn color(&self, d: Pointer) -> Option<([f64; 3], String)> {
+        let color = self.book.entry(d)?.color;
+        if color >= 0 {
+            let k = usize::try_from(color).ok()?.checked_sub(1)?;
+            return COLORS.get(k).map(|(rgb, name)| (*rgb, (*name).to_owned()));
+        }
+        match self.book.data(u32::try_from(-color).ok()?) {
+            Ok(Data::Color { rgb, name }) => Some((rgb.map(|c| (c / 100.0).clamp(0.0, 1.0)), name.clone())),
+            _ => None,
+        }
+    }
+
+    /// The group of a colour, made when it is new.
+    fn colored(&mut self, rgb: [f64; 3], name: &str) -> &mut Group {
+        let n = self.part.colors.len();
+        let k = *self.shades.entry(rgb.map(f64::to_bits)).or_insert(n);
+        if k == n {
+            let name = if name.is_empty() { format!("color{}", n + 1) } else { name.to_owned() };
+            self.part.colors.push((Group { name, ..Group::default() }, rgb));
+        }
+        &mut self.part.colors[k].0
+    }
+
+    /// A group of what its members are; faces of shells are made here.
+    fn group(&mut self, d: Pointer) {
+        let mut group = Group::default();
+        let mut seen = BTreeSet::new();
+        if let Err(Damage(why)) = self.gather(d, &mut group, &mut seen, 0) {
+            self.skipped(d, &why);
+        }
+        if group.points.is_empty() && group.curves.is_empty() && group.surfaces.is_empty() {
+            return;
+        }
+        let word = match self.book.data(d) {
+            Ok(Data::Solid { .. }) => "solid",
+            Ok(Data::Shell(_)) => "shell",
+            _ => "group",
+        };
+        group.name = self.name(d, word, self.part.groups.len());
+        self.part.groups.push(group);
+    }
+
+    fn gather(&mut self, d: Pointer, group: &mut Group, seen: &mut BTreeSet<Pointer>, depth: usize) -> Result<(), Damage> {
+        if depth > NESTED {
+            return Err(Damage("groups are nested too deep".to_owned()));
+        }
+        self.book.copy(1)?;
+        if !seen.insert(d) {
+            return Ok(());
+        }
+        match self.made.get(&d) {
+            Some(made) => put(group, *made),
+            None => {
+                let inside: Vec<(Pointer, Option<bool>)> = match self.book.data(d) {
+                    Ok(Data::Group(list)) => list.iter().map(|m| (*m, None)).collect(),
+                    Ok(Data::Solid { shells }) => shells.iter().map(|m| (*m, None)).collect(),
+                    Ok(Data::Shell(faces)) => faces.iter().map(|(m, along)| (*m, Some(*along))).collect(),
+                    _ => return Ok(()),
+                };
+                for (member, along) in inside {
+                    if let Some(along) = along
+                        && !self.made.contains_key(&member)
+                        && !seen.contains(&member)
+                    {
+                        self.surface(member, !along);
+                    }
+                    self.gather(member, group, seen, depth + 1)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Says once by how much borders are off.
+    fn gaps(&mut self) {
+        let slack = self.book.slack();
+        let off = self.part.surfaces.iter().filter(|s| s.value.gap > slack);
+        let n = off.clone().count();
+        if let Some(worst) = off.max_by(|a, b| a.value.gap.total_cmp(&b.value.gap)) {
+            let (d, gap) = (worst.d, worst.value.gap);
+            let others = if n == 1 { String::new() } else { format!(", as the borders of {} more faces are by less", n - 1) };
+            let gap = self.book.length(gap);
+            self.book.warn(d, format!("its borders are up to {gap} off its surface or each other{others}"));
+        }
+    }
+
+    /// Counts visible entities of types that are not read.
+    fn unknown(&mut self) {
+        let mut kinds: BTreeMap<(u32, i32), (u64, usize)> = BTreeMap::new();
+        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+            if decoded.data == Data::Unknown && !entry.status.blanked {
+                kinds.entry((entry.kind, entry.form)).or_insert((entry.line, 0)).1 += 1;
+            }
+        }
+        for ((kind, form), (line, n)) in kinds {
+            let what = if n == 1 { "entity".to_owned() } else { format!("{n} entities") };
+            self.book.warnings.push(Malformed::line(line, format!("{what} of type {kind} form {form} are not read")));
+        }
+    }
+}
+
+impl Book {
+    /// A surface that nothing trims.
+    fn whole(&mut self, d: Pointer) -> Result<Face, Damage> {
+        let base = self.base(d, 0)?;
+        Ok(Face { base: self.surface(&base, &Box3::EMPTY)?, outer: None, holes: Vec::new(), flipped: false, gap: 0.0 })
+    }
+}

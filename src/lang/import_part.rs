@@ -1,0 +1,75 @@
+//! `import "part.igs" as part`: points, curves, surfaces and groups of a CAD file as values.
+
+use std::sync::Arc;
+
+use super::cx::{Cx, Stop};
+use super::imports::File;
+use super::units::{self, MILLIMETRE};
+use super::value::{Record, Value};
+use crate::io::iges::{self, Group, Options, Part};
+use crate::network::Chain;
+
+impl Cx<'_> {
+    /// Lists in file order, then everything once more by its name in the file.
+    pub(super) fn iges(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Stop> {
+        let millimetres = |unit| units::convert(1.0, unit, MILLIMETRE, 1);
+        let options =
+            Options { model: millimetres(self.unit), unit: self.unit.name, file: file.unit.map(millimetres), origin: file.origin };
+        let opened = iges::open(bytes, &options).map_err(|at| file.malformed(at))?;
+        let reach = opened.reach();
+        if !reach.is_empty() {
+            self.seen([reach.min, reach.max]);
+        }
+        let tolerance = self.tolerance()?;
+        let mut part = opened.part(tolerance);
+        self.steps(part.points.len() + part.curves.len() + part.surfaces.len())?;
+        let mut warnings = std::mem::take(&mut part.warnings);
+        warnings.append(&mut part.build(file.origin, &tolerance));
+        self.repaired(file, warnings);
+        Ok(self.part(&part))
+    }
+
+    fn part(&mut self, part: &Part) -> Value {
+        let row = |points: &[glam::DVec3]| match points {
+            [one] => Value::point(*one),
+            row => Value::list(row.iter().map(|p| Value::point(*p)).collect()),
+        };
+        let all: Vec<Value> = part.points.iter().flat_map(|row| &row.value).map(|p| Value::point(*p)).collect();
+        let points: Vec<Value> = part.points.iter().map(|item| row(&item.value)).collect();
+        let curves: Vec<Value> = part.curves.iter().map(|item| Value::Curve(Chain::of_curve(&item.value))).collect();
+        let surfaces: Vec<Value> = part.built.iter().map(|surface| surface.clone().map_or(Value::None, Value::Surface)).collect();
+        let shown = |list: &[Value]| Value::list(list.iter().filter(|v| !matches!(v, Value::None)).cloned().collect());
+        let pick = |list: &[Value], places: &[usize]| {
+            Value::list(places.iter().filter_map(|k| list.get(*k)).filter(|v| !matches!(v, Value::None)).cloned().collect())
+        };
+        let mut record_of = |group: &Group, color: Option<[f64; 3]>| {
+            let mut fields = vec![
+                ("name", Value::text(&group.name)),
+                ("points", pick(&points, &group.points)),
+                ("curves", pick(&curves, &group.curves)),
+                ("surfaces", pick(&surfaces, &group.surfaces)),
+            ];
+            if let Some(rgb) = color {
+                fields.push(("rgb", Value::list(rgb.map(Value::number).to_vec())));
+            }
+            self.record(fields)
+        };
+        let groups: Vec<Value> = part.groups.iter().map(|group| record_of(group, None)).collect();
+        let colors: Vec<Value> = part.colors.iter().map(|(group, rgb)| record_of(group, Some(*rgb))).collect();
+        let names = part.points.iter().map(|i| &i.name).zip(&points);
+        let names = names.chain(part.curves.iter().map(|i| &i.name).zip(&curves));
+        let names = names.chain(part.surfaces.iter().map(|i| &i.name).zip(&surfaces));
+        let names = names.chain(part.groups.iter().map(|g| &g.name).zip(&groups));
+        let lists = [
+            ("points", Value::list(all)),
+            ("curves", shown(&curves)),
+            ("surfaces", shown(&surfaces)),
+            ("groups", Value::list(groups.clone())),
+            ("colors", Value::list(colors)),
+        ];
+        let named = names.filter(|(_, value)| !matches!(value, Value::None)).map(|(name, value)| (name.as_str(), value.clone()));
+        let fields: Vec<(&str, Value)> = lists.into_iter().chain(named).collect();
+        let (keys, values) = fields.into_iter().map(|(key, value)| (self.names.intern(key), value)).unzip();
+        Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false }))
+    }
+}
