@@ -14,6 +14,8 @@ mod entities;
 mod file;
 #[path = "iges/mutate.rs"]
 mod mutate;
+#[path = "iges/written.rs"]
+mod written;
 
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};

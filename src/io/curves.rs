@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn other_endings_say_what_there_is() {
-        assert!(matches!(curve_format_for(Origin::NONE, "a.igs"), Err(FileFault::LaterFormat { format: "IGES", .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.stp"), Err(FileFault::LaterFormat { format: "STEP", .. })));
         assert!(matches!(curve_format_for(Origin::NONE, "a.png"), Err(FileFault::NoSuchFormat { .. })));
     }
 }

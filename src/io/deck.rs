@@ -154,8 +154,7 @@ pub const ELEMENT_NAMES: [&str; element_count()] = {
 };
 
 /// Formats of a later version, by ending.
-const LATER: &[(&str, &str)] =
-    &[("glb", "glTF"), ("gltf", "glTF"), ("igs", "IGES"), ("iges", "IGES"), ("stp", "STEP"), ("step", "STEP"), ("html", "HTML")];
+const LATER: &[(&str, &str)] = &[("glb", "glTF"), ("gltf", "glTF"), ("stp", "STEP"), ("step", "STEP"), ("html", "HTML")];
 
 /// The ending of a path in lower case, without its dot.
 pub fn extension(path: &str) -> String {

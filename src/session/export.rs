@@ -8,13 +8,16 @@ use super::report::OutputRow;
 use crate::base::fault::{Edit, FileFault, Say};
 use crate::base::origin::Origin;
 use crate::io::curves::{Drawing, Polyline, curve_format_for};
+use crate::io::iges;
+use crate::io::iges::write::{Scale, Shown, Thing};
 use crate::io::json::{self, Json};
 use crate::io::table::{self, Cell, Table};
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::ExportSpec;
-use crate::lang::value::{Record, Value};
+use crate::lang::value::{Dim, Record, Value};
 use crate::network::Chain;
+use crate::surface::Surface;
 
 /// Largest turn between two points of an exported curve, radians.
 const TURN: f64 = std::f64::consts::PI / 36.0;
@@ -24,6 +27,7 @@ const LOOKS: usize = 64;
 /// Writes one output; gives its row, and warnings about what the format cannot hold go to the sink of `cx`.
 pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
     let losses = match spec.things.first() {
+        Some(_) if matches!(extension(&spec.path).as_str(), "igs" | "iges") => cad(cx, spec, files)?,
         Some((Value::Mesh(_), _)) => mesh(cx, spec, files)?,
         Some((Value::Curve(_), _)) => curves(cx, spec, files)?,
         Some((Value::Record(_), _)) => records(cx, spec, files)?,
@@ -146,6 +150,36 @@ fn points_along(chain: &Chain, tolerance: &crate::base::tolerance::Tolerance) ->
         points.push(chain.point(piece[1]));
     }
     points
+}
+
+/// Points, curves, surfaces and shells as an IGES file; a shell becomes a group.
+fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+    no_mesh_settings(spec)?;
+    let (unit, scale) = unit_of(cx, spec);
+    let tolerance = cx.tolerance()?;
+    let mut things = Vec::with_capacity(spec.things.len());
+    for (value, origin) in &spec.things {
+        let one = |of: Origin, shown: Shown| Thing { name: cx.name(of), group: String::new(), shown };
+        match value {
+            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => things.push(Thing { name: String::new(), ..one(*origin, Shown::Point(*p)) }),
+            Value::Curve(chain) => things.push(one(chain.origin(), Shown::Curve(chain.clone()))),
+            Value::Surface(surface) => things.push(one(surface.origin(), Shown::Surface(surface.clone()))),
+            Value::Shell(shell) => {
+                let surfaces = shell.surfaces.iter();
+                let group = |s: &Surface| Thing { group: shell.name.to_string(), ..one(s.origin(), Shown::Surface(s.clone())) };
+                things.extend(surfaces.map(group));
+            }
+            other => {
+                let what = format!("IGES holds points, curves, surfaces and shells, not {}", other.ty().words());
+                return Err(FileFault::Unsupported { of: *origin, what, help: None, edits: Vec::new() }.into());
+            }
+        }
+    }
+    let scale = Scale { unit, model: scale.unwrap_or(1.0), tolerance };
+    let unsupported = |what| FileFault::Unsupported { of: spec.path_origin, what, help: None, edits: Vec::new() };
+    let sheet = iges::write::sheet(&things, &scale).map_err(unsupported)?;
+    let name = spec.path.rsplit('/').next().unwrap_or(&spec.path);
+    put(spec, files, &mut |out| iges::write::write(&sheet, name, &scale, out))
 }
 
 fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {

@@ -1,5 +1,6 @@
 //! Floor 3: surfaces, one file per kind. Built from chains; knows nothing of patches, meshes or text.
 
+mod as_net;
 mod blend;
 mod blend_spread;
 mod breaks;

@@ -95,6 +95,11 @@ impl Sweep {
         Self { profile, path }
     }
 
+    /// How it moves.
+    pub fn path(&self) -> Path {
+        self.path
+    }
+
     /// The angle at a parameter; a whole turn comes back to the first column to the last bit.
     fn angle_at(angle: f64, u: f64) -> f64 {
         if u == 1.0 && angle.abs() == std::f64::consts::TAU { 0.0 } else { u * angle }

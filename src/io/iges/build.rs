@@ -33,7 +33,8 @@ impl Face {
         let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.gap), ..*tolerance };
         let surface = match (&self.outer, self.holes.as_slice()) {
             (None, []) => self.base.clone(),
-            (outer, holes) => trimmed(&self.base, outer.as_deref(), holes, origin, &tolerance)?,
+            (Some(outer), []) if self.flat => plane::bounded(&chains(outer), origin, &tolerance)?.0,
+            (outer, holes) => trimmed(&self.base, outer.as_deref(), holes)?,
         };
         Ok(if self.flipped { surface.flipped() } else { surface })
     }
@@ -44,15 +45,6 @@ fn chains(borders: &[Border]) -> Vec<Chain> {
 }
 
 /// The part of a surface inside the outer loop (`None`: its own border) and outside the holes.
-fn trimmed(
-    base: &Surface,
-    outer: Option<&[Border]>,
-    holes: &[Vec<Border>],
-    origin: Origin,
-    tolerance: &Tolerance,
-) -> Result<Surface, Damage> {
-    match (outer, holes) {
-        (Some(outer), []) if base.flat_uv(outer[0].space.start()).is_some() => Ok(plane::bounded(&chains(outer), origin, tolerance)?.0),
-        _ => Err(damage("trimmed surfaces are not in this version")),
-    }
+fn trimmed(_: &Surface, _: Option<&[Border]>, _: &[Vec<Border>]) -> Result<Surface, Damage> {
+    Err(damage("surfaces trimmed inside their border are not in this version"))
 }

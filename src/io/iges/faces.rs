@@ -35,6 +35,8 @@ pub struct Face {
     pub holes: Vec<Vec<Border>>,
     /// The face looks the other way than the base.
     pub flipped: bool,
+    /// The base lies in a plane.
+    pub flat: bool,
     /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
     pub gap: f64,
 }
@@ -82,7 +84,7 @@ impl Book {
         let room = self.slack().max(2.0 * gap);
         let outer = if has_outer { loops.next() } else { None };
         let outer = outer.filter(|outer| !is_natural(&base, &surface, outer, room, &self.tolerance));
-        Ok(Face { base: surface, outer, holes: loops.collect(), flipped: false, gap })
+        Ok(Face { base: surface, outer, holes: loops.collect(), flipped: false, flat: base.is_flat(&self.tolerance), gap })
     }
 
     /// The curves of a loop; (u, v) still in the file's parameters.

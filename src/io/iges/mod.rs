@@ -1,4 +1,4 @@
-//! Reads IGES 5.3: records, then entities as numbers and pointers, then curves, surfaces and faces of the model.
+//! Reads and writes IGES 5.3. Read are records, then entities as numbers and pointers, then curves, surfaces and faces of the model.
 //!
 //! ```text
 //!   bytes → lines (S G D P T) → records (directory + parameters) → entities → book (curves, bases) → part (names, groups)
@@ -25,8 +25,11 @@ mod nets;
 mod params;
 mod part;
 mod records;
+mod sheet;
 mod surfaces;
+pub mod write;
 
 pub use book::Options;
 pub use faces::{Border, Face};
 pub use part::{Group, Item, Opened, Part, open};
+pub use sheet::Sheet;

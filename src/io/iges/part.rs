@@ -433,6 +433,13 @@ impl Book {
     /// A surface that nothing trims.
     fn whole(&mut self, d: Pointer) -> Result<Face, Damage> {
         let base = self.base(d, 0)?;
-        Ok(Face { base: self.surface(&base, &Box3::EMPTY)?, outer: None, holes: Vec::new(), flipped: false, gap: 0.0 })
+        Ok(Face {
+            base: self.surface(&base, &Box3::EMPTY)?,
+            outer: None,
+            holes: Vec::new(),
+            flipped: false,
+            flat: base.is_flat(&self.tolerance),
+            gap: 0.0,
+        })
     }
 }

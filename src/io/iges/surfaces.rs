@@ -300,6 +300,21 @@ impl Base {
         })
     }
 
+    /// Whether it lies in a plane.
+    pub fn is_flat(&self, tolerance: &Tolerance) -> bool {
+        let net = match self {
+            Self::Plane(..) => return true,
+            Self::Net(net, _) => net,
+            _ => return false,
+        };
+        let first = projected(net.poles[0]);
+        let arms = || net.poles.iter().map(|q| projected(*q) - first);
+        let longest = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
+        let along = arms().fold(DVec3::ZERO, longest);
+        let normal = arms().map(|arm| along.cross(arm)).fold(DVec3::ZERO, longest).normalize_or_zero();
+        arms().all(|arm| arm.dot(normal).abs() <= tolerance.point)
+    }
+
     /// The exact net over 0…1; a ruled surface by parameters.
     pub fn net(&self, reach: &Box3, tolerance: &Tolerance) -> Result<NurbsSurface, Damage> {
         match self {

@@ -1,0 +1,249 @@
+//! Entities on their way into a file: numbered, laid out in 80 columns.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+
+use super::lines::{CONTENT, DATA};
+use crate::base::text::push_real;
+
+/// Dependence and use of an entity, as the status field has them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Stands for itself.
+    Free,
+    /// A part of others.
+    Part,
+    /// A part of others in the (u, v) of a surface.
+    InUv,
+    /// A property, colour or group.
+    Definition,
+}
+
+impl Role {
+    fn status(self) -> &'static str {
+        match self {
+            Self::Free => "00000000",
+            Self::Part => "00010000",
+            Self::InUv => "00010500",
+            Self::Definition => "00000200",
+        }
+    }
+}
+
+/// Values of one entity, parted by commas.
+#[derive(Clone, Debug, Default)]
+pub struct Values {
+    texts: Vec<String>,
+    /// Largest coordinate among them.
+    largest: f64,
+}
+
+impl Values {
+    /// No values yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A count, flag or pointer.
+    pub fn int(mut self, n: impl Into<i64>) -> Self {
+        self.texts.push(n.into().to_string());
+        self
+    }
+
+    /// Counts or pointers.
+    pub fn ints(self, list: impl IntoIterator<Item = u32>) -> Self {
+        list.into_iter().fold(self, Self::int)
+    }
+
+    /// A real number with the digits that read back to the same bits.
+    pub fn real(mut self, x: f64) -> Self {
+        self.texts.push(real(x));
+        self
+    }
+
+    /// Real numbers.
+    pub fn reals(self, list: impl IntoIterator<Item = f64>) -> Self {
+        list.into_iter().fold(self, Self::real)
+    }
+
+    /// Three coordinates.
+    pub fn point(mut self, p: DVec3) -> Self {
+        self.largest = self.largest.max(p.abs().max_element());
+        self.reals(p.to_array())
+    }
+
+    /// A counted text of plain characters.
+    pub fn text(mut self, text: &str) -> Self {
+        self.texts.push(counted(text));
+        self
+    }
+}
+
+/// A real number as the format wants it: always with a point, `E` before the exponent.
+pub fn real(x: f64) -> String {
+    let mut out = Vec::with_capacity(24);
+    push_real(&mut out, x);
+    let text = String::from_utf8_lossy(&out).into_owned();
+    match text.split_once('e') {
+        Some((mantissa, exponent)) if mantissa.contains('.') => format!("{mantissa}E{exponent}"),
+        Some((mantissa, exponent)) => format!("{mantissa}.E{exponent}"),
+        None if text.contains('.') => text,
+        None => text + ".",
+    }
+}
+
+/// `5Hround`; empty for nothing. Characters that are not plain become `_`.
+pub fn counted(text: &str) -> String {
+    let plain: String = text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect();
+    if plain.is_empty() { plain } else { format!("{}H{plain}", plain.len()) }
+}
+
+#[derive(Clone, Debug)]
+struct Entity {
+    kind: u32,
+    form: i32,
+    role: Role,
+    transform: u32,
+    color: i64,
+    values: Values,
+    properties: Vec<u32>,
+}
+
+/// A file in the making.
+#[derive(Clone, Debug, Default)]
+pub struct Sheet {
+    entities: Vec<Entity>,
+    /// A name has characters that the format does not.
+    respelled: bool,
+}
+
+impl Sheet {
+    /// Adds an entity; gives the pointer to it.
+    pub fn add(&mut self, kind: u32, form: i32, role: Role, values: Values) -> u32 {
+        self.entities.push(Entity { kind, form, role, transform: 0, color: 0, values, properties: Vec::new() });
+        self.entities.len() as u32 * 2 - 1
+    }
+
+    fn at(&mut self, d: u32) -> Option<&mut Entity> {
+        self.entities.get_mut((d as usize).saturating_sub(1) / 2)
+    }
+
+    /// Places an entity by a matrix.
+    pub fn place(&mut self, d: u32, matrix: u32) {
+        if let Some(entity) = self.at(d) {
+            entity.transform = matrix;
+        }
+    }
+
+    /// Gives an entity a name.
+    pub fn name(&mut self, d: u32, name: &str) {
+        self.respelled |= counted(name) != format!("{}H{name}", name.len());
+        let property = self.add(406, 15, Role::Definition, Values::new().int(1).text(name));
+        if let Some(entity) = self.at(d) {
+            entity.properties.push(property);
+        }
+    }
+
+    /// Gives an entity the colour at a pointer.
+    pub fn paint(&mut self, d: u32, color: u32) {
+        if let Some(entity) = self.at(d) {
+            entity.color = -i64::from(color);
+        }
+    }
+
+    /// Whether all names are written as they are.
+    pub fn is_plain(&self) -> bool {
+        !self.respelled
+    }
+
+    /// Largest coordinate of all points that stand by themselves in the entities.
+    pub fn largest(&self) -> f64 {
+        self.entities.iter().map(|entity| entity.values.largest).fold(0.0, f64::max)
+    }
+
+    /// Writes the five sections.
+    pub fn write(&self, global: &[String], out: &mut dyn Write) -> io::Result<()> {
+        let mut lines = Lines { out, letter: 'S', n: 0 };
+        lines.put("Written by loft")?;
+        let starts = lines.n;
+        lines.section('G');
+        for line in wrapped(global, CONTENT) {
+            lines.put(&line)?;
+        }
+        let globals = lines.n;
+        let parameters: Vec<Vec<String>> = self.entities.iter().map(Entity::lines).collect();
+        lines.section('D');
+        let mut first = 1;
+        for (entity, parameters) in self.entities.iter().zip(&parameters) {
+            let Entity { kind, form, transform, color, role, .. } = entity;
+            let (n, status) = (parameters.len(), role.status());
+            lines.put(&format!("{kind:>8}{first:>8}{0:>8}{0:>8}{0:>8}{0:>8}{transform:>8}{0:>8}{status}", 0))?;
+            lines.put(&format!("{kind:>8}{:>8}{color:>8}{n:>8}{form:>8}{:>8}{:>8}{:>8}{:>8}", 0, "", "", "", 0))?;
+            first += n;
+        }
+        lines.section('P');
+        for (k, parameters) in parameters.iter().enumerate() {
+            for line in parameters {
+                lines.put(&format!("{line:<DATA$} {:>7}", 2 * k + 1))?;
+            }
+        }
+        let written = lines.n;
+        lines.section('T');
+        lines.put(&format!("S{starts:07}G{globals:07}D{:07}P{written:07}", 2 * self.entities.len()))
+    }
+}
+
+impl Entity {
+    fn lines(&self) -> Vec<String> {
+        let mut values = vec![self.kind.to_string()];
+        values.extend(self.values.texts.iter().cloned());
+        if !self.properties.is_empty() {
+            values.extend(["0".to_owned(), self.properties.len().to_string()]);
+            values.extend(self.properties.iter().map(u32::to_string));
+        }
+        wrapped(&values, DATA)
+    }
+}
+
+/// Values with separators over lines; one longer than a line runs over, as texts may.
+fn wrapped(values: &[String], width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for (k, value) in values.iter().enumerate() {
+        let separator = if k + 1 == values.len() { ';' } else { ',' };
+        let mut rest = format!("{value}{separator}");
+        let used = lines.last().map_or(0, String::len);
+        if used + rest.len() > width && used > 0 {
+            lines.push(String::new());
+        }
+        while rest.len() > width {
+            let tail = rest.split_off(width);
+            if let Some(line) = lines.last_mut() {
+                line.push_str(&rest);
+            }
+            lines.push(String::new());
+            rest = tail;
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push_str(&rest);
+        }
+    }
+    lines
+}
+
+struct Lines<'o> {
+    out: &'o mut dyn Write,
+    letter: char,
+    n: usize,
+}
+
+impl Lines<'_> {
+    fn section(&mut self, letter: char) {
+        (self.letter, self.n) = (letter, 0);
+    }
+
+    fn put(&mut self, content: &str) -> io::Result<()> {
+        self.n += 1;
+        writeln!(self.out, "{content:<CONTENT$}{}{:>7}", self.letter, self.n)
+    }
+}

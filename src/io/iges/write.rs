@@ -1,0 +1,251 @@
+//! Writes IGES 5.3: curves, surfaces and their groups by name.
+//!
+//! | thing | entity |
+//! |---|---|
+//! | point | 116 |
+//! | line | 110 |
+//! | arc of a circle | 100, placed by a 124 unless it runs counter-clockwise about z |
+//! | any other curve | 126 |
+//! | curves in a row | 102 |
+//! | surface | 128 |
+//! | plane inside a loop | 144, 142 over a 128 |
+//! | shell or group | 402 form 7 |
+//! | name, colour | 406 form 15, 314 |
+
+use std::io::{self, Write};
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::curves::carried;
+use super::damage::{Damage, damage};
+use super::sheet::{Role, Sheet, Values, counted, real};
+use crate::base::tolerance::{EPSILON, PARALLEL, Tolerance};
+use crate::geometry::arc::EllipticArc;
+use crate::geometry::curve::Shape;
+use crate::geometry::nurbs::projected;
+use crate::geometry::{Curve, Nurbs};
+use crate::io::deck::Loss;
+use crate::network::Chain;
+use crate::surface::{Domain, NurbsSurface, Side, Surface};
+
+/// One thing to write.
+#[derive(Clone, Debug)]
+pub enum Shown {
+    /// A point, model units.
+    Point(DVec3),
+    /// A curve.
+    Curve(Chain),
+    /// A surface.
+    Surface(Surface),
+}
+
+/// Things with their names; those under one group name become a group.
+#[derive(Clone, Debug)]
+pub struct Thing {
+    /// Name as declared, empty for none.
+    pub name: String,
+    /// The shell or group it belongs to, empty for none.
+    pub group: String,
+    /// What it is.
+    pub shown: Shown,
+}
+
+/// Unit and accuracy of a file.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale {
+    /// Name of the file's unit as scripts have it.
+    pub unit: &'static str,
+    /// Model units in one unit of the file.
+    pub model: f64,
+    /// Of the model: surfaces that are no B-splines are within it.
+    pub tolerance: Tolerance,
+}
+
+/// Flag and name of the units that scripts know.
+const UNITS: &[(&str, i64, &str)] =
+    &[("um", 9, "UM"), ("mm", 2, "MM"), ("cm", 10, "CM"), ("m", 6, "M"), ("km", 7, "KM"), ("in", 1, "INCH"), ("ft", 4, "FT")];
+
+/// Makes the file of things; fails for a thing that the format or the tolerance cannot hold, with its name.
+pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
+    let mut maker = Maker { sheet: Sheet::default(), scale };
+    let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
+    for thing in things {
+        let made = match &thing.shown {
+            Shown::Point(p) => Ok(maker.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
+            Shown::Curve(chain) => chain.to_curve().map_err(Damage::from).and_then(|curve| maker.curve(&curve, Role::Free, true)),
+            Shown::Surface(surface) => maker.surface(surface),
+        };
+        let d = made.map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
+        if !thing.name.is_empty() {
+            maker.sheet.name(d, &thing.name);
+        }
+        if thing.group.is_empty() {
+            continue;
+        }
+        match groups.iter_mut().find(|g| g.0 == thing.group) {
+            Some(group) => group.1.push(d),
+            None => groups.push((&thing.group, vec![d])),
+        }
+    }
+    for (name, members) in groups {
+        let d = maker.sheet.add(402, 7, Role::Free, Values::new().int(members.len() as u32).ints(members));
+        maker.sheet.name(d, name);
+    }
+    Ok(maker.sheet)
+}
+
+/// Writes a file; `name` stands in its head. Returns what the format has no place for.
+pub fn write(sheet: &Sheet, name: &str, scale: &Scale, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
+    let (_, flag, unit) = UNITS.iter().find(|u| u.0 == scale.unit).copied().unwrap_or(("", 3, scale.unit));
+    let file = real(scale.tolerance.point / scale.model);
+    let program = concat!("loft ", env!("CARGO_PKG_VERSION"));
+    // The same input gives the same bytes: no clock.
+    let date = "15H20000101.000000";
+    let plain = |text: &str| text.to_owned();
+    let head = [counted(name), counted(name), counted(program), counted(program)];
+    let mut global = vec![plain("1H,"), plain("1H;")];
+    global.extend(head);
+    global.extend(["32", "308", "15", "308", "15"].map(plain));
+    global.extend([
+        counted(name),
+        plain("1."),
+        flag.to_string(),
+        counted(unit),
+        plain("1"),
+        plain("1."),
+        plain(date),
+        file,
+        real(sheet.largest()),
+    ]);
+    global.extend([String::new(), String::new(), plain("11"), plain("0"), plain(date)]);
+    sheet.write(&global, out)?;
+    let lost = || Loss::LeftOut("characters of names beyond ASCII".to_owned());
+    Ok(if sheet.is_plain() { Vec::new() } else { vec![lost()] })
+}
+
+struct Maker<'s> {
+    sheet: Sheet,
+    scale: &'s Scale,
+}
+
+impl Maker<'_> {
+    /// A curve in space, scaled; or in (u, v), as it is.
+    fn curve(&mut self, curve: &Curve, role: Role, scaled: bool) -> Result<u32, Damage> {
+        if let Some(composite) = curve.composite() {
+            let inner = if role == Role::InUv { Role::InUv } else { Role::Part };
+            let pieces = composite.pieces.iter().map(|piece| self.curve(piece, inner, scaled)).collect::<Result<Vec<u32>, Damage>>()?;
+            return Ok(self.sheet.add(102, 0, role, Values::new().int(pieces.len() as u32).ints(pieces)));
+        }
+        let scale = if scaled { self.scale.model } else { 1.0 };
+        match curve.shape() {
+            Shape::Line(a, b) => Ok(self.sheet.add(110, 0, role, Values::new().point(*a / scale).point(*b / scale))),
+            Shape::Arc(arc) if arc.radius.is_some() && scaled => Ok(self.arc(arc, role)),
+            _ => {
+                let nurbs = curve.to_nurbs(&self.scale.tolerance)?;
+                Ok(self.sheet.add(126, 0, role, spline(&nurbs, scale)))
+            }
+        }
+    }
+
+    /// A circle's arc: where it is, when it runs counter-clockwise about z; else in its own frame.
+    fn arc(&mut self, arc: &EllipticArc, role: Role) -> u32 {
+        let scale = self.scale.model;
+        let whole = arc.sweep >= std::f64::consts::TAU;
+        let is_flat = arc.u.z == 0.0 && arc.v.z == 0.0 && arc.u.cross(arc.v).z > 0.0;
+        if is_flat {
+            let (center, start, end) = (arc.center / scale, arc.jet(0.0).p / scale, arc.jet(arc.sweep).p / scale);
+            let end = if whole { start } else { end };
+            let pairs = [center, start, end].into_iter().flat_map(|p| [p.x, p.y]);
+            return self.sheet.add(100, 0, role, Values::new().real(center.z).reals(pairs));
+        }
+        let (x, y) = (arc.u.normalize_or_zero(), arc.v.normalize_or_zero());
+        let frame = [x, y, x.cross(y)];
+        let origin = (arc.center / scale).to_array();
+        let rows = (0..3).flat_map(|k| [frame[0][k], frame[1][k], frame[2][k], origin[k]]);
+        let matrix = self.sheet.add(124, 0, Role::Free, Values::new().reals(rows));
+        let radius = arc.u.length() / scale;
+        let (sin, cos) = crate::base::math::sin_cos(arc.sweep);
+        let end = if whole { [radius, 0.0] } else { [radius * cos, radius * sin] };
+        let d = self.sheet.add(100, 0, role, Values::new().reals([0.0, 0.0, 0.0, radius, 0.0]).reals(end));
+        self.sheet.place(d, matrix);
+        d
+    }
+
+    fn surface(&mut self, surface: &Surface) -> Result<u32, Damage> {
+        match surface.to_net(&self.scale.tolerance)? {
+            Some(net) => Ok(self.net(&net, Role::Free)),
+            None if surface.domain() == Domain::Loop => self.bordered(surface),
+            None => Err(damage("IGES has no place for a plane without a border")),
+        }
+    }
+
+    fn net(&mut self, net: &NurbsSurface, role: Role) -> u32 {
+        let closed = (0..2).map(|across| i64::from(is_closed(net, across == 1, &self.scale.tolerance))).collect::<Vec<_>>();
+        let polynomial = net.poles.iter().all(|q| q.w == net.poles[0].w);
+        let last = |n: usize| n as i64 - 1;
+        let values = Values::new().int(last(net.counts.0)).int(last(net.counts.1)).int(net.degree.0 as i64).int(net.degree.1 as i64);
+        let values = values.int(closed[0]).int(closed[1]).int(i64::from(polynomial)).int(0).int(0);
+        let values = values.reals(net.knots.0.iter().copied()).reals(net.knots.1.iter().copied());
+        let values = values.reals(net.poles.iter().map(|q| q.w));
+        let values = net.poles.iter().fold(values, |values, q| values.point(projected(*q) / self.scale.model));
+        self.sheet.add(128, 0, role, values.reals([0.0, 1.0, 0.0, 1.0]))
+    }
+
+    /// A plane inside a loop: the net of its frame, and the loop in (u, v) and in space.
+    fn bordered(&mut self, surface: &Surface) -> Result<u32, Damage> {
+        let jet = surface.jet(0.0, 0.0);
+        let corner = |u: f64, v: f64| (jet.p + jet.du * u + jet.dv * v).extend(1.0);
+        let flat = || vec![0.0, 0.0, 1.0, 1.0];
+        let poles = vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0)];
+        let net = NurbsSurface { degree: (1, 1), knots: (flat(), flat()), poles, counts: (2, 2) };
+        let base = self.net(&net, Role::Part);
+        let to_space = DAffine3::from_mat3_translation(DMat3::from_cols(jet.du, jet.dv, jet.du.cross(jet.dv)), jet.p);
+        let to_uv = to_space.inverse();
+        let (mut uvs, mut spaces) = (Vec::new(), Vec::new());
+        for k in 0..surface.n_sides() {
+            let Side::Chain { chain, from, to } = surface.side(k) else {
+                return Err(damage("a side of its border carries no curve"));
+            };
+            let part = chain.slice(from.min(to), from.max(to), &self.scale.tolerance)?.to_curve()?;
+            let part = if from > to { part.reversed() } else { part };
+            spaces.push(self.curve(&part, Role::Part, true)?);
+            let in_uv = carried(&part, &to_uv, &self.scale.tolerance)?;
+            uvs.push(self.curve(&in_uv, Role::InUv, false)?);
+        }
+        let row = |list: Vec<u32>| Values::new().int(list.len() as u32).ints(list);
+        let uv = self.sheet.add(102, 0, Role::InUv, row(uvs));
+        let space = self.sheet.add(102, 0, Role::Part, row(spaces));
+        let border = self.sheet.add(142, 0, Role::InUv, Values::new().int(1).ints([base, uv, space]).int(3));
+        Ok(self.sheet.add(144, 0, Role::Free, Values::new().int(base).int(1).int(0).int(border)))
+    }
+}
+
+/// Whether the first and the last line of control points are one, in u or in v.
+fn is_closed(net: &NurbsSurface, in_v: bool, tolerance: &Tolerance) -> bool {
+    let (nu, nv) = net.counts;
+    let pairs: Vec<(usize, usize)> =
+        if in_v { (0..nu).map(|i| (i, (nv - 1) * nu + i)).collect() } else { (0..nv).map(|j| (j * nu, j * nu + nu - 1)).collect() };
+    pairs.iter().all(|(a, b)| tolerance.same_point(projected(net.poles[*a]), projected(net.poles[*b])))
+}
+
+fn spline(c: &Nurbs, scale: f64) -> Values {
+    let points: Vec<DVec3> = (0..c.poles.len()).map(|i| c.pole(i) / scale).collect();
+    let normal = plane_of(&points);
+    let closed = points[0] == points[points.len() - 1];
+    let values = Values::new().int(points.len() as i64 - 1).int(c.degree as i64);
+    let values = values.int(i64::from(normal.is_some())).int(i64::from(closed)).int(i64::from(c.polynomial)).int(0);
+    let values = values.reals(c.knots.iter().copied()).reals(c.poles.iter().map(|q| q.w));
+    let values = points.iter().fold(values, |values, p| values.point(*p));
+    let (a, b) = c.domain();
+    values.reals([a, b]).point(normal.unwrap_or_default())
+}
+
+/// The normal of the plane that points lie in; none where they do not, or lie on a line.
+fn plane_of(points: &[DVec3]) -> Option<DVec3> {
+    let arms = || points[1..].iter().map(|p| *p - points[0]);
+    let longest = arms().fold(DVec3::ZERO, |a, b| if b.length_squared() > a.length_squared() { b } else { a });
+    let normal = arms().map(|b| longest.cross(b)).fold(DVec3::ZERO, |a, b| if b.length_squared() > a.length_squared() { b } else { a });
+    let normal = crate::base::math::unit(normal, PARALLEL * longest.length_squared())?;
+    let flat = arms().all(|b| b.dot(normal).abs() <= EPSILON * (longest.length() + points[0].length()));
+    flat.then_some(normal)
+}
