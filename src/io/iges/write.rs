@@ -194,6 +194,9 @@ impl Maker<'_> {
     /// A plane inside a loop: the net of its frame, and the loop in (u, v) and in space.
     fn bordered(&mut self, surface: &Surface) -> Result<u32, Damage> {
         let jet = surface.jet(0.0, 0.0);
+        if surface.flat_uv(jet.p).is_none() {
+            return Err(damage("surfaces trimmed inside their border are not written in this version"));
+        }
         let corner = |u: f64, v: f64| (jet.p + jet.du * u + jet.dv * v).extend(1.0);
         let flat = || vec![0.0, 0.0, 1.0, 1.0];
         let poles = vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0)];
@@ -201,13 +204,17 @@ impl Maker<'_> {
         let base = self.net(&net, Role::Part);
         let to_space = DAffine3::from_mat3_translation(DMat3::from_cols(jet.du, jet.dv, jet.du.cross(jet.dv)), jet.p);
         let to_uv = to_space.inverse();
-        let (mut uvs, mut spaces) = (Vec::new(), Vec::new());
+        let (mut uvs, mut spaces, mut last) = (Vec::new(), Vec::new(), None::<DVec3>);
         for k in 0..surface.n_sides() {
             let Side::Chain { chain, from, to } = surface.side(k) else {
                 return Err(damage("a side of its border carries no curve"));
             };
             let part = chain.slice(from.min(to), from.max(to), &self.scale.tolerance)?.to_curve()?;
             let part = if from > to { part.reversed() } else { part };
+            if last.is_some_and(|end| !self.scale.tolerance.same_point(end, part.start())) {
+                return Err(damage("planes with holes are not written in this version"));
+            }
+            last = Some(part.end());
             spaces.push(self.curve(&part, Role::Part, true)?);
             let in_uv = carried(&part, &to_uv, &self.scale.tolerance)?;
             uvs.push(self.curve(&in_uv, Role::InUv, false)?);
