@@ -20,7 +20,7 @@ const FLOORS: &[(&str, u8)] = &[
 
 /// A crate and the places that may name it.
 const DOORS: &[(&str, &[&str])] = &[
-    ("spade", &["src/base/triangulate.rs"]),
+    ("spade", &["src/base/triangulate"]),
     ("rayon", &["src/base/par.rs"]),
     ("robust", &["src/base/"]),
     ("libm", &["src/base/"]),
@@ -51,9 +51,9 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_500),
     ("geometry", 5_500),
     ("network", 3_500),
-    ("surface", 5_500),
-    ("model", 2_500),
-    ("mesh", 6_500),
+    ("surface", 6_500),
+    ("model", 2_800),
+    ("mesh", 10_000),
     ("io", 8_500),
     ("draw", 3_000),
     ("lang", 19_500),

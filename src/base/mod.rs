@@ -18,4 +18,5 @@ pub mod solve;
 pub mod text;
 pub mod tolerance;
 pub mod triangulate;
+pub mod triangulate_points;
 pub mod xml;

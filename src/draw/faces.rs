@@ -4,16 +4,13 @@ use glam::DVec3;
 
 use super::scene::{Paint, Sheet};
 use crate::base::par;
-use crate::base::triangulate;
 use crate::model::{Model, Patch, SurfaceId};
-use crate::surface::{Domain, Jet2, Lean, Side, Surface};
+use crate::surface::{Domain, Jet2, Lean, Surface};
 
 /// Places along each direction where a patch is asked how much it bends.
-const LOOKS: usize = 9;
+pub(super) const LOOKS: usize = 9;
 /// Most steps along each direction of a patch.
-const MOST: usize = 400;
-/// Points of a border of a plane face, for each of its sides.
-const SIDE: usize = 48;
+pub(super) const MOST: usize = 400;
 
 /// What each point of a sheet shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +26,7 @@ pub enum Show {
 
 impl Show {
     /// Least steps of a patch that is bent: what is shown between points is as smooth as they are dense.
-    fn least(self) -> usize {
+    pub(super) fn least(self) -> usize {
         match self {
             Self::Light => 4,
             Self::Curvature => 32,
@@ -56,13 +53,13 @@ pub fn surface(model: &Model, id: SurfaceId, flipped: bool, fine: f64, show: Sho
 /// One patch as a sheet without a name.
 pub fn patch(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
     match surface.domain() {
-        Domain::Loop => flat(surface),
+        Domain::Loop => super::trimmed::sheet(surface, fine, show),
         Domain::Triangle => triangle(surface, fine, show),
         Domain::Square | Domain::Unbounded => square(surface, patch, fine, show),
     }
 }
 
-fn even(sheet: (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), values: Vec<f32>) -> Sheet {
+pub(super) fn even(sheet: (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), values: Vec<f32>) -> Sheet {
     let (points, normals, triangles) = sheet;
     let paint = if values.is_empty() { Paint::Even(super::color::FACE) } else { Paint::OfPoints(values) };
     Sheet { name: String::new(), points, normals, triangles, edges: Vec::new(), paint }
@@ -161,23 +158,4 @@ fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
 
 fn jet_of(surface: &Surface, i: usize, j: usize, n: usize) -> Jet2 {
     surface.jet(i as f64 / n as f64, j as f64 / n as f64)
-}
-
-/// A plane face inside a loop of sides.
-fn flat(surface: &Surface) -> Sheet {
-    let mut points: Vec<DVec3> = Vec::new();
-    for k in 0..surface.n_sides() {
-        if let Side::Chain { chain, from, to } = surface.side(k) {
-            let straight = chain.runs().iter().all(|run| run.curve.kind() == crate::geometry::Kind::Line) && chain.runs().len() == 1;
-            let n = if straight { 1 } else { SIDE };
-            points.extend((0..n).map(|i| chain.point(from + (to - from) * i as f64 / n as f64)));
-        }
-    }
-    points.dedup();
-    // A polygon that crosses itself has no triangles; its border is drawn all the same.
-    let triangles = triangulate::polygon(&points).unwrap_or_default();
-    let normal = surface.normal(0.5, 0.5);
-    let turned = triangulate::newell(&points).dot(normal) < 0.0;
-    let triangles = triangles.into_iter().map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] }.map(|i| i as u32)).collect();
-    even((points.clone(), vec![normal; points.len()], triangles), Vec::new())
 }

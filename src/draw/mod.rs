@@ -19,6 +19,7 @@ pub mod raster;
 pub mod scene;
 mod shade;
 pub mod svg;
+mod trimmed;
 
 pub use camera::{Camera, VIEWS, View};
 pub use picture::{FORMATS, Format, Picture, Settings};

@@ -61,6 +61,8 @@ pub enum Kind {
     Composite,
     /// Line of constant u or v of a surface.
     Iso,
+    /// Curve carried to a surface.
+    Project,
 }
 
 impl Kind {
@@ -82,6 +84,7 @@ impl Kind {
             Self::Offset => "offset",
             Self::Composite => "composite",
             Self::Iso => "iso",
+            Self::Project => "project",
         }
     }
 }

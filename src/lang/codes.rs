@@ -114,8 +114,8 @@ codes! {
     now "N608", "transfinite-oscillation", "a transfinite surface swings beyond its curves";
     now "N609", "end-trimmed", "the end of a curve was trimmed to the border";
     now "E611", "loop-self-intersects", "a loop crosses itself";
-    later "E612", "loop-outside", "a hole lies outside its outer loop";
-    later "E613", "loop-outside-surface", "a loop leaves its surface";
+    now "E612", "loop-outside", "a hole lies outside its outer loop";
+    now "E613", "loop-outside-surface", "a loop leaves its surface";
     now "W614", "sliver-patch", "a patch is a sliver";
     now "N615", "shell-open", "a shell has free edges";
     now "E616", "shell-not-orientable", "the faces of a shell cannot be turned to one side";
@@ -153,8 +153,8 @@ codes! {
     now "W706", "rule-overridden", "a rule is overridden by an equal one";
     now "E711", "edge-mismatch", "neighbouring faces divide their edge differently";
     now "N712", "edge-too-short", "an edge is shorter than the tolerance allows";
-    later "E713", "cdt-constraint-crosses", "constraints of a triangulation cross";
-    later "E714", "face-empty", "a face has nothing inside";
+    now "E713", "cdt-constraint-crosses", "borders of a face cross";
+    now "E714", "face-empty", "a face has nothing inside";
     now "E715", "element-inverted", "an element is turned inside out";
     later "E716", "quadtree-too-deep", "a quadtree grows too deep";
     later "E717", "tessellation-limit", "a tessellation grows beyond its limit";

@@ -51,7 +51,11 @@ fn elements(value: &Value) -> Option<Elements> {
 
 fn method(value: &Value) -> Option<Method> {
     let Value::Word(w) = value else { return None };
-    Some(if &**w == "mapped" { Method::Mapped } else { Method::Auto })
+    Some(match &**w {
+        "mapped" => Method::Mapped,
+        "delaunay" => Method::Delaunay,
+        _ => Method::Auto,
+    })
 }
 
 impl Cx<'_> {
@@ -235,7 +239,7 @@ impl Cx<'_> {
     }
 
     fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
-        if key == "method" && !matches!(&value, Value::Word(w) if matches!(&**w, "auto" | "mapped")) {
+        if key == "method" && !matches!(&value, Value::Word(w) if matches!(&**w, "auto" | "mapped" | "delaunay")) {
             let what = format!("`method: {}`", self.show(&value));
             return Err(self.not_yet(code, &what, code.span(id)));
         }

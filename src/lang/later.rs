@@ -7,8 +7,7 @@ use super::syntax::ast::{ExprId, Keyword, Span};
 use super::value::{ModuleId, Value};
 use super::{module::bound, std};
 
-const FUNCTIONS: &[&str] =
-    &["sweep", "trim", "gordon", "fit", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics", "project"];
+const FUNCTIONS: &[&str] = &["sweep", "gordon", "fit", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics"];
 
 const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];
 

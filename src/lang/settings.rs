@@ -51,7 +51,7 @@ pub const MESH: &[Setting] = &[
     Setting { key: "order", docs: "1, or 2 with mid nodes.", default: "1", ty: Ty::Count },
     Setting {
         key: "method",
-        docs: "How faces are meshed; this version has `auto` and `mapped`.",
+        docs: "How faces are meshed; this version has `auto`, `mapped` and `delaunay`.",
         default: "auto",
         ty: Ty::Choice(METHODS),
     },
@@ -66,7 +66,7 @@ pub const ON: &[Setting] = &[
     Setting { key: "elements", docs: "Kind of elements of these faces.", default: "", ty: Ty::Choice(ELEMENTS) },
     Setting {
         key: "method",
-        docs: "How these faces are meshed; this version has `auto` and `mapped`.",
+        docs: "How these faces are meshed; this version has `auto`, `mapped` and `delaunay`.",
         default: "",
         ty: Ty::Choice(METHODS),
     },

@@ -507,6 +507,20 @@ impl<T: FromValue> FromValue for Rest<T> {
     }
 }
 
+/// Curves that close together: one, or a list.
+#[derive(Clone, Debug)]
+pub struct Ring(pub Vec<Chain>);
+
+impl FromValue for Ring {
+    const TY: Ty = Ty::OneOf(&[Ty::Curve, Ty::List(&Ty::Curve)]);
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Curve(chain) => Some(Self(vec![chain])),
+            list => Vec::from_value(list).map(Self),
+        }
+    }
+}
+
 impl<T: FromValue> FromValue for Vec<T> {
     const TY: Ty = Ty::List(&T::TY);
     fn from_value(value: Value) -> Option<Self> {

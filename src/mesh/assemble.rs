@@ -8,6 +8,7 @@ use super::data::{FaceRange, Mesh};
 use super::edges::Limits;
 use super::explain::Explanation;
 use super::faces::{self, Prepared};
+use super::free::face::{self as free_face, Made};
 use super::layout::Layout;
 use super::limits::{self, Finished, Verdict};
 use super::nodes::Nodes;
@@ -45,7 +46,6 @@ pub struct Part {
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
-    faces::refuse(input, &layout)?;
     lines::refuse_inside(input, &layout)?;
     let mut sizing = Sizing::new(input, &mut layout, size, known)?;
     let limits = faces::limits_of(input);
@@ -61,17 +61,23 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         let settled = counts == last;
         refuse_too_many(input, &layout, &relations, &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
-        let prepared = prepare(input, &layout, &nodes, &relations, &counts)?;
         let border = nodes.points(&layout, &input.plan.points);
+        let made = Made { input, layout: &layout, nodes: &nodes, points: &border };
+        let mut prepared = prepare(&made, &relations, &counts)?;
         let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
         let keys: Vec<Digest> = known.map(key).unwrap_or_default();
         let keyed = known.map(|known| (known, keys.as_slice()));
-        let mesh = fill(input, border, &prepared, keyed, job)?;
+        let mut mesh = fill(input, &border, &prepared, keyed, job)?;
         if !settled {
             verdicts = limits::check(input, &limits, &mesh, &finished(&layout, &sizing, &prepared, &wishes), keyed);
         }
         if settled || verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
             shape_check::refuse_turned(input, &prepared, &mesh, keyed)?;
+            if layout.faces.iter().any(|f| f.free) {
+                free(&made, &mut prepared, job)?;
+                // Keys are of faces before their insides were made.
+                mesh = fill(input, &border, &prepared, None, job)?;
+            }
             sizing.take(&counts);
             let explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
             return Ok(finish(input, Whole { layout, nodes, prepared, sizing }, mesh, explanation));
@@ -86,6 +92,9 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
 fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, known: Option<&Known>) -> Vec<[Wish; 2]> {
     par::map(layout.faces.len(), |f| {
         let face = &layout.faces[f];
+        if face.free {
+            return [Wish::default(); 2];
+        }
         let no_limit = limits.chord.is_none() && limits.angle.is_none();
         if no_limit && written(layout, sizing, f) == [true; 2] {
             return [Wish::default(); 2];
@@ -100,6 +109,9 @@ fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, know
 /// Directions of a face with a side whose counts are all written out.
 fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
     let sides = &layout.faces[face].sides;
+    if layout.faces[face].free {
+        return [true; 2];
+    }
     let all = |k: usize| !sides[k].uses.is_empty() && sides[k].uses.iter().all(|u| sizing.decisions[u.atom].count.is_some());
     if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
 }
@@ -108,6 +120,9 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
 fn refuse_too_many(input: &Input, layout: &Layout, relations: &Relations, counts: &[u32]) -> Result<()> {
     let mut total: u64 = 0;
     for (face, rows) in layout.faces.iter().zip(&relations.of_face) {
+        if face.free {
+            continue;
+        }
         let n = |k: usize| u64::from(counts[rows[k]]);
         let cells = if face.is_triangle() { n(0).saturating_mul(n(0)) } else { n(0).saturating_mul(n(1)) };
         total = total.saturating_add(if face.elements == Elements::Triangles && !face.is_triangle() { 2 * cells } else { cells });
@@ -121,19 +136,51 @@ fn refuse_too_many(input: &Input, layout: &Layout, relations: &Relations, counts
     Ok(())
 }
 
-/// Charts and ids of all faces.
-fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
+/// Charts and ids of all faces; free ones are left empty, since nothing else depends on what is in them.
+fn prepare(made: &Made, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
+    let layout = made.layout;
     let mut prepared = par::try_map(layout.faces.len(), |f| {
+        if layout.faces[f].free {
+            return Ok(free_face::empty(made, &layout.faces[f]));
+        }
         let rows: Vec<u32> = relations.of_face[f].iter().map(|r| counts[*r]).collect();
-        faces::prepare(input, layout, nodes, &layout.faces[f], &rows)
+        faces::prepare(made.input, layout, made.nodes, &layout.faces[f], &rows)
     })?;
-    faces::refuse_triangles(input, layout, &prepared)?;
-    let mut first = nodes.total;
-    for ready in &mut prepared {
+    faces::refuse_triangles(made.input, layout, &prepared)?;
+    number(made, &mut prepared)?;
+    Ok(prepared)
+}
+
+/// Makes the free faces.
+fn free(made: &Made, prepared: &mut [Prepared], job: &Job) -> Result<()> {
+    let faces = &made.layout.faces;
+    let which: Vec<usize> = (0..faces.len()).filter(|f| faces[*f].free).collect();
+    job.expect(which.len() as u64);
+    let ready = par::try_map(which.len(), |k| {
+        job.go_on()?;
+        let ready = free_face::prepare(made, &faces[which[k]], job);
+        job.advance(1);
+        ready
+    })?;
+    for (f, ready) in which.into_iter().zip(ready) {
+        prepared[f] = ready;
+    }
+    number(made, prepared)
+}
+
+/// Ids of the inner nodes, face by face; E217 for more elements than a mesh may have.
+fn number(made: &Made, prepared: &mut [Prepared]) -> Result<()> {
+    let mut first = made.nodes.total;
+    let mut total = 0;
+    for ready in prepared.iter_mut() {
+        total += ready.triangles + ready.quads;
+        if total > MESH_ELEMENTS {
+            return Err(faces::too_many(&made.input.plan.name, total));
+        }
         ready.number(first);
         first += ready.inner as u32;
     }
-    Ok(prepared)
+    Ok(())
 }
 
 /// One face being filled: its parts of the arrays.
@@ -167,12 +214,13 @@ impl Fill<'_> {
 }
 
 /// All nodes and elements; faces and rows of large faces on several threads.
-fn fill(input: &Input, mut border: Vec<DVec3>, prepared: &[Prepared], keyed: Option<(&Known, &[Digest])>, job: &Job) -> Result<Mesh> {
+fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], keyed: Option<(&Known, &[Digest])>, job: &Job) -> Result<Mesh> {
     let sum = |f: &dyn Fn(&Prepared) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
     let on_border = border.len();
-    border.reserve_exact(sum(&|p| p.inner));
-    border.resize(on_border + sum(&|p| p.inner), DVec3::ZERO);
-    let mut mesh = Mesh { name: input.plan.name.clone(), order: input.plan.order, nodes: border, ..Mesh::default() };
+    let mut all = Vec::with_capacity(on_border + sum(&|p| p.inner));
+    all.extend_from_slice(border);
+    all.resize(on_border + sum(&|p| p.inner), DVec3::ZERO);
+    let mut mesh = Mesh { name: input.plan.name.clone(), order: input.plan.order, nodes: all, ..Mesh::default() };
     mesh.triangles = vec![[0; 3]; sum(&|p| p.triangles)];
     mesh.quads = vec![[0; 4]; sum(&|p| p.quads)];
     let (border, mut inner) = mesh.nodes.split_at_mut(on_border);

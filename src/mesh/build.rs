@@ -164,6 +164,10 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
         let surface = &input.model.surfaces[record.surface.index()].surface;
         let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / (SAMPLES - 1) as f64;
         let mut points = vec![DVec3::ZERO; SAMPLES * SAMPLES];
+        if surface.domain() == Domain::Loop {
+            around = around.union(crate::surface::bbox(surface));
+            continue;
+        }
         if surface.domain() == Domain::Square {
             let us: Vec<f64> = (0..SAMPLES).map(|k| at(record.u, k)).collect();
             let vs: Vec<f64> = (0..SAMPLES).map(|k| at(record.v, k)).collect();

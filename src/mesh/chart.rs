@@ -216,6 +216,19 @@ pub enum Shape {
     Lattice(Lattice),
     /// Three grids of quads that meet inside a triangle, by the (u, v) of their nodes.
     Blocks(super::trilateral::Blocks),
+    /// Triangles that no map gave, by the (u, v) of their nodes.
+    Free(Free),
+}
+
+/// Triangles over (u, v): nodes of the border first, then inner ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Free {
+    /// Places of the nodes.
+    pub uv: Vec<(f64, f64)>,
+    /// Number of border nodes; some may be one node of the mesh in two places (a seam).
+    pub border: usize,
+    /// Corners of the triangles, counter-clockwise in (u, v).
+    pub triangles: Vec<[u32; 3]>,
 }
 
 #[cfg(test)]

@@ -38,6 +38,7 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
             let uv = match shape {
                 Shape::Lattice(lattice) => lattice_points(lattice),
                 Shape::Blocks(blocks) => blocks.uv.clone(),
+                Shape::Free(free) => free.uv.clone(),
                 Shape::Grid(_) => Vec::new(),
             };
             let ids = ids(shape, frame);
@@ -61,6 +62,7 @@ pub fn each_cell(shape: &Shape, mut visit: impl FnMut(&[usize])) {
             LatticeFrame::triangles(lattice.size()).for_each(|t| visit(&t.map(|(i, j)| lattice.index(i, j))));
         }
         Shape::Blocks(blocks) => blocks.quads.iter().for_each(|q| visit(&q.map(|n| n as usize))),
+        Shape::Free(free) => free.triangles.iter().for_each(|t| visit(&t.map(|n| n as usize))),
         Shape::Grid(_) => {}
     }
 }
@@ -72,7 +74,7 @@ pub fn ids(shape: &Shape, frame: &Frame) -> Vec<u32> {
             let n = lattice.size();
             (0..=n).flat_map(|j| (0..=n - j).map(move |i| (i, j))).map(|(i, j)| frame.node(i, j)).collect()
         }
-        (_, Frame::Blocks(places)) => places.clone(),
+        (_, Frame::Blocks(places) | Frame::Free(places)) => places.clone(),
         _ => Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::counts::{for_size, steps};
+use super::counts::for_size;
 use super::layout::Layout;
 use crate::base::fault::Result;
 use crate::base::math::{self, angle_between};
@@ -35,13 +35,15 @@ struct Load {
 }
 
 /// The least number of steps for the limits, up to `cap`.
-pub fn least_steps(layout: &Layout, stretch: usize, bias: f64, limits: &Limits, cap: u32) -> Result<u32> {
+///
+/// `divided` gives the fractions 0…1 of so many steps.
+pub fn least_steps(layout: &Layout, stretch: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Ok(1);
     }
     let mut n = 1_u32;
     for _ in 0..ROUNDS {
-        let load = worst(layout, stretch, n, bias, limits)?;
+        let load = worst(layout, stretch, divided(n), limits)?;
         let keeps = 1.0 + WHOLE_NUMBER;
         if (load.chord <= keeps && load.angle <= keeps) || n >= cap {
             break;
@@ -54,10 +56,10 @@ pub fn least_steps(layout: &Layout, stretch: usize, bias: f64, limits: &Limits, 
     Ok(n.min(cap))
 }
 
-fn worst(layout: &Layout, stretch: usize, n: u32, bias: f64, limits: &Limits) -> Result<Load> {
+fn worst(layout: &Layout, stretch: usize, fractions: Vec<f64>, limits: &Limits) -> Result<Load> {
     let atom = &layout.pieces.atoms[stretch];
     let track = &layout.parts[atom.track].track;
-    let at: Vec<f64> = steps(n, bias).into_iter().map(|f| atom.s.0 + (atom.s.1 - atom.s.0) * f).collect();
+    let at: Vec<f64> = fractions.into_iter().map(|f| atom.s.0 + (atom.s.1 - atom.s.0) * f).collect();
     let mut load = Load::default();
     for w in at.windows(2) {
         let (chord, angle) = match track {

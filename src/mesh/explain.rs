@@ -90,7 +90,7 @@ impl Explanation {
             notes.faces.push(FaceNote {
                 surface: face.surface,
                 patch: face.patch.index() - first,
-                method: "mapped",
+                method: if matches!(ready.chart.frame, Frame::Free(_)) { "delaunay" } else { "mapped" },
                 elements: elements_name(ready.elements),
                 sides,
             });

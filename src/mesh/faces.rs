@@ -24,6 +24,8 @@ pub enum Frame {
     Lattice(LatticeFrame),
     /// Of three blocks: ids by place among the blocks' nodes.
     Blocks(Vec<u32>),
+    /// Of free triangles: ids by place, border first.
+    Free(Vec<u32>),
 }
 
 /// A face ready to be filled.
@@ -43,6 +45,8 @@ pub struct Prepared {
     pub triangles: u64,
     /// Number of quads.
     pub quads: u64,
+    /// Points of the inner nodes, where they are not made from the chart alone.
+    pub made: Vec<DVec3>,
 }
 
 /// A point in the middle of a face.
@@ -56,17 +60,22 @@ pub fn middle(input: &Input, face: &Face) -> DVec3 {
     }
 }
 
-/// E705 or E230 for faces that no map fits, E704 for poles where only quads are wanted (counts come later).
-pub fn refuse(input: &Input, layout: &Layout) -> Result<()> {
-    for face in &layout.faces {
+/// Chooses how each face is made: mapped where it can be and no other method is written, else freely.
+///
+/// Fails with E705 for faces that cannot be mapped but must, or have no border.
+pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
+    for face in &mut layout.faces {
         let surface = &input.model.surfaces[face.surface.index()].surface;
-        if let Some(why) = unmappable(surface, face) {
-            let (of, at) = (surface.origin(), middle(input, face));
-            return Err(match face.method {
-                Method::Mapped => MeshFault::CannotMap { surface: of, why, at },
-                _ => MeshFault::NeedsLater { of, what: format!("a face {why}"), method: "delaunay", at },
-            }
-            .into());
+        let why = unmappable(surface, face);
+        let (of, at) = (surface.origin(), middle(input, face));
+        let borderless = face.sides.iter().all(|s| s.uses.is_empty());
+        if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
+            return Err(MeshFault::CannotMap { surface: of, why, at }.into());
+        }
+        face.free = face.method == Method::Delaunay || why.is_some();
+        if face.free && face.elements == Elements::Quads {
+            let what = format!("`elements: quads` on a face {}", why.unwrap_or_else(|| "made freely".to_owned()));
+            return Err(MeshFault::NeedsLater { of, what, method: "quadtree", at }.into());
         }
     }
     Ok(())
@@ -76,6 +85,7 @@ pub fn refuse(input: &Input, layout: &Layout) -> Result<()> {
 fn unmappable(surface: &Surface, face: &Face) -> Option<String> {
     if matches!(surface.domain(), Domain::Loop | Domain::Unbounded) {
         return Some(match surface.domain() {
+            Domain::Loop if face.sides.len() == 1 => "with one side and no map".to_owned(),
             Domain::Loop => format!("with {} sides and no map between them", face.sides.len()),
             _ => "without borders".to_owned(),
         });
@@ -100,13 +110,15 @@ pub fn refuse_triangles(input: &Input, layout: &Layout, prepared: &[Prepared]) -
 }
 
 /// Side nodes of a face with their lengths along the side.
-struct Line {
-    ids: Vec<u32>,
-    lengths: Vec<f64>,
+pub struct Line {
+    /// Nodes.
+    pub ids: Vec<u32>,
+    /// Arc length from the side's start, model units.
+    pub lengths: Vec<f64>,
 }
 
 /// The nodes along a side, ascending; a pole gives `steps + 1` times its node.
-fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usize) -> Line {
+pub fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usize) -> Line {
     let border = &face.sides[side];
     let (mut ids, mut lengths) = (Vec::new(), Vec::new());
     for u in &border.uses {
@@ -158,6 +170,7 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
         first: 0,
         triangles,
         quads,
+        made: Vec::new(),
     })
 }
 
@@ -183,6 +196,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
             inner,
             triangles: n * n,
             quads: 0,
+            made: Vec::new(),
         });
     }
     let Some(blocks) = Blocks::new(&values) else {
@@ -201,6 +215,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         surface: face.surface,
         elements: face.elements,
         first: 0,
+        made: Vec::new(),
     })
 }
 
@@ -216,7 +231,7 @@ impl Frame {
                 frame.first += by;
                 frame.sides.iter_mut().collect()
             }
-            Self::Blocks(places) => vec![places],
+            Self::Blocks(places) | Self::Free(places) => vec![places],
         };
         lists.into_iter().flatten().for_each(|id| *id += by);
     }
@@ -234,6 +249,10 @@ impl Prepared {
         match &mut self.chart.frame {
             Frame::Grid(frame) => frame.first = first,
             Frame::Lattice(frame) => frame.first = first,
+            Frame::Free(places) => {
+                let border = places.len() - self.inner as usize;
+                places[border..].iter_mut().zip(first..).for_each(|(place, id)| *place = id);
+            }
             Frame::Blocks(places) => places[..self.inner as usize].iter_mut().zip(first..).for_each(|(place, id)| *place = id),
         }
     }
@@ -241,6 +260,7 @@ impl Prepared {
     /// Points of the inner nodes.
     pub fn points(&self, surface: &Surface, out: &mut [DVec3]) {
         match &self.chart.shape {
+            Shape::Free(_) => out.copy_from_slice(&self.made),
             Shape::Grid(grid) => grid.inner_points(surface, out),
             Shape::Lattice(lattice) => {
                 for (p, (i, j)) in out.iter_mut().zip(LatticeFrame::inner(lattice.size())) {
@@ -283,6 +303,12 @@ impl Prepared {
                 for (slot, q) in quads.iter_mut().zip(&blocks.quads) {
                     let [a, b, c, d] = q.map(|n| places[n as usize]);
                     *slot = if self.chart.flipped { [a, d, c, b] } else { [a, b, c, d] };
+                }
+            }
+            (Frame::Free(places), Shape::Free(free)) => {
+                for (slot, t) in triangles.iter_mut().zip(&free.triangles) {
+                    let [a, b, c] = t.map(|n| places[n as usize]);
+                    *slot = if self.chart.flipped { [a, c, b] } else { [a, b, c] };
                 }
             }
             _ => {}

@@ -38,6 +38,7 @@ impl Content for Method {
             Self::Auto => 0u8.tell(to),
             Self::Mapped => 1u8.tell(to),
             Self::Later(word) => (2u8, *word).tell(to),
+            Self::Delaunay => 3u8.tell(to),
         }
     }
 }
@@ -125,7 +126,8 @@ impl Teller<'_> {
     }
 
     fn face(&self, face: &Face, to: &mut Digester) {
-        let Face { patch, surface, flipped, elements, method, size, sides } = face;
+        // How it is made follows from the rest.
+        let Face { patch, surface, flipped, elements, method, size, sides, free: _ } = face;
         let record = &self.input.model.patches[patch.index()];
         (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).tell(to);
         (*flipped, *elements, (*method, size.0, size.1)).tell(to);

@@ -41,6 +41,8 @@ pub struct Face {
     pub elements: Elements,
     /// Method.
     pub method: Method,
+    /// Made freely: grown from its border instead of mapped.
+    pub free: bool,
     /// Target size inside, model units, and the rule that says so.
     pub size: (f64, Option<usize>),
     /// Sides in the order of the patch: four, or three of a triangle.
@@ -128,7 +130,16 @@ impl Layout {
             sides.push(border);
         }
         let plan = input.plan;
-        Face { patch, surface: record.surface, flipped, elements: plan.elements, method: plan.method, size: (0.0, None), sides }
+        Face {
+            patch,
+            surface: record.surface,
+            flipped,
+            elements: plan.elements,
+            method: plan.method,
+            free: false,
+            size: (0.0, None),
+            sides,
+        }
     }
 
     /// Stretches of a chain in its direction, `s` from its start; those of links that are in the mesh.

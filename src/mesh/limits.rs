@@ -150,6 +150,8 @@ fn sizes(finished: &Finished, mesh: &Mesh, verdict: &mut Verdict) {
             }
             verdict.size = [longest.sqrt() / most; 2];
         }
+        // What is made freely keeps its limits by itself.
+        Frame::Free(_) => {}
         Frame::Blocks(places) => {
             let Shape::Blocks(blocks) = &finished.ready.chart.shape else { return };
             let inner = blocks.inner as u32;
@@ -202,6 +204,7 @@ fn turns(surface: &Surface, finished: &Finished, limit: f64, verdict: &mut Verdi
             let uv = match shape {
                 Shape::Lattice(lattice) => super::trilateral::lattice_points(lattice),
                 Shape::Blocks(blocks) => blocks.uv.clone(),
+                Shape::Free(free) => free.uv.clone(),
                 Shape::Grid(_) => Vec::new(),
             };
             let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();

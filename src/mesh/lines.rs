@@ -9,6 +9,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{MeshFault, Result};
 use crate::base::origin::Origin;
 use crate::model::PatchId;
+use crate::surface::Domain;
 use glam::DVec3;
 
 /// E230 for curves and points that lie inside a face, off its mesh lines.
@@ -44,7 +45,10 @@ fn inside(input: &Input, layout: &Layout, points: &[DVec3]) -> Option<DVec3> {
         let record = &input.model.patches[patch.index()];
         let surface = &input.model.surfaces[record.surface.index()].surface;
         box_of.touches(&surface.hull(), input.tolerance.point)
-            && points.iter().all(|p| foot::nearest_anywhere(surface, *p, record.u, record.v).0 <= input.tolerance.point)
+            && points.iter().all(|p| match surface.domain() {
+                Domain::Loop => crate::surface::closest(surface, *p).distance <= input.tolerance.point,
+                _ => foot::nearest_anywhere(surface, *p, record.u, record.v).0 <= input.tolerance.point,
+            })
     };
     layout.faces.iter().any(|f| on(f.patch)).then(|| points[points.len() / 2])
 }

@@ -45,7 +45,10 @@ impl Nodes {
         }
         for (count, decision) in nodes.counts.iter().zip(&sizing.decisions) {
             nodes.first.push(nodes.total);
-            nodes.fractions.push(steps(*count, decision.bias));
+            nodes.fractions.push(match &sizing.paces[nodes.fractions.len()] {
+                Some(pace) => pace.steps(*count),
+                None => steps(*count, decision.bias),
+            });
             nodes.total += count - 1;
         }
         nodes

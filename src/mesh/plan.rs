@@ -24,6 +24,8 @@ pub enum Method {
     Auto,
     /// Mapped, or an error.
     Mapped,
+    /// Nodes grown over the surface, Delaunay triangles improved in space.
+    Delaunay,
     /// A method of a later version, by its word.
     Later(&'static str),
 }

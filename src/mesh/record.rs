@@ -1,7 +1,7 @@
 //! Meshes as bytes and back. What comes back is either a sound mesh or nothing.
 
 use super::build::Built;
-use super::chart::{Chart, Charts, Grid, Lattice, Shape};
+use super::chart::{Chart, Charts, Free, Grid, Lattice, Shape};
 use super::data::{FaceRange, Group, Mesh};
 use super::explain::Explanation;
 use super::faces::Frame;
@@ -15,6 +15,7 @@ crate::plain!(FaceRange { name, triangles, quads, lines });
 crate::plain!(Group { name, nodes, lines, triangles, quads });
 crate::plain!(Grid { u, v, sides, straight });
 crate::plain!(Lattice { sides });
+crate::plain!(Free { uv, border, triangles });
 crate::plain!(Blocks { uv, inner, quads, sides });
 crate::plain!(mapped::Frame { sides, poles, first });
 crate::plain!(LatticeFrame { sides, first });
@@ -36,6 +37,7 @@ impl Put for Shape {
             Self::Grid(grid) => (0u8, grid).put(to),
             Self::Lattice(lattice) => (1u8, lattice).put(to),
             Self::Blocks(blocks) => (2u8, blocks).put(to),
+            Self::Free(free) => (3u8, free).put(to),
         }
     }
 }
@@ -47,6 +49,7 @@ impl Plain for Shape {
             0 => Self::Grid(Plain::take(from)?),
             1 => Self::Lattice(Plain::take(from)?),
             2 => Self::Blocks(Plain::take(from)?),
+            3 => Self::Free(Plain::take(from)?),
             _ => return None,
         })
     }
@@ -58,6 +61,7 @@ impl Put for Frame {
             Self::Grid(frame) => (0u8, frame).put(to),
             Self::Lattice(frame) => (1u8, frame).put(to),
             Self::Blocks(places) => (2u8, places).put(to),
+            Self::Free(places) => (3u8, places).put(to),
         }
     }
 }
@@ -69,6 +73,7 @@ impl Plain for Frame {
             0 => Self::Grid(Plain::take(from)?),
             1 => Self::Lattice(Plain::take(from)?),
             2 => Self::Blocks(Plain::take(from)?),
+            3 => Self::Free(Plain::take(from)?),
             _ => return None,
         })
     }
@@ -180,6 +185,12 @@ fn fits(chart: &Chart, nodes: u32) -> bool {
                 && blocks.inner <= places.len()
                 && blocks.quads.iter().all(|quad| own(quad))
                 && blocks.sides.iter().all(|side| own(side))
+        }
+        (Shape::Free(free), Frame::Free(places)) => {
+            places.len() == free.uv.len()
+                && node(places)
+                && free.border <= places.len()
+                && free.triangles.iter().flatten().all(|n| (*n as usize) < free.uv.len())
         }
         _ => false,
     }

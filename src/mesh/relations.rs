@@ -42,6 +42,9 @@ impl Relations {
         let mut relations = Self { first_row: layout.pieces.atoms.len(), ..Self::default() };
         for (index, face) in layout.faces.iter().enumerate() {
             relations.of_face.push(Vec::new());
+            if face.free {
+                continue;
+            }
             if !face.is_triangle() {
                 for (direction, wish) in wishes[index].iter().enumerate() {
                     // Between two poles one row of triangles would meet in both.

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 
-use super::chart::{Grid, Lattice, Shape};
+use super::chart::{Free, Grid, Lattice, Shape};
 use super::edges::Limits;
 use super::faces::{Frame, Prepared};
 use super::limits::Verdict;
@@ -132,6 +132,7 @@ impl Known<'_> {
             Frame::Grid(frame) => frame.sides.iter().for_each(|side| points(side)),
             Frame::Lattice(frame) => frame.sides.iter().for_each(|side| points(side)),
             Frame::Blocks(places) => points(&places[ready.inner as usize..]),
+            Frame::Free(places) => points(places),
         }
         if let Frame::Grid(frame) = &ready.chart.frame {
             frame.poles.tell(&mut to);
@@ -142,6 +143,7 @@ impl Known<'_> {
 
 crate::content!(Grid { u, v, sides, straight });
 crate::content!(Lattice { sides });
+crate::content!(Free { uv, border, triangles });
 crate::content!(Blocks { uv, inner, quads, sides });
 crate::content!(Limits { chord, angle });
 crate::content!(Wish { size, least, length, bend });
@@ -152,6 +154,7 @@ impl Content for Shape {
             Self::Grid(grid) => (0u8, grid).tell(to),
             Self::Lattice(lattice) => (1u8, lattice).tell(to),
             Self::Blocks(blocks) => (2u8, blocks).tell(to),
+            Self::Free(free) => (3u8, free).tell(to),
         }
     }
 }

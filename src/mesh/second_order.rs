@@ -131,6 +131,7 @@ impl Places<'_> {
         let uv = match &self.chart.shape {
             Shape::Lattice(lattice) => super::trilateral::lattice_points(lattice),
             Shape::Blocks(blocks) => blocks.uv.clone(),
+            Shape::Free(free) => free.uv.clone(),
             Shape::Grid(_) => Vec::new(),
         };
         let ids = ids(&self.chart.shape, self.frame);

@@ -1,9 +1,10 @@
 //! Which setting decides each stretch: rules by rank, written counts shared out, wishes of size, chord and angle.
 
 use super::build::Input;
-use super::counts::share;
+use super::counts::{share, steps};
 use super::edges::{Limits, least_steps, wanted_steps};
 use super::layout::Layout;
+use super::pace::{self, Pace};
 use super::plan::{Elements, Rule, Target};
 use super::reuse::{Known, recalled_if_sound};
 use super::strips::Stretch;
@@ -58,6 +59,8 @@ pub struct Sizing {
     pub taken: Vec<bool>,
     /// Why a rule cannot be taken at all, in words.
     pub homeless: Vec<Option<String>>,
+    /// Steps of stretches that follow the bends of the faces beside them.
+    pub paces: Vec<Option<Pace>>,
     /// The bias rule of each stretch.
     pub bias_rule: Vec<Option<usize>>,
     overridden: Vec<(usize, usize, &'static str)>,
@@ -88,6 +91,7 @@ impl Sizing {
         let rules = &input.plan.rules;
         let mut sizing = Self { taken: vec![false; rules.len()], homeless: vec![None; rules.len()], ..Self::default() };
         sizing.faces(input, layout, size);
+        super::faces::choose(input, layout)?;
         let mut division: Vec<Option<Ruled<Division>>> = vec![None; n];
         let mut bias: Vec<Option<Ruled<f64>>> = vec![None; n];
         for (index, rule) in rules.iter().enumerate() {
@@ -108,23 +112,33 @@ impl Sizing {
         }
         let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
         let shape = shapes(layout);
+        let counted = |k: usize| matches!(division[k].map(|d| d.value), Some(Division::Count(_)));
+        sizing.paces = pace::along(input, layout, &limits);
+        for k in (0..n).filter(|k| counted(*k) || bias[*k].is_some()) {
+            sizing.paces[k] = None;
+        }
         let least = par::try_map(n, |k| {
             let bias = bias[k].map_or(1.0, |b| b.value);
+            let divided = |count: u32| sizing.paces[k].as_ref().map_or_else(|| steps(count, bias), |pace| pace.steps(count));
             let atom = &layout.pieces.atoms[k];
             let key = |_: &Known| {
                 let track = &layout.parts[atom.track].track;
                 Digester::new("steps").with(&(track, atom.s, (bias, &limits))).finish()
             };
-            // Without a limit there is nothing to find out, and a failure is found out again.
-            let known = known.filter(|_| limits.chord.is_some() || limits.angle.is_some());
-            recalled_if_sound(known, key, || least_steps(layout, k, bias, &limits, MOST)).map(|least| least.max(shape[k]))
+            // Without a limit there is nothing to find out, and a failure is found out again; a pace is not in the key.
+            let known = known.filter(|_| (limits.chord.is_some() || limits.angle.is_some()) && sizing.paces[k].is_none());
+            recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, MOST)).map(|least| least.max(shape[k]))
         })?;
         for k in 0..n {
             let count = division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
             let ruled = division[k].and_then(|d| if let Division::Size(s) = d.value { Some((s, Some(d.rule))) } else { None });
             let size = ruled.unwrap_or(own[k]);
             let bias_of = bias[k].map_or(1.0, |b| b.value);
-            let wish = wanted_steps(layout.length(k), size.0, bias_of, MOST).max(least[k]);
+            let wish = match &sizing.paces[k] {
+                Some(pace) => pace.wish(layout.length(k), size.0, MOST),
+                None => wanted_steps(layout.length(k), size.0, bias_of, MOST),
+            };
+            let wish = wish.max(least[k]);
             sizing.decisions.push(Decision { count, size, bias: bias_of, least: least[k], wish });
         }
         sizing.bias_rule = bias.iter().map(|b| b.map(|b| b.rule)).collect();

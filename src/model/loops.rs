@@ -18,15 +18,15 @@ type Entry = (Option<(EdgeId, bool)>, usize, Way);
 enum Way {
     /// A straight line in (u, v).
     Line(Trace),
-    /// A run of a chain on a plane, between two fractions.
-    Flat(Box<Surface>, Chain, (f64, f64)),
+    /// A run of a chain along a border (by number) of a face without a map, between two fractions.
+    Flat(Box<Surface>, usize, Chain, (f64, f64)),
 }
 
 impl Way {
     fn length(&self) -> f64 {
         match self {
             Self::Line(trace) => trace.length(),
-            Self::Flat(_, chain, (from, to)) => (to - from).abs() * chain.length(),
+            Self::Flat(_, _, chain, (from, to)) => (to - from).abs() * chain.length(),
         }
     }
 
@@ -46,10 +46,10 @@ impl Way {
                 let (p, d1) = trace.jet(t);
                 (trace.uv(t), p, d1.normalize_or_zero())
             }
-            Self::Flat(surface, chain, (from, to)) => {
+            Self::Flat(surface, side, chain, (from, to)) => {
                 let f = from + (to - from) * (s / self.length()).clamp(0.0, 1.0);
                 let jet = chain.jet(f);
-                let uv = surface.flat_uv(jet.p).unwrap_or_default();
+                let uv = surface.border_place(*side, f).unwrap_or_default();
                 (uv, surface.point(uv.0, uv.1), jet.d1.normalize_or_zero() * (to - from).signum())
             }
         }
@@ -181,12 +181,16 @@ impl Model {
 
     /// Edges of a side of a plane without a map: runs of the chain along it.
     fn flat(&self, surface: &Surface, side: usize, edges: &Edges) -> Vec<Way> {
-        let Side::Chain { chain, from, to } = surface.side(side) else { return Vec::new() };
+        let Side::Chain { chain, from, to } = surface.side(side) else {
+            // A straight line in (u, v): a natural border that no curve carries, or a pole.
+            let Some((from, to)) = surface.border_line(side) else { return Vec::new() };
+            return edges.iter().map(|_| Way::Line(Trace::new(surface, from, to))).collect();
+        };
         let (ends, total) = self.shares(edges);
         let mut before = from;
         let way = |(n, end): (usize, &f64)| {
             let after = if n + 1 == edges.len() { to } else { from + (to - from) * end / total };
-            Way::Flat(Box::new(surface.clone()), chain.clone(), (std::mem::replace(&mut before, after), after))
+            Way::Flat(Box::new(surface.clone()), side, chain.clone(), (std::mem::replace(&mut before, after), after))
         };
         ends.iter().enumerate().map(way).collect()
     }

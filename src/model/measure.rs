@@ -7,6 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use super::measure_quadrature::{Rectangle, WHOLE, flat_integral, integral};
+use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
 use crate::base::par;
 use crate::base::quadrature::integrate;
@@ -125,6 +126,8 @@ fn over<const N: usize>(surface: &Surface, about: DVec3, f: &impl Fn(&Jet2, DVec
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
         (_, SurfaceKind::Plane) => flat_integral(surface, &at),
+        _ if surface.is_flat() => flat_integral(surface, &at),
+        (Domain::Loop, _) => trimmed_integral(surface, &at),
         _ => integral(surface, WHOLE, &at),
     }
 }

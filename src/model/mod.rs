@@ -7,6 +7,7 @@ pub mod glue;
 pub mod loops;
 pub mod measure;
 mod measure_quadrature;
+mod measure_trimmed;
 mod patches;
 pub mod shells;
 pub mod stretches;

@@ -175,40 +175,57 @@ impl Cutter<'_> {
         self.pieces
     }
 
-    /// One patch inside a loop of sides; kinks become corners.
+    /// One patch inside loops of sides; kinks become corners.
     fn around(mut self) -> Pieces {
-        let (mut sides, mut first) = (Vec::new(), Vec::new());
-        let chains: Vec<(Chain, f64, f64)> = (0..self.surface.n_sides())
-            .filter_map(|k| match self.surface.side(k) {
-                Side::Chain { chain, from, to } => Some((chain, from, to)),
-                _ => None,
-            })
-            .collect();
-        for (chain, from, _) in &chains {
-            first.push(self.pieces.vertices.len());
-            self.pieces.vertices.push(chain.point(*from));
-        }
-        for (k, (chain, from, to)) in chains.iter().enumerate() {
-            let mut stops = vec![(*from, first[k])];
-            let mut kinks = chain.kinks(self.tolerance);
-            kinks.retain(|f| (f - from) * (f - to) < 0.0);
-            kinks.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
-            for f in kinks {
-                stops.push((f, self.pieces.vertices.len()));
-                self.pieces.vertices.push(chain.point(f));
-            }
-            stops.push((*to, first[(k + 1) % first.len()]));
-            let on = OnChain::new(chain, stops.iter().map(|s| s.0).collect(), self.network, self.tolerance);
-            let edges = (0..stops.len() - 1)
-                .filter_map(|n| {
-                    let curve = self.run_between(&on, n);
-                    self.edge(curve, (stops[n].1, stops[n + 1].1))
+        let mut sides = Vec::new();
+        let mut begin = 0;
+        for n in self.surface.loops() {
+            let first: Vec<usize> = (begin..begin + n)
+                .map(|k| {
+                    self.pieces.vertices.push(self.surface.border_start(k).unwrap_or_default());
+                    self.pieces.vertices.len() - 1
                 })
                 .collect();
-            sides.push(RawSide { edges, pole: None });
+            for k in 0..n {
+                sides.push(self.border(begin + k, (first[k], first[(k + 1) % n])));
+            }
+            begin += n;
         }
         self.pieces.patches.push(RawPatch { u: (0.0, 1.0), v: (0.0, 1.0), sides });
         self.pieces
+    }
+
+    /// One border of a loop between two corners.
+    fn border(&mut self, k: usize, (first, last): (usize, usize)) -> RawSide {
+        let (chain, from, to) = match self.surface.side(k) {
+            Side::Chain { chain, from, to } => (chain, from, to),
+            Side::Pole(_) => return RawSide { edges: Vec::new(), pole: Some(first) },
+            Side::Seam | Side::Free => {
+                let Some((from, to)) = self.surface.border_line(k) else { return RawSide::default() };
+                let curve = EdgeCurve::Iso { surface: self.id, from, to };
+                return match self.edge(curve, (first, last)) {
+                    Some(edge) => RawSide { edges: vec![edge], pole: None },
+                    None => RawSide { edges: Vec::new(), pole: Some(first) },
+                };
+            }
+        };
+        let mut stops = vec![(from, first)];
+        let mut kinks = chain.kinks(self.tolerance);
+        kinks.retain(|f| (f - from) * (f - to) < 0.0);
+        kinks.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
+        for f in kinks {
+            stops.push((f, self.pieces.vertices.len()));
+            self.pieces.vertices.push(chain.point(f));
+        }
+        stops.push((to, last));
+        let on = OnChain::new(&chain, stops.iter().map(|s| s.0).collect(), self.network, self.tolerance);
+        let edges = (0..stops.len() - 1)
+            .filter_map(|n| {
+                let curve = self.run_between(&on, n);
+                self.edge(curve, (stops[n].1, stops[n + 1].1))
+            })
+            .collect();
+        RawSide { edges, pole: None }
     }
 
     /// Adds an edge unless it is shorter than the tolerance.

@@ -246,7 +246,14 @@ impl Model {
             };
             corners.push(if backwards { (ends.1, ends.0) } else { ends });
         }
-        let joined = (0..corners.len()).all(|k| corners[k].1 == corners[(k + 1) % corners.len()].0);
+        let surface = &self.surfaces[patch.surface.index()].surface;
+        let loops = if surface.domain() == Domain::Loop { surface.loops() } else { vec![corners.len()] };
+        let mut rest = corners.as_slice();
+        let joined = loops.iter().all(|n| {
+            let (own, others) = rest.split_at(*n);
+            rest = others;
+            (0..*n).all(|k| own[k].1 == own[(k + 1) % n].0)
+        });
         if joined { Ok(()) } else { Err(format!("the loop of patch {name} does not close")) }
     }
 }

@@ -34,12 +34,18 @@ pub struct Nearest {
 const LEAST: usize = 24;
 /// Samples in a cell between breaks, at the least.
 const EACH: usize = 4;
+/// Samples of a border that no curve carries.
+const BORDER: usize = 64;
 /// Local minima tried.
 const STARTS: usize = 6;
 
 impl Nearest {
     /// Samples the surface.
     pub fn new(surface: &Surface) -> Self {
+        if surface.domain() == Domain::Loop && !surface.is_flat() {
+            let below = Self::new(&surface.untrimmed());
+            return Self { surface: surface.clone(), ..below };
+        }
         if !matches!(surface.domain(), Domain::Square | Domain::Triangle) {
             return Self { surface: surface.clone(), xs: Vec::new(), ys: Vec::new(), points: Vec::new() };
         }
@@ -58,7 +64,8 @@ impl Nearest {
     pub fn at(&self, p: DVec3) -> Closest {
         match self.surface.domain() {
             Domain::Unbounded => self.foot(p),
-            Domain::Loop => self.inside_loop(p),
+            Domain::Loop if self.surface.is_flat() => self.inside_loop(p),
+            Domain::Loop => self.inside_trim(p),
             Domain::Square | Domain::Triangle => self.search(p),
         }
     }
@@ -100,6 +107,31 @@ impl Nearest {
     /// The foot on the plane.
     fn foot(&self, p: DVec3) -> Closest {
         self.closest(self.surface.flat_uv(p).unwrap_or_default(), p)
+    }
+
+    /// The nearest point of the whole surface where that is kept, else the nearest one of the borders.
+    fn inside_trim(&self, p: DVec3) -> Closest {
+        let below = Self { surface: self.surface.untrimmed(), ..self.clone() };
+        let found = below.search(p);
+        if self.surface.keeps(found.uv.0, found.uv.1) {
+            return found;
+        }
+        let border = |k: usize| match (self.surface.side(k), self.surface.border_line(k)) {
+            (Side::Chain { chain, .. }, _) => {
+                let (f, point, distance) = chain.closest(p);
+                Some(Closest { uv: self.surface.border_place(k, f).unwrap_or_default(), point, distance })
+            }
+            (_, Some((a, b))) => {
+                let uv = |t: f64| (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
+                let far = |t: f64| self.closest(uv(t), p).distance;
+                let best = (0..=BORDER).map(|k| k as f64 / BORDER as f64).min_by(|s, t| far(*s).total_cmp(&far(*t))).unwrap_or(0.0);
+                let step = 1.0 / BORDER as f64;
+                let t = crate::base::solve::lowest((best - step).max(0.0), (best + step).min(1.0), crate::base::tolerance::NEAREST, far);
+                Some(self.closest(uv(t), p))
+            }
+            _ => None,
+        };
+        (0..self.surface.n_sides()).filter_map(border).min_by(|a, b| a.distance.total_cmp(&b.distance)).unwrap_or(found)
     }
 
     /// The foot on the plane where it lies inside the boundary, else the nearest point of the boundary.

@@ -128,6 +128,7 @@ fn finish(
         kinks,
         chains,
         generated: Vec::new(),
+        trim: None,
         flipped: false,
     })
 }
@@ -347,6 +348,7 @@ fn trilateral(grid: &Grid, settings: &Settings) -> Result<(Surface, Vec<Fault>)>
         kinks: (Vec::new(), Vec::new()),
         chains: grid.chains.to_vec(),
         generated: Vec::new(),
+        trim: None,
         flipped: false,
     });
     Ok((surface, Vec::new()))

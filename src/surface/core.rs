@@ -45,6 +45,7 @@ pub enum SurfaceKind {
     Bezier,
     Nurbs,
     Grid,
+    Trim,
 }
 
 impl SurfaceKind {
@@ -60,6 +61,7 @@ impl SurfaceKind {
             Self::Bezier => "bezier_surface",
             Self::Nurbs => "nurbs_surface",
             Self::Grid => "grid",
+            Self::Trim => "trim",
         }
     }
 }
@@ -118,7 +120,7 @@ impl Border {
         Self::straight(Side::Chain { chain, from, to })
     }
 
-    fn turned(&self) -> Self {
+    pub fn turned(&self) -> Self {
         let side = match &self.side {
             Side::Chain { chain, from, to } => Side::Chain { chain: chain.clone(), from: *to, to: *from },
             other => other.clone(),
@@ -156,13 +158,15 @@ pub(super) struct Parts {
     pub kinks: (Vec<f64>, Vec<f64>),
     pub chains: Vec<Chain>,
     pub generated: Vec<Chain>,
+    /// Loops and courses of a trimmed surface.
+    pub trim: Option<Arc<super::trim::Trim>>,
     /// The shape is read with v backwards (a triangle: with u and v exchanged).
     pub flipped: bool,
 }
 
 crate::content_of_word!(SurfaceKind, Domain);
 crate::content!(Border { side, map, turned });
-crate::content!(Parts { kind, flow, domain, closed, shape, borders, kinks, chains, generated, flipped } but { origin });
+crate::content!(Parts { kind, flow, domain, closed, shape, borders, kinks, chains, generated, trim, flipped } but { origin });
 
 impl Content for Side {
     fn tell(&self, to: &mut Digester) {
@@ -243,13 +247,23 @@ impl Surface {
     /// Point and derivatives of the smooth piece on the given side in u (first) and v (second): on the border of a
     /// patch the side where the patch lies.
     pub fn jet_lean(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        let (u, v) = self.wrapped(u, v);
         let (u, v, lean) = self.inner(u, v, lean);
         self.outer(self.0.shape.jet(u, v, lean))
     }
 
+    /// Into 0…1 where a trimmed surface closes: its borders may run over the seam.
+    fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
+        if self.0.domain != Domain::Loop {
+            return (u, v);
+        }
+        let wrap = |x: f64, closed: bool| if closed && !(0.0..=1.0).contains(&x) { x - x.floor() } else { x };
+        (wrap(u, self.0.closed.0), wrap(v, self.0.closed.1))
+    }
+
     /// From this surface's parameters to the shape's.
     fn inner(&self, u: f64, v: f64, lean: (Lean, Lean)) -> (f64, f64, (Lean, Lean)) {
-        match (self.0.flipped, self.0.domain) {
+        match (self.0.flipped, self.ground()) {
             (false, _) => (u, v, lean),
             (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
             (true, _) => (u, 1.0 - v, (lean.0, lean.1.turned())),
@@ -258,7 +272,7 @@ impl Surface {
 
     /// From the shape's derivatives to this surface's.
     fn outer(&self, jet: Jet2) -> Jet2 {
-        match (self.0.flipped, self.0.domain) {
+        match (self.0.flipped, self.ground()) {
             (false, _) => jet,
             (true, Domain::Triangle) => Jet2 { du: jet.dv, dv: jet.du, duu: jet.dvv, dvv: jet.duu, ..jet },
             (true, _) => Jet2 { dv: -jet.dv, duv: -jet.duv, ..jet },
@@ -320,7 +334,7 @@ impl Surface {
     ///
     /// `out` holds `us.len() * vs.len()` points.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        match (self.0.flipped, self.0.domain) {
+        match (self.0.flipped, self.ground()) {
             (false, _) => self.0.shape.grid(us, vs, out),
             (true, Domain::Triangle) => {
                 for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
@@ -339,7 +353,7 @@ impl Surface {
     /// Jets of the tensor grid `us × vs`, each parameter with its side, u fastest; curves evaluated once per row.
     pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)]) -> Vec<Jet2> {
         let mut out = Vec::with_capacity(us.len() * vs.len());
-        if self.0.flipped && self.0.domain == Domain::Triangle {
+        if self.0.flipped && self.ground() == Domain::Triangle {
             for &(v, lean_v) in vs {
                 out.extend(us.iter().map(|&(u, lean_u)| self.jet_lean(u, v, (lean_u, lean_v))));
             }
@@ -363,7 +377,7 @@ impl Surface {
     pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
         let (us, vs) = self.0.shape.breaks();
         let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.flipped, self.0.domain) {
+        match (self.0.flipped, self.ground()) {
             (false, _) => (us, vs),
             (true, Domain::Triangle) => (vs, us),
             (true, _) => (us, turned(&vs)),
@@ -374,7 +388,7 @@ impl Surface {
     pub(super) fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         let (us, vs) = self.0.shape.cells();
         let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.flipped, self.0.domain) {
+        match (self.0.flipped, self.ground()) {
             (false, _) => (us, vs),
             (true, Domain::Triangle) => (vs, us),
             (true, _) => (us, turned(&vs)),
@@ -441,15 +455,23 @@ impl Surface {
         let borders = match parts.domain {
             Domain::Square => vec![old[2].clone(), old[1].turned(), old[0].clone(), old[3].turned()],
             Domain::Triangle => vec![old[2].clone(), old[1].turned(), old[0].clone()],
-            Domain::Loop | Domain::Unbounded => old.iter().rev().map(Border::turned).collect(),
+            Domain::Loop | Domain::Unbounded => {
+                let mut first = 0;
+                let each = |n: usize| {
+                    first += n;
+                    old[first - n..first].iter().rev().map(Border::turned).collect::<Vec<_>>()
+                };
+                self.loops().into_iter().flat_map(each).collect()
+            }
         };
+        let trim = parts.trim.as_ref().map(|trim| Arc::new(trim.flipped()));
         let (us, vs) = &parts.kinks;
         let kinks = if parts.domain == Domain::Triangle {
             (vs.clone(), us.clone())
         } else {
             (us.clone(), vs.iter().rev().map(|v| 1.0 - v).collect())
         };
-        Self::new(Parts { borders, kinks, flipped: !parts.flipped, ..parts.clone() })
+        Self::new(Parts { borders, kinks, trim, flipped: !parts.flipped, ..parts.clone() })
     }
 
     /// Carried by a motion, exactly.

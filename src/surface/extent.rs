@@ -12,17 +12,14 @@ use crate::network::Chain;
 /// The smallest box along the axes that holds the surface: no point of it stands out by more than [`BOX`] of the diagonal.
 ///
 /// A descent from the extreme samples finds extreme points; bounds of the surface over ever smaller rectangles then show
-/// that nothing lies further out, or find what does. Plane faces without a map take the boxes of their sides, which rest
-/// on samples between the breaks of the curves.
+/// that nothing lies further out, or find what does. Faces without a map and trimmed
+/// ones take the boxes of their sides and, where they bend, the extreme points inside, which rest on samples.
 pub fn bbox(surface: &Surface) -> Box3 {
     if surface.domain() == Domain::Unbounded {
         return Box3 { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
     }
     if surface.domain() == Domain::Loop {
-        return (0..surface.n_sides()).fold(Box3::EMPTY, |bounds, k| match surface.side(k) {
-            Side::Chain { chain, .. } => bounds.union(chain_bbox(&chain)),
-            _ => bounds,
-        });
+        return trimmed_bbox(surface);
     }
     let (us, vs) = surface.cells();
     let (xs, ys) = (stations(&us), stations(&vs));
@@ -47,6 +44,51 @@ pub fn bbox(surface: &Surface) -> Box3 {
     proved(surface, bounds)
 }
 
+/// The box of a trimmed surface: of its borders, and of the extreme points of what is inside, found from samples.
+fn trimmed_bbox(surface: &Surface) -> Box3 {
+    let mut bounds = (0..surface.n_sides()).fold(Box3::EMPTY, |bounds, k| match (surface.side(k), surface.border_line(k)) {
+        (Side::Chain { chain, .. }, _) => bounds.union(chain_bbox(&chain)),
+        (_, Some((a, b))) => {
+            let at = |t: f64| surface.point(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
+            bounds.union(Box3::of((0..=BORDER).map(|k| at(k as f64 / BORDER as f64))))
+        }
+        _ => bounds,
+    });
+    if surface.is_flat() {
+        return bounds;
+    }
+    let base = surface.untrimmed();
+    let (us, vs) = base.cells();
+    let (xs, ys) = (stations(&us), stations(&vs));
+    let jets = base.square_jets(&xs, &ys);
+    let kept: Vec<usize> = (0..jets.len())
+        .filter(|k| {
+            let (u, v) = base.from_square(xs[k % xs.len()], ys[k / xs.len()]);
+            surface.keeps(u, v)
+        })
+        .collect();
+    bounds = bounds.union(Box3::of(kept.iter().map(|k| jets[*k].p)));
+    for direction in 0..6 {
+        let (axis, sign) = (direction / 2, if direction % 2 == 0 { 1.0 } else { -1.0 });
+        let mut order = kept.clone();
+        order.sort_by(|&a, &b| (sign * jets[a].p[axis]).total_cmp(&(sign * jets[b].p[axis])).then(a.cmp(&b)));
+        for &k in order.iter().take(4) {
+            let end = descend(&base, (xs[k % xs.len()], ys[k / xs.len()]), |jet| Local {
+                value: sign * jet.p[axis],
+                gradient: [sign * jet.du[axis], sign * jet.dv[axis]],
+                hessian: [sign * jet.duu[axis], sign * jet.duv[axis], sign * jet.dvv[axis]],
+            });
+            let (u, v) = base.from_square(end.place.0, end.place.1);
+            if surface.keeps(u, v) {
+                bounds = bounds.with(base.point(u, v));
+            }
+        }
+    }
+    bounds
+}
+
+/// Samples of a border that no curve carries.
+const BORDER: usize = 64;
 /// Rectangles looked at before what is left is taken by its bound.
 const MOST: usize = 20_000;
 

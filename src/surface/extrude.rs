@@ -51,6 +51,7 @@ pub fn extrude(profile: &Chain, by: DVec3, origin: Origin, tolerance: &Tolerance
         shape: Shape::Sweep(Sweep::new(rail, Path::Straight { by })),
         chains: vec![profile.clone()],
         generated,
+        trim: None,
         flipped: false,
     }))
 }

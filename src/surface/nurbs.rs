@@ -246,6 +246,7 @@ impl NurbsSurface {
             shape: Shape::Nurbs(self),
             chains: Vec::new(),
             generated: Vec::new(),
+            trim: None,
             flipped: false,
         })
     }

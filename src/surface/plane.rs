@@ -72,7 +72,7 @@ pub fn unbounded(at: DVec3, normal: DVec3, origin: Origin) -> Result<Surface> {
 }
 
 /// A chain of the boundary with `true` where the walk round it runs against the chain.
-type Step = (Chain, bool);
+pub(super) type Step = (Chain, bool);
 
 /// The flat face inside curves that close, in any order and direction; the first curve runs along u.
 ///
@@ -96,6 +96,18 @@ pub fn bounded(chains: &[Chain], origin: Origin, tolerance: &Tolerance) -> Resul
     Ok((surface, notes))
 }
 
+/// A bounded plane as a face without a map, whose parameters are straight; any other surface as it is.
+pub(super) fn unmapped(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
+    let parts = surface.parts();
+    if parts.kind != SurfaceKind::Plane || parts.domain == Domain::Loop || parts.chains.is_empty() {
+        return Ok(surface.clone());
+    }
+    let walk = walked(&parts.chains, tolerance)?;
+    let frame = fitted(&walk, tolerance)?;
+    let flat = around(&walk, frame, parts.origin);
+    Ok(if parts.flipped { flat.flipped() } else { flat })
+}
+
 fn flat(shape: Shape, domain: Domain, borders: Vec<Border>, flow: String, origin: Origin, chains: Vec<Chain>) -> Surface {
     Surface::new(Parts {
         origin,
@@ -108,11 +120,12 @@ fn flat(shape: Shape, domain: Domain, borders: Vec<Border>, flow: String, origin
         kinks: (Vec::new(), Vec::new()),
         chains,
         generated: Vec::new(),
+        trim: None,
         flipped: false,
     })
 }
 
-fn start((chain, against): &Step) -> DVec3 {
+pub(super) fn start((chain, against): &Step) -> DVec3 {
     if *against { chain.end() } else { chain.start() }
 }
 
@@ -121,7 +134,7 @@ fn end((chain, against): &Step) -> DVec3 {
 }
 
 /// The chains in the order of a walk round the boundary, the first one forwards; E502 where it does not go on.
-fn walked(chains: &[Chain], tolerance: &Tolerance) -> Result<Vec<Step>> {
+pub(super) fn walked(chains: &[Chain], tolerance: &Tolerance) -> Result<Vec<Step>> {
     let mut left: Vec<&Chain> = chains.iter().collect();
     if left.is_empty() {
         return Err(SurfaceFault::FlowUnknown { curves: Vec::new(), why: crate::base::fault::NoFlow::TooFewCurves { given: 0 } }.into());
@@ -202,7 +215,7 @@ fn fitted(walk: &[Step], tolerance: &Tolerance) -> Result<Frame> {
 }
 
 /// E611 when curves of the boundary meet away from the ends that the walk joins.
-fn simple(walk: &[Step], tolerance: &Tolerance) -> Result<()> {
+pub(super) fn simple(walk: &[Step], tolerance: &Tolerance) -> Result<()> {
     let n = walk.len();
     let crossing = |a: usize, b: usize, at: DVec3, along: (f64, f64)| {
         Fault::from(SurfaceFault::LoopSelfIntersects { a: walk[a].0.origin(), b: walk[b].0.origin(), at, along })

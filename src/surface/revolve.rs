@@ -97,6 +97,7 @@ pub fn revolve(profile: &Chain, axis: &Axis, angle: f64, origin: Origin, toleran
         shape: Shape::Sweep(Sweep::new(rail, Path::Turn { about: axis.about, axis: axis.direction, angle })),
         chains: vec![profile.clone()],
         generated,
+        trim: None,
         flipped: false,
     }))
 }

@@ -58,6 +58,7 @@ pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Res
         shape: Shape::Blend(blend),
         chains: vec![a.clone(), b.clone()],
         generated,
+        trim: None,
         flipped: false,
     });
     Ok((surface, notes))

@@ -138,6 +138,22 @@ pub enum MeshFault {
         /// Where in space.
         at: DVec3,
     },
+    /// E713: borders of a face that cross or touch once they are divided.
+    BordersCross {
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        at: DVec3,
+        /// The size of the face, model units.
+        size: f64,
+    },
+    /// E714: a face with nothing inside its border.
+    FaceEmpty {
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        at: DVec3,
+    },
     /// E703 without a count: a limit that is still broken after the last refinement.
     NotReached {
         /// The setting.
@@ -288,6 +304,21 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "folds there")
         .help("add a curve across the fold, or divide the surface in two"),
+        F::BordersCross { surface, at, size } => Report::new(
+            "E713",
+            format!(
+                "borders of {} divided by steps of {} cross or touch at {}",
+                say.quoted(*surface, "a face"),
+                say.length(*size),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "this face")
+        .help("keep the borders further apart, or divide them more finely there"),
+        F::FaceEmpty { surface, at } => {
+            Report::new("E714", format!("{} has nothing inside its border at {}", say.quoted(*surface, "a face"), say.point(*at)))
+                .at(*surface, "this face")
+        }
         // Answered by the table above; listed so that a new fault cannot be forgotten.
         F::RuleUnused { .. }
         | F::CountsDiffer { .. }

@@ -211,6 +211,28 @@ pub enum SurfaceFault {
         /// Middle of the longest one.
         at: DVec3,
     },
+    /// E612: a hole that is not inside its outer loop.
+    LoopOutside {
+        /// The trimming.
+        of: Origin,
+        /// Which hole, from 1.
+        hole: usize,
+        /// A point of it.
+        at: DVec3,
+    },
+    /// E613: a loop that is not on its surface.
+    LoopOutsideSurface {
+        /// The curve.
+        of: Origin,
+        /// The surface.
+        surface: Origin,
+        /// How far the curve is from the surface, model units.
+        off: f64,
+        /// Where.
+        at: DVec3,
+        /// The model's tolerance.
+        tolerance: f64,
+    },
     /// E616: no choice of sides makes every edge be used in opposite senses.
     ShellNotOrientable {
         /// The shell.
@@ -490,6 +512,25 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*surface, "one polynomial through all curves")
         .help("`coons` with the same curves stays between them"),
+        F::LoopOutside { of, hole, at } => {
+            Report::new("E612", format!("hole {hole} is not inside the outer loop: its point {} is outside, or crosses it", say.point(*at)))
+                .at(*of, "trimmed here")
+                .help("a hole lies wholly inside; where it cuts the border, make one outer loop of both")
+        }
+        F::LoopOutsideSurface { of, surface, off, at, tolerance } => Report::new(
+            "E613",
+            format!(
+                "{} leaves {}: it is {} away at {}, and the tolerance is {}",
+                say.quoted(*of, "the curve"),
+                say.quoted(*surface, "the surface"),
+                say.length(*off),
+                say.point(*at),
+                say.length(*tolerance)
+            ),
+        )
+        .at(*of, "this loop")
+        .at(*surface, "this surface")
+        .help("build the curve on the surface, or `project` it"),
         F::LoopSelfIntersects { a, b, at, along } => Report::new(
             "E611",
             format!(
@@ -668,6 +709,8 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::TransfiniteOscillation { .. }
         | F::EndTrimmed { .. }
         | F::LoopSelfIntersects { .. }
+        | F::LoopOutside { .. }
+        | F::LoopOutsideSurface { .. }
         | F::SliverPatch { .. }
         | F::AxisNotStraight { .. }
         | F::GeneratrixOnAxis { .. }

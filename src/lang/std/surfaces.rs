@@ -9,12 +9,12 @@ use super::transforms::axis_line;
 use crate::base::fault::{Fault, ValueFault};
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::types::{Angle, Axis, Direction, Point, Rest};
+use crate::lang::types::{Angle, Axis, Direction, Point, Rest, Ring};
 use crate::lang::value::{Plane, Value};
 use crate::network::{self, Chain, ChainFlow};
 use crate::surface::coons::{self, Grid, Method, Settings};
 use crate::surface::nurbs::{self, Net};
-use crate::surface::{Domain, Reparam, Surface, extrude, interpolate, plane, revolve, ruled as surface_between};
+use crate::surface::{Domain, Reparam, Surface, Way, carried, extrude, interpolate, plane, revolve, ruled as surface_between};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
 pub(super) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Stop> {
@@ -215,6 +215,62 @@ builtins! {
             let what = "curves around a face, or a point and a normal";
             Err(ValueFault::Missing { function: "plane", what, example: PLANE_EXAMPLE }.into())
         }
+    };
+
+    /// A curve carried to a surface: to the nearest points, or along a direction.
+    ///
+    /// It is a cubic within a quarter of the tolerance, lies on the surface and may trim it.
+    /// ```loft
+    /// curve south = arc((0, 0, 0), (4m, 0, 0), through: (2m, 0, 1m))
+    /// surface roof = extrude(south, by: (0, 9m, 0))
+    /// curve eye = project(circle(center: (2m, 4m, 3m), radius: 800mm), onto: roof, along: (0, 0, 1))
+    /// surface open = trim(roof, holes: [eye])
+    /// ```
+    fn project(
+        /// The curve.
+        curve: Chain,
+        /// The surface.
+        onto: Surface,
+        /// A direction, either way; to the nearest points when left out.
+        along: Option<Direction>,
+    ) -> Chain = |cx, curve, onto, along| {
+        let tolerance = cx.tolerance()?;
+        let way = match along {
+            Some(along) => Way::Along(unit(along.0, "along")?),
+            None => Way::Nearest,
+        };
+        Ok(Chain::of_curve(&carried(&onto, &curve, way, cx.origin(), &tolerance)?))
+    };
+
+    /// The part of a surface inside a loop of curves and outside others.
+    ///
+    /// Curves of a loop come in any order and direction and must lie on the surface within the tolerance. Without `outer:`
+    /// the surface's own border is the outer loop.
+    /// ```loft
+    /// curve rim = circle(center: (0, 0, 0), radius: 1m)
+    /// curve eye = circle(center: (300mm, 0, 0), radius: 200mm)
+    /// surface lid = trim(plane(rim), holes: [eye])
+    /// ```
+    fn trim(
+        /// The surface that is trimmed.
+        s: Surface,
+        /// Curves of the outer loop.
+        outer: Option<Ring>,
+        /// A curve, or a list of curves, for each hole.
+        holes: Option<Vec<Ring>>,
+        /// Whether x and y of the curves are u and v of the surface.
+        uv: bool = "false",
+    ) -> Surface = |cx, s, outer, holes, uv| {
+        let tolerance = cx.tolerance()?;
+        let mut outer = outer.map(|ring| ring.0).unwrap_or_default();
+        let mut holes: Vec<Vec<Chain>> = holes.unwrap_or_default().into_iter().map(|ring| ring.0).collect();
+        if uv {
+            for chain in outer.iter_mut().chain(holes.iter_mut().flatten()) {
+                *chain = Chain::of_curve(&carried(&s, chain, Way::Parameters, chain.origin(), &tolerance)?);
+            }
+        }
+        let surface = crate::surface::trim(&s, &outer, &holes, cx.origin(), &tolerance)?;
+        finished(cx, surface, &[])
     };
 
     /// Surface that a curve leaves when it is moved along a straight way.

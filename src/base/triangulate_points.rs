@@ -1,0 +1,101 @@
+//! The constrained Delaunay triangulation of points in a plane, as plain arrays.
+
+use glam::DVec2;
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+
+/// Why points and edges have no triangulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointsFault {
+    /// Two points are at one place.
+    Same(u32, u32),
+    /// This edge crosses another one, or runs through a point.
+    Crosses(u32, u32),
+    /// All points are on one line.
+    Flat,
+}
+
+/// Triangles with their neighbours; they fill the convex hull of the points.
+#[derive(Clone, Debug, Default)]
+pub struct Triangles {
+    /// Corners, counter-clockwise.
+    pub corners: Vec<[u32; 3]>,
+    /// The triangle across the side opposite each corner; [`NO_TRIANGLE`] outside the hull.
+    pub across: Vec<[u32; 3]>,
+    /// Bit k: the side opposite corner k is one of the given edges.
+    pub given: Vec<u8>,
+}
+
+/// Where there is no triangle.
+pub const NO_TRIANGLE: u32 = u32::MAX;
+
+#[derive(Clone, Copy)]
+struct Node {
+    at: Point2<f64>,
+    index: u32,
+}
+
+impl HasPosition for Node {
+    type Scalar = f64;
+    fn position(&self) -> Point2<f64> {
+        self.at
+    }
+}
+
+/// Triangulates points with edges that must be there, by exact predicates; the same input gives the same triangles.
+///
+/// Fails where two points fall together, edges cross, or the points have no area. Indices of `edges` must be of `points`.
+pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsFault> {
+    let (low, high) = points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let scale = 1.0 / (high - low).max_element().max(f64::MIN_POSITIVE);
+    let middle = 0.5 * (low + high);
+    let nodes: Vec<Node> = points
+        .iter()
+        .enumerate()
+        .map(|(k, p)| {
+            let q = (*p - middle) * scale;
+            Node { at: spade::mitigate_underflow(Point2::new(q.x, q.y)), index: k as u32 }
+        })
+        .collect();
+    let given = edges.iter().map(|e| e.map(|n| n as usize)).collect();
+    let mut crossing = None;
+    let cdt = ConstrainedDelaunayTriangulation::<Node>::try_bulk_load_cdt(nodes, given, |edge| {
+        crossing.get_or_insert(edge);
+    })
+    .map_err(|_| PointsFault::Flat)?;
+    if cdt.num_vertices() != points.len() {
+        return Err(twins(points).map_or(PointsFault::Flat, |(a, b)| PointsFault::Same(a, b)));
+    }
+    if let Some([a, b]) = crossing {
+        return Err(PointsFault::Crosses(a as u32, b as u32));
+    }
+    if cdt.num_inner_faces() == 0 {
+        return Err(PointsFault::Flat);
+    }
+    let n = cdt.num_inner_faces();
+    let mut result = Triangles { corners: Vec::with_capacity(n), across: Vec::with_capacity(n), given: Vec::with_capacity(n) };
+    for face in cdt.inner_faces() {
+        let sides = face.adjacent_edges();
+        // Side k runs from corner k to the next one: opposite the third.
+        let corners = sides.map(|s| s.from().data().index);
+        let (mut across, mut fixed) = ([NO_TRIANGLE; 3], 0);
+        for (k, side) in sides.iter().enumerate() {
+            let opposite = (k + 2) % 3;
+            if let Some(other) = side.rev().face().as_inner() {
+                across[opposite] = other.index() as u32 - 1;
+            }
+            fixed |= u8::from(side.is_constraint_edge()) << opposite;
+        }
+        result.corners.push(corners);
+        result.across.push(across);
+        result.given.push(fixed);
+    }
+    Ok(result)
+}
+
+/// Two points at one place.
+fn twins(points: &[DVec2]) -> Option<(u32, u32)> {
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    let key = |n: u32| points[n as usize];
+    order.sort_by(|a, b| key(*a).x.total_cmp(&key(*b).x).then(key(*a).y.total_cmp(&key(*b).y)).then(a.cmp(b)));
+    order.windows(2).find(|w| key(w[0]) == key(w[1])).map(|w| (w[0], w[1]))
+}

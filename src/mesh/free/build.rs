@@ -1,0 +1,145 @@
+//! A face from its border to its triangles.
+
+use glam::{DVec2, DVec3};
+
+use super::ground::{Field, Ground};
+use super::grow::{STRAIGHT, Soil, grow};
+use super::improve::{Care, Gardener};
+use super::outline::Outline;
+use super::web::Web;
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::triangulate_points::{NO_TRIANGLE, PointsFault, Triangles, points};
+
+/// Triangles of a web that break a limit.
+pub type Broken<'a> = dyn Fn(&Web) -> Vec<u32> + 'a;
+
+/// What a face is made from.
+pub struct Task<'a> {
+    /// The surface.
+    pub ground: &'a dyn Ground,
+    /// The wanted lengths.
+    pub field: &'a dyn Field,
+    /// The border.
+    pub outline: &'a Outline,
+    /// How triangles are improved.
+    pub care: Care,
+    /// Most inner nodes.
+    pub most: usize,
+    /// Triangles that break a limit and are to be divided; asked again after each division.
+    pub broken: Option<&'a Broken<'a>>,
+}
+
+/// Why there is no mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// The border cannot be triangulated in the chart.
+    Border(PointsFault),
+    /// Nothing is inside the border.
+    Empty,
+    /// More nodes than allowed.
+    Full,
+}
+
+/// Triangulates a face; the outer result is an interruption.
+pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>> {
+    let outline = task.outline;
+    let edges: Vec<[u32; 2]> = outline.edges().collect();
+    let coarse = match points(&outline.xy, &edges) {
+        Ok(triangles) => triangles,
+        Err(fault) => return Ok(Err(Trouble::Border(fault))),
+    };
+    let kept = inside(&coarse, outline);
+    if !kept.contains(&true) {
+        return Ok(Err(Trouble::Empty));
+    }
+    let seeds = seeds(&coarse, &kept, outline);
+    let grown = grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, most: task.most }, job)?;
+    if grown.full {
+        return Ok(Err(Trouble::Full));
+    }
+    job.go_on()?;
+    let mut xy = outline.xy.clone();
+    xy.extend(&grown.xy);
+    let all = match points(&xy, &edges) {
+        Ok(triangles) => triangles,
+        Err(fault) => return Ok(Err(Trouble::Border(fault))),
+    };
+    job.go_on()?;
+    let kept = inside(&all, outline);
+    let mut p = outline.p.clone();
+    p.extend(&grown.p);
+    let mut size: Vec<f64> = outline.p.iter().zip(&outline.xy).map(|(p, xy)| task.field.size(*xy, *p)).collect();
+    size.extend(&grown.size);
+    drop(grown);
+    let web = Web::new(p, xy, size, outline.p.len() as u32, &all, &kept);
+    drop(all);
+    let mut gardener = Gardener::new(web, task.ground, task.field, task.care);
+    gardener.improve(job)?;
+    if let Some(broken) = task.broken {
+        gardener.divide(broken, job)?;
+    }
+    let mut web = gardener.web;
+    web.compact();
+    Ok(Ok(web))
+}
+
+/// Triangles left of an odd number of loop edges: flooded from outside, each loop edge turning in and out.
+fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {
+    let mut loops: Vec<(u32, u32)> = outline.loops.iter().map(|e| (e[0].min(e[1]), e[0].max(e[1]))).collect();
+    loops.sort_unstable();
+    // An edge that is run twice (a slit) bounds nothing.
+    let turns = |a: u32, b: u32| {
+        let key = (a.min(b), a.max(b));
+        let first = loops.partition_point(|e| *e < key);
+        loops[first..].iter().take_while(|e| **e == key).count() % 2 == 1
+    };
+    let crosses = |t: usize, k: usize| all.given[t] >> k & 1 == 1 && turns(all.corners[t][(k + 1) % 3], all.corners[t][(k + 2) % 3]);
+    let mut state = vec![2_u8; all.corners.len()];
+    let mut open = Vec::new();
+    for (t, across) in all.across.iter().enumerate() {
+        if let Some(k) = across.iter().position(|next| *next == NO_TRIANGLE) {
+            state[t] = u8::from(crosses(t, k));
+            open.push(t);
+        }
+    }
+    while let Some(t) = open.pop() {
+        for k in 0..3 {
+            let next = all.across[t][k];
+            if next != NO_TRIANGLE && state[next as usize] == 2 {
+                state[next as usize] = state[t] ^ u8::from(crosses(t, k));
+                open.push(next as usize);
+            }
+        }
+    }
+    state.into_iter().map(|s| s == 1).collect()
+}
+
+/// Places to start from: the middles of the largest triangles between border nodes first, in the direction of the longest
+/// straight run of the border.
+fn seeds(coarse: &Triangles, kept: &[bool], outline: &Outline) -> Vec<(DVec2, DVec3)> {
+    let along = main_direction(outline);
+    let area = |t: usize| {
+        let [a, b, c] = coarse.corners[t].map(|n| outline.p[n as usize]);
+        (b - a).cross(c - a).length_squared()
+    };
+    let mut order: Vec<(f64, usize)> = (0..kept.len()).filter(|t| kept[*t]).map(|t| (area(t), t)).collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let middle = |t: usize| coarse.corners[t].map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0;
+    order.into_iter().map(|(_, t)| (middle(t), along)).collect()
+}
+
+/// The direction that most of the border runs in, with all directions folded by a sixth of a turn about the mean normal.
+fn main_direction(outline: &Outline) -> DVec3 {
+    let mut best = (0.0, DVec3::ZERO);
+    let mut run = (0.0, DVec3::ZERO);
+    for [a, b] in outline.edges() {
+        let d = outline.p[b as usize] - outline.p[a as usize];
+        let Some(unit) = d.try_normalize() else { continue };
+        run = if unit.dot(run.1) > STRAIGHT { (run.0 + d.length(), run.1) } else { (d.length(), unit) };
+        if run.0 > best.0 {
+            best = run;
+        }
+    }
+    best.1
+}

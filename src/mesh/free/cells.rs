@@ -1,0 +1,110 @@
+//! Points by place: a hash of cubes whose side fits the wanted edge length there.
+
+use glam::{DVec2, DVec3};
+
+const NONE: u32 = u32::MAX;
+/// Levels kept apart: sizes from 2^-LEVELS/2 to 2^LEVELS/2 of the unit.
+const LEVELS: i32 = 64;
+
+/// A point of the hash.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Where.
+    pub p: DVec3,
+    /// Its place in the chart.
+    pub xy: DVec2,
+    /// What it stands for, for the caller.
+    pub tag: u32,
+    next: u32,
+    level: i32,
+}
+
+/// Points in cubes of side 2^level × unit.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    unit: f64,
+    head: Vec<u32>,
+    entries: Vec<Entry>,
+    used: u64,
+}
+
+impl Cells {
+    /// An empty hash; `unit` is a typical size.
+    pub fn new(unit: f64) -> Self {
+        Self { unit, head: vec![NONE; 1 << 10], entries: Vec::new(), used: 0 }
+    }
+
+    /// The cube's side is between once and twice the size.
+    fn level(&self, size: f64) -> i32 {
+        let exponent = ((size / self.unit).to_bits() >> 52 & 0x7ff) as i32 - 1022;
+        exponent.clamp(-LEVELS / 2, LEVELS / 2 - 1)
+    }
+
+    fn side(&self, level: i32) -> f64 {
+        self.unit * f64::from_bits(((level + 1023) as u64) << 52)
+    }
+
+    fn slot(&self, level: i32, cell: [i64; 3]) -> usize {
+        let mut h = (level as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        for c in cell {
+            h = (h ^ c as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
+            h ^= h >> 32;
+        }
+        h as usize & (self.head.len() - 1)
+    }
+
+    /// Adds a point of a size.
+    pub fn add(&mut self, p: DVec3, xy: DVec2, size: f64, tag: u32) {
+        if self.entries.len() >= self.head.len() {
+            self.grow();
+        }
+        let level = self.level(size);
+        self.used |= 1 << (level + LEVELS / 2);
+        let slot = self.home(p, level);
+        self.entries.push(Entry { p, xy, tag, next: self.head[slot], level });
+        self.head[slot] = self.entries.len() as u32 - 1;
+    }
+
+    fn home(&self, p: DVec3, level: i32) -> usize {
+        let inv = 1.0 / self.side(level);
+        self.slot(level, [p.x, p.y, p.z].map(|c| (c * inv).floor() as i64))
+    }
+
+    fn grow(&mut self) {
+        self.head = vec![NONE; self.head.len() * 4];
+        for k in 0..self.entries.len() {
+            let slot = self.home(self.entries[k].p, self.entries[k].level);
+            self.entries[k].next = std::mem::replace(&mut self.head[slot], k as u32);
+        }
+    }
+
+    /// Calls `visit` with the points nearer than `reach` and the square of their distance, of sizes within a factor of two
+    /// or so of `size`; stops when it says `true`, and tells whether it did.
+    pub fn any(&self, p: DVec3, reach: f64, size: f64, mut visit: impl FnMut(&Entry, f64) -> bool) -> bool {
+        let middle = self.level(size);
+        let square = reach * reach;
+        for level in (middle - 2).max(-LEVELS / 2)..=(middle + 2).min(LEVELS / 2 - 1) {
+            if self.used >> (level + LEVELS / 2) & 1 == 0 {
+                continue;
+            }
+            let inv = 1.0 / self.side(level);
+            let (low, high) = (((p - reach) * inv).floor(), ((p + reach) * inv).floor());
+            for z in low.z as i64..=high.z as i64 {
+                for y in low.y as i64..=high.y as i64 {
+                    for x in low.x as i64..=high.x as i64 {
+                        let mut at = self.head[self.slot(level, [x, y, z])];
+                        while at != NONE {
+                            let e = &self.entries[at as usize];
+                            let d = e.p.distance_squared(p);
+                            if d < square && visit(e, d) {
+                                return true;
+                            }
+                            at = e.next;
+                        }
+                    }
+                }
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,74 @@
+//! What the free mesher asks of a surface and of a size: nothing else is known here.
+
+use glam::{DVec2, DVec3};
+
+/// A point of the surface with its derivatives by the chart's x and y.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spot {
+    /// The point.
+    pub p: DVec3,
+    /// ∂/∂x.
+    pub dx: DVec3,
+    /// ∂/∂y.
+    pub dy: DVec3,
+}
+
+impl Spot {
+    /// Unit normal; zero where the surface is singular.
+    pub fn normal(&self) -> DVec3 {
+        self.dx.cross(self.dy).normalize_or_zero()
+    }
+
+    /// The step in the chart whose image is the tangential part of `d`, to first order; `None` where the surface is singular.
+    pub fn step(&self, d: DVec3) -> Option<DVec2> {
+        let (e, f, g) = (self.dx.length_squared(), self.dx.dot(self.dy), self.dy.length_squared());
+        let (a, b) = (self.dx.dot(d), self.dy.dot(d));
+        let det = e * g - f * f;
+        let step = DVec2::new((g * a - f * b) / det, (e * b - f * a) / det);
+        step.is_finite().then_some(step)
+    }
+}
+
+/// A surface over the plane of its chart, in which lengths are nearly those in space on average.
+pub trait Ground: Sync {
+    /// Point and derivatives.
+    fn spot(&self, xy: DVec2) -> Spot;
+    /// The nearest place where the surface is defined.
+    fn clamp(&self, xy: DVec2) -> DVec2;
+}
+
+/// Wanted edge length over a surface.
+pub trait Field: Sync {
+    /// Model units, positive.
+    fn size(&self, xy: DVec2, p: DVec3) -> f64;
+}
+
+/// One length everywhere, model units.
+pub struct Even(pub f64);
+
+impl Field for Even {
+    fn size(&self, _: DVec2, _: DVec3) -> f64 {
+        self.0
+    }
+}
+
+/// Foot of a point near a place of the chart: one or two Gauss–Newton steps, enough where the point is near the surface.
+pub fn foot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
+    let mut xy = from;
+    let mut spot = ground.spot(xy);
+    for _ in 0..2 {
+        let d = wanted - spot.p;
+        let Some(step) = spot.step(d) else { break };
+        xy = ground.clamp(xy + step);
+        spot = ground.spot(xy);
+        let moved = spot.dx * step.x + spot.dy * step.y;
+        // A flat or nearly flat place is met at once.
+        if (wanted - spot.p).dot(moved).abs() <= FOOT * moved.length_squared() {
+            break;
+        }
+    }
+    (xy, spot.p)
+}
+
+/// Share of a step that may be missing at its end.
+const FOOT: f64 = 0.02;

@@ -1,0 +1,311 @@
+//! Inner nodes: a crystal of equilateral triangles that grows over the surface from a seed until it meets the border.
+//!
+//! Each node proposes six neighbours at the wanted distance, in directions carried along from its parent; what comes too
+//! near to a known point or to the border is dropped. On a plane with one size this is the regular lattice; on curved
+//! surfaces and where sizes change, neighbouring fronts meet at distances that smoothing evens out.
+
+use std::collections::VecDeque;
+
+use glam::{DVec2, DVec3};
+
+use super::cells::Cells;
+use super::ground::{Field, Ground, Spot};
+use super::outline::{Outline, cross};
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::math;
+use crate::base::tolerance::NUDGE;
+
+/// Nearest distance between two nodes, as a share of the wanted length.
+const APART: f64 = 0.7;
+/// Nearest distance of a node to an edge of the border, as a share of the wanted length.
+const CLEAR: f64 = 0.52;
+/// How far along the border its samples are apart, as a share of the wanted length.
+const SAMPLES: f64 = 0.5;
+/// How far the border is looked for, as a share of the wanted length: a step and half a sample's distance.
+const SIGHT: f64 = 1.3;
+/// Nodes between two questions whether to go on.
+const WATCH: usize = 4096;
+
+/// What growing needs.
+pub struct Soil<'a> {
+    /// The surface.
+    pub ground: &'a dyn Ground,
+    /// The wanted lengths.
+    pub field: &'a dyn Field,
+    /// The border.
+    pub outline: &'a Outline,
+    /// Places where a crystal may start, with a direction in space or none.
+    pub seeds: &'a [(DVec2, DVec3)],
+    /// Most nodes.
+    pub most: usize,
+}
+
+/// Nodes that grew.
+#[derive(Clone, Debug, Default)]
+pub struct Grown {
+    /// Places in the chart.
+    pub xy: Vec<DVec2>,
+    /// Points.
+    pub p: Vec<DVec3>,
+    /// Wanted lengths there.
+    pub size: Vec<f64>,
+    /// There would have been more than the limit.
+    pub full: bool,
+}
+
+struct Front<'a> {
+    soil: &'a Soil<'a>,
+    /// Nodes of the border and inner nodes.
+    nodes: Cells,
+    /// Samples of the border's edges.
+    border: Cells,
+    edges: Vec<[u32; 2]>,
+    grown: Grown,
+    along: Vec<DVec3>,
+    open: VecDeque<u32>,
+}
+
+/// Grows nodes from the seeds, the first ones first.
+pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
+    let outline = soil.outline;
+    let edges: Vec<[u32; 2]> = outline.edges().collect();
+    let unit = edges.iter().map(|e| outline.length(*e)).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let mut front = Front {
+        soil,
+        nodes: Cells::new(unit),
+        border: Cells::new(unit),
+        edges,
+        grown: Grown::default(),
+        along: Vec::new(),
+        open: VecDeque::new(),
+    };
+    front.border();
+    let first = front.layer();
+    let firsts = first.into_iter().map(|n| (None, n));
+    let seeds = soil.seeds.iter().map(|s| (Some(*s), 0));
+    for (seed, node) in firsts.chain(seeds) {
+        match seed {
+            Some((xy, along)) => front.seed(xy, along),
+            None => front.open.push_back(node),
+        }
+        let mut watch = 0;
+        while let Some(node) = front.open.pop_front() {
+            front.spread(node as usize);
+            watch += 1;
+            if watch % WATCH == 0 {
+                job.go_on()?;
+            }
+            if front.grown.p.len() > soil.most {
+                front.grown.full = true;
+                return Ok(front.grown);
+            }
+        }
+    }
+    Ok(front.grown)
+}
+
+impl Front<'_> {
+    /// Nodes and samples of the border.
+    fn border(&mut self) {
+        let outline = self.soil.outline;
+        for (p, xy) in outline.p.iter().zip(&outline.xy) {
+            self.nodes.add(*p, *xy, self.soil.field.size(*xy, *p), u32::MAX);
+        }
+        for (k, [a, b]) in self.edges.clone().into_iter().enumerate() {
+            let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
+            let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
+            let size = |t: f64| self.soil.field.size(xa.lerp(xb, t), pa.lerp(pb, t));
+            let least = [0.0, 0.5, 1.0].map(size).into_iter().fold(f64::INFINITY, f64::min);
+            let n = (pa.distance(pb) / (least * SAMPLES)).ceil().clamp(1.0, 1e6) as usize;
+            for i in 0..=n {
+                let t = i as f64 / n as f64;
+                self.border.add(pa.lerp(pb, t), xa.lerp(xb, t), size(t), k as u32);
+            }
+        }
+    }
+
+    /// A row of nodes along the border, each the tip of an equilateral triangle over an edge; they do not grow further but
+    /// for the one over the longest straight run, from which the crystal starts.
+    fn layer(&mut self) -> Option<u32> {
+        let outline = self.soil.outline;
+        self.corners();
+        let (mut best, mut first) = (0.0, None);
+        let mut run = (0.0, DVec3::ZERO);
+        for &[a, b] in &outline.loops {
+            let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
+            let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
+            let side = pb - pa;
+            let Some(along) = side.try_normalize() else { continue };
+            run = if along.dot(run.1) > STRAIGHT { (run.0 + side.length(), run.1) } else { (side.length(), along) };
+            let middle = 0.5 * (xa + xb);
+            let spot = self.soil.ground.spot(middle);
+            let size = self.soil.field.size(middle, spot.p);
+            let inward = spot.normal().cross(along);
+            // Between the height of the edge's own triangle and that of the wanted one.
+            let tall = (size * size - 0.25 * side.length_squared()).max(0.25 * size * size).sqrt();
+            let Some(step) = spot.step(inward * tall) else { continue };
+            let to = self.soil.ground.clamp(middle + step);
+            let new = self.soil.ground.spot(to);
+            let size = self.soil.field.size(to, new.p);
+            if self.near_node(new.p, size) || self.near_others(to, new.p, size, [a, b]) {
+                continue;
+            }
+            let along = along.reject_from_normalized(new.normal()).normalize_or_zero();
+            self.take(to, new.p, size, along);
+            self.open.clear();
+            if run.0 > best && along != DVec3::ZERO {
+                (best, first) = (run.0, Some(self.grown.p.len() as u32 - 1));
+            }
+        }
+        first
+    }
+
+    /// A node on the bisector of every corner that two triangles fill best.
+    fn corners(&mut self) {
+        let outline = self.soil.outline;
+        let mut before = vec![u32::MAX; outline.p.len()];
+        outline.loops.iter().for_each(|e| before[e[1] as usize] = e[0]);
+        for &[a, b] in &outline.loops {
+            let Some(from) = outline.p.get(before[a as usize] as usize) else { continue };
+            let (pa, pb, xy) = (outline.p[a as usize], outline.p[b as usize], outline.xy[a as usize]);
+            let spot = self.soil.ground.spot(xy);
+            let normal = spot.normal();
+            let (out, back) = ((pb - pa).reject_from_normalized(normal), (*from - pa).reject_from_normalized(normal));
+            let turn = math::atan2(normal.dot(out.cross(back)), out.dot(back));
+            if !(NARROW..WIDE).contains(&turn) {
+                continue;
+            }
+            let way = (out.normalize_or_zero() + back.normalize_or_zero()).normalize_or_zero();
+            let size = self.soil.field.size(xy, pa);
+            let Some(step) = spot.step(way * size) else { continue };
+            let to = self.soil.ground.clamp(xy + step);
+            let new = self.soil.ground.spot(to);
+            let nearest = self.border.any(new.p, SIGHT * size, size, |sample, _| {
+                let [c, d] = self.edges[sample.tag as usize].map(|n| n as usize);
+                apart(new.p, outline.p[c], outline.p[d]) < CLEAR * size
+                    || c as u32 != a && d as u32 != a && cross(xy, to, outline.xy[c], outline.xy[d])
+            });
+            let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
+            if !nearest && along != DVec3::ZERO && !self.near_node(new.p, size) {
+                self.take(to, new.p, size, along);
+                self.open.clear();
+            }
+        }
+    }
+
+    /// Whether a tip is too near to an edge of the border that is not its own.
+    fn near_others(&self, xy: DVec2, p: DVec3, size: f64, own: [u32; 2]) -> bool {
+        let outline = self.soil.outline;
+        let middle = 0.5 * (outline.xy[own[0] as usize] + outline.xy[own[1] as usize]);
+        self.border.any(p, SIGHT * size, size, |sample, _| {
+            let edge = self.edges[sample.tag as usize];
+            if edge == own {
+                return false;
+            }
+            let [a, b] = edge.map(|n| n as usize);
+            cross(middle, xy, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < CLEAR * size
+        })
+    }
+
+    fn seed(&mut self, xy: DVec2, along: DVec3) {
+        let spot = self.soil.ground.spot(xy);
+        let size = self.soil.field.size(xy, spot.p);
+        if self.near_node(spot.p, size) || self.near_border(xy, xy, spot.p, size) {
+            return;
+        }
+        let normal = spot.normal();
+        let along = along.reject_from_normalized(normal).try_normalize().unwrap_or_else(|| spot.dx.normalize_or_zero());
+        self.take(xy, spot.p, size, along);
+    }
+
+    fn take(&mut self, xy: DVec2, p: DVec3, size: f64, along: DVec3) {
+        let id = self.grown.p.len() as u32;
+        self.nodes.add(p, xy, size, id);
+        self.grown.xy.push(xy);
+        self.grown.p.push(p);
+        self.grown.size.push(size);
+        self.along.push(along);
+        self.open.push_back(id);
+    }
+
+    /// Proposes the six neighbours of a node.
+    fn spread(&mut self, node: usize) {
+        let (xy, p, size) = (self.grown.xy[node], self.grown.p[node], self.grown.size[node]);
+        let spot = self.soil.ground.spot(xy);
+        let normal = spot.normal();
+        let ahead = self.along[node];
+        let aside = normal.cross(ahead);
+        const HALF: f64 = 0.5;
+        let tall = aside * TALL;
+        let ways = [ahead, ahead * HALF + tall, -ahead * HALF + tall, -ahead, -ahead * HALF - tall, ahead * HALF - tall];
+        for way in ways {
+            self.propose((xy, p, size), &spot, way);
+        }
+    }
+
+    fn propose(&mut self, (xy, p, size): (DVec2, DVec3, f64), spot: &Spot, way: DVec3) {
+        let guess = p + way * size;
+        let Some(step) = spot.step(way * size) else { return };
+        // The mean of the lengths wanted here and there.
+        let there = self.soil.field.size(self.soil.ground.clamp(xy + step), guess);
+        let length = 0.5 * (size + there);
+        if self.near_node(p + way * length, there) {
+            return;
+        }
+        let step = step * (length / size);
+        if self.near_border(xy, xy + step, p + way * length, there) {
+            return;
+        }
+        let mut to = self.soil.ground.clamp(xy + step);
+        let mut new = self.soil.ground.spot(to);
+        // The surface bends away from its tangent plane: once more with the length that came out.
+        let made = new.p.distance(p);
+        if (made - length).abs() > BENT * length && made > 0.0 {
+            to = self.soil.ground.clamp(xy + step * (length / made));
+            new = self.soil.ground.spot(to);
+            if self.near_border(xy, to, new.p, there) {
+                return;
+            }
+        }
+        if new.p.distance_squared(p + way * length) > 0.0 && self.near_node(new.p, there) {
+            return;
+        }
+        let arm = new.p - p;
+        let along = arm.reject_from_normalized(new.normal()).normalize_or_zero();
+        if along != DVec3::ZERO {
+            self.take(to, new.p, there, along);
+        }
+    }
+
+    fn near_node(&self, p: DVec3, size: f64) -> bool {
+        self.nodes.any(p, APART * size, size, |_, _| true)
+    }
+
+    /// Whether a step meets the border or ends too near to it.
+    fn near_border(&self, from: DVec2, to: DVec2, p: DVec3, size: f64) -> bool {
+        let outline = self.soil.outline;
+        self.border.any(p, SIGHT * size, size, |sample, _| {
+            let [a, b] = self.edges[sample.tag as usize].map(|n| n as usize);
+            cross(from, to, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < CLEAR * size
+        })
+    }
+}
+
+/// Height of an equilateral triangle of side 1.
+const TALL: f64 = 0.866_025_403_784_438_6;
+/// Share of the length by which a step may be off before it is made again.
+const BENT: f64 = 0.01;
+
+/// Corners of angles between these, radians, are filled by two triangles: above 75° and below 150°.
+const NARROW: f64 = 1.309;
+const WIDE: f64 = 2.618;
+/// Cosine between edges that run straight on.
+pub(super) const STRAIGHT: f64 = 1.0 - NUDGE;
+
+/// Distance of a point from a segment.
+fn apart(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let d = b - a;
+    let t = ((p - a).dot(d) / d.length_squared()).clamp(0.0, 1.0);
+    p.distance(a + d * t)
+}

@@ -1,0 +1,521 @@
+//! Better triangles: flips, smoothing on the surface, and patches made anew with a node more or less.
+//!
+//! Every change keeps the triangles right side up in the chart and does not make the worst of those it touches worse
+//! [Freitag 1997].
+
+use glam::{DVec2, DVec3};
+
+use super::ground::{Field, Ground, foot};
+use super::shape::{Rim, Star, quality};
+use super::web::{Patch, Ring, Web};
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::tolerance::PARALLEL;
+use crate::base::triangulate_points::NO_TRIANGLE;
+
+/// How the improvement is done.
+#[derive(Clone, Copy, Debug)]
+pub struct Care {
+    /// Rounds of smoothing.
+    pub smooth: usize,
+    /// Triangles below this quality are worked on.
+    pub wanted: f64,
+    /// Longest edge over wanted length.
+    pub longest: f64,
+}
+
+/// A move below this share of the wanted length ends the smoothing of a node.
+const STILL: f64 = 0.005;
+/// A node whose triangles are all at least this good is left where it is.
+const FINE: f64 = 0.9999;
+/// What a change must gain.
+const GAIN: f64 = 0.001;
+/// Share of the quality that is there which a first guess must have to be searched on.
+const HOPE: f64 = 0.6;
+/// Divisions of triangles that break a limit.
+const DIVISIONS: usize = 24;
+/// One triangle in so many may be divided; where more break a limit, the lengths were wrong.
+const MANY: usize = 12;
+/// Rounds of work on bad triangles.
+const ROUNDS: usize = 6;
+
+/// A web being improved.
+pub struct Gardener<'a> {
+    /// The triangles.
+    pub web: Web,
+    /// Their surface.
+    pub ground: &'a dyn Ground,
+    /// Wanted lengths.
+    pub field: &'a dyn Field,
+    /// How.
+    pub care: Care,
+    ring: Ring,
+    rim: Rim,
+    patch: Patch,
+    /// Nodes that may have to move.
+    active: Vec<bool>,
+    /// Nodes that moved since the last flips.
+    moved: Vec<bool>,
+    /// The round of mending before which each node changed last: what is as it was when nothing helped is left alone.
+    changed: Vec<u32>,
+    round: u32,
+}
+
+impl<'a> Gardener<'a> {
+    /// Takes a web.
+    pub fn new(web: Web, ground: &'a dyn Ground, field: &'a dyn Field, care: Care) -> Self {
+        let active = vec![true; web.p.len()];
+        let moved = vec![true; web.p.len()];
+        let changed = vec![1; web.p.len()];
+        Self {
+            web,
+            ground,
+            field,
+            care,
+            ring: Ring::default(),
+            rim: Rim::default(),
+            patch: Patch::default(),
+            active,
+            moved,
+            changed,
+            round: 0,
+        }
+    }
+
+    /// All there is, in turn.
+    pub fn improve(&mut self, job: &Job) -> Result<()> {
+        self.flip_all();
+        if self.care.smooth == 0 {
+            return Ok(());
+        }
+        self.smooth(self.care.smooth);
+        self.flip_all();
+        for _ in 0..ROUNDS {
+            job.go_on()?;
+            if self.mend() == 0 {
+                break;
+            }
+            self.smooth(4);
+            self.flip_all();
+        }
+        self.mend();
+        Ok(())
+    }
+
+    /// Puts nodes into triangles that break a limit until none does, or too many do.
+    pub fn divide(&mut self, broken: &dyn Fn(&Web) -> Vec<u32>, job: &Job) -> Result<()> {
+        for _ in 0..DIVISIONS {
+            let bad = broken(&self.web);
+            if bad.is_empty() || bad.len() * MANY > self.web.tri.len() {
+                return Ok(());
+            }
+            for t in bad {
+                if self.web.alive(t) {
+                    self.split(t);
+                }
+            }
+            self.flip_all();
+            self.mend();
+            job.go_on()?;
+        }
+        Ok(())
+    }
+
+    /// A node more in a triangle and its neighbour across the longest free side.
+    fn split(&mut self, t: u32) {
+        let c = self.web.tri[t as usize];
+        let length = |k: usize| self.web.p[c[(k + 1) % 3] as usize].distance(self.web.p[c[(k + 2) % 3] as usize]);
+        let free = |k: &usize| self.web.locked[t as usize] >> k & 1 == 0;
+        let mut sides: Vec<usize> = (0..3).filter(free).collect();
+        sides.sort_by(|a, b| length(*b).total_cmp(&length(*a)).then(a.cmp(b)));
+        for k in sides {
+            let mut patch = std::mem::take(&mut self.patch);
+            let plan = self
+                .web
+                .patch(&[t, self.web.across[t as usize][k]], &mut patch)
+                .and_then(|()| self.plan(&patch, Keep::New, f64::NEG_INFINITY));
+            let made = match plan {
+                Some((worst, Plan::Star(star, node))) if worst > 0.0 => {
+                    let size = self.field.size(star.xy, star.p);
+                    self.web.restar(&patch, node, &star, size);
+                    self.wake_patch(&patch);
+                    true
+                }
+                _ => false,
+            };
+            self.patch = patch;
+            if made {
+                return;
+            }
+        }
+    }
+
+    /// The nodes of a patch made anew may have to move.
+    fn wake_patch(&mut self, patch: &Patch) {
+        self.active.resize(self.web.p.len(), true);
+        self.moved.resize(self.web.p.len(), true);
+        self.changed.resize(self.web.p.len(), self.round + 1);
+        patch.rim.iter().chain(&patch.inner).for_each(|n| self.touch(*n));
+    }
+
+    /// Flips every free side whose opposite angles in space exceed a half turn together.
+    pub fn flip_all(&mut self) {
+        let touched = |t: &u32| self.web.tri[*t as usize].iter().any(|n| self.moved[*n as usize]);
+        let mut open: Vec<u32> = (0..self.web.tri.len() as u32).rev().filter(touched).collect();
+        self.moved.fill(false);
+        let mut left = 4 * self.web.tri.len() + 64;
+        while let Some(t) = open.pop() {
+            if !self.web.alive(t) {
+                continue;
+            }
+            for k in 0..3 {
+                let other = self.web.across[t as usize][k];
+                if left > 0 && self.wants_flip(t, k) {
+                    left -= 1;
+                    self.web.flip(t, k);
+                    open.push(other);
+                    open.push(t);
+                    self.wake(t);
+                    self.wake(other);
+                    break;
+                }
+            }
+        }
+    }
+
+    /// The nodes of a triangle may have to move.
+    fn wake(&mut self, t: u32) {
+        for n in self.web.tri[t as usize] {
+            self.active[n as usize] = true;
+            self.changed[n as usize] = self.round + 1;
+        }
+    }
+
+    fn quad(&self, t: u32, k: usize) -> Option<[u32; 4]> {
+        let web = &self.web;
+        if web.locked[t as usize] >> k & 1 == 1 {
+            return None;
+        }
+        let other = web.across[t as usize][k];
+        if other == NO_TRIANGLE {
+            return None;
+        }
+        let c = web.tri[t as usize];
+        let o = web.tri[other as usize];
+        let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
+        let tip = o.iter().copied().find(|n| *n != b && *n != d)?;
+        Some([a, b, tip, d])
+    }
+
+    /// Whether the chart allows the flip.
+    fn convex(&self, [a, b, c, d]: [u32; 4]) -> bool {
+        let xy = |n: u32| self.web.xy[n as usize];
+        super::outline::area2(xy(a), xy(b), xy(c)) > 0.0 && super::outline::area2(xy(a), xy(c), xy(d)) > 0.0
+    }
+
+    fn wants_flip(&self, t: u32, k: usize) -> bool {
+        let Some(quad) = self.quad(t, k) else { return false };
+        let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
+        let cot = |tip: DVec3, x: DVec3, y: DVec3| {
+            let (x, y) = (x - tip, y - tip);
+            x.dot(y) / x.cross(y).length().max(f64::MIN_POSITIVE)
+        };
+        cot(a, b, d) + cot(c, b, d) < -PARALLEL && self.convex(quad)
+    }
+
+    /// Moves free nodes towards the area-weighted mean of their triangles' centroids, rounds without end until all are still.
+    pub fn smooth(&mut self, rounds: usize) {
+        let n = self.web.p.len();
+        for _ in 0..rounds {
+            let mut moved = false;
+            for node in self.web.fixed..n as u32 {
+                if !std::mem::take(&mut self.active[node as usize]) || self.web.at[node as usize] == NO_TRIANGLE {
+                    continue;
+                }
+                if self.relax(node) {
+                    moved = true;
+                    self.active[node as usize] = true;
+                    for k in 0..self.ring.node.len() {
+                        self.active[self.ring.node[k] as usize] = true;
+                    }
+                }
+            }
+            if !moved {
+                return;
+            }
+        }
+    }
+
+    fn fill_rim(&mut self, node: u32) {
+        let web = &self.web;
+        web.ring(node, &mut self.ring);
+        self.rim.p.clear();
+        self.rim.xy.clear();
+        self.rim.p.extend(self.ring.node.iter().map(|n| web.p[*n as usize]));
+        self.rim.xy.extend(self.ring.node.iter().map(|n| web.xy[*n as usize]));
+        self.rim.longest = web.size[node as usize] * self.care.longest;
+    }
+
+    /// One step of one node; whether it moved worth mentioning.
+    fn relax(&mut self, node: u32) -> bool {
+        self.fill_rim(node);
+        let here = self.web.p[node as usize];
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        let n = self.rim.p.len();
+        let mut worst = f64::INFINITY;
+        for i in 0..n {
+            let (a, b) = (self.rim.p[i], self.rim.p[(i + 1) % n]);
+            worst = worst.min(quality(here, a, b));
+            let area = (a - here).cross(b - here).length();
+            let size = (self.web.size[self.ring.node[i] as usize] + self.web.size[self.ring.node[(i + 1) % n] as usize]) * 0.5;
+            let weight = area / (size * size * size * size);
+            sum += (here + a + b) * weight;
+            weights += weight;
+        }
+        if worst > FINE {
+            return false;
+        }
+        let size = self.web.size[node as usize];
+        let wish = sum / (3.0 * weights) - here;
+        let before = self.rim.worst(self.web.xy[node as usize], here);
+        let mut share = 1.0;
+        for _ in 0..3 {
+            let step = wish * share;
+            if step.length() < STILL * size {
+                return false;
+            }
+            let (xy, p) = foot(self.ground, self.web.xy[node as usize], here + step);
+            if self.rim.worst(xy, p) >= before.min(FINE) {
+                self.place(node, xy, p);
+                return true;
+            }
+            share *= 0.4;
+        }
+        false
+    }
+
+    fn place(&mut self, node: u32, xy: DVec2, p: DVec3) {
+        self.web.xy[node as usize] = xy;
+        self.web.p[node as usize] = p;
+        self.web.size[node as usize] = self.field.size(xy, p);
+        self.touch(node);
+    }
+
+    /// A node or its triangles changed.
+    fn touch(&mut self, node: u32) {
+        let n = node as usize;
+        (self.moved[n], self.active[n], self.changed[n]) = (true, true, self.round + 1);
+    }
+
+    /// What a triangle is worth: its quality less what its longest side takes.
+    fn worth(&self, t: u32) -> f64 {
+        let c = self.web.tri[t as usize];
+        let [a, b, d] = c.map(|n| self.web.p[n as usize]);
+        let mut worth = quality(a, b, d);
+        for k in 0..3 {
+            let (i, j) = (c[k], c[(k + 1) % 3]);
+            if self.web.is_free(i) || self.web.is_free(j) {
+                let size = if self.web.is_free(i) { self.web.size[i as usize] } else { self.web.size[j as usize] };
+                let length = self.web.p[i as usize].distance(self.web.p[j as usize]);
+                worth = worth.min(quality(a, b, d) * (size * self.care.longest / length).min(1.0));
+            }
+        }
+        worth
+    }
+
+    /// Works on triangles below the wanted quality, the worst first; how many changes were made.
+    pub fn mend(&mut self) -> usize {
+        let last = self.round;
+        self.round += 1;
+        let fresh = |t: &u32| self.web.tri[*t as usize].iter().any(|n| self.changed[*n as usize] > last);
+        let mut bad: Vec<(f64, u32)> = (0..self.web.tri.len() as u32)
+            .filter(|t| self.web.alive(*t) && fresh(t))
+            .map(|t| (self.worth(t), t))
+            .filter(|(q, _)| *q < self.care.wanted)
+            .collect();
+        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut changes = 0;
+        for (_, t) in bad {
+            for _ in 0..3 {
+                if !self.web.alive(t) || self.worth(t) >= self.care.wanted || !self.mend_one(t) {
+                    break;
+                }
+                changes += 1;
+            }
+        }
+        changes
+    }
+
+    fn mend_one(&mut self, t: u32) -> bool {
+        self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
+    }
+
+    /// Moves a corner to where its worst triangle is best.
+    fn shift_corners(&mut self, t: u32) -> bool {
+        let mut any = false;
+        for node in self.web.tri[t as usize] {
+            if !self.web.is_free(node) {
+                continue;
+            }
+            self.fill_rim(node);
+            let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
+            let before = self.rim.worst(xy, p);
+            let star = self.rim.best(self.ground, xy, p);
+            if star.worst > before + GAIN {
+                self.place(node, star.xy, star.p);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Flips a side if the worse of the two triangles gets better.
+    fn flip_worse(&mut self, t: u32) -> bool {
+        for k in 0..3 {
+            let Some(quad) = self.quad(t, k) else { continue };
+            if !self.convex(quad) {
+                continue;
+            }
+            let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
+            let before = quality(a, b, d).min(quality(c, d, b));
+            let after = quality(a, b, c).min(quality(a, c, d));
+            if after > before + GAIN {
+                let other = self.web.across[t as usize][k];
+                self.web.flip(t, k);
+                self.wake(t);
+                self.wake(other);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Tries patches round a triangle with a node more or less; takes the best.
+    fn rebuild(&mut self, t: u32) -> bool {
+        let mut best: Option<(f64, Patch, Plan)> = None;
+        for (tri, keep) in self.candidates(t) {
+            let before = tri.iter().map(|t| self.worth(*t)).fold(f64::INFINITY, f64::min);
+            let mut patch = std::mem::take(&mut self.patch);
+            let fits = self.web.patch(&tri, &mut patch);
+            if fits.is_some()
+                && let Some((after, plan)) = self.plan(&patch, keep, before * HOPE)
+                && after > before + GAIN
+                && best.as_ref().is_none_or(|b| after - before > b.0)
+            {
+                best = Some((after - before, patch.clone(), plan));
+            }
+            self.patch = patch;
+        }
+        let Some((_, patch, plan)) = best else { return false };
+        match plan {
+            Plan::Star(star, node) => {
+                let size = self.field.size(star.xy, star.p);
+                self.web.restar(&patch, node, &star, size);
+            }
+            Plan::Fan(k) => self.web.refan(&patch, k),
+        }
+        self.wake_patch(&patch);
+        true
+    }
+
+    /// Sets of triangles round a triangle: two at each side for a new node, stars of corners without it, stars of two
+    /// neighbouring corners as one.
+    fn candidates(&mut self, t: u32) -> Vec<(Vec<u32>, Keep)> {
+        let mut sets = Vec::new();
+        let c = self.web.tri[t as usize];
+        let across = self.web.across[t as usize];
+        for (k, next) in across.into_iter().enumerate() {
+            if self.web.locked[t as usize] >> k & 1 == 0 && next != NO_TRIANGLE {
+                sets.push((vec![t, next], Keep::New));
+            }
+        }
+        let open: Vec<u32> = (0..3).filter(|k| self.web.locked[t as usize] >> k & 1 == 0).map(|k| across[k]).collect();
+        if open.len() >= 2 {
+            sets.push((std::iter::once(t).chain(open).collect(), Keep::New));
+        }
+        for k in 0..3 {
+            if let Some([_, _, tip, _]) = self.quad(t, k)
+                && self.web.is_free(tip)
+            {
+                self.web.ring(tip, &mut self.ring);
+                sets.push((self.ring.tri.iter().copied().chain([t]).collect(), Keep::One(tip)));
+            }
+        }
+        for k in 0..3 {
+            let (a, b) = (c[k], c[(k + 1) % 3]);
+            if self.web.is_free(a) {
+                self.web.ring(a, &mut self.ring);
+                sets.push((self.ring.tri.clone(), Keep::None));
+            }
+            if self.web.is_free(a) && self.web.is_free(b) {
+                self.web.ring(a, &mut self.ring);
+                let mut tri = self.ring.tri.clone();
+                self.web.ring(b, &mut self.ring);
+                tri.extend(self.ring.tri.iter().filter(|t| !tri.contains(t)).copied().collect::<Vec<_>>());
+                sets.push((tri, Keep::One(a.min(b))));
+            }
+        }
+        sets
+    }
+
+    /// The best that can be made of a patch.
+    fn plan(&mut self, patch: &Patch, keep: Keep, least: f64) -> Option<(f64, Plan)> {
+        self.rim.p.clear();
+        self.rim.xy.clear();
+        self.rim.p.extend(patch.rim.iter().map(|n| self.web.p[*n as usize]));
+        self.rim.xy.extend(patch.rim.iter().map(|n| self.web.xy[*n as usize]));
+        if let Keep::None = keep {
+            return self.best_fan(patch);
+        }
+        let (xy, p) = self.rim.middle();
+        let (xy, p) = foot(self.ground, self.ground.clamp(xy), p);
+        self.rim.longest = self.field.size(xy, p) * self.care.longest;
+        // A rim that is far too large or too small for one node is not searched for its best place.
+        if self.rim.worst(xy, p) < least {
+            return None;
+        }
+        let star = self.rim.best(self.ground, xy, p);
+        let node = if let Keep::One(node) = keep { Some(node) } else { None };
+        (star.worst > 0.0).then_some((star.worst, Plan::Star(star, node)))
+    }
+
+    /// The fan of the rim's node that gives the best worst triangle.
+    fn best_fan(&self, patch: &Patch) -> Option<(f64, Plan)> {
+        let n = patch.rim.len();
+        let mut best: Option<(f64, usize)> = None;
+        for k in 0..n {
+            let mut worst = f64::INFINITY;
+            for i in 1..n - 1 {
+                let (a, b) = ((k + i) % n, (k + i + 1) % n);
+                if super::outline::area2(self.rim.xy[k], self.rim.xy[a], self.rim.xy[b]) <= 0.0 {
+                    worst = -1.0;
+                    break;
+                }
+                let far = self.rim.p[k].distance(self.rim.p[a]);
+                let longest = self.web.size[patch.rim[a] as usize] * self.care.longest;
+                let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
+                worst = worst.min(quality(self.rim.p[k], self.rim.p[a], self.rim.p[b]) * share);
+            }
+            if worst > 0.0 && best.is_none_or(|b| worst > b.0) {
+                best = Some((worst, k));
+            }
+        }
+        best.map(|(worst, k)| (worst, Plan::Fan(k)))
+    }
+}
+
+/// Which node a patch keeps.
+#[derive(Clone, Copy)]
+enum Keep {
+    /// A new one in its middle.
+    New,
+    /// One of those inside.
+    One(u32),
+    /// None: a fan from its rim.
+    None,
+}
+
+enum Plan {
+    Star(Star, Option<u32>),
+    Fan(usize),
+}

@@ -1,0 +1,14 @@
+//! Faces that no map fits: nodes grown over the surface, triangulated in the chart, improved in space.
+
+pub mod bound;
+pub mod build;
+pub mod cells;
+pub mod face;
+pub mod ground;
+pub mod grow;
+pub mod improve;
+pub mod outline;
+pub mod shape;
+pub mod sheet;
+pub mod size;
+pub mod web;

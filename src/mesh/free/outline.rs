@@ -1,0 +1,40 @@
+//! The border of a face in its chart: nodes, edges between them, lines inside.
+
+use glam::{DVec2, DVec3};
+
+/// A border: nodes that are given and edges that must be there.
+#[derive(Clone, Debug, Default)]
+pub struct Outline {
+    /// Places in the chart.
+    pub xy: Vec<DVec2>,
+    /// Points in space; never evaluated again.
+    pub p: Vec<DVec3>,
+    /// Edges of the loops with the face on their left.
+    pub loops: Vec<[u32; 2]>,
+    /// Edges of lines inside the face.
+    pub lines: Vec<[u32; 2]>,
+}
+
+impl Outline {
+    /// All edges, loops first.
+    pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.loops.iter().chain(&self.lines).copied()
+    }
+
+    /// Length of an edge in space.
+    pub fn length(&self, [a, b]: [u32; 2]) -> f64 {
+        self.p[a as usize].distance(self.p[b as usize])
+    }
+}
+
+/// Twice the signed area of a triangle in the chart.
+pub fn area2(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Whether two segments of the chart cross or touch.
+pub fn cross(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+    let (s, t) = (area2(a, b, c), area2(a, b, d));
+    let (u, v) = (area2(c, d, a), area2(c, d, b));
+    s * t <= 0.0 && u * v <= 0.0
+}

@@ -1,0 +1,106 @@
+//! Wanted lengths over a face: a grid over its chart that no length grows faster across than allowed.
+
+use glam::{DVec2, DVec3};
+
+use super::ground::{Field, Ground};
+
+/// Grid lines along the longer side of the chart.
+const LINES: usize = 128;
+
+/// Lengths at the nodes of a grid, read between them by the mean of the four round a place.
+#[derive(Clone, Debug)]
+pub struct Background {
+    low: DVec2,
+    cell: DVec2,
+    n: (usize, usize),
+    p: Vec<DVec3>,
+    size: Vec<f64>,
+    growth: f64,
+}
+
+impl Background {
+    /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
+    pub fn new(ground: &dyn Ground, (low, high): (DVec2, DVec2), growth: f64, of: impl Fn(DVec2) -> f64) -> Self {
+        let extent = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
+        let longest = extent.max_element();
+        let lines = |x: f64| ((LINES as f64 * x / longest).ceil() as usize).clamp(4, LINES) + 1;
+        let n = (lines(extent.x), lines(extent.y));
+        let cell = DVec2::new(extent.x / (n.0 - 1) as f64, extent.y / (n.1 - 1) as f64);
+        let place = |k: usize| ground.clamp(low + cell * DVec2::new((k % n.0) as f64, (k / n.0) as f64));
+        let places: Vec<DVec2> = (0..n.0 * n.1).map(place).collect();
+        let p = places.iter().map(|xy| ground.spot(*xy).p).collect();
+        let size = places.iter().map(|xy| of(*xy)).collect();
+        let mut field = Self { low, cell, n, p, size, growth };
+        field.level();
+        field
+    }
+
+    /// Lowers the length round a place to at most `size`.
+    pub fn lower(&mut self, xy: DVec2, size: f64) {
+        let at = ((xy - self.low) / self.cell).max(DVec2::ZERO);
+        let (i, j) = ((at.x as usize).min(self.n.0 - 2), (at.y as usize).min(self.n.1 - 2));
+        for k in [j * self.n.0 + i, j * self.n.0 + i + 1, (j + 1) * self.n.0 + i, (j + 1) * self.n.0 + i + 1] {
+            self.size[k] = self.size[k].min(size);
+        }
+    }
+
+    /// No length exceeds that of a neighbour by more than the growth over their distance in space; after lowering.
+    pub fn level(&mut self) {
+        let slope = (self.growth - 1.0).max(0.0);
+        let (nx, ny) = self.n;
+        let mut reach = |k: usize, other: usize| {
+            let most = self.size[other] + slope * self.p[k].distance(self.p[other]);
+            if self.size[k] > most {
+                self.size[k] = most;
+            }
+        };
+        // Two sweeps there and back carry a length along every way but the most winding; the rest is caught by the next.
+        for _ in 0..2 {
+            for j in 0..ny {
+                for i in 0..nx {
+                    let k = j * nx + i;
+                    if i > 0 {
+                        reach(k, k - 1);
+                    }
+                    if j > 0 {
+                        reach(k, k - nx);
+                        if i > 0 {
+                            reach(k, k - nx - 1);
+                        }
+                        if i + 1 < nx {
+                            reach(k, k - nx + 1);
+                        }
+                    }
+                }
+            }
+            for j in (0..ny).rev() {
+                for i in (0..nx).rev() {
+                    let k = j * nx + i;
+                    if i + 1 < nx {
+                        reach(k, k + 1);
+                    }
+                    if j + 1 < ny {
+                        reach(k, k + nx);
+                        if i + 1 < nx {
+                            reach(k, k + nx + 1);
+                        }
+                        if i > 0 {
+                            reach(k, k + nx - 1);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Field for Background {
+    fn size(&self, xy: DVec2, _: DVec3) -> f64 {
+        let at = ((xy - self.low) / self.cell).max(DVec2::ZERO);
+        let (i, j) = ((at.x as usize).min(self.n.0 - 2), (at.y as usize).min(self.n.1 - 2));
+        let (s, t) = ((at.x - i as f64).min(1.0), (at.y - j as f64).min(1.0));
+        let k = j * self.n.0 + i;
+        let row = |k: usize| self.size[k] * (1.0 - s) + self.size[k + 1] * s;
+        row(k) * (1.0 - t) + row(k + self.n.0) * t
+    }
+}

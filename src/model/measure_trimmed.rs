@@ -1,0 +1,152 @@
+//! Integrals over trimmed surfaces, from their borders by Green's theorem in (u, v).
+
+use glam::DVec2;
+
+use crate::base::quadrature::gauss_legendre;
+use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::network::Chain;
+use crate::surface::{Jet2, Side, Surface, chain_breaks};
+
+/// Points of the rules along a border and across the surface.
+const ALONG: [usize; 2] = [8, 12];
+const ACROSS: usize = 12;
+/// A run of a border is halved at most so often.
+const DEEPEST: u32 = 14;
+
+/// Sums of N functions.
+type Sums<const N: usize> = [f64; N];
+
+/// A border: the chain that carries it, or a line in (u, v).
+enum Way {
+    Chain(usize, Chain, f64, f64),
+    Line((f64, f64), (f64, f64)),
+}
+
+/// A run of a border between two shares of it.
+struct Run {
+    border: usize,
+    t: (f64, f64),
+    depth: u32,
+}
+
+/// The integral of N functions of the jet over a trimmed surface, with estimated errors.
+///
+/// ∬ f du dv = ∮ F dv with F = ∫ f du from the middle of each loop (round a closed loop any start serves), cut where the
+/// surface is less than analytic.
+pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+    let middle = |outline: &Vec<DVec2>| {
+        let (low, high) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
+        0.5 * (low + high)
+    };
+    let outlines = surface.outlines();
+    let bases: Vec<f64> = outlines.iter().zip(surface.loops()).flat_map(|(o, n)| std::iter::repeat_n(middle(o), n)).collect();
+    let ways: Vec<(f64, Way)> = (0..surface.n_sides())
+        .filter_map(|k| match (surface.side(k), surface.border_line(k)) {
+            (_, Some((a, b))) => Some((bases[k], Way::Line(a, b))),
+            (Side::Chain { chain, from, to }, None) => Some((bases[k], Way::Chain(k, chain, from, to))),
+            _ => None,
+        })
+        .collect();
+    let (rules, across) = (ALONG.map(gauss_legendre), gauss_legendre(ACROSS));
+    let (breaks_u, breaks_v) = surface.breaks();
+    let inner = |base: f64, at: DVec2| -> Sums<N> {
+        let mut sum = [0.0; N];
+        let (first, last) = (base.min(at.x), base.max(at.x));
+        let sign = if at.x < base { -1.0 } else { 1.0 };
+        let mut low = first;
+        // Breaks repeat where the surface closes and a border runs over its seam.
+        let whole = (first.floor() as i64..=last.ceil() as i64).flat_map(|n| {
+            let n = n as f64;
+            breaks_u.iter().map(move |b| b + n).chain([n])
+        });
+        let mut stops: Vec<f64> = whole.filter(|u| *u > first && *u < last).collect();
+        stops.sort_by(f64::total_cmp);
+        stops.push(last);
+        for high in stops {
+            for (x, w) in &across {
+                let u = 0.5 * (low + high) + 0.5 * (high - low) * x;
+                let value = f(&surface.jet(u, at.y));
+                for i in 0..N {
+                    sum[i] += sign * 0.5 * (high - low) * w * value[i];
+                }
+            }
+            low = high;
+        }
+        sum
+    };
+    let run = |run: &Run, rule: &[(f64, f64)]| -> (Sums<N>, Sums<N>) {
+        let (mut sum, mut size) = ([0.0; N], [0.0; N]);
+        for (x, w) in rule {
+            let half = 0.5 * (run.t.1 - run.t.0);
+            let t = 0.5 * (run.t.0 + run.t.1) + half * x;
+            let (base, way) = &ways[run.border];
+            let (at, dv) = way.at(surface, t);
+            if dv == 0.0 {
+                continue;
+            }
+            for (i, value) in inner(*base, at).into_iter().enumerate() {
+                sum[i] += half * w * dv * value;
+                size[i] += (half * w * dv * value).abs();
+            }
+        }
+        (sum, size)
+    };
+    let mut open: Vec<Run> = Vec::new();
+    for (border, (_, way)) in ways.iter().enumerate() {
+        let stops = way.stops(&breaks_v);
+        open.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
+    }
+    open.reverse();
+    let scale = open.iter().fold([0.0; N], |scale, r| {
+        let size = run(r, &rules[0]).1;
+        std::array::from_fn(|i| scale[i] + size[i])
+    });
+    let share = MEASURE_ACCURACY / open.len().max(1) as f64;
+    let (mut sum, mut error) = ([0.0; N], [0.0; N]);
+    while let Some(next) = open.pop() {
+        let (rough, value) = (run(&next, &rules[0]).0, run(&next, &rules[1]).0);
+        let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
+        if next.depth == DEEPEST || (0..N).all(|i| apart[i] <= share * scale[i]) {
+            for i in 0..N {
+                sum[i] += value[i];
+                error[i] += apart[i];
+            }
+        } else {
+            let middle = 0.5 * (next.t.0 + next.t.1);
+            open.push(Run { t: (middle, next.t.1), depth: next.depth + 1, ..next });
+            open.push(Run { t: (next.t.0, middle), depth: next.depth + 1, ..next });
+        }
+    }
+    (sum, error)
+}
+
+impl Way {
+    /// Shares of the way at which it is less than smooth, ends included.
+    fn stops(&self, breaks_v: &[f64]) -> Vec<f64> {
+        let mut stops = vec![0.0, 1.0];
+        match self {
+            Self::Chain(_, chain, from, to) => stops.extend(chain_breaks(chain).into_iter().map(|f| (f - from) / (to - from))),
+            Self::Line(a, b) => stops.extend(breaks_v.iter().map(|v| (v - a.1) / (b.1 - a.1)).filter(|t| t.is_finite())),
+        }
+        stops.retain(|t| (0.0..=1.0).contains(t));
+        stops.sort_by(f64::total_cmp);
+        stops.dedup();
+        stops
+    }
+
+    /// (u, v) at a share of the way, and dv by the share.
+    fn at(&self, surface: &Surface, t: f64) -> (DVec2, f64) {
+        match self {
+            Self::Line(a, b) => (DVec2::new(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t), b.1 - a.1),
+            Self::Chain(side, chain, from, to) => {
+                let f = from + (to - from) * t;
+                let uv = surface.border_place(*side, f).unwrap_or_default();
+                let jet = surface.jet(uv.0, uv.1);
+                let d = chain.jet(f).d1 * (to - from);
+                let (e, g, m) = (jet.du.length_squared(), jet.dv.length_squared(), jet.du.dot(jet.dv));
+                let dv = (e * jet.dv.dot(d) - m * jet.du.dot(d)) / (e * g - m * m);
+                (uv.into(), if dv.is_finite() { dv } else { 0.0 })
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Where a curve that lies on a surface runs in (u, v): followed step by step, so that it never jumps to another sheet.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::core::Surface;
+use crate::base::tolerance::EPSILON;
+use crate::network::Chain;
+
+/// Steps between two breaks of a curve at the least.
+const LEAST: usize = 8;
+/// Halvings of a step before it counts as a leap.
+const DEEPEST: u32 = 12;
+/// Newton steps of a foot.
+const STEPS: usize = 16;
+/// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
+const BEND: f64 = 0.25;
+
+/// What a border of a trimmed surface is in (u, v), from its start to its end in the loop's direction.
+#[derive(Clone, Debug)]
+pub(super) enum Course {
+    /// A straight line.
+    Line((f64, f64), (f64, f64)),
+    /// The feet of a chain.
+    Pull(Arc<Pull>),
+}
+
+impl Course {
+    /// The same backwards, in other parameters.
+    pub fn flipped(&self, turn: &dyn Fn((f64, f64)) -> (f64, f64)) -> Self {
+        match self {
+            Self::Line(a, b) => Self::Line(turn(*b), turn(*a)),
+            Self::Pull(pull) => {
+                let at = pull.at.iter().rev().map(|(f, uv)| (*f, turn((uv.x, uv.y)).into()));
+                Self::Pull(Arc::new(Pull { at: at.collect() }))
+            }
+        }
+    }
+
+    /// Shifted in (u, v).
+    pub fn shifted(&self, by: DVec2) -> Self {
+        let shift = |(u, v): (f64, f64)| (u + by.x, v + by.y);
+        match self {
+            Self::Line(a, b) => Self::Line(shift(*a), shift(*b)),
+            Self::Pull(pull) => Self::Pull(Arc::new(Pull { at: pull.at.iter().map(|(f, uv)| (*f, *uv + by)).collect() })),
+        }
+    }
+
+    /// Places along it, ends included.
+    pub fn places(&self) -> Vec<DVec2> {
+        match self {
+            Self::Line(a, b) => vec![DVec2::new(a.0, a.1), DVec2::new(b.0, b.1)],
+            Self::Pull(pull) => pull.at.iter().map(|s| s.1).collect(),
+        }
+    }
+}
+
+/// A chain's places on a surface at fractions of the chain, in the order of the loop.
+#[derive(Clone, Debug)]
+pub(super) struct Pull {
+    at: Vec<(f64, DVec2)>,
+}
+
+/// Where a curve is too far from the surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Off {
+    /// The point of the curve.
+    pub at: DVec3,
+    /// How far it is, model units.
+    pub distance: f64,
+}
+
+impl Pull {
+    /// Follows a chain between two fractions from a place near its first point; fails where it is farther from the surface
+    /// than `near`.
+    pub fn follow(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+        let stops = super::breaks::chain_breaks(chain);
+        let (low, high) = (from.min(to), from.max(to));
+        let mut cuts: Vec<f64> = stops.into_iter().filter(|f| *f > low && *f < high).collect();
+        cuts.insert(0, low);
+        cuts.push(high);
+        if from > to {
+            cuts.reverse();
+        }
+        let land = |f: f64, guess: DVec2| -> Result<DVec2, Off> {
+            let p = chain.point(f);
+            let (uv, distance) = foot(surface, p, guess);
+            if distance <= near { Ok(uv) } else { Err(Off { at: p, distance }) }
+        };
+        let mut at = vec![(from, land(from, start)?)];
+        for w in cuts.windows(2) {
+            for k in 1..=LEAST {
+                let f = if k == LEAST { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / LEAST as f64 };
+                walk(surface, chain, &mut at, f, &land, DEEPEST)?;
+            }
+        }
+        Ok(Self { at })
+    }
+
+    /// The same in the other direction.
+    pub fn turned(&self) -> Self {
+        Self { at: self.at.iter().rev().copied().collect() }
+    }
+
+    /// The first and the last place.
+    pub fn ends(&self) -> (DVec2, DVec2) {
+        (self.at[0].1, self.at[self.at.len() - 1].1)
+    }
+
+    /// About where a fraction of the chain lies.
+    pub fn guess(&self, f: f64) -> DVec2 {
+        let ascending = self.at[0].0 <= self.at[self.at.len() - 1].0;
+        let k = self.at.partition_point(|s| if ascending { s.0 < f } else { s.0 > f }).clamp(1, self.at.len() - 1);
+        let ((a, p), (b, q)) = (self.at[k - 1], self.at[k]);
+        p.lerp(q, ((f - a) / (b - a)).clamp(0.0, 1.0))
+    }
+}
+
+/// Goes on to a fraction, in smaller steps where the way bends or the foot leaps.
+fn walk(
+    surface: &Surface,
+    chain: &Chain,
+    at: &mut Vec<(f64, DVec2)>,
+    to: f64,
+    land: &impl Fn(f64, DVec2) -> Result<DVec2, Off>,
+    left: u32,
+) -> Result<(), Off> {
+    let (from, here) = at[at.len() - 1];
+    // First order: the tangent's foot in (u, v).
+    let jet = surface.jet(here.x, here.y);
+    let d1 = chain.jet(from.min(to).max(0.0)).d1;
+    let ahead = if at.len() > 1 {
+        let (before, there) = at[at.len() - 2];
+        (here - there) * ((to - from) / (from - before))
+    } else {
+        step(&jet, d1 * (to - from)).unwrap_or(DVec2::ZERO)
+    };
+    let next = land(to, here + ahead);
+    let fine = match &next {
+        Ok(uv) => {
+            let moved = *uv - here;
+            (moved - ahead).length() <= BEND * moved.length().max(ahead.length()) || moved.length() <= EPSILON.sqrt()
+        }
+        Err(_) => false,
+    };
+    if fine || left == 0 {
+        at.push((to, next?));
+        return Ok(());
+    }
+    let middle = 0.5 * (from + to);
+    walk(surface, chain, at, middle, land, left - 1)?;
+    walk(surface, chain, at, to, land, left - 1)
+}
+
+/// The step in (u, v) whose image is a vector's tangential part; `None` where the surface is singular.
+pub(super) fn step(jet: &super::Jet2, d: DVec3) -> Option<DVec2> {
+    let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+    let (a, b) = (jet.du.dot(d), jet.dv.dot(d));
+    let det = e * g - f * f;
+    let found = DVec2::new((g * a - f * b) / det, (e * b - f * a) / det);
+    found.is_finite().then_some(found)
+}
+
+/// The foot of a point near a guess, with its distance: Gauss–Newton, held in the parts of (u, v) where the surface is.
+pub(super) fn foot(surface: &Surface, p: DVec3, guess: DVec2) -> (DVec2, f64) {
+    let mut uv = surface.hold(guess);
+    let mut jet = surface.jet(uv.x, uv.y);
+    let mut best = jet.p.distance_squared(p);
+    for _ in 0..STEPS {
+        let Some(full) = step(&jet, p - jet.p) else { break };
+        let mut share = 1.0;
+        let mut better = None;
+        for _ in 0..6 {
+            let next = surface.hold(uv + full * share);
+            let there = surface.jet(next.x, next.y);
+            let distance = there.p.distance_squared(p);
+            if distance < best {
+                better = Some((next, there, distance));
+                break;
+            }
+            share *= 0.5;
+        }
+        let Some((next, there, distance)) = better else { break };
+        let still = (next - uv).length() <= EPSILON;
+        (uv, jet, best) = (next, there, distance);
+        if still {
+            break;
+        }
+    }
+    (uv, best.sqrt())
+}

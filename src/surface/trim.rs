@@ -1,0 +1,310 @@
+//! Trimmed surfaces: a part of a surface inside an outer loop and outside others [math notes §14.1].
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
+use super::plane;
+use super::pull::{Course, Pull, foot};
+use super::shape::Shape;
+use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::network::Chain;
+
+/// What a trimmed surface knows beside its borders.
+#[derive(Clone, Debug)]
+pub(super) struct Trim {
+    /// Where the surface below is defined.
+    pub ground: Domain,
+    /// Number of borders of each loop, the outer one first.
+    pub loops: Vec<usize>,
+    /// One a border.
+    pub courses: Vec<Course>,
+}
+
+// Where it lies in (u, v) follows from the borders and the surface below.
+crate::content!(Trim { loops } but { ground, courses });
+
+impl Trim {
+    pub fn flipped(&self) -> Self {
+        let mut courses = Vec::with_capacity(self.courses.len());
+        let mut first = 0;
+        let turn = |(u, v): (f64, f64)| if self.ground == Domain::Triangle { (v, u) } else { (u, 1.0 - v) };
+        for n in &self.loops {
+            courses.extend(self.courses[first..first + n].iter().rev().map(|c| c.flipped(&turn)));
+            first += n;
+        }
+        Self { courses, ..self.clone() }
+    }
+}
+
+/// A closed walk over a surface.
+struct Walk {
+    borders: Vec<Border>,
+    courses: Vec<Course>,
+    chains: Vec<Chain>,
+}
+
+impl Walk {
+    fn polygon(&self) -> Vec<DVec2> {
+        self.courses
+            .iter()
+            .flat_map(|c| {
+                let mut places = c.places();
+                places.pop();
+                places
+            })
+            .collect()
+    }
+
+    fn turned(self) -> Self {
+        let borders = self.borders.iter().rev().map(Border::turned).collect();
+        let courses = self
+            .courses
+            .iter()
+            .rev()
+            .map(|c| match c {
+                Course::Line(a, b) => Course::Line(*b, *a),
+                Course::Pull(pull) => Course::Pull(Arc::new(pull.turned())),
+            })
+            .collect();
+        Self { borders, courses, ..self }
+    }
+
+    fn shifted(self, by: DVec2) -> Self {
+        let courses = self.courses.iter().map(|c| c.shifted(by)).collect();
+        Self { courses, ..self }
+    }
+}
+
+/// Twice the signed area of a polygon.
+fn area2(polygon: &[DVec2]) -> f64 {
+    (0..polygon.len()).map(|k| polygon[k].perp_dot(polygon[(k + 1) % polygon.len()])).sum()
+}
+
+/// Whether a place is inside a polygon, by crossings of the ray to the right.
+pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
+    let n = polygon.len();
+    (0..n).fold(false, |inside, k| {
+        let (a, b) = (polygon[k], polygon[(k + 1) % n]);
+        let spans = (a.y > p.y) != (b.y > p.y);
+        if spans && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) { !inside } else { inside }
+    })
+}
+
+/// The part of a surface inside `outer` (the whole of it when empty) and outside `holes`, each given by the curves of a loop
+/// in any order and direction.
+///
+/// Fails with E502 when a loop does not close, E611 when it crosses itself, E612 when a hole is not inside the outer loop,
+/// E613 when a loop leaves the surface.
+pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+    let base = &plane::unmapped(base, tolerance)?;
+    let mut walks = Vec::new();
+    if outer.is_empty() {
+        walks.extend(natural(base, tolerance)?);
+    } else {
+        walks.push(around(base, outer, tolerance)?);
+    }
+    let mut holes = holes.iter().map(|chains| around(base, chains, tolerance)).collect::<Result<Vec<_>>>()?;
+    let bounds = walks.first().map(Walk::polygon).unwrap_or_default();
+    for (k, hole) in holes.iter_mut().enumerate() {
+        let place = std::mem::replace(hole, Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() });
+        let polygon = place.polygon();
+        let within = |by: DVec2| bounds.is_empty() || polygon.iter().all(|p| inside(&bounds, *p + by));
+        let Some(by) = shifts(base).into_iter().find(|by| within(*by)) else {
+            let at = base.point(polygon[0].x, polygon[0].y);
+            return Err(SurfaceFault::LoopOutside { of: origin, hole: k + 1, at }.into());
+        };
+        *hole = place.shifted(by);
+    }
+    walks.extend(holes);
+    let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
+    (parts.borders, parts.chains) = (Vec::new(), Vec::new());
+    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), courses: Vec::new() };
+    for (k, walk) in walks.into_iter().enumerate() {
+        // Outer loops run counter-clockwise in (u, v), the others clockwise.
+        let ascending = area2(&walk.polygon()) > 0.0;
+        let walk = if ascending == (k == 0) { walk } else { walk.turned() };
+        trim.loops.push(walk.borders.len());
+        trim.courses.extend(walk.courses);
+        parts.borders.extend(walk.borders);
+        parts.chains.extend(walk.chains);
+    }
+    parts.trim = Some(Arc::new(trim));
+    Ok(Surface::new(parts))
+}
+
+/// Whole turns by which a loop may be moved in (u, v).
+fn shifts(base: &Surface) -> Vec<DVec2> {
+    let of = |closed: bool| if closed { vec![0.0, 1.0, -1.0] } else { vec![0.0] };
+    let (u, v) = base.closed();
+    of(u).into_iter().flat_map(|x| of(v).into_iter().map(move |y| DVec2::new(x, y))).collect()
+}
+
+/// The loops that a surface has by itself.
+fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>> {
+    let parts = base.parts();
+    if let Some(trim) = &parts.trim {
+        let mut first = 0;
+        let walk = |n: &usize| {
+            let range = first..first + n;
+            first += n;
+            let borders = parts.borders[range.clone()].to_vec();
+            let chains = borders.iter().filter_map(|b| if let Side::Chain { chain, .. } = &b.side { Some(chain.clone()) } else { None });
+            Walk { chains: chains.collect(), courses: trim.courses[range].to_vec(), borders }
+        };
+        return Ok(trim.loops.iter().map(walk).collect());
+    }
+    if parts.domain == Domain::Loop {
+        let steps: Vec<plane::Step> = parts
+            .borders
+            .iter()
+            .filter_map(|b| if let Side::Chain { chain, from, to } = &b.side { Some((chain.clone(), from > to)) } else { None })
+            .collect();
+        return Ok(vec![followed(base, &steps, tolerance)?]);
+    }
+    let corners: &[(f64, f64)] = match parts.domain {
+        Domain::Square => &[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)],
+        Domain::Triangle => &[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)],
+        Domain::Loop | Domain::Unbounded => return Ok(Vec::new()),
+    };
+    let n = corners.len();
+    // Sides run with ascending u or v; the far ones against the loop.
+    let borders = (0..n).map(|k| if k >= 2 { parts.borders[k].turned() } else { parts.borders[k].clone() }).collect();
+    let courses = (0..n).map(|k| Course::Line(corners[k], corners[(k + 1) % n])).collect();
+    Ok(vec![Walk { borders, courses, chains: parts.chains.clone() }])
+}
+
+/// A loop of curves on the surface.
+fn around(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Result<Walk> {
+    let steps = plane::walked(chains, tolerance)?;
+    plane::simple(&steps, tolerance)?;
+    followed(base, &steps, tolerance)
+}
+
+/// The same in (u, v).
+fn followed(base: &Surface, steps: &[plane::Step], tolerance: &Tolerance) -> Result<Walk> {
+    let first = super::closest::closest(base, plane::start(&steps[0]));
+    let mut place = DVec2::new(first.uv.0, first.uv.1);
+    let mut walk = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    for (chain, against) in steps {
+        let (from, to) = if *against { (1.0, 0.0) } else { (0.0, 1.0) };
+        let pull = Pull::follow(base, (chain, from, to), place, tolerance.point).map_err(|off| {
+            let (of, at) = (chain.origin(), off.at);
+            Fault::from(SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point })
+        })?;
+        place = pull.ends().1;
+        walk.chains.push(chain.clone());
+        walk.courses.push(Course::Pull(Arc::new(pull)));
+        walk.borders.push(Border::chain(chain.clone(), *against));
+    }
+    Ok(walk)
+}
+
+impl Surface {
+    /// Where the surface is defined apart from any trimming.
+    pub fn ground(&self) -> Domain {
+        self.parts().trim.as_ref().map_or(self.parts().domain, |trim| trim.ground)
+    }
+
+    /// The whole surface below a trimmed one, without names for its borders; any other as it is.
+    pub(super) fn untrimmed(&self) -> Self {
+        let parts = self.parts();
+        let Some(trim) = &parts.trim else { return self.clone() };
+        let sides = if trim.ground == Domain::Triangle { 3 } else { 4 };
+        let borders = (0..sides).map(|_| Border::straight(Side::Free)).collect();
+        Self::new(Parts { domain: trim.ground, borders, trim: None, ..parts.clone() })
+    }
+
+    /// Whether it is a plane, trimmed or not, whose parameters are straight and even.
+    pub fn is_flat(&self) -> bool {
+        matches!(self.parts().shape, Shape::Plane(_))
+    }
+
+    /// Number of sides of each loop, the outer one first; one loop of all sides for what is not trimmed.
+    pub fn loops(&self) -> Vec<usize> {
+        self.parts().trim.as_ref().map_or_else(|| vec![self.n_sides()], |trim| trim.loops.clone())
+    }
+
+    /// The straight line in (u, v) that a border of a trimmed surface is, in the loop's direction; `None` for one that is a
+    /// curve there.
+    pub fn border_line(&self, k: usize) -> Option<((f64, f64), (f64, f64))> {
+        match self.parts().trim.as_ref()?.courses.get(k)? {
+            Course::Line(a, b) => Some((*a, *b)),
+            Course::Pull(_) => None,
+        }
+    }
+
+    /// (u, v) of the point of a border's chain at a fraction of the chain; borders of trimmed surfaces and of planes.
+    ///
+    /// Beyond 0…1 where the surface closes and the border crosses its seam.
+    pub fn border_place(&self, k: usize, fraction: f64) -> Option<(f64, f64)> {
+        let Side::Chain { chain, .. } = self.side(k) else { return None };
+        let p = chain.point(fraction);
+        let course = self.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
+        match course {
+            _ if self.is_flat() => self.flat_uv(p),
+            Some(Course::Line(a, b)) => {
+                let t = self.side_parameter(k, fraction);
+                Some((a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t))
+            }
+            Some(Course::Pull(pull)) => {
+                let uv = foot(self, p, pull.guess(fraction)).0;
+                Some((uv.x, uv.y))
+            }
+            None => None,
+        }
+    }
+
+    /// The loops as polygons in (u, v) whose corners lie on the borders.
+    pub fn outlines(&self) -> Vec<Vec<DVec2>> {
+        let Some(trim) = &self.parts().trim else { return Vec::new() };
+        let mut first = 0;
+        let polygon = |n: &usize| {
+            let range = first..first + n;
+            first += n;
+            range
+                .flat_map(|k| {
+                    let mut places = trim.courses[k].places();
+                    places.pop();
+                    places
+                })
+                .collect()
+        };
+        trim.loops.iter().map(polygon).collect()
+    }
+
+    /// Whether a place lies in the kept part, by the polygons of [`Surface::outlines`].
+    pub fn keeps(&self, u: f64, v: f64) -> bool {
+        let outlines = self.outlines();
+        shifts(self).into_iter().any(|by| {
+            let p = DVec2::new(u, v) + by;
+            outlines.iter().fold(false, |kept, polygon| kept != inside(polygon, p))
+        })
+    }
+
+    /// The nearest place at which the surface is defined; directions in which it closes go on without end.
+    pub(super) fn hold(&self, uv: DVec2) -> DVec2 {
+        let (closed_u, closed_v) = self.closed();
+        let hold = |x: f64, closed: bool| if closed { x } else { x.clamp(0.0, 1.0) };
+        match self.ground() {
+            Domain::Square => DVec2::new(hold(uv.x, closed_u), hold(uv.y, closed_v)),
+            Domain::Triangle => {
+                let (u, v) = (uv.x.clamp(0.0, 1.0), uv.y.clamp(0.0, 1.0));
+                let over = 0.5 * (u + v - 1.0).max(0.0);
+                DVec2::new((u - over).max(0.0), (v - over).max(0.0))
+            }
+            Domain::Loop | Domain::Unbounded => uv,
+        }
+    }
+
+    /// Points of a border: the start of each of a loop's sides.
+    pub fn border_start(&self, k: usize) -> Option<DVec3> {
+        match self.side(k) {
+            Side::Chain { chain, from, .. } => Some(chain.point(from)),
+            _ => self.border_line(k).map(|(a, _)| self.point(a.0, a.1)),
+        }
+    }
+}

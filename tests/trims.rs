@@ -1,0 +1,163 @@
+//! Random trimmed faces: a valid mesh or a reason, never a panic and never half a face.
+//!
+//! `PROPTEST_CASES` makes the runs longer.
+
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use glam::{DVec2, DVec3};
+use lofting::base::job::Job;
+use lofting::base::math::{cos, sin, sin_cos};
+use lofting::base::triangulate_points::NO_TRIANGLE;
+use lofting::mesh::free::build::{Task, triangulate};
+use lofting::mesh::free::ground::{Even, Field, Ground, Spot};
+use lofting::mesh::free::improve::Care;
+use lofting::mesh::free::outline::Outline;
+use lofting::mesh::free::web::Web;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
+
+/// z = h sin x cos y.
+struct Waves(f64);
+
+impl Ground for Waves {
+    fn spot(&self, xy: DVec2) -> Spot {
+        let ((sx, cx), (sy, cy)) = (sin_cos(xy.x), sin_cos(xy.y));
+        let h = self.0;
+        Spot { p: xy.extend(h * sx * cy), dx: DVec3::new(1.0, 0.0, h * cx * cy), dy: DVec3::new(0.0, 1.0, -h * sx * sy) }
+    }
+
+    fn clamp(&self, xy: DVec2) -> DVec2 {
+        xy
+    }
+}
+
+/// Small at the origin.
+struct Graded(f64);
+
+impl Field for Graded {
+    fn size(&self, xy: DVec2, _: DVec3) -> f64 {
+        self.0 * (0.3 + 0.2 * xy.length()).min(1.0)
+    }
+}
+
+const CARE: Care = Care { smooth: 20, wanted: 0.9, longest: 1.25 };
+
+fn add_loop(outline: &mut Outline, ground: &dyn Ground, corners: &[DVec2], size: f64) {
+    let first = outline.xy.len() as u32;
+    for k in 0..corners.len() {
+        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+        let n = (a.distance(b) / size).ceil().max(1.0) as usize;
+        for i in 0..n {
+            let xy = a.lerp(b, i as f64 / n as f64);
+            outline.xy.push(xy);
+            outline.p.push(ground.spot(xy).p);
+        }
+    }
+    let last = outline.xy.len() as u32;
+    outline.loops.extend((first..last).map(|i| [i, if i + 1 < last { i + 1 } else { first }]));
+}
+
+/// A star-shaped polygon: radii at even angles.
+fn star(center: DVec2, radii: &[f64], turn: f64) -> Vec<DVec2> {
+    let angle = |k: usize| turn + std::f64::consts::TAU * k as f64 / radii.len() as f64;
+    radii.iter().enumerate().map(|(k, r)| center + DVec2::new(cos(angle(k)), sin(angle(k))) * *r).collect()
+}
+
+/// Everything that must hold of a finished face with so many holes that lie apart.
+fn sound(web: &Web, outline: &Outline, holes: Option<usize>) -> TestCaseResult {
+    web.check().map_err(TestCaseError::fail)?;
+    prop_assert!(!web.tri.is_empty());
+    let open = web.across.iter().flatten().filter(|t| **t == NO_TRIANGLE).count();
+    prop_assert_eq!(open, outline.loops.len(), "free edges are those of the loops");
+    let mut used = vec![false; web.p.len()];
+    web.tri.iter().flatten().for_each(|n| used[*n as usize] = true);
+    prop_assert!(used.iter().all(|u| *u), "a node without triangles");
+    let edges = (3 * web.tri.len() + open) / 2;
+    let euler = web.p.len() as i64 - edges as i64 + web.tri.len() as i64;
+    if let Some(holes) = holes {
+        prop_assert_eq!(euler, 1 - holes as i64);
+    }
+    for (k, p) in outline.p.iter().enumerate() {
+        prop_assert_eq!(web.p[k], *p, "border nodes stay");
+    }
+    Ok(())
+}
+
+fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> TestCaseResult) {
+    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(cases);
+    let config = Config { cases, max_shrink_iters: 200, failure_persistence: None, ..Config::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]));
+    runner.run(strategy, test).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// Spiked outlines with a spiked hole in the middle that comes as near as it likes, on waves, with one size or graded.
+#[test]
+fn spiked_loops_make_sound_faces_or_say_why() {
+    let radii = proptest::collection::vec(0.05_f64..1.0, 3..24);
+    let hole = proptest::collection::vec(0.002_f64..1.0, 3..16);
+    let shape = (radii, hole, 0.0_f64..6.0, 0.05_f64..0.9, 0.0_f64..0.6, any::<bool>());
+    check(60, &shape, |(radii, hole, turn, size, height, graded)| {
+        let ground = Waves(height);
+        let outer: Vec<f64> = radii.iter().map(|r| 4.0 * r).collect();
+        let least = outer.iter().copied().fold(f64::INFINITY, f64::min);
+        // The hole may touch or cross: then there is a reason.
+        let inner: Vec<f64> = hole.iter().map(|r| least * r).collect();
+        let mut outline = Outline::default();
+        add_loop(&mut outline, &ground, &star(DVec2::ZERO, &outer, 0.0), size);
+        add_loop(&mut outline, &ground, &star(DVec2::ZERO, &inner, turn), size);
+        let (even, by_place) = (Even(size), Graded(size));
+        let field: &dyn Field = if graded { &by_place } else { &even };
+        let task = Task { ground: &ground, field, outline: &outline, care: CARE, most: 100_000, broken: None };
+        match triangulate(&task, &Job::new()).unwrap() {
+            Ok(web) => sound(&web, &outline, None),
+            Err(_) => Ok(()),
+        }
+    });
+}
+
+/// A square with small holes apart, down to holes inside one cell: always a face, with the right Euler number and fair angles.
+#[test]
+fn holes_of_any_size_are_kept() {
+    let hole = (0.0_f64..1.0, 0.0_f64..1.0, 0.01_f64..0.3, 3_usize..12);
+    let shape = (proptest::collection::vec(hole, 0..5), 0.1_f64..0.8);
+    check(60, &shape, |(holes, size)| {
+        let ground = Waves(0.0);
+        let mut outline = Outline::default();
+        add_loop(&mut outline, &ground, &[DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(4.0, 4.0), DVec2::new(0.0, 4.0)], size);
+        for (k, (x, y, r, n)) in holes.iter().enumerate() {
+            // One hole a quarter (the fifth in the middle), off its border.
+            let cell = if k < 4 { DVec2::new((k % 2) as f64, (k / 2) as f64) * 2.0 + 0.4 } else { DVec2::splat(1.8) };
+            let room = if k < 4 { 1.2 } else { 0.4 };
+            let r = r.min(room / 2.5);
+            let center = cell + DVec2::new(r + x * (room - 2.0 * r), r + y * (room - 2.0 * r));
+            add_loop(&mut outline, &ground, &star(center, &vec![r; *n], 0.3), size);
+        }
+        let task = Task { ground: &ground, field: &Even(size), outline: &outline, care: CARE, most: 100_000, broken: None };
+        let web = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?;
+        sound(&web, &outline, Some(holes.len()))
+    });
+}
+
+/// The plate of a published benchmark: twenty holes, one size.
+#[test]
+fn a_plate_with_holes_is_better_than_frontal_meshers() {
+    let ground = Waves(0.0);
+    let mut outline = Outline::default();
+    let size = 2.0;
+    let corners = [DVec2::ZERO, DVec2::new(200.0, 0.0), DVec2::new(200.0, 100.0), DVec2::new(0.0, 100.0)];
+    add_loop(&mut outline, &ground, &corners, size);
+    for j in 0..4 {
+        for i in 0..5 {
+            let (x, y, r) = (20.0 + 40.0 * f64::from(i), 12.5 + 25.0 * f64::from(j), 4.0 + 0.5 * f64::from((i + 2 * j) % 5));
+            let n = (std::f64::consts::TAU * r / size).ceil() as usize;
+            add_loop(&mut outline, &ground, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
+        }
+    }
+    let care = Care { smooth: 30, wanted: 0.92, longest: 1.4 };
+    let task = Task { ground: &ground, field: &Even(size), outline: &outline, care, most: 100_000, broken: None };
+    let web = triangulate(&task, &Job::new()).unwrap().unwrap();
+    sound(&web, &outline, Some(20)).unwrap();
+    let all: Vec<f64> = (0..web.tri.len() as u32).map(|t| web.quality(t)).collect();
+    let (mean, worst) = (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(1.0, f64::min));
+    assert!(mean > 0.985 && worst > 0.85, "mean {mean}, worst {worst}");
+}
