@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::core::Surface;
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{EPSILON, SINGULAR};
 use crate::network::Chain;
 
 /// Steps between two breaks of a curve at the least.
@@ -74,7 +74,19 @@ pub(super) struct Off {
 impl Pull {
     /// Follows a chain between two fractions from a place near its first point; fails where it is farther from the surface
     /// than `near`.
+    ///
+    /// From a pole, where u (or v) says nothing, the way is found from the other end.
     pub fn follow(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+        if is_pole(surface, start) {
+            let end = super::closest::closest(surface, chain.point(to)).uv.into();
+            if !is_pole(surface, end) {
+                return Self::along(surface, (chain, to, from), end, near).map(|pull| pull.turned());
+            }
+        }
+        Self::along(surface, (chain, from, to), start, near)
+    }
+
+    fn along(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
         let stops = super::breaks::chain_breaks(chain);
         let (low, high) = (from.min(to), from.max(to));
         let mut cuts: Vec<f64> = stops.into_iter().filter(|f| *f > low && *f < high).collect();
@@ -115,6 +127,14 @@ impl Pull {
         let ((a, p), (b, q)) = (self.at[k - 1], self.at[k]);
         p.lerp(q, ((f - a) / (b - a)).clamp(0.0, 1.0))
     }
+}
+
+/// Whether the surface stands still at a place in one direction.
+fn is_pole(surface: &Surface, uv: DVec2) -> bool {
+    let uv = surface.hold(uv);
+    let jet = surface.jet(uv.x, uv.y);
+    let (du, dv) = (jet.du.length(), jet.dv.length());
+    du.min(dv) <= SINGULAR * du.max(dv)
 }
 
 /// Goes on to a fraction, in smaller steps where the way bends or the foot leaps.
