@@ -43,6 +43,20 @@ impl Surface {
     }
 }
 
+impl Surface {
+    /// The surface below a trimmed one as a rational B-spline in the same (u, v), within `tolerance.point`; `None` for a plane.
+    ///
+    /// Over a triangle (u, v) is the net's (u / (1 − v), v). Fails like [`Surface::to_net`].
+    pub fn ground_net(&self, tolerance: &Tolerance) -> Result<Option<NurbsSurface>> {
+        let whole = self.untrimmed();
+        match &whole.parts().shape {
+            Shape::Plane(_) => Ok(None),
+            Shape::Nurbs(net) => Ok(Some(if whole.parts().flipped { flipped(net.clone()) } else { net.clone() })),
+            _ => Fit::new(&whole, tolerance).run().map(Some),
+        }
+    }
+}
+
 fn swept(profile: &Chain, path: Path, tolerance: &Tolerance) -> Result<NurbsSurface> {
     let profile = profile.to_curve()?.to_nurbs(tolerance)?;
     Ok(match path {

@@ -239,6 +239,11 @@ fn borders_are_read_in_every_form() {
         assert!(border.iter().all(|b| (b.space.start().z - z).abs() < 1e-12), "face {k}");
         assert_eq!(border[0].uv.is_some(), k < 2, "face {k}");
     }
+    let plate = 16.0 - PI;
+    for (k, known) in [plate, plate, plate, plate, PI, PI, PI, 16.0].into_iter().enumerate() {
+        let found = lofting::model::measure::area(part.built[k].as_ref().unwrap());
+        assert!((found / known - 1.0).abs() < 1e-6, "face {k}: {found} {known}");
+    }
     let uv = part.surfaces[0].value.holes[0][0].uv.as_ref().unwrap();
     assert!(uv.start().distance(DVec3::new(0.75, 0.5, 0.0)) < 1e-15);
 }

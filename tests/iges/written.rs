@@ -8,6 +8,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::{Curve, Ends, Spline, build, closest};
 use lofting::io::iges::Part;
 use lofting::io::iges::write::{Scale, Shown, Thing, sheet, write};
+use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::{self, Surface, nurbs, plane};
 
@@ -199,4 +200,34 @@ check area(part.surfaces[3]) == area(model.sail) within 0.0001%
     let run = std::process::Command::new(env!("CARGO_BIN_EXE_loft")).args(["run", "mesh.loft"]).current_dir(&folder).output().unwrap();
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
     assert!(!run.status.success() && said.contains("IGES holds points, curves, surfaces and shells, not a mesh"), "{said}");
+}
+
+/// Faces of other programs, written and read again: the same areas, and (u, v) that agree with the curves in space.
+#[test]
+fn trimmed_surfaces_come_back_with_their_borders() {
+    for name in ["45-trimmed/example_45_faces.iges", "fuselage-solidworks/fuse.igs", "rounded-cube/single_rounded_cube.iges"] {
+        let bytes = std::fs::read(super::folder(&format!("iges-{name}"))).unwrap();
+        let part = read(&bytes, &OPTIONS).unwrap();
+        let built: Vec<&Surface> = part.built.iter().flatten().collect();
+        let things: Vec<Thing> = built.iter().map(|s| thing("", "", Shown::Surface((*s).clone()))).collect();
+        let again = read(text(&things, "mm", 1.0).as_bytes(), &OPTIONS).unwrap();
+        assert_eq!(again.built.iter().flatten().count(), built.len(), "{name}: {:?}", again.warnings);
+        for (a, b) in again.built.iter().flatten().zip(&built) {
+            let (a, b) = (measure::area(a), measure::area(b));
+            assert!((a / b - 1.0).abs() < 1e-6, "{name}: {a} {b}");
+        }
+        let borders = again.surfaces.iter().flat_map(|s| s.value.outer.iter().chain(&s.value.holes).flatten());
+        assert!(borders.into_iter().all(|b| b.uv.is_some()), "{name}");
+    }
+}
+
+#[test]
+fn a_plane_with_holes_keeps_them() {
+    let ring = |radius: f64, x: f64| chain(&build::circle(DVec3::new(x, 0.0, 1.0), radius, DVec3::Z, NONE).unwrap());
+    let ground = plane::unbounded(DVec3::Z, DVec3::Z, NONE).unwrap();
+    let plate = surface::trim(&ground, &[ring(4.0, 0.0)], &[vec![ring(1.0, 2.0)], vec![ring(1.0, -2.0)]], NONE, &tolerance()).unwrap();
+    let part = back(&[thing("plate", "", Shown::Surface(plate))], "mm", 1.0);
+    assert_eq!(part.surfaces[0].value.holes.len(), 2);
+    let found = measure::area(part.built[0].as_ref().unwrap());
+    assert!((found / (14.0 * PI) - 1.0).abs() < 1e-9, "{found}");
 }

@@ -1,13 +1,13 @@
 //! Faces as surface values.
 
-use super::damage::{Damage, damage};
+use super::damage::Damage;
 use super::faces::{Border, Face};
 use super::part::Part;
 use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
-use crate::surface::{Surface, plane};
+use crate::surface::{Surface, trim};
 
 impl Part {
     /// Makes [`Part::built`] of the faces; says which could not be made.
@@ -33,8 +33,11 @@ impl Face {
         let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.gap), ..*tolerance };
         let surface = match (&self.outer, self.holes.as_slice()) {
             (None, []) => self.base.clone(),
-            (Some(outer), []) if self.flat => plane::bounded(&chains(outer), origin, &tolerance)?.0,
-            (outer, holes) => trimmed(&self.base, outer.as_deref(), holes)?,
+            (outer, holes) => {
+                let outer = outer.as_deref().map(chains).unwrap_or_default();
+                let holes: Vec<Vec<Chain>> = holes.iter().map(|hole| chains(hole)).collect();
+                trim(&self.base, &outer, &holes, origin, &tolerance)?
+            }
         };
         Ok(if self.flipped { surface.flipped() } else { surface })
     }
@@ -42,9 +45,4 @@ impl Face {
 
 fn chains(borders: &[Border]) -> Vec<Chain> {
     borders.iter().map(|b| Chain::of_curve(&b.space)).collect()
-}
-
-/// The part of a surface inside the outer loop (`None`: its own border) and outside the holes.
-fn trimmed(_: &Surface, _: Option<&[Border]>, _: &[Vec<Border>]) -> Result<Surface, Damage> {
-    Err(damage("surfaces trimmed inside their border are not in this version"))
 }

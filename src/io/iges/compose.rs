@@ -27,7 +27,14 @@ pub fn composed(base: &Base, uv: &Curve, tolerance: &Tolerance, origin: Origin) 
     }
     let curve = match along_line(base, uv) {
         Some(exact) => exact,
-        None => fitted(base, uv, tolerance)?,
+        None => {
+            let lost = || damage("its curves in (u, v) cannot be read in the parameters of this surface");
+            let at = |t: f64| {
+                let p = uv.point(t);
+                base.point(p.x, p.y).ok_or_else(lost)
+            };
+            fitted(&uv.knots(), tolerance, &at, &|p| p)?
+        }
     };
     let size = Box3::of((0..curve.poles.len()).map(|k| curve.pole(k))).diagonal();
     Ok((size > tolerance.point).then(|| Curve::new(Shape::Nurbs(Arc::new(curve)), Kind::Nurbs, origin)))
@@ -51,14 +58,16 @@ fn along_line(base: &Base, uv: &Curve) -> Option<Nurbs> {
     Some(if from < to { part } else { part.reversed() })
 }
 
-/// Cubic splines through points on the surface, each smooth piece with more of them until it is near between them too.
-fn fitted(base: &Base, uv: &Curve, tolerance: &Tolerance) -> Result<Nurbs, Damage> {
-    let at = |t: f64| {
-        let p = uv.point(t);
-        base.point(p.x, p.y).ok_or_else(|| damage("its curves in (u, v) cannot be read in the parameters of this surface"))
-    };
+/// Cubic splines through places of a curve between its knots, each smooth piece with more of them until the points that
+/// `shown` makes of it are near between them too.
+pub fn fitted(
+    knots: &[f64],
+    tolerance: &Tolerance,
+    at: &dyn Fn(f64) -> Result<DVec3, Damage>,
+    shown: &dyn Fn(DVec3) -> DVec3,
+) -> Result<Nurbs, Damage> {
     let mut pieces = Vec::new();
-    for span in uv.knots().windows(2) {
+    for span in knots.windows(2) {
         let (from, width) = (span[0], span[1] - span[0]);
         let mut steps = STEPS.0;
         let piece = loop {
@@ -70,7 +79,7 @@ fn fitted(base: &Base, uv: &Curve, tolerance: &Tolerance) -> Result<Nurbs, Damag
             let mut far = 0.0_f64;
             for k in 0..steps {
                 let t = k as f64 + 0.5;
-                far = far.max(fit.jet(width * (t / steps as f64)).p.distance(at(place(t))?));
+                far = far.max(shown(fit.jet(width * (t / steps as f64)).p).distance(shown(at(place(t))?)));
             }
             // Between the samples a fourth-order error is largest in the middle.
             if far <= 0.5 * tolerance.point.max(tolerance.rounding) || steps >= STEPS.1 {

@@ -205,6 +205,10 @@ impl Book {
                     cut.push(piece);
                 }
             }
+            // At the pole the loop begins: its (u, v) jump there and nowhere else.
+            if let Some(first) = cut.iter().position(|b| b.space.start().distance(pole) <= room) {
+                cut.rotate_left(first);
+            }
             *border = cut;
         }
     }

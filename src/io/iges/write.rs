@@ -8,22 +8,26 @@
 //! | any other curve | 126 |
 //! | curves in a row | 102 |
 //! | surface | 128 |
-//! | plane inside a loop | 144, 142 over a 128 |
+//! | surface inside loops | 144, 142 over a 128 |
 //! | shell or group | 402 form 7 |
 //! | name, colour | 406 form 15, 314 |
 
 use std::io::{self, Write};
+use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{BVec3, DAffine3, DMat3, DVec3};
 
+use super::compose::{composed, fitted};
 use super::curves::carried;
 use super::damage::{Damage, damage};
 use super::sheet::{Role, Sheet, Values, counted, real};
-use crate::base::tolerance::{EPSILON, PARALLEL, Tolerance};
+use super::surfaces::Base;
+use crate::base::bbox::Box3;
+use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL, Tolerance};
 use crate::geometry::arc::EllipticArc;
 use crate::geometry::curve::Shape;
 use crate::geometry::nurbs::projected;
-use crate::geometry::{Curve, Nurbs};
+use crate::geometry::{Curve, Kind, Nurbs, build};
 use crate::io::deck::Loss;
 use crate::network::Chain;
 use crate::surface::{Domain, NurbsSurface, Side, Surface};
@@ -183,47 +187,112 @@ impl Maker<'_> {
         let closed = (0..2).map(|across| i64::from(is_closed(net, across == 1, &self.scale.tolerance))).collect::<Vec<_>>();
         let polynomial = net.poles.iter().all(|q| q.w == net.poles[0].w);
         let last = |n: usize| n as i64 - 1;
+        let ends = |knots: &[f64]| [knots[0], knots[knots.len() - 1]];
+        let range = [ends(&net.knots.0), ends(&net.knots.1)].concat();
         let values = Values::new().int(last(net.counts.0)).int(last(net.counts.1)).int(net.degree.0 as i64).int(net.degree.1 as i64);
         let values = values.int(closed[0]).int(closed[1]).int(i64::from(polynomial)).int(0).int(0);
         let values = values.reals(net.knots.0.iter().copied()).reals(net.knots.1.iter().copied());
         let values = values.reals(net.poles.iter().map(|q| q.w));
         let values = net.poles.iter().fold(values, |values, q| values.point(projected(*q) / self.scale.model));
-        self.sheet.add(128, 0, role, values.reals([0.0, 1.0, 0.0, 1.0]))
+        self.sheet.add(128, 0, role, values.reals(range))
     }
 
-    /// A plane inside a loop: the net of its frame, and the loop in (u, v) and in space.
+    /// A surface inside loops: its net, and each loop in (u, v) and in space.
     fn bordered(&mut self, surface: &Surface) -> Result<u32, Damage> {
-        let jet = surface.jet(0.0, 0.0);
-        if surface.flat_uv(jet.p).is_none() {
-            return Err(damage("surfaces trimmed inside their border are not written in this version"));
-        }
-        let corner = |u: f64, v: f64| (jet.p + jet.du * u + jet.dv * v).extend(1.0);
-        let flat = || vec![0.0, 0.0, 1.0, 1.0];
-        let poles = vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0)];
-        let net = NurbsSurface { degree: (1, 1), knots: (flat(), flat()), poles, counts: (2, 2) };
-        let base = self.net(&net, Role::Part);
-        let to_space = DAffine3::from_mat3_translation(DMat3::from_cols(jet.du, jet.dv, jet.du.cross(jet.dv)), jet.p);
-        let to_uv = to_space.inverse();
-        let (mut uvs, mut spaces, mut last) = (Vec::new(), Vec::new(), None::<DVec3>);
-        for k in 0..surface.n_sides() {
-            let Side::Chain { chain, from, to } = surface.side(k) else {
-                return Err(damage("a side of its border carries no curve"));
-            };
-            let part = chain.slice(from.min(to), from.max(to), &self.scale.tolerance)?.to_curve()?;
-            let part = if from > to { part.reversed() } else { part };
-            if last.is_some_and(|end| !self.scale.tolerance.same_point(end, part.start())) {
-                return Err(damage("planes with holes are not written in this version"));
+        let base = match surface.ground_net(&self.scale.tolerance)? {
+            Some(net) => self.net(&net, Role::Part),
+            None => self.plane(surface)?,
+        };
+        let (mut first, mut borders) = (0, Vec::new());
+        for n in surface.loops() {
+            let (mut in_uv, mut spaces) = (Vec::new(), Vec::new());
+            for k in first..first + n {
+                let (uv, in_space) = self.border(surface, k)?;
+                in_uv.push(uv);
+                spaces.extend(in_space.map(|c| self.curve(&c, Role::Part, true)).transpose()?);
             }
-            last = Some(part.end());
-            spaces.push(self.curve(&part, Role::Part, true)?);
-            let in_uv = carried(&part, &to_uv, &self.scale.tolerance)?;
-            uvs.push(self.curve(&in_uv, Role::InUv, false)?);
+            first += n;
+            let in_uv = if surface.is_flat() { in_uv } else { self.within_net(in_uv)? };
+            let uvs = in_uv.iter().map(|c| self.curve(c, Role::InUv, false)).collect::<Result<Vec<u32>, Damage>>()?;
+            let mut row = |list: Vec<u32>, role| match list.len() as u32 {
+                0 => 0,
+                n => self.sheet.add(102, 0, role, Values::new().int(n).ints(list)),
+            };
+            let (uv, space) = (row(uvs, Role::InUv), row(spaces, Role::Part));
+            let preferred = if uv == 0 { 2 } else { 3 };
+            borders.push(self.sheet.add(142, 0, Role::InUv, Values::new().int(1).ints([base, uv, space]).int(preferred)));
         }
-        let row = |list: Vec<u32>| Values::new().int(list.len() as u32).ints(list);
-        let uv = self.sheet.add(102, 0, Role::InUv, row(uvs));
-        let space = self.sheet.add(102, 0, Role::Part, row(spaces));
-        let border = self.sheet.add(142, 0, Role::InUv, Values::new().int(1).ints([base, uv, space]).int(3));
-        Ok(self.sheet.add(144, 0, Role::Free, Values::new().int(base).int(1).int(0).int(border)))
+        let [outer, holes @ ..] = borders.as_slice() else { return Err(damage("it has no border")) };
+        let values = Values::new().int(base).int(1).int(holes.len() as u32).int(*outer).ints(holes.iter().copied());
+        Ok(self.sheet.add(144, 0, Role::Free, values))
+    }
+
+    /// A loop moved by whole turns to where the net has its parameters; none of it where it runs over a seam.
+    fn within_net(&self, mut loop_of: Vec<Curve>) -> Result<Vec<Curve>, Damage> {
+        let bounds = loop_of.iter().map(Curve::bbox).fold(Box3::EMPTY, Box3::union);
+        let by = -(bounds.min + DVec3::splat(NUDGE)).floor();
+        let moved = bounds.max + by;
+        if moved.x > 1.0 + NUDGE || moved.y > 1.0 + NUDGE {
+            return Ok(Vec::new());
+        }
+        if by.x != 0.0 || by.y != 0.0 {
+            let m = DAffine3::from_translation(DVec3::new(by.x, by.y, 0.0));
+            loop_of = loop_of.iter().map(|c| carried(c, &m, &self.scale.tolerance)).collect::<Result<_, Damage>>()?;
+        }
+        Ok(loop_of)
+    }
+
+    /// The net of a plane over the box of its border.
+    fn plane(&mut self, surface: &Surface) -> Result<u32, Damage> {
+        let jet = surface.jet(0.0, 0.0);
+        let mut reach = Box3::EMPTY;
+        for k in 0..surface.n_sides() {
+            let Side::Chain { chain, .. } = surface.side(k) else { continue };
+            let bounds = chain.bbox();
+            let corners = (0..8).map(|c| DVec3::select(BVec3::new(c & 1 > 0, c & 2 > 0, c & 4 > 0), bounds.min, bounds.max));
+            reach = corners.filter_map(|p| surface.flat_uv(p)).fold(reach, |reach, (u, v)| reach.with(DVec3::new(u, v, 0.0)));
+        }
+        let at = |u: f64, v: f64| (jet.p + jet.du * u + jet.dv * v).extend(1.0);
+        let (low, high) = (reach.min, reach.max);
+        let poles = vec![at(low.x, low.y), at(high.x, low.y), at(low.x, high.y), at(high.x, high.y)];
+        let knots = (vec![low.x, low.x, high.x, high.x], vec![low.y, low.y, high.y, high.y]);
+        Ok(self.net(&NurbsSurface { degree: (1, 1), knots, poles, counts: (2, 2) }, Role::Part))
+    }
+
+    /// One side in the (u, v) of the net and in space, in the loop's direction; no curve in space along a pole.
+    fn border(&self, surface: &Surface, k: usize) -> Result<(Curve, Option<Curve>), Damage> {
+        let tolerance = &self.scale.tolerance;
+        let origin = surface.origin();
+        let over_net = |(u, v): (f64, f64)| match surface.ground() {
+            Domain::Triangle => DVec3::new(if v < 1.0 { u / (1.0 - v) } else { 0.0 }, v, 0.0),
+            _ => DVec3::new(u, v, 0.0),
+        };
+        let lost = || damage("a side of its border has no course in (u, v)");
+        let Side::Chain { chain, from, to } = surface.side(k) else {
+            let (a, b) = surface.border_line(k).ok_or_else(lost)?;
+            let line = build::line(over_net(a), over_net(b), origin)?;
+            let (net, square) = (surface.ground_net(tolerance)?, [0.0, 1.0, 0.0, 1.0]);
+            let space = net.map(|net| composed(&Base::Net(net, square), &line, tolerance, origin)).transpose()?.flatten();
+            return Ok((line, space));
+        };
+        let part = chain.slice(from.min(to), from.max(to), tolerance)?.to_curve()?;
+        let part = if from > to { part.reversed() } else { part };
+        if surface.is_flat() {
+            let jet = surface.jet(0.0, 0.0);
+            let frame = DAffine3::from_mat3_translation(DMat3::from_cols(jet.du, jet.dv, jet.du.cross(jet.dv)), jet.p);
+            return Ok((carried(&part, &frame.inverse(), tolerance)?, Some(part)));
+        }
+        let length = part.length();
+        let place = |t: f64| {
+            let share = part.length_at(t) / length;
+            surface.border_place(k, from + (to - from) * share).map(over_net).ok_or_else(lost)
+        };
+        let at = |p: DVec3| match surface.ground() {
+            Domain::Triangle => surface.point(p.x * (1.0 - p.y), p.y),
+            _ => surface.point(p.x, p.y),
+        };
+        let in_uv = fitted(&part.knots(), tolerance, &place, &at)?;
+        Ok((Curve::new(Shape::Nurbs(Arc::new(in_uv)), Kind::Spline, origin), Some(part)))
     }
 }
 
