@@ -121,7 +121,7 @@ pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
     Some(to)
 }
 
-/// The mesh that [`write`] made of these surfaces; `None` when the bytes are something else.
+/// The mesh that [`write()`] made of these surfaces; `None` when the bytes are something else.
 pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     type Parts = (Vec<[u32; 2]>, (Vec<[u32; 3]>, Vec<[u32; 4]>));
     type Mids = (Vec<u32>, (Vec<[u32; 3]>, Vec<[u32; 4]>));
