@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::cx::{Cx, Stop};
 use super::value::{ModuleId, ShellValue};
 use crate::base::fault::{Fault, Say};
+use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
 use crate::model::topology::Named;
 use crate::model::{Edge, EdgeCurve, Model, Shell, ShellRequest, SurfaceId};
 use crate::network::{Chain, Network};
-use crate::surface::Surface;
+use crate::surface::{Side, Surface};
 
 /// A surface model with the network it stands on.
 #[derive(Clone, Debug)]
@@ -98,11 +101,34 @@ impl Scene {
 }
 
 /// Whether two surfaces are one: `Some(false)`, or `Some(true)` when `other` is the other side of it.
+///
+/// One expression may make many (a comprehension, the faces of a file), so their points are compared as well.
 fn side_of(surface: &Surface, other: &Surface) -> Option<bool> {
     if surface.origin() != other.origin() {
         return None;
     }
+    if surface.is(other) {
+        return Some(false);
+    }
+    if surface.n_sides() != other.n_sides() || corners(surface) != corners(other) {
+        return None;
+    }
     // Away from every line of symmetry, so that the turned surface shows another point there.
     const PROBE: (f64, f64) = (0.31, 0.23);
-    Some(surface.point(PROBE.0, PROBE.1) != other.point(PROBE.0, PROBE.1))
+    let there = other.point(PROBE.0, PROBE.1);
+    if surface.point(PROBE.0, PROBE.1) == there {
+        return Some(false);
+    }
+    (surface.flipped().point(PROBE.0, PROBE.1) == there).then_some(true)
+}
+
+/// Where the borders of a surface begin and end, in an order of their own.
+fn corners(surface: &Surface) -> Vec<DVec3> {
+    let ends = (0..surface.n_sides()).filter_map(|k| match surface.side(k) {
+        Side::Chain { chain, from, to } => Some([chain.point(from), chain.point(to)]),
+        _ => None,
+    });
+    let mut all: Vec<DVec3> = ends.flatten().collect();
+    all.sort_by(|a, b| compare_points(*a, *b));
+    all
 }
