@@ -12,7 +12,7 @@ use super::foot;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::surface::Surface;
+use crate::surface::{Domain, Surface};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
@@ -235,5 +235,12 @@ fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> 
     farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
     let least = farthest.first().map_or(0.0, |s| s.seems * WORTH);
     let worth = farthest.iter().enumerate().take_while(|(k, s)| *k < FOLLOWED && s.seems >= least);
-    worth.fold(0.0, |best, (_, s)| f64::max(best, foot::nearest(surface, s.p, s.uv, (0.0, 1.0), (0.0, 1.0)).0))
+    // A trimmed face may run over the seam of the surface below.
+    let whole = |closed: bool| {
+        let over = closed && surface.domain() == Domain::Loop;
+        if over { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) }
+    };
+    let (u, v) = surface.closed();
+    let (u, v) = (whole(u), whole(v));
+    worth.fold(0.0, |best, (_, s)| f64::max(best, foot::nearest(surface, s.p, s.uv, u, v).0))
 }

@@ -97,9 +97,9 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
     let size = face.size.0 * SPACING;
     let mut care = Care { smooth: SMOOTH, wanted: WANTED, longest: LONGEST / SPACING };
     let most = MESH_ELEMENTS as usize / 2;
-    let longest = LONGEST * face.size.0 * (1.0 + WHOLE_NUMBER);
+    let longest = Longest::new(face.size.0, outline);
     if surface.is_flat() || limits.chord.is_none() && limits.angle.is_none() {
-        let broken = |web: &Web| (0..web.tri.len() as u32).filter(|t| long(web, *t, longest)).collect::<Vec<u32>>();
+        let broken = |web: &Web| (0..web.tri.len() as u32).filter(|t| longest.broken(web, *t)).collect::<Vec<u32>>();
         let mut spacing = size;
         for _ in 0..ROUNDS {
             let field = Even(spacing);
@@ -110,7 +110,7 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
             }
         }
         let (says, at) = (made.input.plan.size.map_or(made.input.plan.origin, |s| s.1), outline.p[0]);
-        return Err(MeshFault::NotReached { limit: "size", says, surface: surface.origin(), reached: longest, at }.into());
+        return Err(MeshFault::NotReached { limit: "size", says, surface: surface.origin(), reached: longest.inside, at }.into());
     }
     let whole = outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
     care.wanted = WANTED_BENT;
@@ -120,7 +120,7 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
     for _ in 0..ROUNDS {
         let broken = |web: &Web| {
             let loads = loads(surface, sheet, web, &limits);
-            let over = |t: &u32| loads[*t as usize].chord.max(loads[*t as usize].angle) > 1.0 || long(web, *t, longest);
+            let over = |t: &u32| loads[*t as usize].chord.max(loads[*t as usize].angle) > 1.0 || longest.broken(web, *t);
             (0..web.tri.len() as u32).filter(over).collect()
         };
         let web = match triangulate(&Task { ground: sheet, field: &field, outline, care, most, broken: Some(&broken) }, job)? {
@@ -130,7 +130,7 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
         let loads = loads(surface, sheet, &web, &limits);
         worst = (0.0, DVec3::ZERO, "chord_error");
         for (t, load) in loads.iter().enumerate() {
-            let stretched = if long(&web, t as u32, longest) { 1.0 / LESS } else { 0.0 };
+            let stretched = if longest.broken(&web, t as u32) { 1.0 / LESS } else { 0.0 };
             let over = load.chord.max(load.angle).max(stretched);
             if over <= 1.0 {
                 continue;
@@ -159,11 +159,38 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
     Err(MeshFault::NotReached { limit, says, surface: surface.origin(), reached, at }.into())
 }
 
-/// Whether a side inside the face is longer than allowed.
-fn long(web: &Web, t: u32, longest: f64) -> bool {
-    let c = web.tri[t as usize];
-    let free = |k: &usize| web.locked[t as usize] >> k & 1 == 0;
-    (0..3).filter(free).any(|k| web.p[c[(k + 1) % 3] as usize].distance(web.p[c[(k + 2) % 3] as usize]) > longest)
+/// How long sides inside a face may be.
+struct Longest {
+    /// Between inner nodes.
+    inside: f64,
+    /// At each border node: where the border itself has longer steps (a written count), what leans on them is as long.
+    at_border: Vec<f64>,
+}
+
+impl Longest {
+    fn new(size: f64, outline: &Outline) -> Self {
+        let inside = LONGEST * size * (1.0 + WHOLE_NUMBER);
+        let mut at_border = vec![inside; outline.p.len()];
+        for edge in outline.edges() {
+            let most = LONGEST * outline.length(edge);
+            edge.iter().for_each(|n| at_border[*n as usize] = at_border[*n as usize].max(most));
+        }
+        Self { inside, at_border }
+    }
+
+    /// Whether a triangle has a side inside the face that is too long; those between two border nodes are what they are.
+    fn broken(&self, web: &Web, t: u32) -> bool {
+        let c = web.tri[t as usize];
+        (0..3).filter(|k| web.locked[t as usize] >> k & 1 == 0).any(|k| {
+            let ends = [c[(k + 1) % 3], c[(k + 2) % 3]];
+            let most = |n: u32| self.at_border.get(n as usize).copied();
+            let allowed = match ends.map(most) {
+                [Some(_), Some(_)] => return false,
+                [a, b] => a.or(b).unwrap_or(self.inside),
+            };
+            web.p[ends[0] as usize].distance(web.p[ends[1] as usize]) > allowed
+        })
+    }
 }
 
 /// How far a triangle is from its limits: 1 is just kept.
