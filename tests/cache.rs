@@ -135,7 +135,8 @@ impl Dice {
 /// Damages each file in one of the ways in which files break.
 fn damage(cache: &Path, dice: &mut Dice) {
     for file in files_of(cache) {
-        let mut bytes = fs::read(&file).unwrap();
+        let whole = fs::read(&file).unwrap();
+        let mut bytes = whole.clone();
         let at = dice.below(bytes.len());
         match dice.below(5) {
             0 => bytes.truncate(at),
@@ -143,6 +144,10 @@ fn damage(cache: &Path, dice: &mut Dice) {
             2 => bytes[at..].fill(0),
             3 => bytes.extend_from_within(at..),
             _ => bytes = b"something else altogether".to_vec(),
+        }
+        // What was zero before is not damaged by zeros.
+        if bytes == whole {
+            bytes.truncate(at);
         }
         fs::write(&file, bytes).unwrap();
     }
