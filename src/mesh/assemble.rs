@@ -116,11 +116,19 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
     if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
 }
 
+/// Length over width of the thinnest face that is believed, times the steps across it.
+const THINNEST: f64 = 100_000.0;
+
 /// E217 before anything is allocated for more elements than a mesh may have.
 fn refuse_too_many(input: &Input, layout: &Layout, relations: &Relations, counts: &[u32]) -> Result<()> {
     let mut total: u64 = 0;
     for (face, rows) in layout.faces.iter().zip(&relations.of_face) {
         if face.free {
+            // The border at least; how many are inside is known before any is made, but a border without end is not made either.
+            let border: u64 = face.sides.iter().flat_map(|s| &s.uses).map(|u| u64::from(counts[u.atom])).sum();
+            let across = input.model.surfaces[face.surface.index()].surface.hull().diagonal() / face.size.0;
+            let endless = across * across > THINNEST * MESH_ELEMENTS as f64;
+            total = total.saturating_add(if endless { (across * across) as u64 } else { border });
             continue;
         }
         let n = |k: usize| u64::from(counts[rows[k]]);

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
-use super::grow::{STRAIGHT, Soil, grow};
+use super::grow::{STRAIGHT, Soil, TALL, grow};
 use super::improve::{Care, Gardener};
 use super::outline::Outline;
 use super::web::Web;
@@ -53,6 +53,9 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
     if !kept.contains(&true) {
         return Ok(Err(Trouble::Empty));
     }
+    if expected(task, &coarse, &kept) > task.most as f64 {
+        return Ok(Err(Trouble::Full));
+    }
     let seeds = seeds(&coarse, &kept, outline);
     let grown = grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, most: task.most }, job)?;
     if grown.full {
@@ -82,6 +85,18 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
     let mut web = gardener.web;
     web.compact();
     Ok(Ok(web))
+}
+
+/// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
+fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
+    let nodes = |t: usize| {
+        let c = coarse.corners[t].map(|n| n as usize);
+        let [p, q, r] = c.map(|n| task.outline.p[n]);
+        let size = task.field.size(c.map(|n| task.outline.xy[n]).into_iter().sum::<DVec2>() / 3.0, (p + q + r) / 3.0);
+        // Half a node a triangle of side `size`, whose area is √3/4 of its square.
+        0.5 * (q - p).cross(r - p).length() / (TALL * size * size)
+    };
+    (0..kept.len()).filter(|t| kept[*t]).map(nodes).sum()
 }
 
 /// Triangles left of an odd number of loop edges: flooded from outside, each loop edge turning in and out.

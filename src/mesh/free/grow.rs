@@ -293,7 +293,7 @@ impl Front<'_> {
 }
 
 /// Height of an equilateral triangle of side 1.
-const TALL: f64 = 0.866_025_403_784_438_6;
+pub(super) const TALL: f64 = 0.866_025_403_784_438_6;
 /// Share of the length by which a step may be off before it is made again.
 const BENT: f64 = 0.01;
 
