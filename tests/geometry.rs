@@ -320,6 +320,12 @@ mod meetings {
         check(&polyline(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)], false), "against");
         let helix = build::helix(DVec3::ZERO, DVec3::Z, DVec3::X, 0.5, 4.0, Origin::NONE).unwrap();
         check(&helix, "");
+        // A stretch of one point has no direction anywhere, however finely it is cut.
+        let mut poles = vec![at(0.0, 0.0), at(1.0, 1.0)];
+        poles.extend([at(2.0, 0.3); 5]);
+        poles.extend([at(3.0, 1.0), at(4.0, 0.0)]);
+        let rests = build::bspline(&poles, 3, None, false, Origin::NONE).unwrap();
+        assert_eq!(self_intersect(&rests, &tolerance()).map(|hits| hits.len()).unwrap_or(0), 0);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! From these follow, for it and for every part of it, a cone that holds all tangents and a distance from the chord
 //! that no point exceeds. Nothing here is sampled.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use super::arc::EllipticArc;
 use super::bounds;
@@ -18,6 +18,10 @@ use crate::base::tolerance::EPSILON;
 const SPREAD: f64 = 0.3;
 /// A piece of a spline is halved at most this often; what is left then holds a cusp.
 const DEPTH: u32 = 24;
+/// Pieces of one polynomial or rational stretch at most: more say nothing that the bounds of fewer do not.
+const MOST: usize = 1 << 12;
+/// A piece shorter than this many roundings of its coordinates has no direction.
+const STILL: f64 = 8.0;
 
 /// A smooth stretch of a curve between corners: where a Newton iteration may wander.
 #[derive(Clone, Copy, Debug)]
@@ -284,10 +288,12 @@ fn rated_arc(arc: &EllipticArc, range: (f64, f64)) -> Vec<(f64, f64, Rates)> {
 }
 
 fn rated_bezier(piece: Bezier, polynomial: bool, out: &mut Vec<(f64, f64, Rates)>) {
+    let most = out.len() + MOST;
     let mut open = vec![(piece, 0)];
     while let Some((piece, depth)) = open.pop() {
         let rates = bounds::rates(&piece, polynomial);
-        if depth == DEPTH || 0.5 * (piece.t1 - piece.t0) * rates.turn <= SPREAD {
+        let still = is_still(&piece.poles) || out.len() >= most;
+        if still || depth == DEPTH || 0.5 * (piece.t1 - piece.t0) * rates.turn <= SPREAD {
             out.push((piece.t0, piece.t1, rates));
         } else {
             let (left, right) = piece.halves();
@@ -295,4 +301,12 @@ fn rated_bezier(piece: Bezier, polynomial: bool, out: &mut Vec<(f64, f64, Rates)
             open.push((left, depth + 1));
         }
     }
+}
+
+/// Whether a piece is no longer than its numbers are exact (poles in one place, or not numbers): it has no direction.
+fn is_still(poles: &[DVec4]) -> bool {
+    let place = |q: &DVec4| q.truncate() / q.w;
+    let first = place(&poles[0]);
+    let reach = poles.iter().map(|q| (place(q) - first).abs().max_element()).fold(0.0, f64::max);
+    reach.is_nan() || first.is_nan() || reach <= STILL * EPSILON * first.abs().max_element()
 }
