@@ -264,6 +264,8 @@ fn border(made: &Made, face: &Face) -> Border {
         if side.uses.is_empty() {
             uv = surface.border_line(k).map_or_else(|| pole(record, k), |(a, b)| vec![a, b]);
         }
+        // Edges have the face on their left; sides of a mapped domain run with ascending u or v.
+        let back = made.input.model.runs_back(record, k);
         let mut last: Option<u32> = None;
         for (id, at) in line.ids.iter().zip(uv) {
             // A node may be in several places of the chart (a seam, a pole), but in each of them once.
@@ -279,7 +281,7 @@ fn border(made: &Made, face: &Face) -> Border {
                 border.ids.len() as u32 - 1
             });
             if let Some(before) = last.filter(|before| *before != node) {
-                border.edges.push([before, node]);
+                border.edges.push(if back { [node, before] } else { [before, node] });
             }
             last = Some(node);
         }

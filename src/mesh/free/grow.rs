@@ -35,7 +35,7 @@ pub struct Soil<'a> {
     pub field: &'a dyn Field,
     /// The border.
     pub outline: &'a Outline,
-    /// Places where a crystal may start, with a direction in space or none.
+    /// Places where a crystal may start, with a direction in space (zero: any).
     pub seeds: &'a [(DVec2, DVec3)],
     /// Most nodes.
     pub most: usize,

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::ground::{Ground, foot};
+use super::grow::TALL;
 use super::outline::area2;
 
 /// Twice the ratio of inscribed to circumscribed radius: 1 for an equilateral triangle, 0 for a flat one.
@@ -110,6 +111,3 @@ impl Rim {
         star
     }
 }
-
-/// Height of an equilateral triangle of side 1.
-const TALL: f64 = 0.866_025_403_784_438_6;
