@@ -45,18 +45,19 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
-/// results, `draw` an alphabet, and `lang` the grammar over tokens and its tree, the evaluator, its memory between runs, all words with
+/// results, `draw` an alphabet, `surface` how surfaces meet curves and
+/// each other, and `lang` the grammar over tokens and its tree, the evaluator, its memory between runs, all words with
 /// their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_500),
     ("geometry", 5_500),
     ("network", 3_500),
-    ("surface", 6_500),
+    ("surface", 9_000),
     ("model", 2_800),
     ("mesh", 10_000),
     ("io", 8_500),
     ("draw", 3_000),
-    ("lang", 19_500),
+    ("lang", 20_000),
     ("session", 8_800),
     ("cli", 3_500),
 ];

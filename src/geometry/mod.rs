@@ -18,7 +18,7 @@ pub mod nurbs;
 pub mod nurbs_edit;
 pub mod offset;
 mod offset_build;
-mod pieces;
+pub(crate) mod pieces;
 mod rebuilt;
 pub mod spline;
 mod spread;

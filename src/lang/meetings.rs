@@ -2,29 +2,86 @@
 
 use super::cx::{Cx, Stop};
 use super::eval::Code;
+use super::std::kinds::Meeting;
 use super::syntax::ast::{Expr, ExprId};
-use super::types::Ty;
+use super::types::{FromValue, Ty};
 use super::value::{Dim, Value};
 use crate::base::fault::ValueFault;
+use crate::base::origin::Origin;
 use crate::network::Chain;
 use crate::network::meet;
+use crate::surface::{Surface, meet as surfaces, plane};
 
-/// The one node where two curves meet; E507, E508, E509 name the candidates.
+/// The one place where two things meet; E507, E508, E509 name the candidates.
 pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop> {
-    let is_curve = |v: &Value| matches!(v, Value::Curve(_) | Value::Link(..));
-    let has_geometry = |v: &Value| is_curve(v) || matches!(v, Value::Surface(_) | Value::Shell(_) | Value::Mesh(_) | Value::Plane(_));
-    if !(has_geometry(a) && has_geometry(b)) {
-        let found = if has_geometry(a) { cx.kind(b) } else { cx.kind(a) };
-        let argument = if has_geometry(a) { "b" } else { "a" };
-        return Err(ValueFault::WrongKind { argument, found, wanted: "a curve" }.into());
-    }
-    if !(is_curve(a) && is_curve(b)) {
-        let what = format!("`&` of {} and {}", cx.kind(a), cx.kind(b));
-        return Err(ValueFault::NotInThisVersion { what }.into());
+    let sides = [(a, "a"), (b, "b")];
+    let mut kinds = Vec::with_capacity(sides.len());
+    for (value, argument) in sides {
+        let Some(kind) = Meeting::from_value(plain(cx, value)?) else {
+            let found = cx.kind(value);
+            return Err(ValueFault::WrongKind { argument, found, wanted: "a curve or a surface" }.into());
+        };
+        kinds.push(kind);
     }
     let tolerance = cx.tolerance()?;
-    let (a, b) = (cx.as_chain(a.clone())?, cx.as_chain(b.clone())?);
-    Ok(Value::Node(meet::meet_once(&a, &b, &tolerance)?.point))
+    match (&kinds[0], &kinds[1]) {
+        (Meeting::Curve(a), Meeting::Curve(b)) => Ok(Value::Node(meet::meet_once(a, b, &tolerance)?.point)),
+        (Meeting::Curve(curve), other) | (other, Meeting::Curve(curve)) => match faces(other)? {
+            Some(faces) => Ok(Value::point(surfaces::with_curve_once(curve, &faces, &tolerance)?.point)),
+            None => Err(later(cx, a, b)),
+        },
+        _ => Err(later(cx, a, b)),
+    }
+}
+
+/// All places where two things meet.
+pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Value>, Stop> {
+    let tolerance = cx.tolerance()?;
+    match (a, b) {
+        (Meeting::Curve(a), Meeting::Curve(b)) => {
+            let mut places = Vec::new();
+            for meeting in meet::meet(a, b, &tolerance)? {
+                places.push(Value::Node(meeting.point));
+                places.extend(meeting.shared_to.map(|(fa, _)| Value::Node(a.point(fa))));
+            }
+            Ok(places)
+        }
+        (Meeting::Curve(curve), other) | (other, Meeting::Curve(curve)) => {
+            let Some(faces) = faces(other)? else { return Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()) };
+            let mut places = Vec::new();
+            for meeting in surfaces::with_curve(curve, &faces, &tolerance)? {
+                places.push(Value::point(meeting.point));
+                places.extend(meeting.shared_to.map(|f| Value::point(curve.point(f))));
+            }
+            Ok(places)
+        }
+        _ => Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()),
+    }
+}
+
+const MESH: &str = "`meet` of a mesh";
+
+/// A link as the curve it is.
+fn plain(cx: &mut Cx, value: &Value) -> Result<Value, Stop> {
+    match value {
+        Value::Link(..) => cx.as_chain(value.clone()).map(Value::Curve),
+        other => Ok(other.clone()),
+    }
+}
+
+/// The surfaces of a thing; `None` for a mesh or a curve.
+fn faces(of: &Meeting) -> Result<Option<Vec<Surface>>, Stop> {
+    Ok(match of {
+        Meeting::Surface(surface) => Some(vec![surface.clone()]),
+        Meeting::Shell(shell) => Some(shell.surfaces.clone()),
+        Meeting::Plane(p) => Some(vec![plane::unbounded(p.at, p.normal, Origin::NONE)?]),
+        Meeting::Curve(_) | Meeting::Mesh(_) => None,
+    })
+}
+
+fn later(cx: &Cx, a: &Value, b: &Value) -> Stop {
+    let what = format!("`&` of {} and {}", cx.kind(a), cx.kind(b));
+    ValueFault::NotInThisVersion { what }.into()
 }
 
 impl Cx<'_> {

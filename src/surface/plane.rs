@@ -71,6 +71,27 @@ pub fn unbounded(at: DVec3, normal: DVec3, origin: Origin) -> Result<Surface> {
     Ok(flat(Shape::Plane(frame), Domain::Unbounded, Vec::new(), String::new(), origin, Vec::new()))
 }
 
+/// The square of an unbounded plane that holds whatever of it lies in a box, with room around.
+pub(super) fn over(surface: &Surface, reach: Box3) -> Surface {
+    let parts = surface.parts();
+    let Shape::Plane(frame) = parts.shape else { return surface.clone() };
+    let (center, size) = (reach.center(), reach.diagonal());
+    let (eu, ev) = (frame.eu.normalize_or_zero() * (2.0 * size), frame.ev.normalize_or_zero() * (2.0 * size));
+    let (u, v) = frame.uv(center);
+    let middle = frame.jet(u, v).p;
+    let shape = Shape::Plane(Frame { origin: middle - eu * 0.5 - ev * 0.5, eu, ev });
+    Surface::new(Parts { shape, domain: Domain::Square, borders: free_sides(), trim: None, chains: Vec::new(), ..parts.clone() })
+}
+
+/// The whole square of the frame of a plane face.
+pub(super) fn squared(surface: &Surface) -> Surface {
+    Surface::new(Parts { domain: Domain::Square, borders: free_sides(), trim: None, ..surface.parts().clone() })
+}
+
+fn free_sides() -> Vec<Border> {
+    (0..4).map(|_| Border::straight(Side::Free)).collect()
+}
+
 /// A chain of the boundary with `true` where the walk round it runs against the chain.
 pub(super) type Step = (Chain, bool);
 

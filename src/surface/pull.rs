@@ -120,6 +120,11 @@ impl Pull {
         (self.at[0].1, self.at[self.at.len() - 1].1)
     }
 
+    /// Fractions with their places, in the order of the loop.
+    pub fn stations(&self) -> &[(f64, DVec2)] {
+        &self.at
+    }
+
     /// About where a fraction of the chain lies.
     pub fn guess(&self, f: f64) -> DVec2 {
         let ascending = self.at[0].0 <= self.at[self.at.len() - 1].0;

@@ -41,10 +41,10 @@ impl Trim {
 }
 
 /// A closed walk over a surface.
-struct Walk {
-    borders: Vec<Border>,
-    courses: Vec<Course>,
-    chains: Vec<Chain>,
+pub(super) struct Walk {
+    pub borders: Vec<Border>,
+    pub courses: Vec<Course>,
+    pub chains: Vec<Chain>,
 }
 
 impl Walk {
@@ -137,14 +137,14 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
 }
 
 /// Whole turns by which a loop may be moved in (u, v).
-fn shifts(base: &Surface) -> Vec<DVec2> {
+pub(super) fn shifts(base: &Surface) -> Vec<DVec2> {
     let of = |closed: bool| if closed { vec![0.0, 1.0, -1.0] } else { vec![0.0] };
     let (u, v) = base.closed();
     of(u).into_iter().flat_map(|x| of(v).into_iter().map(move |y| DVec2::new(x, y))).collect()
 }
 
 /// The loops that a surface has by itself.
-fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>> {
+pub(super) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>> {
     let parts = base.parts();
     if let Some(trim) = &parts.trim {
         let mut first = 0;

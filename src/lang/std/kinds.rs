@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::lang::types::{FromValue, IntoValue, Ty};
-use crate::lang::value::{MeshValue, ModuleId, ShellValue, Value};
+use crate::lang::value::{MeshValue, ModuleId, Plane, ShellValue, Value};
 use crate::model::{EdgeId, PatchId, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
@@ -54,6 +54,8 @@ one_of! {
         Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
         /// A shell.
         Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
+        /// An unbounded plane.
+        Plane(Arc<Plane>) = Ty::Plane, Value::Plane(p) => Self::Plane(p);
         /// A mesh.
         Mesh(Arc<MeshValue>) = Ty::Mesh, Value::Mesh(m) => Self::Mesh(m);
     }

@@ -8,12 +8,8 @@ use crate::base::tolerance::WHOLE_NUMBER;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Length, Node, Point, Station};
 use crate::lang::value::Value;
-use crate::network::{self, Chain, LinkId};
+use crate::network::{Chain, LinkId};
 use crate::{builtins, fields};
-
-fn later(what: &str) -> Stop {
-    ValueFault::NotInThisVersion { what: what.to_owned() }.into()
-}
 
 /// Fraction of a curve at a fraction or length; both must lie on the curve.
 fn fraction_of(cx: &Cx, chain: &Chain, station: Station, argument: &'static str) -> Result<f64, Stop> {
@@ -56,28 +52,23 @@ fn nodes(cx: &mut Cx, chain: &Chain) -> Result<Vec<DVec3>, Stop> {
 }
 
 builtins! {
-    /// All places where two curves meet, in order along the first.
+    /// All places where two curves, or a curve and a surface, meet.
     ///
-    /// A run that both share gives its two ends. `a & b` is the one place where they meet.
+    /// They come in order along the curve, of two curves the first. A run that both share gives its two ends. `a & b` is the
+    /// one place where they meet. A plane without end, a trimmed surface and a shell are surfaces here.
     /// ```loft
     /// curve a = circle(center: (0, 0, 0), radius: 1m)
     /// curve b = line((-2m, 0, 0), (2m, 0, 0))
     /// let n = len(meet(a, b)) // => 2
+    /// surface wall = extrude(a, by: (0, 0, 3m))
+    /// let p = meet(line((0, 0, 1m), (2m, 0, 1m)), wall) // => [(1000mm, 0mm, 1000mm)]
     /// ```
     fn meet(
-        /// A curve.
+        /// A curve, a surface, a shell or a plane.
         a: Meeting,
         /// Another.
         b: Meeting,
-    ) -> Vec<Node> = |cx, a, b| {
-        let (Meeting::Curve(a), Meeting::Curve(b)) = (a, b) else { return Err(later("`meet` with a surface, shell or mesh")) };
-        let mut places = Vec::new();
-        for meeting in network::meet(&a, &b, &cx.tolerance()?)? {
-            places.push(Node(meeting.point));
-            places.extend(meeting.shared_to.map(|(fa, _)| Node(a.point(fa))));
-        }
-        Ok(places)
-    };
+    ) -> Vec<Value> = |cx, a, b| crate::lang::meetings::meet_all(cx, &a, &b);
 
     /// The nearest of several points, or the nearest point of a curve.
     ///

@@ -1,0 +1,70 @@
+//! Whether a place lies in the kept part of a trimmed surface, exactly: by the angle that its borders turn about the place.
+
+use glam::{DVec2, DVec3};
+
+use super::core::{Side, Surface};
+use super::pull::{Course, foot};
+use super::trim::shifts;
+use crate::base::math;
+use crate::network::Chain;
+
+/// Halvings of a stretch of a border.
+const DEEPEST: u32 = 40;
+
+impl Surface {
+    /// Whether a place of a trimmed surface lies in the kept part; borders count as they run, not as polygons. `true` for a
+    /// surface that is not trimmed.
+    pub fn holds(&self, u: f64, v: f64) -> bool {
+        let Some(trim) = &self.parts().trim else { return true };
+        shifts(self).into_iter().any(|by| {
+            let p = DVec2::new(u, v) + by;
+            let turns: f64 = trim.courses.iter().enumerate().map(|(k, course)| self.turning(k, course, p)).sum();
+            turns > std::f64::consts::PI
+        })
+    }
+
+    /// Whether a point of space lies on the kept part or its border, within a distance, where its foot on the surface below is known.
+    pub(super) fn keeps_point(&self, p: DVec3, uv: DVec2, point: f64) -> bool {
+        let on_border = |k: usize| match self.side(k) {
+            Side::Chain { chain, .. } => chain.closest(p).2 <= point,
+            _ => false,
+        };
+        self.parts().trim.is_none() || self.holds(uv.x, uv.y) || (0..self.n_sides()).any(on_border)
+    }
+
+    /// The angle by which border `k` turns about a place.
+    fn turning(&self, k: usize, course: &Course, p: DVec2) -> f64 {
+        match course {
+            Course::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
+            Course::Pull(pull) => {
+                let Side::Chain { chain, .. } = self.side(k) else { return 0.0 };
+                pull.stations().windows(2).map(|w| self.turn_of(&chain, w[0], w[1], p, DEEPEST)).sum()
+            }
+        }
+    }
+
+    /// The same for a stretch of a chain between two of its feet, halved while the place may lie between it and its chord.
+    fn turn_of(&self, chain: &Chain, (fa, a): (f64, DVec2), (fb, b): (f64, DVec2), p: DVec2, left: u32) -> f64 {
+        let length = a.distance(b);
+        let nearest = {
+            let share = ((p - a).dot(b - a) / (length * length)).clamp(0.0, 1.0);
+            if share.is_finite() { a.lerp(b, share) } else { a }
+        };
+        if nearest.distance(p) > length || left == 0 {
+            return angle(a, b, p);
+        }
+        let middle = 0.5 * (fa + fb);
+        let guess = a.lerp(b, 0.5);
+        let at = match self.flat_uv(chain.point(middle)) {
+            Some((u, v)) => DVec2::new(u, v),
+            None => foot(self, chain.point(middle), guess).0,
+        };
+        self.turn_of(chain, (fa, a), (middle, at), p, left - 1) + self.turn_of(chain, (middle, at), (fb, b), p, left - 1)
+    }
+}
+
+/// The angle from one place to another, seen from a third.
+fn angle(a: DVec2, b: DVec2, p: DVec2) -> f64 {
+    let (a, b) = (a - p, b - p);
+    math::atan2(a.perp_dot(b), a.dot(b))
+}
