@@ -53,12 +53,12 @@ const CEILINGS: &[(&str, usize)] = &[
     ("geometry", 5_500),
     ("network", 3_500),
     ("surface", 9_000),
-    ("model", 2_800),
+    ("model", 3_200),
     ("mesh", 10_000),
     ("io", 8_500),
     ("draw", 3_000),
     ("lang", 20_000),
-    ("session", 8_800),
+    ("session", 8_950),
     ("cli", 3_500),
 ];
 

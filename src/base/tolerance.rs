@@ -45,6 +45,10 @@ pub const POLE_STEP: f64 = 1e-3;
 pub const SINGULAR: f64 = 1e-9;
 /// A free end that misses a curve by at most this many tolerances gets a warning.
 pub const NEAR_MISS: f64 = 10.0;
+/// Borders of imported faces are glued over this many times the widest gap inside the borders of one face (math notes §14.2).
+pub const GAP_ROOM: f64 = 10.0;
+/// Free borders that run along each other within this many times the stated glue distance were meant to be one.
+pub const MISMATCH: f64 = 3.0;
 /// Curvature, as a share of the larger one, that a downhill step assumes where the function bends the other way.
 pub const LEAST_CURVATURE: f64 = 1e-3;
 

@@ -66,9 +66,14 @@ pub fn track(track: &Track, (from, to): (f64, f64), fine: f64) -> Vec<DVec3> {
     points
 }
 
-/// The edges of some surfaces: free ones, kinks, and where surfaces meet.
-pub fn borders((model, network): (&Model, &Network), members: &BTreeSet<SurfaceId>, fine: f64, tolerance: &Tolerance) -> Vec<Line> {
-    let stretches = model.stretches(members, network, tolerance);
+/// The edges of some surfaces: free ones, kinks, and where surfaces meet; borders up to `near` apart meet.
+pub fn borders(
+    (model, network): (&Model, &Network),
+    (members, near): (&BTreeSet<SurfaceId>, f64),
+    fine: f64,
+    tolerance: &Tolerance,
+) -> Vec<Line> {
+    let stretches = model.stretches(members, near, network, tolerance);
     par::map(stretches.len(), |k| {
         let stretch = &stretches[k];
         let kind = match stretch.meeting {

@@ -151,8 +151,8 @@ codes! {
     now "E704", "only-quads-impossible", "only quads is impossible here";
     now "E705", "face-cannot-be-mapped", "a face cannot be mapped";
     now "W706", "rule-overridden", "a rule is overridden by an equal one";
-    now "E711", "edge-mismatch", "neighbouring faces divide their edge differently";
-    now "N712", "edge-too-short", "an edge is shorter than the tolerance allows";
+    now "E711", "edge-mismatch", "borders of neighbouring faces are too far apart";
+    now "N712", "edge-too-short", "an edge became a corner";
     now "E713", "cdt-constraint-crosses", "borders of a face cross";
     now "E714", "face-empty", "a face has nothing inside";
     now "E715", "element-inverted", "an element is turned inside out";

@@ -84,18 +84,22 @@ impl Cx<'_> {
             let things = gather.take(cx.things(code, things, keyword));
             match keyword {
                 Keyword::Shell => {
-                    gather.take(cx.settings(code, "shell", settings::SHELL, settings));
+                    let settings = gather.take(cx.settings(code, "shell", settings::SHELL, settings));
                     gather.done()?;
+                    let mut snap = said(&settings.unwrap_or_default(), "snap", number);
                     let things = things.unwrap_or_default();
                     let mut surfaces = Vec::with_capacity(things.len());
                     for (thing, _) in things {
                         match thing {
                             Value::Surface(s) => surfaces.push(s),
-                            Value::Shell(s) => surfaces.extend(s.surfaces.iter().cloned()),
+                            Value::Shell(s) => {
+                                surfaces.extend(s.surfaces.iter().cloned());
+                                snap = snap.or(s.snap);
+                            }
                             _ => return Err(Stop::Bug("a shell of something else")),
                         }
                     }
-                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces })))
+                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap })))
                 }
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));

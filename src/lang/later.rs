@@ -9,7 +9,7 @@ use super::{module::bound, std};
 
 const FUNCTIONS: &[&str] = &["sweep", "gordon", "fit", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics"];
 
-const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth"), ("shell", "snap")];
+const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth")];
 
 const ENDINGS: &[&str] = &["stp", "step"];
 

@@ -71,7 +71,7 @@ impl Scene {
                 surfaces.push(*id)
             }
         });
-        let request = ShellRequest { name: shell.name.to_string(), surfaces, origin: shell.origin };
+        let request = ShellRequest { name: shell.name.to_string(), surfaces, snap: shell.snap, origin: shell.origin };
         let mut built = self.model.shell(&request, &self.network, tolerance, sink)?;
         if places.first().is_some_and(|(_, flipped)| *flipped) {
             built.surfaces.iter_mut().for_each(|(_, other)| *other = !*other);

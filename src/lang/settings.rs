@@ -72,8 +72,13 @@ pub const ON: &[Setting] = &[
     },
 ];
 
-/// `shell s of … { … }`: none in this version; `snap` belongs to faces that come with borders of their own.
-pub const SHELL: &[Setting] = &[];
+/// `shell s of … { … }`.
+pub const SHELL: &[Setting] = &[Setting {
+    key: "snap",
+    docs: "Edges of faces that came with borders of their own (imported, fitted) are one within this distance.",
+    default: "ten times the widest gap within the borders of a face, at least the tolerance",
+    ty: LENGTH,
+}];
 
 /// `export x to "…" { … }`.
 pub const EXPORT: &[Setting] = &[

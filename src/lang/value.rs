@@ -135,6 +135,8 @@ pub struct ShellValue {
     pub origin: Origin,
     /// Its surfaces.
     pub surfaces: Vec<Surface>,
+    /// How far apart borders may be and still be one edge, model units, with the expression that says so.
+    pub snap: Option<(f64, Origin)>,
 }
 
 /// A mesh: of a `mesh` declaration, or data (imported, moved).

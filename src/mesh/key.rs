@@ -66,6 +66,8 @@ impl Teller<'_> {
             order,
             method,
             conforming,
+            // The tracks and faces of the layouts tell it.
+            glue: _,
             rules,
             groups,
         } = self.input.plan;
@@ -127,11 +129,11 @@ impl Teller<'_> {
 
     fn face(&self, face: &Face, to: &mut Digester) {
         // How it is made follows from the rest.
-        let Face { patch, surface, flipped, elements, method, size, sides, free: _ } = face;
+        let Face { patch, surface, flipped, elements, method, size, sides, near, free: _ } = face;
         let record = &self.input.model.patches[patch.index()];
         (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).tell(to);
         (*flipped, *elements, (*method, size.0, size.1)).tell(to);
-        sides.tell(to);
+        (sides, *near).tell(to);
     }
 
     /// The number of a patch on its surface.

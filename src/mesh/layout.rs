@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::build::Input;
 use super::plan::{Elements, Method};
 use crate::model::atoms::{Atoms, Part, Use, atoms};
+use crate::model::gather::Station;
 use crate::model::glue::preference;
 use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Trace, Track};
 use crate::network::{Chain, LinkId};
@@ -45,6 +46,8 @@ pub struct Face {
     pub free: bool,
     /// Target size inside, model units, and the rule that says so.
     pub size: (f64, Option<usize>),
+    /// How far its border may be from the surface, model units: what its edges were glued over.
+    pub near: f64,
     /// Sides in the order of the patch: four, or three of a triangle.
     pub sides: Vec<Border>,
 }
@@ -81,22 +84,26 @@ impl Layout {
         let mut parts: Vec<Part> = edges.iter().map(|e| edge_part(input, *e)).collect();
         let links = if with_lines { link_parts(input, &mut parts) } else { Vec::new() };
         let alone = if with_lines { lone_parts(input, &mut parts) } else { Vec::new() };
-        let mut anchors: Vec<DVec3> = input.model.vertices_of(&ids).iter().map(|v| input.model.vertices[v.index()].point).collect();
+        // Points and curves of the mesh join whatever edge is glued.
+        let most = reach(input, patches.iter().map(|p| p.0));
+        parts[edges.len()..].iter_mut().for_each(|part| part.near = most);
+        let station = |point: DVec3| Station { point, reach: most };
+        let vertices = input.model.vertices_of(&ids);
+        let mut anchors: Vec<Station> = vertices.iter().map(|v| station(input.model.vertices[v.index()].point)).collect();
         for part in &links {
             let ends = input.network.links[part.0.index()].nodes;
-            anchors.extend([ends.0, ends.1].map(|n| input.network.nodes[n.index()].point));
+            anchors.extend([ends.0, ends.1].map(|n| station(input.network.nodes[n.index()].point)));
         }
         let nodes = anchors.len();
         if with_lines {
-            anchors.extend(&input.plan.points);
+            anchors.extend(input.plan.points.iter().map(|p| station(*p)));
         }
         let pieces = atoms(&parts, &anchors, input.tolerance);
         let of_link = by_link(input, &edges, &links, &pieces);
         let mut layout = Self { parts, pieces, of_link, ..Self::default() };
         layout.points = layout.pieces.of_anchor[nodes..].to_vec();
-        let vertex_ids = input.model.vertices_of(&ids);
         for (patch, flipped) in patches {
-            let junction = |v| vertex_ids.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
+            let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
             let face = layout.face(input, (*patch, *flipped), &edges, junction);
             layout.faces.push(face);
         }
@@ -121,11 +128,17 @@ impl Layout {
         let mut sides = Vec::new();
         for side in &record.sides {
             let mut border = Border { pole: side.pole.and_then(&junction), ..Border::default() };
+            let mut corner = None;
             for (edge, against) in &side.edges {
                 let Ok(part) = edges.binary_search(edge) else { continue };
                 let length = self.parts[part].track.length();
                 border.uses.extend(oriented(&self.pieces.of_track[part], *against, length, border.length));
                 border.length += length;
+                corner = corner.or(Some(self.pieces.starts[part]));
+            }
+            // A side that was glued together is a corner.
+            if border.uses.is_empty() {
+                border.pole = border.pole.or(corner);
             }
             sides.push(border);
         }
@@ -138,6 +151,7 @@ impl Layout {
             method: plan.method,
             free: false,
             size: (0.0, None),
+            near: reach(input, std::iter::once(patch)),
             sides,
         }
     }
@@ -194,6 +208,12 @@ impl Layout {
     }
 }
 
+/// How far edges of some patches are glued at most.
+fn reach(input: &Input, patches: impl Iterator<Item = PatchId>) -> f64 {
+    let of = |p: PatchId| input.plan.glue.get(&input.model.patches[p.index()].surface).copied();
+    patches.filter_map(of).fold(input.tolerance.point, f64::max)
+}
+
 /// Uses of a track as seen by something that runs along or against it and places it at `start`.
 fn oriented(uses: &[Use], against: bool, length: f64, start: f64) -> Vec<Use> {
     let turn = |u: &Use| {
@@ -209,14 +229,10 @@ fn oriented(uses: &[Use], against: bool, length: f64, start: f64) -> Vec<Use> {
 /// An edge as a track, cut where its links end.
 fn edge_part(input: &Input, edge: EdgeId) -> Part {
     let track = input.model.track(edge, input.network);
-    let cuts = match &track {
-        Track::Links { starts, span, .. } => {
-            let inner = starts.iter().map(|s| s - span.0);
-            inner.filter(|s| *s > input.tolerance.point && *s < track.length() - input.tolerance.point).collect()
-        }
-        Track::Iso(_) => Vec::new(),
-    };
-    Part { track, cuts, rank: preference(&input.model.edges[edge.index()].curve) }
+    let cuts = track.joints(input.tolerance);
+    let users = &input.model.edges[edge.index()].users;
+    let near = reach(input, users.iter().map(|(p, _)| *p));
+    Part { track, cuts, rank: preference(&input.model.edges[edge.index()].curve), near }
 }
 
 /// Adds the links of the plan's curves as tracks of their own; gives link and part, ascending.
@@ -231,7 +247,7 @@ fn link_parts(input: &Input, parts: &mut Vec<Part>) -> Vec<(LinkId, usize)> {
         .map(|link| {
             let s = input.network.links[link.index()].s;
             let curve = EdgeCurve::Links { links: vec![(link, false)], span: (0.0, s.1 - s.0) };
-            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts: Vec::new(), rank: 0 });
+            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts: Vec::new(), rank: 0, near: input.tolerance.point });
             (link, parts.len() - 1)
         })
         .collect()
@@ -244,7 +260,7 @@ fn lone_parts(input: &Input, parts: &mut Vec<Part>) -> Vec<(usize, usize)> {
         if input.network.links_of(chain, input.tolerance).is_none() {
             let curve = EdgeCurve::Run { chain: chain.clone(), span: (0.0, chain.length()) };
             let cuts = chain.joints().iter().map(|f| f * chain.length()).filter(|s| *s > 0.0 && *s < chain.length()).collect();
-            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts, rank: preference(&curve) });
+            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts, rank: preference(&curve), near: input.tolerance.point });
             found.push((k, parts.len() - 1));
         }
     }

@@ -1,5 +1,7 @@
 //! What is asked of a mesh: settings and rules, resolved to entities by the language.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use crate::base::origin::Origin;
@@ -116,6 +118,9 @@ pub struct Plan {
     pub method: Method,
     /// Neighbouring faces share nodes.
     pub conforming: bool,
+    /// How far apart borders of a surface and of its neighbours may be and still be one edge, model units; the tolerance for
+    /// surfaces that are not listed.
+    pub glue: BTreeMap<SurfaceId, f64>,
     /// Rules in order of writing.
     pub rules: Vec<Rule>,
     /// Named sets beside those that every surface gets.
@@ -138,6 +143,7 @@ impl Plan {
             order: 1,
             method: Method::Auto,
             conforming: true,
+            glue: BTreeMap::new(),
             rules: Vec::new(),
             groups: Vec::new(),
         }

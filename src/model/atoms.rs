@@ -1,22 +1,19 @@
-//! Atoms of edges: what is left when every edge is cut where a corner of another one lies on it.
+//! Atoms of edges: what is left when every edge is cut where a corner of another one lies on it [math notes §14.2].
 //!
 //! One long side may meet several shorter ones (a non-conformal join). The sides keep their own edges; their atoms are
-//! shared, so that shells know which stretches are free and meshes divide each stretch once.
+//! shared, so that shells know which stretches are free and meshes divide each stretch once. How near borders must be to be
+//! one is said by each of them: the model's tolerance, or what a shell of imported faces allows.
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::glue::{cluster, same_run};
+use super::feet::{Index, Piece, stations};
+use super::gather::{Station, gather};
 use super::trace::Track;
-use crate::base::bbox::Box3;
+use crate::base::math::compare_points;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-
-/// Samples of a track for finding points on it; its spacing bounds how far a near point is from a sample.
-const SAMPLES: usize = 32;
-/// Projections before a foot point is taken as it is.
-const ROUNDS: usize = 20;
 
 /// A stretch between two neighbouring junctions.
 #[derive(Clone, Debug)]
@@ -58,13 +55,15 @@ pub struct Atoms {
     pub junctions: Vec<DVec3>,
     /// The atoms.
     pub atoms: Vec<Atom>,
-    /// Atoms of each track from its start to its end.
+    /// Atoms of each track from its start to its end; none for a track that is shorter than its reach and became a junction.
     pub of_track: Vec<Vec<Use>>,
     /// The junction of each anchor, where some track passes or ends there.
     pub of_anchor: Vec<Option<usize>>,
+    /// Junction of the start of each track.
+    pub starts: Vec<usize>,
 }
 
-crate::content!(Atoms { junctions, atoms, of_track, of_anchor });
+crate::content!(Atoms { junctions, atoms, of_track, of_anchor, starts });
 
 /// A track with what its user knows of it.
 #[derive(Clone, Debug)]
@@ -75,50 +74,31 @@ pub struct Part {
     pub cuts: Vec<f64>,
     /// Tracks of lower rank give the geometry of atoms that several share (0: links).
     pub rank: u8,
+    /// How far another track may be and still be the same, model units; of two tracks the smaller one counts.
+    pub near: f64,
 }
 
-crate::content!(Part { track, cuts, rank });
-
-/// An atom with its probes.
-type Known = (usize, [DVec3; 3]);
+crate::content!(Part { track, cuts, rank, near });
 
 /// Cuts tracks at each other's ends and at anchors that lie on them, and joins the pieces that lie on each other.
 ///
 /// `anchors` are points that give their place to the junctions they hit: vertices, nodes, declared points.
-pub fn atoms(parts: &[Part], anchors: &[DVec3], tolerance: &Tolerance) -> Atoms {
+pub fn atoms(parts: &[Part], anchors: &[Station], tolerance: &Tolerance) -> Atoms {
     let mut points = anchors.to_vec();
+    // Of each part its first point among all.
+    let mut first = Vec::with_capacity(parts.len());
     for part in parts {
-        points.push(part.track.point(0.0));
-        points.push(part.track.point(part.track.length()));
-        points.extend(part.cuts.iter().map(|s| part.track.point(*s)));
+        first.push(points.len());
+        let stops = [0.0, part.track.length()].into_iter().chain(part.cuts.iter().copied());
+        points.extend(stops.map(|s| Station { point: part.track.point(s), reach: part.near }));
     }
-    let (group, mut junctions) = cluster(&points, tolerance);
-    let mut named = vec![false; junctions.len()];
-    for (n, point) in anchors.iter().enumerate() {
-        if !std::mem::replace(&mut named[group[n]], true) {
-            junctions[group[n]] = *point;
-        }
-    }
-    let stations = par::map(parts.len(), |n| stations(&parts[n], &junctions, tolerance));
-    let mut result = Atoms { junctions, ..Atoms::default() };
-    let mut known: BTreeMap<(usize, usize), Vec<Known>> = BTreeMap::new();
-    let mut order: Vec<usize> = (0..parts.len()).collect();
-    order.sort_by_key(|n| (parts[*n].rank, *n));
+    let group = gather(&points, tolerance.point);
+    let index = Index::new(&points, &group);
+    let found = par::map(parts.len(), |n| stations(&parts[n], (group[first[n]], group[first[n] + 1]), &index));
+    let mut result = Atoms { junctions: places(&points, &group, anchors.len()), ..Atoms::default() };
+    result.starts = first.iter().map(|n| group[*n]).collect();
     result.of_track = vec![Vec::new(); parts.len()];
-    for n in order {
-        for w in stations[n].windows(2) {
-            let ((s0, a), (s1, b)) = (w[0], w[1]);
-            let probes = [0.25, 0.5, 0.75].map(|f| parts[n].track.point(s0 + (s1 - s0) * f));
-            let same = known.entry((a.min(b), a.max(b))).or_default();
-            let found = same.iter().find_map(|(id, other)| same_run(other, &probes, tolerance).map(|against| (*id, against)));
-            let (atom, against) = found.unwrap_or_else(|| {
-                result.atoms.push(Atom { ends: (a, b), track: n, s: (s0, s1) });
-                same.push((result.atoms.len() - 1, probes));
-                (result.atoms.len() - 1, false)
-            });
-            result.of_track[n].push(Use { atom, against, s: (s0, s1) });
-        }
-    }
+    Joiner { parts, result: &mut result, same: BTreeMap::new(), point: tolerance.point }.join(&found);
     let mut used = vec![false; result.junctions.len()];
     for atom in &result.atoms {
         used[atom.ends.0] = true;
@@ -128,82 +108,90 @@ pub fn atoms(parts: &[Part], anchors: &[DVec3], tolerance: &Tolerance) -> Atoms 
     result
 }
 
-/// Arc lengths and junctions at which a track is cut, ends included, ascending.
-fn stations(part: &Part, junctions: &[DVec3], tolerance: &Tolerance) -> Vec<(f64, usize)> {
-    let length = part.track.length();
-    let samples: Vec<(f64, DVec3)> = {
-        let mut at: Vec<f64> = (0..=SAMPLES).map(|k| length * k as f64 / SAMPLES as f64).chain(part.cuts.iter().copied()).collect();
-        at.sort_by(f64::total_cmp);
-        at.into_iter().map(|s| (s, part.track.point(s))).collect()
-    };
-    // No point of the track is farther from a sample than half the spacing.
-    let reach = 0.5 * length / SAMPLES as f64 + tolerance.point;
-    let around = Box3::of(samples.iter().map(|(_, p)| *p));
-    let mut found: Vec<(f64, usize)> = Vec::new();
-    for (junction, point) in junctions.iter().enumerate() {
-        if !around.touches(&Box3::of([*point]), reach) {
-            continue;
-        }
-        for s in feet(&part.track, &samples, *point, reach, tolerance) {
-            found.push((s, junction));
+/// Where each junction is: its first anchor in the order of coordinates, else its first point.
+fn places(points: &[Station], group: &[usize], anchors: usize) -> Vec<DVec3> {
+    let count = group.iter().max().map_or(0, |most| most + 1);
+    let mut best: Vec<Option<(bool, DVec3)>> = vec![None; count];
+    for (n, station) in points.iter().enumerate() {
+        let here = (n >= anchors, station.point);
+        let slot = &mut best[group[n]];
+        if slot.is_none_or(|old| here.0.cmp(&old.0).then(compare_points(here.1, old.1)).is_lt()) {
+            *slot = Some(here);
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    // Near its ends and near itself a track meets one junction many times over.
-    let mut stations: Vec<(f64, usize)> = Vec::new();
-    for (s, junction) in found {
-        match stations.last() {
-            Some((_, last)) if *last == junction && !leaves(stations[stations.len() - 1].0, s, tolerance) => {}
-            _ => stations.push((s, junction)),
-        }
-    }
-    if let Some(first) = stations.first_mut() {
-        first.0 = 0.0;
-    }
-    if let Some(last) = stations.last_mut() {
-        last.0 = length;
-    }
-    stations
+    best.into_iter().map(|b| b.map_or(DVec3::ZERO, |b| b.1)).collect()
 }
 
-/// Whether the track goes away and comes back between two visits of one point.
-fn leaves(a: f64, b: f64, tolerance: &Tolerance) -> bool {
-    b - a > 4.0 * tolerance.point
+/// Pieces found so far, by their pair of junctions.
+struct Joiner<'a> {
+    parts: &'a [Part],
+    result: &'a mut Atoms,
+    same: BTreeMap<(usize, usize), Vec<usize>>,
+    point: f64,
 }
 
-/// Arc lengths at which a track passes a point within tolerance.
-fn feet(track: &Track, samples: &[(f64, DVec3)], point: DVec3, reach: f64, tolerance: &Tolerance) -> Vec<f64> {
-    let length = track.length();
-    let mut found = Vec::new();
-    let ends = [(0.0, samples[0].1), (length, samples[samples.len() - 1].1)];
-    found.extend(ends.iter().filter(|(_, p)| tolerance.same_point(*p, point)).map(|(s, _)| *s));
-    for w in samples.windows(2) {
-        let ((a, pa), (b, pb)) = (w[0], w[1]);
-        if pa.distance(point) > reach && pb.distance(point) > reach {
-            continue;
-        }
-        let s = nearest(track, point, a, b);
-        let inside = s > tolerance.point && s < length - tolerance.point;
-        if inside && tolerance.same_point(track.point(s), point) {
-            found.push(s);
-        }
-    }
-    found
+/// A piece of a track before it is known what it is.
+struct Raw {
+    part: usize,
+    ends: (usize, usize),
+    s: (f64, f64),
 }
 
-/// The place near a start where a track passes nearest to a point, by projection on the tangent.
-///
-/// Converges fast where the point lies on the track, which is all that is asked; elsewhere the caller finds it too far.
-fn nearest(track: &Track, point: DVec3, a: f64, b: f64) -> f64 {
-    let slack = b - a;
-    let mut s = 0.5 * (a + b);
-    for _ in 0..ROUNDS {
-        let (p, tangent) = track.jet(s);
-        let next = (s + (point - p).dot(tangent)).clamp(a - slack, b + slack);
-        if next == s {
-            break;
+impl Joiner<'_> {
+    fn join(mut self, stations: &[Vec<(f64, usize)>]) {
+        let mut raw = Vec::new();
+        for (part, stops) in stations.iter().enumerate() {
+            for w in stops.windows(2) {
+                raw.push(Raw { part, ends: (w[0].1, w[1].1), s: (w[0].0, w[1].0) });
+            }
         }
-        s = next;
+        raw.sort_by_key(|r| (self.parts[r.part].rank, r.part));
+        for piece in &raw {
+            let (atom, against) = self.find(piece).unwrap_or_else(|| self.add(piece));
+            self.result.of_track[piece.part].push(Use { atom, against, s: piece.s });
+        }
+        self.settle();
     }
-    s
+
+    /// Where borders are further apart than the tolerance, the one whose middle comes first in the order of coordinates gives
+    /// the geometry: the mesh does not depend on the order in which faces are listed.
+    fn settle(&mut self) {
+        let rank = |parts: &[Part], part: usize| parts[part].rank;
+        let middle = |part: usize, s: (f64, f64)| self.parts[part].track.point(0.5 * (s.0 + s.1));
+        let mut turned = vec![false; self.result.atoms.len()];
+        for (part, uses) in self.result.of_track.iter().enumerate().filter(|(part, _)| self.parts[*part].near > self.point) {
+            for u in uses {
+                let atom = &mut self.result.atoms[u.atom];
+                let better = rank(self.parts, part).cmp(&rank(self.parts, atom.track));
+                if better.then(compare_points(middle(part, u.s), middle(atom.track, atom.s))).is_lt() {
+                    (atom.track, atom.s) = (part, u.s);
+                    turned[u.atom] = u.against;
+                }
+            }
+        }
+        for (atom, _) in self.result.atoms.iter_mut().zip(&turned).filter(|(_, turned)| **turned) {
+            atom.ends = (atom.ends.1, atom.ends.0);
+        }
+        self.result.of_track.iter_mut().flatten().for_each(|u| u.against ^= turned[u.atom]);
+    }
+
+    fn add(&mut self, raw: &Raw) -> (usize, bool) {
+        self.result.atoms.push(Atom { ends: raw.ends, track: raw.part, s: raw.s });
+        let atom = self.result.atoms.len() - 1;
+        self.same.entry((raw.ends.0.min(raw.ends.1), raw.ends.0.max(raw.ends.1))).or_default().push(atom);
+        (atom, false)
+    }
+
+    /// The atom that a piece lies on, with whether it runs against it.
+    fn find(&self, raw: &Raw) -> Option<(usize, bool)> {
+        let here = Piece { track: &self.parts[raw.part].track, s: raw.s };
+        let known = self.same.get(&(raw.ends.0.min(raw.ends.1), raw.ends.0.max(raw.ends.1)))?;
+        known.iter().find_map(|id| {
+            let atom = &self.result.atoms[*id];
+            let there = Piece { track: &self.parts[atom.track].track, s: atom.s };
+            let near = self.parts[raw.part].near.min(self.parts[atom.track].near);
+            let against = if raw.ends.0 == raw.ends.1 { here.ring_against(&there) } else { raw.ends != atom.ends };
+            (here.off(&there, against).0 <= near).then_some((*id, against))
+        })
+    }
 }

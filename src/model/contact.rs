@@ -99,14 +99,14 @@ impl Border<'_> {
 
 impl Model {
     /// Stretches that faces of some surfaces share, in order of their edges; those of which `wanted` says so, told both
-    /// faces and edges. `tolerance.point` says how far borders may be apart and still be shared.
+    /// faces and edges. Borders up to `near` apart are shared.
     pub fn contacts(
         &self,
-        members: &BTreeSet<SurfaceId>,
+        (members, near): (&BTreeSet<SurfaceId>, f64),
         (network, tolerance): (&Network, &Tolerance),
         wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
     ) -> Vec<Contact> {
-        let (edges, joins) = self.joins(members, network, tolerance);
+        let (edges, joins) = self.joins(members, near, network, tolerance);
         let faces: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
         let mut borders: Vec<Vec<Border>> = joins.pieces.atoms.iter().map(|_| Vec::new()).collect();

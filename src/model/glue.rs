@@ -15,7 +15,7 @@ use crate::surface::Domain;
 ///
 /// Closeness is passed on: a chain of close points is one group. Also gives the representative of each group, its
 /// first point in coordinate order.
-pub fn cluster(points: &[DVec3], tolerance: &Tolerance) -> (Vec<usize>, Vec<DVec3>) {
+fn cluster(points: &[DVec3], tolerance: &Tolerance) -> (Vec<usize>, Vec<DVec3>) {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| compare_points(points[a], points[b]).then(a.cmp(&b)));
     let mut parent: Vec<usize> = (0..points.len()).collect();
@@ -58,7 +58,7 @@ pub fn root(parent: &mut [usize], mut n: usize) -> usize {
 }
 
 /// How one edge lies on another with the same end vertices: `Some(true)` the other way round, `None` not at all.
-pub(super) fn same_run(a: &[DVec3; 3], b: &[DVec3; 3], tolerance: &Tolerance) -> Option<bool> {
+fn same_run(a: &[DVec3; 3], b: &[DVec3; 3], tolerance: &Tolerance) -> Option<bool> {
     if !tolerance.same_point(a[1], b[1]) {
         return None;
     }

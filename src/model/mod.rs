@@ -3,12 +3,15 @@
 pub mod apart;
 pub mod atoms;
 pub mod contact;
+mod feet;
+pub mod gather;
 pub mod glue;
 pub mod loops;
 pub mod measure;
 mod measure_quadrature;
 mod measure_trimmed;
 mod patches;
+mod sew;
 pub mod shells;
 pub mod stretches;
 pub mod topology;

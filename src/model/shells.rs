@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::atoms::{Atoms, Part, atoms};
+use super::gather::Station;
 use super::glue::{preference, root};
+use super::sew::Seams;
 use super::topology::{EdgeId, Model, Shell, SurfaceId};
 use super::trace::Track;
 use crate::base::fault::{Fault, Result, SurfaceFault};
@@ -34,10 +36,12 @@ impl Model {
     /// A shell of surfaces: connected, oriented so that neighbours use an edge in opposite senses; free edges are a note.
     ///
     /// Stretches that a long side shares with several shorter ones count as joined. The first surface of the list keeps
-    /// its side. Fails with E616 (one-sided), E617 (three faces at an edge) or E618 (not connected).
+    /// its side. Borders up to [`Model::reach`] apart are one edge; what that moved is a note. Fails with E616 (one-sided),
+    /// E617 (three faces at an edge), E618 (not connected) or E711 (borders just beyond a stated reach).
     pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
         let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
-        let (edges, joins) = self.joins(&members, network, tolerance);
+        let near = self.reach(members.iter().copied(), request.snap.map(|s| s.0), tolerance);
+        let (edges, joins) = self.joins(&members, near, network, tolerance);
         let pieces = &joins.pieces;
         let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.atoms.len()];
         for (edge, uses) in edges.iter().zip(&pieces.of_track) {
@@ -48,9 +52,12 @@ impl Model {
                 }
             }
         }
+        let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
+        let seams = Seams { model: self, edges: &edges, joins: &joins };
+        seams.refuse_gaps(request, &free)?;
         self.manifold(request, &joins, &usages)?;
         let sides = self.orient(request, &joins, &usages)?;
-        let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
+        seams.tell(request, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.atoms[*a].length().total_cmp(&pieces.atoms[*b].length())) {
             let length = free.iter().map(|a| pieces.atoms[*a].length()).sum();
             let at = joins.middle(longest);
@@ -60,11 +67,11 @@ impl Model {
         let mut free: Vec<_> =
             free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.atoms[*a].length()))).collect();
         free.sort_by(|a, b| b.2.total_cmp(&a.2));
-        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces, closed: free.is_empty(), free })
+        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces, near, closed: free.is_empty(), free })
     }
 
-    /// Edges of some surfaces, cut into atoms.
-    pub(super) fn joins(&self, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
+    /// Edges of some surfaces, cut into atoms; borders up to `near` apart are one.
+    pub(super) fn joins(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
         let edges: Vec<EdgeId> = (0..self.edges.len())
             .map(EdgeId::at)
             .filter(|e| self.edges[e.index()].users.iter().any(|(p, _)| members.contains(&self.patches[p.index()].surface)))
@@ -73,21 +80,22 @@ impl Model {
             .iter()
             .map(|e| {
                 let curve = &self.edges[e.index()].curve;
-                Part { track: Track::of(curve, &self.surfaces, network), cuts: Vec::new(), rank: preference(curve) }
+                let track = Track::of(curve, &self.surfaces, network);
+                Part { cuts: track.joints(tolerance), track, rank: preference(curve), near }
             })
             .collect();
         let anchors: Vec<_> = edges
             .iter()
             .flat_map(|e| {
                 let ends = self.edges[e.index()].vertices;
-                [self.vertices[ends.0.index()].point, self.vertices[ends.1.index()].point]
+                [ends.0, ends.1].map(|v| Station { point: self.vertices[v.index()].point, reach: near })
             })
             .collect();
         let pieces = atoms(&parts, &anchors, tolerance);
         (edges, Joins { parts, pieces })
     }
 
-    fn origin_of(&self, surface: SurfaceId) -> Origin {
+    pub(super) fn origin_of(&self, surface: SurfaceId) -> Origin {
         self.surfaces[surface.index()].surface.origin()
     }
 
@@ -162,6 +170,8 @@ pub struct ShellRequest {
     pub name: String,
     /// Its surfaces, each once.
     pub surfaces: Vec<SurfaceId>,
+    /// How far apart borders may be and still be one edge, model units, with the expression that says so.
+    pub snap: Option<(f64, Origin)>,
     /// The declaration.
     pub origin: Origin,
 }

@@ -37,9 +37,10 @@ pub struct Stretch {
 impl Model {
     /// Stretches of the edges of some surfaces; faces of other surfaces do not count.
     ///
-    /// One long side against several shorter ones is cut where they end, as in [`Model::shell`].
-    pub fn stretches(&self, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> Vec<Stretch> {
-        let (edges, joins) = self.joins(members, network, tolerance);
+    /// One long side against several shorter ones is cut where they end, as in [`Model::shell`]; borders up to `near` apart are
+    /// shared.
+    pub fn stretches(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Vec<Stretch> {
+        let (edges, joins) = self.joins(members, near, network, tolerance);
         let n = joins.pieces.atoms.len();
         let mut users: Vec<Vec<SurfaceId>> = vec![Vec::new(); n];
         let mut inside = vec![false; n];

@@ -107,6 +107,8 @@ pub struct Shell {
     pub origin: Origin,
     /// Surfaces with `true` where the shell uses the other side.
     pub surfaces: Vec<(SurfaceId, bool)>,
+    /// How far apart borders may be and still be one edge, model units.
+    pub near: f64,
     /// No edge is free.
     pub closed: bool,
     /// Free edges: surface, middle, length; the longest first.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::topology::EdgeCurve;
 use crate::base::digest::{Content, Digester};
 use crate::base::quadrature::{self, RUNNING};
-use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
@@ -160,6 +160,21 @@ impl Track {
                 Self::Links { chains, starts, span: *span }
             }
         }
+    }
+
+    /// Arc lengths inside at which one curve ends and the next begins, ascending.
+    pub fn joints(&self, tolerance: &Tolerance) -> Vec<f64> {
+        let Self::Links { chains, starts, span } = self else { return Vec::new() };
+        let mut found: Vec<f64> = starts.clone();
+        for ((chain, against), w) in chains.iter().zip(starts.windows(2)) {
+            let along = |f: f64| if *against { 1.0 - f } else { f };
+            found.extend(chain.joints().iter().map(|f| w[0] + (w[1] - w[0]) * along(*f)));
+        }
+        found.iter_mut().for_each(|s| *s -= span.0);
+        found.retain(|s| *s > tolerance.point && *s < self.length() - tolerance.point);
+        found.sort_by(f64::total_cmp);
+        found.dedup_by(|a, b| *a - *b <= tolerance.point);
+        found
     }
 
     /// Arc length, model units.

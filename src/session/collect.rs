@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{Say, Severity};
-use crate::base::tolerance::Tolerance;
+use crate::base::fault::{Fault, Say, Severity};
+use crate::base::tolerance::{GAP_ROOM, Tolerance};
 use crate::lang::cx::{Cx, Parts, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::plans::{CheckResult, ReportTable};
@@ -110,11 +110,15 @@ pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
 /// A shell: how it is closed, and what it measures; how its faces join only when `full`.
 pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool) -> Result<ShellRow, Stop> {
     let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
-    let built = scene.shell(shell, tolerance, &mut Vec::new())?;
+    let mut said = Vec::new();
+    let built = scene.shell(shell, tolerance, &mut said)?;
+    // Roofs are open; that a skin of faces with borders of their own is, may be news.
+    let news = |fault: &&Fault| fault.code().0 != "N615" || shell.snap.is_some() || built.near > GAP_ROOM * tolerance.point;
+    said.iter().filter(news).for_each(|fault| cx.say(fault));
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
     let sides: Vec<_> = built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
-    let members = built.surfaces.iter().map(|(id, _)| *id).collect();
-    let contacts = if full { scene.model.contacts(&members, (&scene.network, tolerance), |_, _| true) } else { Vec::new() };
+    let members: std::collections::BTreeSet<_> = built.surfaces.iter().map(|(id, _)| *id).collect();
+    let contacts = if full { scene.model.contacts((&members, built.near), (&scene.network, tolerance), |_, _| true) } else { Vec::new() };
     Ok(ShellRow {
         name: shell.name.to_string(),
         faces,

@@ -55,6 +55,8 @@ pub(super) struct Things {
     pub points: Vec<(String, DVec3)>,
     /// A whole network.
     pub network: Option<Arc<Network>>,
+    /// How far apart edges of the shells may be and still be one, model units.
+    pub near: f64,
 }
 
 /// Everything that making a scene asks.
@@ -178,7 +180,10 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
             Value::Surface(surface) => things.surfaces.extend(scene.find_all([surface])?),
             // A shell that is none (in pieces, one-sided) shows its surfaces as they are.
             Value::Shell(shell) => things.surfaces.extend(match scene.shell(shell, &tolerance, &mut Vec::new()) {
-                Ok(built) => built.surfaces,
+                Ok(built) => {
+                    things.near = things.near.max(built.near);
+                    built.surfaces
+                }
                 Err(_) => scene.find_all(&shell.surfaces)?,
             }),
             Value::Mesh(mesh) => things.meshes.push(cx.mesh(mesh)?),
@@ -277,7 +282,8 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
     }
     let borders = spec.show.borders.unwrap_or(true);
     if borders && !drawn.is_empty() {
-        drawing.lines.extend(lines::borders((model, &stage.scene.network), &drawn, fine, &stage.tolerance));
+        let near = things.near.max(model.reach(drawn.iter().copied(), None, &stage.tolerance));
+        drawing.lines.extend(lines::borders((model, &stage.scene.network), (&drawn, near), fine, &stage.tolerance));
     }
     let meshes: Vec<&Arc<Mesh>> = things.meshes.iter().filter(|m| !of_surfaces || !drawn_as_surface(m, stage, &drawn)).collect();
     for mesh in &meshes {

@@ -9,6 +9,7 @@ use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, Value};
 use crate::mesh::plan::{GroupRequest, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
+use crate::model::SurfaceId;
 use crate::surface::Surface;
 
 /// Finds what the values of a mesh stand for.
@@ -31,6 +32,10 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     for (value, _) in &spec.things {
         finder.add(cx, &mut plan, value, sink)?;
     }
+    // Surfaces by themselves are glued as a shell of them would be.
+    let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
+    let near = scene.model.reach(alone.iter().copied(), None, &tolerance);
+    plan.glue.extend(alone.into_iter().map(|s| (s, near)));
     settings(&mut plan, spec);
     for rule in &spec.rules {
         let first = plan.rules.len();
@@ -109,7 +114,12 @@ impl Finder<'_> {
             Value::Shell(shell) => {
                 // Whether it is open was said where the shell is declared.
                 let mut said = Vec::new();
-                plan.surfaces.extend(self.scene.shell(shell, &self.tolerance, &mut said)?.surfaces);
+                let built = self.scene.shell(shell, &self.tolerance, &mut said)?;
+                for (surface, _) in &built.surfaces {
+                    let near = plan.glue.entry(*surface).or_insert(built.near);
+                    *near = near.max(built.near);
+                }
+                plan.surfaces.extend(built.surfaces);
                 sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N')));
             }
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),

@@ -1,5 +1,6 @@
 //! Where a curve that lies on a surface runs in (u, v): followed step by step, so that it never jumps to another sheet.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -33,7 +34,7 @@ impl Course {
             Self::Line(a, b) => Self::Line(turn(*b), turn(*a)),
             Self::Pull(pull) => {
                 let at = pull.at.iter().rev().map(|(f, uv)| (*f, turn((uv.x, uv.y)).into()));
-                Self::Pull(Arc::new(Pull { at: at.collect() }))
+                Self::Pull(Arc::new(Pull { at: at.collect(), off: pull.off }))
             }
         }
     }
@@ -43,7 +44,10 @@ impl Course {
         let shift = |(u, v): (f64, f64)| (u + by.x, v + by.y);
         match self {
             Self::Line(a, b) => Self::Line(shift(*a), shift(*b)),
-            Self::Pull(pull) => Self::Pull(Arc::new(Pull { at: pull.at.iter().map(|(f, uv)| (*f, *uv + by)).collect() })),
+            Self::Pull(pull) => {
+                let at = pull.at.iter().map(|(f, uv)| (*f, *uv + by)).collect();
+                Self::Pull(Arc::new(Pull { at, off: pull.off }))
+            }
         }
     }
 
@@ -60,6 +64,8 @@ impl Course {
 #[derive(Clone, Debug)]
 pub(super) struct Pull {
     at: Vec<(f64, DVec2)>,
+    /// The largest distance from the surface met on the way, model units.
+    pub off: f64,
 }
 
 /// Where a curve is too far from the surface.
@@ -95,10 +101,15 @@ impl Pull {
         if from > to {
             cuts.reverse();
         }
+        let widest = Cell::new(0.0_f64);
         let land = |f: f64, guess: DVec2| -> Result<DVec2, Off> {
             let p = chain.point(f);
             let (uv, distance) = foot(surface, p, guess);
-            if distance <= near { Ok(uv) } else { Err(Off { at: p, distance }) }
+            if distance > near {
+                return Err(Off { at: p, distance });
+            }
+            widest.set(widest.get().max(distance));
+            Ok(uv)
         };
         let mut at = vec![(from, land(from, start)?)];
         for w in cuts.windows(2) {
@@ -107,12 +118,12 @@ impl Pull {
                 walk(surface, chain, &mut at, f, &land, DEEPEST)?;
             }
         }
-        Ok(Self { at })
+        Ok(Self { at, off: widest.get() })
     }
 
     /// The same in the other direction.
     pub fn turned(&self) -> Self {
-        Self { at: self.at.iter().rev().copied().collect() }
+        Self { at: self.at.iter().rev().copied().collect(), off: self.off }
     }
 
     /// The first and the last place.

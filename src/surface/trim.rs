@@ -258,6 +258,27 @@ impl Surface {
         }
     }
 
+    /// How far the borders of a trimmed surface are from it and the end of each from the start of the next one, at most, model
+    /// units; 0 for others. Along a border it is measured where it was followed.
+    pub fn gap(&self) -> f64 {
+        let Some(trim) = &self.parts().trim else { return 0.0 };
+        let off = trim.courses.iter().map(|c| if let Course::Pull(pull) = c { pull.off } else { 0.0 }).fold(0.0, f64::max);
+        let end = |k: usize| match self.side(k) {
+            Side::Chain { chain, to, .. } => Some(chain.point(to)),
+            _ => self.border_line(k).map(|(_, b)| self.point(b.0, b.1)),
+        };
+        let (mut widest, mut first) = (off, 0);
+        for n in &trim.loops {
+            for k in 0..*n {
+                if let (Some(a), Some(b)) = (end(first + k), self.border_start(first + (k + 1) % n)) {
+                    widest = widest.max(a.distance(b));
+                }
+            }
+            first += n;
+        }
+        widest
+    }
+
     /// The loops as polygons in (u, v) whose corners lie on the borders.
     pub fn outlines(&self) -> Vec<Vec<DVec2>> {
         let Some(trim) = &self.parts().trim else { return Vec::new() };

@@ -117,8 +117,10 @@ pub enum MeshFault {
         gap: f64,
         /// Where that is.
         at: DVec3,
+        /// The distance within which edges are glued, with the expression that says so.
+        stated: (f64, Origin),
     },
-    /// N712: a stretch between two corners shorter than the tolerance was merged.
+    /// N712: edges shorter than what is glued became corners.
     EdgeTooShort {
         /// The surface or curve it is on.
         of: Origin,
@@ -126,6 +128,8 @@ pub enum MeshFault {
         length: f64,
         /// Where.
         at: DVec3,
+        /// How many others that are shorter.
+        more: usize,
     },
     /// E715: elements that are turned over or have no area.
     Inverted {
@@ -273,7 +277,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             Report::new("E230", format!("{what} at {} needs `method: {method}`, which is not in this version", say.point(*at)))
                 .at(*of, "asked for here")
         }
-        F::EdgeMismatch { a, b, gap, at } => Report::new(
+        F::EdgeMismatch { a, b, gap, at, stated } => Report::new(
             "E711",
             format!(
                 "the borders of {} and {} are {} apart at {}",
@@ -283,12 +287,23 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 say.point(*at)
             ),
         )
+        .at(stated.1, format!("edges within {} are one", say.length(stated.0)))
         .at(*a, "this border")
         .at(*b, "and this one")
-        .help("build both on the same curve"),
-        F::EdgeTooShort { of, length, at } => Report::new(
+        .help("glue over a larger distance, or build both on the same curve"),
+        F::EdgeTooShort { of, length, at, more } => Report::new(
             "N712",
-            format!("a stretch of {} only {} long at {} was merged", say.quoted(*of, "an edge"), say.length(*length), say.point(*at)),
+            format!(
+                "an edge of {} only {} long at {} became a corner{}",
+                say.quoted(*of, "a face"),
+                say.length(*length),
+                say.point(*at),
+                match more {
+                    0 => String::new(),
+                    1 => ", and a shorter one".to_owned(),
+                    _ => format!(", and {more} shorter ones"),
+                }
+            ),
         )
         .at(*of, "has two corners that are almost one"),
         F::Inverted { surface, count, uv, at } => Report::new(

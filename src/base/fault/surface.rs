@@ -211,6 +211,21 @@ pub enum SurfaceFault {
         /// Middle of the longest one.
         at: DVec3,
     },
+    /// N513: borders that are apart became one edge of a shell.
+    ShellGlued {
+        /// The shell.
+        shell: Origin,
+        /// What says how far, if anything does.
+        says: Option<Origin>,
+        /// The surface whose border counts.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Their largest distance.
+        gap: f64,
+        /// Where that is.
+        at: DVec3,
+    },
     /// E612: a hole that is not inside its outer loop.
     LoopOutside {
         /// The trimming.
@@ -640,6 +655,18 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
             ),
         )
         .at(*shell, "not a closed skin"),
+        F::ShellGlued { shell, says, a, b, gap, at } => Report::new(
+            "N513",
+            format!(
+                "edges of {} were glued over gaps up to {}, the widest between {} and {} at {}",
+                say.quoted(*shell, "the shell"),
+                say.length(*gap),
+                say.quoted(*a, "one face"),
+                say.quoted(*b, "its neighbour"),
+                say.point(*at)
+            ),
+        )
+        .at(says.unwrap_or(*shell), if says.is_some() { "asked for here" } else { "its faces came with borders of their own" }),
         F::ShellNotOrientable { shell, a, b, at } => Report::new(
             "E616",
             format!(

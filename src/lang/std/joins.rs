@@ -15,13 +15,13 @@ use crate::surface::Surface;
 use crate::{builtins, fields};
 
 /// The stretches that faces of two lists share; without a second list all that the first one's share.
-fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), tolerance: &Tolerance) -> Result<Vec<Contact>, Stop> {
+fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolerance): (f64, &Tolerance)) -> Result<Vec<Contact>, Stop> {
     let places = |list: &[Surface]| Ok::<_, Stop>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
     let ours = places(a)?;
     let theirs = b.map(places).transpose()?;
     let members: BTreeSet<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
     let of = |face: crate::model::PatchId| scene.model.patches[face.index()].surface;
-    let contacts = scene.model.contacts(&members, (&scene.network, tolerance), |one, other| match &theirs {
+    let contacts = scene.model.contacts((&members, near), (&scene.network, tolerance), |one, other| match &theirs {
         None => true,
         Some(theirs) => {
             let (one, other) = (of(one.0), of(other.0));
@@ -77,7 +77,7 @@ fn along(cx: &mut Cx, edge: EdgeOf) -> Result<Vec<Contact>, Stop> {
     let reach = tolerance.point + length / f64::from(SAMPLES);
     let near = |n: &usize| model.surfaces[*n].surface.hull().touches(&around, reach);
     let members = (0..model.surfaces.len()).filter(near).map(SurfaceId::at).collect();
-    Ok(model.contacts(&members, (&network, &tolerance), |a, b| a.1 == edge.1 || b.1 == edge.1))
+    Ok(model.contacts((&members, tolerance.point), (&network, &tolerance), |a, b| a.1 == edge.1 || b.1 == edge.1))
 }
 
 builtins! {
@@ -106,8 +106,8 @@ builtins! {
     ) -> Vec<Value> = |cx, a, b, within| {
         let (module, tolerance) = (cx.module(), cx.tolerance()?);
         let near = match within {
-            None => tolerance,
-            Some(d) if d.0 >= tolerance.point => Tolerance { point: d.0, ..tolerance },
+            None => tolerance.point,
+            Some(d) if d.0 >= tolerance.point => d.0,
             Some(d) => {
                 let (found, range) = (cx.length(d.0), format!("at least the tolerance, {}", cx.length(tolerance.point)));
                 return Err(ValueFault::OutsideRange { argument: "within", found, range }.into());
@@ -115,7 +115,7 @@ builtins! {
         };
         let (a, b) = (a.surfaces(), b.map(Faces::surfaces));
         let scene = Scene::of(cx, module, a.iter().chain(b.iter().flatten()))?;
-        let contacts = shared(&scene, (&a, b.as_deref()), &near)?;
+        let contacts = shared(&scene, (&a, b.as_deref()), (near, &tolerance))?;
         Ok(contacts.iter().map(|contact| record_of(cx, &scene, contact, &tolerance)).collect())
     };
 }

@@ -22,12 +22,7 @@ pub fn chord(surface: &Surface, uv: [DVec2; 3], p: [DVec3; 3]) -> f64 {
     }
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
     let width = high - low;
-    let (low, high) = (hold(surface, low - width * WIDER), hold(surface, high + width * WIDER));
-    let spread = surface.spread((low.x, high.x), (low.y, high.y));
-    let (uu, uv_, vv) = (spread.duu.along(normal), spread.duv.along(normal), spread.dvv.along(normal));
-    if spread.duu.is_vast() || spread.duv.is_vast() || spread.dvv.is_vast() {
-        return f64::INFINITY;
-    }
+    let Some([uu, uv_, vv]) = bends(surface, low - width * WIDER, high + width * WIDER, normal) else { return f64::INFINITY };
     let (mid, half) = (|r: Range| 0.5 * (r.low + r.high), |r: Range| 0.5 * (r.high - r.low));
     // 2 |x y| ≤ a x² + y² / a, with a that makes both alike over the box.
     let a = if width.x > 0.0 && width.y > 0.0 { width.y / width.x } else { 1.0 };
@@ -58,9 +53,37 @@ fn most(c: [f64; 3]) -> f64 {
     on_side.max(c[0] * l[1] * l[2] + c[1] * l[2] * l[0] + c[2] * l[0] * l[1])
 }
 
-/// Inside the parameters of the surface.
-fn hold(surface: &Surface, uv: DVec2) -> DVec2 {
-    if surface.is_flat() { uv } else { uv.clamp(DVec2::ZERO, DVec2::ONE) }
+/// Second derivatives along a direction over a box of (u, v): by u twice, by both, by v twice. `None` where they have no bound.
+fn bends(surface: &Surface, low: DVec2, high: DVec2, along: DVec3) -> Option<[Range; 3]> {
+    let (closed_u, closed_v) = surface.closed();
+    let mut found: Option<[Range; 3]> = None;
+    for u in parts(surface, closed_u, (low.x, high.x)) {
+        for v in parts(surface, closed_v, (low.y, high.y)) {
+            let spread = surface.spread(u, v);
+            if spread.duu.is_vast() || spread.duv.is_vast() || spread.dvv.is_vast() {
+                return None;
+            }
+            let here = [&spread.duu, &spread.duv, &spread.dvv].map(|d| d.along(along));
+            found = Some(found.map_or(here, |before| [0, 1, 2].map(|k| before[k].union(here[k]))));
+        }
+    }
+    found
+}
+
+/// A range of u or v inside the surface's own: where it closes, what lies over the seam is at the other end.
+fn parts(surface: &Surface, closed: bool, (low, high): (f64, f64)) -> Vec<(f64, f64)> {
+    if surface.is_flat() {
+        return vec![(low, high)];
+    }
+    if !closed || (low >= 0.0 && high <= 1.0) {
+        return vec![(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))];
+    }
+    if high - low >= 1.0 {
+        return vec![(0.0, 1.0)];
+    }
+    let turns = low.floor();
+    let (low, high) = (low - turns, high - turns);
+    if high <= 1.0 { vec![(low, high)] } else { vec![(low, 1.0), (0.0, high - 1.0)] }
 }
 
 /// Wanted edge length for limits at a place: of an equilateral triangle, however it lies.

@@ -17,7 +17,7 @@ use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::math::angle_between;
 use crate::base::par;
-use crate::base::tolerance::{NUDGE, WHOLE_NUMBER};
+use crate::base::tolerance::{NUDGE, SINGULAR, WHOLE_NUMBER};
 use crate::base::triangulate_points::PointsFault;
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
@@ -43,6 +43,10 @@ const SMOOTH: usize = 30;
 /// Feet of one point nearer than this in u and v are one place.
 const ONE_PLACE: f64 = NUDGE;
 
+/// Ends of two borders of one face that became one junction lie within this many glue distances of each other in the chart,
+/// whose lengths are right on average only.
+const ROOM: f64 = 8.0;
+
 /// Everything a face is made from.
 pub struct Made<'a> {
     /// The plan and the model.
@@ -63,6 +67,40 @@ struct Border {
     edges: Vec<[u32; 2]>,
 }
 
+impl Border {
+    /// Edges of the chart where a loop passes a pole: it goes on at another place of the same node.
+    fn jump(&mut self, loops: &[usize], ends: &[Option<(u32, u32)>]) {
+        let mut rest = ends;
+        for n in loops {
+            let (own, others) = rest.split_at(*n);
+            rest = others;
+            let own: Vec<(u32, u32)> = own.iter().copied().flatten().collect();
+            for k in 0..own.len() {
+                let (from, to) = (own[k].1, own[(k + 1) % own.len()].0);
+                if from != to {
+                    self.edges.push([from, to]);
+                }
+            }
+        }
+    }
+
+    /// Places of one node that are no further apart than borders were glued over become one: on the face itself the ends of
+    /// its borders need not meet.
+    fn close(&mut self, sheet: &Sheet, near: f64) {
+        let mut into: Vec<u32> = (0..self.ids.len() as u32).collect();
+        for n in 0..self.ids.len() {
+            let here = sheet.xy(self.uv[n]);
+            let first = (0..n).find(|m| self.ids[*m] == self.ids[n] && sheet.xy(self.uv[*m]).distance(here) <= ROOM * near);
+            into[n] = first.map_or(into[n], |m| into[m]);
+        }
+        let kept: Vec<usize> = (0..into.len()).filter(|n| into[*n] == *n as u32).collect();
+        let place = |n: u32| kept.partition_point(|k| *k < into[n as usize] as usize) as u32;
+        self.edges = self.edges.iter().map(|e| e.map(place)).filter(|[a, b]| a != b).collect();
+        self.uv = kept.iter().map(|n| self.uv[*n]).collect();
+        self.ids = kept.iter().map(|n| self.ids[*n]).collect();
+    }
+}
+
 /// A face without anything in it, for as long as only its border matters.
 pub fn empty(made: &Made, face: &Face) -> Prepared {
     prepared(made, face, Free::default(), Vec::new(), Vec::new())
@@ -71,8 +109,11 @@ pub fn empty(made: &Made, face: &Face) -> Prepared {
 /// Makes the face.
 pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let border = border(made, face);
+    let mut border = border(made, face);
     let sheet = Sheet::new(surface, border.uv.iter().copied()).ok_or_else(|| no_area(made, face))?;
+    if face.near > made.input.tolerance.point {
+        border.close(&sheet, face.near);
+    }
     let outline = Outline {
         xy: border.uv.iter().map(|uv| sheet.xy(*uv)).collect(),
         p: border.ids.iter().map(|n| made.points[*n as usize]).collect(),
@@ -84,10 +125,14 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
         Err(trouble) => return Err(fault(made, face, &border, trouble)),
     };
     let fixed = web.fixed as usize;
+    // At a pole the chart has an edge that is a point in space.
+    let node = |n: u32| border.ids.get(n as usize).copied();
+    let flat = |t: &[u32; 3]| (0..3).any(|k| node(t[k]).is_some() && node(t[k]) == node(t[(k + 1) % 3]));
+    let triangles: Vec<[u32; 3]> = web.tri.iter().copied().filter(|t| !flat(t)).collect();
     let mut uv = border.uv;
     uv.extend(web.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
     let inner = web.p[fixed..].to_vec();
-    Ok(prepared(made, face, Free { uv, border: fixed, triangles: web.tri }, border.ids, inner))
+    Ok(prepared(made, face, Free { uv, border: fixed, triangles }, border.ids, inner))
 }
 
 /// Triangles that keep the limits: lengths by the bends at first, smaller where a triangle's bound says so.
@@ -212,7 +257,8 @@ fn loads(surface: &Surface, sheet: &Sheet, web: &Web, limits: &Limits) -> Vec<Lo
         some.iter()
             .map(|t| {
                 let c = t.map(|n| n as usize);
-                let chord = limits.chord.map_or(0.0, |limit| bound::chord(surface, c.map(|n| places[n]), c.map(|n| web.p[n])) / limit);
+                let at = || from_pole(surface, c.map(|n| places[n]));
+                let chord = limits.chord.map_or(0.0, |limit| bound::chord(surface, at(), c.map(|n| web.p[n])) / limit);
                 let angle = limits.angle.map_or(0.0, |limit| {
                     let turn = |i: usize, j: usize| angle_between(normals[c[i]], normals[c[j]]);
                     turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
@@ -222,6 +268,23 @@ fn loads(surface: &Surface, sheet: &Sheet, web: &Web, limits: &Limits) -> Vec<Lo
             .collect::<Vec<_>>()
     });
     batches.into_iter().flatten().collect()
+}
+
+/// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two
+/// corners spans the least.
+fn from_pole(surface: &Surface, at: [DVec2; 3]) -> [DVec2; 3] {
+    let mut best = at;
+    for k in 0..3 {
+        let jet = surface.jet(at[k].x, at[k].y);
+        let middle = 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]);
+        let (du, dv) = (jet.du.length(), jet.dv.length());
+        if du <= SINGULAR * dv {
+            best[k].x = middle.x;
+        } else if dv <= SINGULAR * du {
+            best[k].y = middle.y;
+        }
+    }
+    best
 }
 
 /// First lengths over those that bends ask for: triangles are not all equilateral.
@@ -257,12 +320,20 @@ fn border(made: &Made, face: &Face) -> Border {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let mut border = Border::default();
     let mut known: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    // First and last node of each side, loops apart.
+    let mut ends: Vec<Option<(u32, u32)>> = Vec::new();
     for (k, side) in face.sides.iter().enumerate() {
+        ends.push(None);
         let line = crate::mesh::faces::line(made.layout, made.nodes, face, k, 1);
         let feet = line.ids.iter().map(|n| surface.flat_uv(made.points[*n as usize])).collect::<Option<Vec<_>>>();
         let mut uv = feet.unwrap_or_else(|| places(made.input, face, k, &line.lengths));
         if side.uses.is_empty() {
-            uv = surface.border_line(k).map_or_else(|| pole(record, k), |(a, b)| vec![a, b]);
+            uv = match surface.border_line(k) {
+                Some((a, b)) => vec![a, b],
+                // An edge that was glued together: its neighbours meet there.
+                None if surface.domain() == Domain::Loop => continue,
+                None => pole(record, k),
+            };
         }
         // Edges have the face on their left; sides of a mapped domain run with ascending u or v.
         let back = made.input.model.runs_back(record, k);
@@ -284,7 +355,11 @@ fn border(made: &Made, face: &Face) -> Border {
                 border.edges.push(if back { [node, before] } else { [before, node] });
             }
             last = Some(node);
+            ends[k] = Some((ends[k].map_or(node, |e| e.0), node));
         }
+    }
+    if surface.domain() == Domain::Loop {
+        border.jump(&surface.loops(), &ends);
     }
     border
 }

@@ -1,0 +1,104 @@
+//! How near the borders of a shell's faces must be to be one, and what joining them did [math notes §14.2].
+
+use glam::DVec3;
+
+use super::feet::Piece;
+use super::shells::{Joins, ShellRequest};
+use super::topology::{EdgeId, Model, SurfaceId};
+use crate::base::fault::{Fault, MeshFault, Result, SurfaceFault};
+use crate::base::tolerance::{GAP_ROOM, MISMATCH, Tolerance};
+
+/// A place where two borders that became one are apart.
+struct Gap {
+    width: f64,
+    at: DVec3,
+    surfaces: (SurfaceId, SurfaceId),
+}
+
+/// What joining edges needs to be judged: the edges in the order of the joins' tracks.
+pub(super) struct Seams<'a> {
+    pub model: &'a Model,
+    pub edges: &'a [EdgeId],
+    pub joins: &'a Joins,
+}
+
+impl Model {
+    /// How far apart borders of some surfaces may be and still be one edge, model units: what is stated, else ten times the
+    /// widest gap within the borders that a face came with, and the tolerance at the least.
+    pub fn reach(&self, surfaces: impl IntoIterator<Item = SurfaceId>, stated: Option<f64>, tolerance: &Tolerance) -> f64 {
+        let own = || surfaces.into_iter().map(|s| self.surfaces[s.index()].surface.gap()).fold(0.0, f64::max);
+        // What is just as far apart as stated is within it.
+        stated.map_or_else(|| GAP_ROOM * own(), |d| d + tolerance.rounding).max(tolerance.point)
+    }
+}
+
+impl Seams<'_> {
+    fn surface(&self, part: usize) -> SurfaceId {
+        let user = self.model.edges[self.edges[part].index()].users[0];
+        self.model.patches[user.0.index()].surface
+    }
+
+    fn piece(&self, part: usize, s: (f64, f64)) -> Piece<'_> {
+        Piece { track: &self.joins.parts[part].track, s }
+    }
+
+    /// Where the borders of an atom are furthest from the one that gives its geometry.
+    fn widest(&self) -> Option<Gap> {
+        let mut found: Option<Gap> = None;
+        for (part, uses) in self.joins.pieces.of_track.iter().enumerate() {
+            for u in uses {
+                let atom = &self.joins.pieces.atoms[u.atom];
+                if atom.track == part {
+                    continue;
+                }
+                let (here, there) = (self.piece(part, u.s), self.piece(atom.track, atom.s));
+                let (width, at) = here.off(&there, u.against);
+                if found.as_ref().is_none_or(|f| width > f.width) {
+                    found = Some(Gap { width, at, surfaces: (self.surface(atom.track), self.surface(part)) });
+                }
+            }
+        }
+        found
+    }
+
+    /// N712 for edges that became a corner, N513 where borders apart became one.
+    pub fn tell(&self, request: &ShellRequest, tolerance: &Tolerance, sink: &mut Vec<Fault>) {
+        let parts = &self.joins.parts;
+        let gone = |n: &usize| self.joins.pieces.of_track[*n].is_empty() && parts[*n].track.length() > tolerance.point;
+        let short: Vec<usize> = (0..parts.len()).filter(gone).collect();
+        let length = |n: usize| parts[n].track.length();
+        if let Some(longest) = short.iter().copied().max_by(|a, b| length(*a).total_cmp(&length(*b)).then(b.cmp(a))) {
+            let of = self.model.origin_of(self.surface(longest));
+            let at = parts[longest].track.point(0.5 * length(longest));
+            sink.push(MeshFault::EdgeTooShort { of, length: length(longest), at, more: short.len() - 1 }.into());
+        }
+        if let Some(gap) = self.widest().filter(|gap| gap.width > tolerance.point) {
+            let (a, b) = (self.model.origin_of(gap.surfaces.0), self.model.origin_of(gap.surfaces.1));
+            let fault =
+                SurfaceFault::ShellGlued { shell: request.origin, says: request.snap.map(|s| s.1), a, b, gap: gap.width, at: gap.at };
+            sink.push(fault.into());
+        }
+    }
+
+    /// E711 for two free pieces that run along each other just beyond a stated reach: they were meant to be one.
+    pub fn refuse_gaps(&self, request: &ShellRequest, free: &[usize]) -> Result<()> {
+        let Some((stated, says)) = request.snap else { return Ok(()) };
+        let atoms = &self.joins.pieces.atoms;
+        let mut worst: Option<Gap> = None;
+        for (n, a) in free.iter().enumerate() {
+            for b in &free[n + 1..] {
+                let (a, b) = (&atoms[*a], &atoms[*b]);
+                let (long, short) = if a.length() >= b.length() { (a, b) } else { (b, a) };
+                let (here, there) = (self.piece(short.track, short.s), self.piece(long.track, long.s));
+                let (width, at) = here.from(&there);
+                let along = width <= MISMATCH * stated && width < short.length();
+                if along && worst.as_ref().is_none_or(|w| width > w.width) {
+                    worst = Some(Gap { width, at, surfaces: (self.surface(a.track), self.surface(b.track)) });
+                }
+            }
+        }
+        let Some(gap) = worst else { return Ok(()) };
+        let (a, b) = (self.model.origin_of(gap.surfaces.0), self.model.origin_of(gap.surfaces.1));
+        Err(MeshFault::EdgeMismatch { a, b, gap: gap.width, at: gap.at, stated: (stated, says) }.into())
+    }
+}
