@@ -10,11 +10,12 @@ use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build;
+use lofting::geometry::curve::Shape;
 use lofting::network::Chain;
 use lofting::surface::meet;
 use lofting::surface::nurbs::{self, Net};
 use lofting::surface::revolve::{Axis, revolve};
-use lofting::surface::{Nearest, Surface, plane};
+use lofting::surface::{Nearest, Surface, extrude, plane};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -133,4 +134,203 @@ fn a_curve_on_a_surface_is_one_stretch() {
     }
     let found = meet::with_curve(&circle(DVec3::Z), &[flat], &tolerance()).unwrap();
     assert!(matches!(found.as_slice(), [m] if m.shared_to == Some(1.0)), "{found:?}");
+}
+
+/// A tube about an axis through the origin.
+fn tube(axis: DVec3, radius: f64, length: f64) -> Surface {
+    let circle = build::circle(-axis * (0.5 * length), radius, axis, Origin::NONE).unwrap();
+    extrude(&Chain::of_curve(&circle), axis * length, Origin::NONE, &tolerance()).unwrap()
+}
+
+fn flat(at: DVec3, normal: DVec3) -> Surface {
+    plane::unbounded(at, normal, Origin::NONE).unwrap()
+}
+
+fn cut(a: &Surface, b: &Surface) -> Vec<Chain> {
+    meet::with_surfaces(from_ref(a), from_ref(b), Origin::NONE, &tolerance()).unwrap().curves
+}
+
+/// Every one of many places of each curve is on both surfaces, within the quarter of the tolerance that is promised.
+fn assert_on_both(curves: &[Chain], surfaces: [&Surface; 2]) {
+    for surface in surfaces {
+        let near = Nearest::new(surface);
+        for curve in curves {
+            for k in 0..=60 {
+                let p = curve.point(f64::from(k) / 60.0);
+                let off = near.at(p).distance;
+                assert!(off <= 0.3 * TOLERANCE, "{p} is off by {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn planes_cut_spheres_in_circles() {
+    let ball = ball();
+    let strategy = (vector(1.0), -0.95..0.95_f64);
+    let run = runner(30).run(&strategy, |(normal, height)| {
+        prop_assume!(normal.length() > 0.1);
+        let normal = normal.normalize();
+        let plane = flat(normal * height, normal);
+        let curves = cut(&ball, &plane);
+        prop_assert_eq!(curves.len(), 1);
+        prop_assert!(curves[0].is_closed(&tolerance()));
+        let round = std::f64::consts::TAU * (1.0 - height * height).sqrt();
+        prop_assert!((curves[0].length() - round).abs() < 1e-5, "{} {round}", curves[0].length());
+        assert_on_both(&curves, [&ball, &plane]);
+        Ok(())
+    });
+    run.unwrap();
+}
+
+/// Through the axis, through the seam, along the equator, a hair beside the pole, touching the pole.
+#[test]
+fn seams_and_poles_are_nothing_special() {
+    let ball = ball();
+    for normal in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.6, 0.8, 0.0), DVec3::new(0.6, 0.0, 0.8)] {
+        for height in [0.0, 1e-4, 0.6, 0.999] {
+            let plane = flat(normal * height, normal);
+            let curves = cut(&ball, &plane);
+            assert_eq!(curves.len(), 1, "{normal} {height}");
+            assert!(curves[0].is_closed(&tolerance()), "{normal} {height}");
+            let round = std::f64::consts::TAU * (1.0 - height * height).sqrt();
+            assert!((curves[0].length() - round).abs() < 1e-5, "{normal} {height}: {} {round}", curves[0].length());
+            assert_on_both(&curves, [&ball, &plane]);
+        }
+        for sign in [1.0, -1.0] {
+            let common = meet::with_surfaces(from_ref(&ball), &[flat(normal * sign, normal)], Origin::NONE, &tolerance()).unwrap();
+            assert!(common.curves.is_empty() && common.touches.len() == 1, "{normal}: {common:?}");
+            assert!(common.touches[0].distance(normal * sign) < 1e-3);
+        }
+    }
+    let tube = tube(DVec3::Z, 1.0, 2.0);
+    // The seam is at y = 0, the lower border at z = -1.
+    for (normal, height, count, length) in [
+        (DVec3::Y, 0.0, 2, 4.0),
+        (DVec3::X, 0.0, 2, 4.0),
+        (DVec3::Z, -1.0, 1, std::f64::consts::TAU),
+        (DVec3::Z, 1.0, 1, std::f64::consts::TAU),
+        (DVec3::Z, 0.25, 1, std::f64::consts::TAU),
+    ] {
+        let curves = cut(&tube, &flat(normal * height, normal));
+        assert_eq!(curves.len(), count, "{normal} {height}");
+        assert!((curves.iter().map(Chain::length).sum::<f64>() - length).abs() < 1e-5);
+        if count == 2 {
+            assert!(curves.iter().all(|c| matches!(c.runs()[0].curve.shape(), Shape::Line(..))), "straight ones are lines");
+        }
+    }
+}
+
+/// Equal tubes at right angles cross in two ellipses that cross each other; unequal ones in two loops.
+#[test]
+fn tubes_cross_tubes() {
+    let a = tube(DVec3::Z, 1.0, 4.0);
+    for radius in [0.3, 0.9, 0.999] {
+        let b = tube(DVec3::X, radius, 4.0);
+        let curves = cut(&a, &b);
+        assert_eq!(curves.len(), 2, "{radius}");
+        assert!(curves.iter().all(|c| c.is_closed(&tolerance())));
+        assert_on_both(&curves, [&a, &b]);
+    }
+    let b = tube(DVec3::X, 1.0, 4.0);
+    match meet::with_surfaces(from_ref(&a), from_ref(&b), Origin::NONE, &tolerance()) {
+        Ok(common) => {
+            // Semi-axes 1 and √2.
+            let length: f64 = common.curves.iter().map(Chain::length).sum();
+            assert!((length - 2.0 * 7.640_395_578).abs() < 1e-4, "{length} {}", common.curves.len());
+            assert_on_both(&common.curves, [&a, &b]);
+        }
+        Err(fault) => assert!(matches!(fault.code().0, "E413" | "E657"), "{fault}"),
+    }
+}
+
+#[test]
+fn surfaces_on_each_other_are_told() {
+    let a = tube(DVec3::Z, 1.0, 4.0);
+    for b in [tube(DVec3::Z, 1.0, 3.0), flat(DVec3::X, DVec3::X), tube(DVec3::Z, 1.0, 4.0)] {
+        let fault = meet::with_surfaces(from_ref(&a), &[b], Origin::NONE, &tolerance()).unwrap_err();
+        assert_eq!(fault.code().0, "E657", "{fault}");
+    }
+}
+
+/// Rows of signs over a fine grid: how many lines of zeros a height over the unit square has, by runs of cells that touch.
+fn lines_of_zeros(height: impl Fn(f64, f64) -> f64) -> (usize, f64) {
+    const N: usize = 160;
+    let value = |i: usize, j: usize| height(i as f64 / N as f64, j as f64 / N as f64);
+    let values: Vec<f64> = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect();
+    let at = |i: usize, j: usize| values[j * (N + 1) + i];
+    let mixed = |i: usize, j: usize| {
+        let corners = [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)];
+        corners.iter().any(|z| *z > 0.0) && corners.iter().any(|z| *z <= 0.0)
+    };
+    let mut seen = vec![false; N * N];
+    let mut count = 0;
+    for start in 0..N * N {
+        if seen[start] || !mixed(start % N, start / N) {
+            continue;
+        }
+        count += 1;
+        let mut open = vec![start];
+        seen[start] = true;
+        while let Some(k) = open.pop() {
+            let (i, j) = (k % N, k / N);
+            for (x, y) in [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)] {
+                if x < N && y < N && !seen[y * N + x] && mixed(x, y) {
+                    seen[y * N + x] = true;
+                    open.push(y * N + x);
+                }
+            }
+        }
+    }
+    // The least slope where the height is near zero says whether the grid can be trusted.
+    let steep = (0..N * N).filter(|k| mixed(k % N, k / N)).map(|k| {
+        let (i, j) = (k % N, k / N);
+        (at(i + 1, j) - at(i, j)).abs().max((at(i, j + 1) - at(i, j)).abs()) * N as f64
+    });
+    (count, steep.fold(f64::INFINITY, f64::min))
+}
+
+#[test]
+fn planes_cut_bicubics_in_as_many_curves_as_dense_samples_say() {
+    let heights = prop::collection::vec(-0.6..0.6_f64, 16);
+    let run = runner(40).run(&(heights, vector(0.6), -0.3..0.3_f64), |(heights, tilt, height)| {
+        let sheet = sheet(&heights);
+        let (at, normal) = (DVec3::new(0.5, 0.5, height), (DVec3::Z + tilt * DVec3::new(1.0, 1.0, 0.0)).normalize());
+        let plane = flat(at, normal);
+        let (count, steep) = lines_of_zeros(|x, y| (sheet.point(x, y) - at).dot(normal));
+        let curves = cut(&sheet, &plane);
+        assert_on_both(&curves, [&sheet, &plane]);
+        prop_assume!(steep > 0.08);
+        prop_assert_eq!(curves.len(), count);
+        Ok(())
+    });
+    run.unwrap();
+}
+
+#[test]
+fn bicubics_cut_bicubics() {
+    let heights = || prop::collection::vec(-0.5..0.5_f64, 16);
+    let run = runner(25).run(&(heights(), heights()), |(first, second)| {
+        let (a, b) = (sheet(&first), sheet(&second));
+        let (count, steep) = lines_of_zeros(|x, y| a.point(x, y).z - b.point(x, y).z);
+        let curves = cut(&a, &b);
+        assert_on_both(&curves, [&a, &b]);
+        prop_assume!(steep > 0.08);
+        prop_assert_eq!(curves.len(), count);
+        Ok(())
+    });
+    run.unwrap();
+}
+
+/// A loop that no border meets, down to a few tolerances.
+#[test]
+fn small_loops_inside_are_found() {
+    let heights: Vec<f64> = (0..16).map(|k| if [5, 6, 9, 10].contains(&k) { 1.0 } else { 0.0 }).collect();
+    let sheet = sheet(&heights);
+    let top = sheet.point(0.5, 0.5).z;
+    for below in [0.1, 1e-2, 1e-3, 1e-4] {
+        let curves = cut(&sheet, &flat(DVec3::Z * (top - below), DVec3::Z));
+        assert_eq!(curves.len(), 1, "{below}");
+        assert!(curves[0].is_closed(&tolerance()));
+    }
 }

@@ -63,6 +63,8 @@ pub enum Kind {
     Iso,
     /// Curve carried to a surface.
     Project,
+    /// Curve in which surfaces meet.
+    Meet,
 }
 
 impl Kind {
@@ -85,6 +87,7 @@ impl Kind {
             Self::Composite => "composite",
             Self::Iso => "iso",
             Self::Project => "project",
+            Self::Meet => "meet",
         }
     }
 }

@@ -145,6 +145,8 @@ codes! {
     later "E654", "border-not-resolved", "a border cannot be resolved";
     now "E655", "plane-not-flat", "the boundary of a plane is not flat";
     now "E656", "shell-not-closed", "a measure needs a closed shell";
+    now "E657", "surfaces-coincide", "surfaces run along each other";
+    now "E658", "meets-without-end", "unbounded planes meet in a line without end";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";

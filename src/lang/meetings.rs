@@ -30,7 +30,10 @@ pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop
             Some(faces) => Ok(Value::point(surfaces::with_curve_once(curve, &faces, &tolerance)?.point)),
             None => Err(later(cx, a, b)),
         },
-        _ => Err(later(cx, a, b)),
+        (x, y) => match (faces(x)?, faces(y)?) {
+            (Some(x), Some(y)) => Ok(Value::Curve(surfaces::with_surfaces_once(&x, &y, cx.origin(), &tolerance)?)),
+            _ => Err(later(cx, a, b)),
+        },
     }
 }
 
@@ -55,7 +58,12 @@ pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
             }
             Ok(places)
         }
-        _ => Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()),
+        (a, b) => match (faces(a)?, faces(b)?) {
+            (Some(a), Some(b)) => {
+                Ok(surfaces::with_surfaces(&a, &b, cx.origin(), &tolerance)?.curves.into_iter().map(Value::Curve).collect())
+            }
+            _ => Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()),
+        },
     }
 }
 

@@ -9,7 +9,7 @@ use super::Jet2;
 use super::breaks::chain_breaks;
 use super::closest::Nearest;
 use super::core::Surface;
-use crate::base::fault::{CurveFault, Result, SurfaceFault};
+use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::geometry::curve::Shape;
@@ -38,10 +38,57 @@ pub enum Way {
 
 /// A place on the surface with the carried curve's point and derivative.
 #[derive(Clone, Copy)]
-struct Spot {
-    uv: DVec2,
-    p: DVec3,
-    d1: DVec3,
+pub(super) struct Spot {
+    /// Where on the surface.
+    pub uv: DVec2,
+    /// The point.
+    pub p: DVec3,
+    /// Derivative by the parameter that is run over.
+    pub d1: DVec3,
+}
+
+/// Cubics through places that can be asked for between stops: nowhere, among [`PROBES`], farther off than `allowed`.
+///
+/// `land` gives the place at a parameter, near a guess when there is one; with `true` as part of what ends there. `lost`
+/// is the fault when halving leads nowhere.
+pub(super) fn cubics(
+    stops: &[f64],
+    allowed: f64,
+    land: impl Fn(f64, Option<DVec2>, bool) -> Result<Spot>,
+    lost: impl Fn(DVec3) -> Fault,
+) -> Result<Vec<Nurbs>> {
+    let mut pieces: Vec<Nurbs> = Vec::new();
+    let mut last: Option<DVec2> = None;
+    for w in stops.windows(2) {
+        let start = land(w[0], last, false)?;
+        let end = land(w[1], Some(start.uv), true)?;
+        let mut open = vec![(w[0], start, w[1], end)];
+        while let Some((a, from, b, to)) = open.pop() {
+            let h = b - a;
+            let poles = [from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
+            let cubic = Nurbs::bezier(a, b, poles.iter().map(|p| p.extend(1.0)).collect());
+            let mut good = true;
+            for probe in PROBES {
+                let f = a + h * probe;
+                let spot = land(f, Some(from.uv.lerp(to.uv, probe)), false)?;
+                good &= spot.p.distance(cubic.jet(f).p) <= allowed;
+            }
+            if good {
+                last = Some(to.uv);
+                pieces.push(cubic);
+                continue;
+            }
+            if pieces.len() + open.len() > MOST_PIECES || h < NUDGE * NUDGE * (w[1] - w[0]) {
+                return Err(lost(from.p));
+            }
+            let middle = 0.5 * (a + b);
+            let before = land(middle, Some(from.uv.lerp(to.uv, 0.5)), true)?;
+            let after = land(middle, Some(before.uv), false)?;
+            open.push((middle, after, b, to));
+            open.push((a, from, middle, before));
+        }
+    }
+    Ok(pieces)
 }
 
 struct Carrier<'a> {
@@ -66,38 +113,10 @@ pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
     };
     let missed = |f: f64| off(chain.point(f), carrier.near.at(chain.point(f)).distance);
     let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
-    let mut pieces: Vec<Nurbs> = Vec::new();
-    let mut last: Option<DVec2> = None;
-    for w in stops.windows(2) {
-        let start = carrier.at(w[0], last, false).ok_or_else(|| missed(w[0]))?;
-        let end = carrier.at(w[1], Some(start.uv), true).ok_or_else(|| missed(w[1]))?;
-        let mut open = vec![(w[0], start, w[1], end)];
-        while let Some((a, from, b, to)) = open.pop() {
-            let h = b - a;
-            let poles = [from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
-            let cubic = Nurbs::bezier(a, b, poles.iter().map(|p| p.extend(1.0)).collect());
-            let mut good = true;
-            for probe in PROBES {
-                let f = a + h * probe;
-                let spot = carrier.at(f, Some(from.uv.lerp(to.uv, probe)), false).ok_or_else(|| missed(f))?;
-                good &= spot.p.distance(cubic.jet(f).p) <= SHARE * tolerance.point;
-            }
-            if good {
-                last = Some(to.uv);
-                pieces.push(cubic);
-                continue;
-            }
-            if pieces.len() + open.len() > MOST_PIECES || h < NUDGE * NUDGE * (w[1] - w[0]) {
-                return Err(CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at: from.p }.into());
-            }
-            let middle = 0.5 * (a + b);
-            let guess = from.uv.lerp(to.uv, 0.5);
-            let before = carrier.at(middle, Some(guess), true).ok_or_else(|| missed(middle))?;
-            let after = carrier.at(middle, Some(before.uv), false).ok_or_else(|| missed(middle))?;
-            open.push((middle, after, b, to));
-            open.push((a, from, middle, before));
-        }
-    }
+    let land = |f: f64, guess: Option<DVec2>, before: bool| carrier.at(f, guess, before).ok_or_else(|| Fault::from(missed(f)));
+    let pieces = cubics(&stops, SHARE * tolerance.point, land, |at| {
+        CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at }.into()
+    })?;
     let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(&pieces))), Kind::Project, origin);
     let length = curve.length();
     if length <= tolerance.point {

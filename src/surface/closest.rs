@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend};
+use crate::base::tolerance::EPSILON;
 use crate::network::Chain;
 
 /// The point of a surface nearest to a given one.
@@ -97,7 +98,15 @@ impl Nearest {
                 ],
             }
         };
-        let found = starts.iter().take(STARTS).map(|&k| {
+        // All samples of a pole are one start: which of them leads away from it is not known yet.
+        let places = starts.iter().scan(None, |last: &mut Option<(DVec3, usize)>, &k| {
+            let (p, n) = last.map_or((self.points[k], 1), |(p, n)| {
+                if p.distance_squared(self.points[k]) <= EPSILON * EPSILON * p.length_squared() { (p, n) } else { (self.points[k], n + 1) }
+            });
+            *last = Some((p, n));
+            (n <= STARTS).then_some(k)
+        });
+        let found = places.map(|k| {
             let end = descend(&self.surface, (self.xs[k % nx], self.ys[k / nx]), half_square);
             self.closest(self.surface.from_square(end.place.0, end.place.1), p)
         });

@@ -7,6 +7,7 @@
 //! the value.
 
 mod curves;
+mod cut;
 mod edit;
 mod files;
 mod mesh;
@@ -20,6 +21,7 @@ use std::mem::discriminant;
 use glam::DVec3;
 
 pub use curves::{CurveFault, KnotFault};
+pub use cut::CutFault;
 pub use edit::Edit;
 pub use files::{FileFault, Malformed};
 pub use mesh::MeshFault;
@@ -43,6 +45,8 @@ pub enum Fault {
     Network(Box<NetworkFault>),
     /// Family 6: surfaces and model.
     Surface(Box<SurfaceFault>),
+    /// Family 6: surfaces that meet and what they cut.
+    Cut(Box<CutFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -191,6 +195,7 @@ impl Describe for Fault {
             Self::Curve(f) => f.describe(say),
             Self::Network(f) => f.describe(say),
             Self::Surface(f) => f.describe(say),
+            Self::Cut(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -214,6 +219,7 @@ impl Fault {
             (Self::Curve(a), Self::Curve(b)) => same(&**a, &**b),
             (Self::Network(a), Self::Network(b)) => same(&**a, &**b),
             (Self::Surface(a), Self::Surface(b)) => same(&**a, &**b),
+            (Self::Cut(a), Self::Cut(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -238,4 +244,12 @@ macro_rules! from_family {
         }
     )+ };
 }
-from_family!(Value(ValueFault), Curve(CurveFault), Network(NetworkFault), Surface(SurfaceFault), Mesh(MeshFault), File(FileFault));
+from_family!(
+    Value(ValueFault),
+    Curve(CurveFault),
+    Network(NetworkFault),
+    Surface(SurfaceFault),
+    Cut(CutFault),
+    Mesh(MeshFault),
+    File(FileFault)
+);

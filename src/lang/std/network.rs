@@ -52,16 +52,18 @@ fn nodes(cx: &mut Cx, chain: &Chain) -> Result<Vec<DVec3>, Stop> {
 }
 
 builtins! {
-    /// All places where two curves, or a curve and a surface, meet.
+    /// All places where curves and surfaces meet, or all curves in which surfaces do.
     ///
-    /// They come in order along the curve, of two curves the first. A run that both share gives its two ends. `a & b` is the
-    /// one place where they meet. A plane without end, a trimmed surface and a shell are surfaces here.
+    /// Places come in order along the curve, of two curves the first; curves by their first points. A run that both share
+    /// gives its two ends. `a & b` is the one place or curve in which they meet. A plane without end, a trimmed
+    /// surface and a shell are surfaces here.
     /// ```loft
     /// curve a = circle(center: (0, 0, 0), radius: 1m)
     /// curve b = line((-2m, 0, 0), (2m, 0, 0))
     /// let n = len(meet(a, b)) // => 2
     /// surface wall = extrude(a, by: (0, 0, 3m))
     /// let p = meet(line((0, 0, 1m), (2m, 0, 1m)), wall) // => [(1000mm, 0mm, 1000mm)]
+    /// curve hoop = wall & plane(at: (0, 0, 1m), normal: (0, 0, 1))
     /// ```
     fn meet(
         /// A curve, a surface, a shell or a plane.

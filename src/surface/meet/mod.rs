@@ -1,7 +1,14 @@
-//! Where surfaces meet curves: subdivision with guaranteed bounds, Newton's method where there is one meeting.
+//! Where surfaces meet curves and each other: subdivision with guaranteed bounds, Newton's method where there is one meeting
+//! or one line. `docs/notes/intersections.md` has the reasons.
 
 mod curve;
+mod fit;
+mod join;
+mod march;
+mod pair;
+mod search;
 mod sheet;
+mod surfaces;
 
 use glam::{DVec2, DVec3};
 
@@ -14,6 +21,7 @@ use crate::surface::closest::Nearest;
 use crate::surface::core::{Domain, Surface};
 use curve::{Contact, Touch, contacts};
 use sheet::{Patch, Sheet, grounded, patches};
+pub use surfaces::{Common, with_surfaces, with_surfaces_once};
 
 /// A meeting of a curve and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

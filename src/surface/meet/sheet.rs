@@ -118,6 +118,28 @@ impl Line {
             Self::Slant => 1.0 - uv.x - uv.y,
         }
     }
+
+    /// The place on the line that is meant by one near it.
+    pub fn onto(self, uv: DVec2) -> DVec2 {
+        match self {
+            Self::U(u) => DVec2::new(u, uv.y),
+            Self::V(v) => DVec2::new(uv.x, v),
+            Self::Slant => {
+                let over = 0.5 * (uv.x + uv.y - 1.0);
+                let u = (uv.x - over).clamp(0.0, 1.0);
+                DVec2::new(u, 1.0 - u)
+            }
+        }
+    }
+
+    /// Its direction in (u, v).
+    pub fn along(self) -> DVec2 {
+        match self {
+            Self::U(_) => DVec2::Y,
+            Self::V(_) => DVec2::X,
+            Self::Slant => DVec2::new(-1.0, 1.0),
+        }
+    }
 }
 
 /// A rectangle of a patch with what is known of the surface over it.

@@ -1,0 +1,89 @@
+//! Family 6 once more: surfaces that meet, and what is cut by them.
+
+use glam::DVec3;
+
+use super::{Describe, Report, Say};
+use crate::base::origin::Origin;
+
+/// What can go wrong where surfaces meet or are cut. Lengths are model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CutFault {
+    /// E507: two surfaces have no curve in common.
+    NoCurve {
+        /// One surface.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Where they touch without crossing, if they do.
+        touch: Option<DVec3>,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E508: two surfaces meet in more than one curve where one is wanted.
+    SeveralCurves {
+        /// One surface.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Middle and length of each curve.
+        curves: Vec<(DVec3, f64)>,
+    },
+    /// E657 `surfaces-coincide`: two surfaces run along each other over an area or a line, so they have no curve that is sure.
+    RunAlong {
+        /// One surface.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// A place where they do.
+        at: DVec3,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
+    /// E658 `meets-without-end`: two unbounded planes.
+    WithoutEnd {
+        /// What was asked for.
+        of: Origin,
+    },
+}
+
+impl Describe for CutFault {
+    fn describe(&self, say: &dyn Say) -> Report {
+        match self {
+            Self::NoCurve { a, b, touch, tolerance } => {
+                let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
+                let message = match touch {
+                    Some(at) => format!("{x} and {y} meet in no curve: they touch at {}", say.point(*at)),
+                    None => format!("{x} and {y} do not meet"),
+                };
+                let report = Report::new("E507", message).at(*a, "this surface").at(*b, "and this one");
+                report.note(format!("the model's tolerance is {}", say.length(*tolerance)))
+            }
+            Self::SeveralCurves { a, b, curves } => {
+                const SHOWN: usize = 6;
+                let one = |(p, length): &(DVec3, f64)| format!("through {}, {} long", say.point(*p), say.length(*length));
+                let list: Vec<String> = curves.iter().take(SHOWN).map(one).collect();
+                let more = if curves.len() > SHOWN { format!("; and {} more", curves.len() - SHOWN) } else { String::new() };
+                let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
+                Report::new("E508", format!("{x} and {y} meet in {} curves: {}{more}", curves.len(), list.join("; ")))
+                    .at(*a, "this surface")
+                    .at(*b, "and this one")
+                    .help("`meet(a, b)` is the list of all of them")
+            }
+            Self::RunAlong { a, b, at, tolerance } => Report::new(
+                "E657",
+                format!(
+                    "{} and {} run along each other near {}, so they meet in no curve that is sure",
+                    say.quoted(*a, "one surface"),
+                    say.quoted(*b, "the other"),
+                    say.point(*at)
+                ),
+            )
+            .at(*a, "this surface")
+            .at(*b, "and this one")
+            .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
+            Self::WithoutEnd { of } => Report::new("E658", "two unbounded planes meet in a line without end")
+                .at(*of, "no curve has its length")
+                .help("bound one of them: `plane(curves)` is the face inside curves"),
+        }
+    }
+}
