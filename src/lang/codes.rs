@@ -153,6 +153,7 @@ codes! {
     now "E704", "only-quads-impossible", "only quads is impossible here";
     now "E705", "face-cannot-be-mapped", "a face cannot be mapped";
     now "W706", "rule-overridden", "a rule is overridden by an equal one";
+    now "E707", "below-min-size", "a size or limit is below `min_size`";
     now "E711", "edge-mismatch", "borders of neighbouring faces are too far apart";
     now "N712", "edge-too-short", "an edge became a corner";
     now "E713", "cdt-constraint-crosses", "borders of a face cross";

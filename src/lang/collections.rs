@@ -8,7 +8,7 @@ use super::faults::member_name;
 use super::later;
 use super::module::bound;
 use super::names::nearest;
-use super::plans::{MeshSpec, RuleSpec, Said};
+use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::settings::{self, Setting};
 use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
 use super::units;
@@ -29,11 +29,11 @@ pub(super) fn find<'r>(resolved: &'r [Resolved], key: &str) -> Option<&'r Resolv
     resolved.iter().find(|r| r.key == key)
 }
 
-fn said<T>(resolved: &[Resolved], key: &str, take: impl Fn(&Value) -> Option<T>) -> Said<T> {
+pub(super) fn said<T>(resolved: &[Resolved], key: &str, take: impl Fn(&Value) -> Option<T>) -> Said<T> {
     find(resolved, key).and_then(|r| take(&r.value).map(|v| (v, r.origin)))
 }
 
-fn number(value: &Value) -> Option<f64> {
+pub(super) fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Number(q) => Some(q.value),
         _ => None,
@@ -103,7 +103,9 @@ impl Cx<'_> {
                 }
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));
-                    let rules: Vec<RuleSpec> = clauses.iter().filter_map(|c| gather.take(cx.rule(code, c))).collect();
+                    let (on, others): (Vec<&MeshClause>, Vec<_>) = clauses.iter().partition(|c| c.word == ClauseWord::On);
+                    let rules: Vec<RuleSpec> = on.into_iter().filter_map(|c| gather.take(cx.rule(code, c))).collect();
+                    let refines: Vec<RefineSpec> = others.into_iter().filter_map(|c| gather.take(cx.refine(code, c))).collect();
                     gather.done()?;
                     let settings = settings.unwrap_or_default();
                     meshes.push(MeshSpec {
@@ -113,11 +115,15 @@ impl Cx<'_> {
                         size: said(&settings, "size", number),
                         chord_error: said(&settings, "chord_error", number),
                         angle_error: said(&settings, "angle_error", |v| number(v).map(units::radians)),
+                        min_size: said(&settings, "min_size", number),
+                        growth: said(&settings, "growth", number),
+                        smooth: said(&settings, "smooth", |v| number(v).map(|n| n as u32)),
                         elements: said(&settings, "elements", elements),
                         order: said(&settings, "order", |v| number(v).map(|n| n as u8)),
                         method: said(&settings, "method", method),
                         conforming: said(&settings, "conforming", |v| if let Value::Bool(b) = v { Some(*b) } else { None }),
                         rules,
+                        refines,
                     });
                     let index = u32::try_from(base + meshes.len() - 1).unwrap_or(u32::MAX);
                     Ok(Value::Mesh(Arc::new(MeshValue::Declared { module: code.module, index })))
@@ -254,7 +260,9 @@ impl Cx<'_> {
             "count" if x < 1.0 => "at least 1",
             "count" if x > 1e8 => "at most 10^8",
             "width" | "height" if !(least..=most).contains(&x) => return Err(self.out_of_page(code, key, &value, id)),
-            "size" | "chord_error" | "angle_error" | "bias" | "snap" if x <= 0.0 => "more than 0",
+            "size" | "chord_error" | "angle_error" | "min_size" | "bias" | "snap" if x <= 0.0 => "more than 0",
+            "growth" if x <= 1.0 => "more than 1",
+            "radius" if x < 0.0 => "0 or more",
             _ => return Ok(value),
         };
         let found = self.show(&value);
@@ -270,9 +278,6 @@ impl Cx<'_> {
 
     #[cold]
     fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Stop {
-        if later::is_setting(word, key) {
-            return self.not_yet(code, &format!("`{key}`"), span);
-        }
         let near = nearest(key, table.iter().map(|s| s.key)).map(str::to_owned);
         let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("a {word}") });
         let label = near.as_ref().map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
@@ -281,14 +286,8 @@ impl Cx<'_> {
         if keys.is_empty() { draft.stop() } else { draft.note(format!("it takes {}", keys.join(", "))).stop() }
     }
 
-    /// `on things { … }`; `near` and `in` are of a later version.
+    /// `on things { … }`.
     fn rule(&mut self, code: Code<'_>, clause: &MeshClause) -> Result<RuleSpec, Stop> {
-        let word_span = |len: u32| Span { start: clause.span.start, end: clause.span.start + len };
-        match clause.word {
-            ClauseWord::On => {}
-            ClauseWord::Near => return Err(self.not_yet(code, "`near`", word_span(4))),
-            ClauseWord::In => return Err(self.not_yet(code, "`in`", word_span(2))),
-        }
         let mut gather = Gather::default();
         let things = gather.take(self.rule_things(code, &clause.things)).unwrap_or_default();
         let settings = gather.take(self.settings(code, "on", settings::ON, &clause.settings)).unwrap_or_default();

@@ -9,18 +9,11 @@ use super::{module::bound, std};
 
 const FUNCTIONS: &[&str] = &["sweep", "gordon", "fit", "skin", "hermite", "along", "scatter", "blend", "join", "hydrostatics"];
 
-const SETTINGS: &[(&str, &str)] = &[("mesh", "min_size"), ("mesh", "growth"), ("mesh", "smooth")];
-
 const ENDINGS: &[&str] = &["stp", "step"];
 
 /// Whether a later version has a function of this name.
 pub(super) fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name)
-}
-
-/// Whether a later version has a setting of this name for what the word declares.
-pub(super) fn is_setting(word: &str, name: &str) -> bool {
-    SETTINGS.contains(&(word, name))
 }
 
 /// Whether a later version reads files with this ending.

@@ -30,6 +30,7 @@ mod params;
 mod pictures;
 pub mod plans;
 mod recall;
+mod refine;
 mod room;
 pub mod run;
 pub mod scene;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::diag::FileId;
 use super::syntax::ast::Span;
 use super::value::Value;
+use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::draw::View;
 use crate::mesh::{Elements, Method};
@@ -31,6 +32,21 @@ pub struct RuleSpec {
     pub origin: Origin,
 }
 
+/// `near THINGS { … }` or `in BOX { … }` of a mesh.
+#[derive(Clone, Debug)]
+pub struct RefineSpec {
+    /// Points and curves; nested lists flattened.
+    pub things: Vec<(Value, Origin)>,
+    /// Boxes along the axes, model units.
+    pub boxes: Vec<Box3>,
+    /// Target edge length, model units.
+    pub size: (f64, Origin),
+    /// How far around it holds, model units.
+    pub radius: f64,
+    /// The clause.
+    pub origin: Origin,
+}
+
 /// `mesh m of things { settings }`.
 #[derive(Clone, Debug)]
 pub struct MeshSpec {
@@ -46,6 +62,12 @@ pub struct MeshSpec {
     pub chord_error: Said<f64>,
     /// Largest turn of the normal across an element, radians.
     pub angle_error: Said<f64>,
+    /// Floor of the size, model units.
+    pub min_size: Said<f64>,
+    /// Ratio of neighbouring sizes.
+    pub growth: Said<f64>,
+    /// Rounds of smoothing.
+    pub smooth: Said<u32>,
     /// Kind of elements.
     pub elements: Said<Elements>,
     /// 1 or 2.
@@ -56,6 +78,8 @@ pub struct MeshSpec {
     pub conforming: Said<bool>,
     /// `on` clauses in order of writing.
     pub rules: Vec<RuleSpec>,
+    /// `near` and `in` clauses in order of writing.
+    pub refines: Vec<RefineSpec>,
 }
 
 /// A `check` that was evaluated.

@@ -47,6 +47,26 @@ pub const MESH: &[Setting] = &[
     Setting { key: "size", docs: "Target edge length.", default: "a 20th of the diagonal of what is meshed", ty: LENGTH },
     Setting { key: "chord_error", docs: "Largest distance between mesh and surface.", default: "", ty: LENGTH },
     Setting { key: "angle_error", docs: "Largest turn of the normal across an element.", default: "", ty: Ty::Quantity(Dim::ANGLE) },
+    Setting {
+        key: "min_size",
+        docs: "Floor of the size, also of what `chord_error` and `angle_error` ask for; a written one that keeps them from being met, or that \
+               a size is below, is an error. Written counts and short edges of the model stand below it.",
+        default: "a hundredth of the size, which written sizes and limits go below",
+        ty: LENGTH,
+    },
+    Setting {
+        key: "growth",
+        docs: "Ratio of neighbouring sizes on free faces and their borders: away from a place with small steps the size grows by \
+               `growth - 1` of the distance. Mapped faces have even rows, which nothing grades.",
+        default: "1.3",
+        ty: Ty::Number,
+    },
+    Setting {
+        key: "smooth",
+        docs: "Rounds of smoothing on free faces; 0 leaves nodes where they grew.",
+        default: "until nothing moves",
+        ty: Ty::Count,
+    },
     Setting { key: "elements", docs: "Kind of elements.", default: "triangles", ty: Ty::Choice(ELEMENTS) },
     Setting { key: "order", docs: "1, or 2 with mid nodes.", default: "1", ty: Ty::Count },
     Setting {
@@ -71,6 +91,21 @@ pub const ON: &[Setting] = &[
         ty: Ty::Choice(METHODS),
     },
 ];
+
+/// `near points and curves { … }` inside a mesh.
+pub const NEAR: &[Setting] = &[
+    Setting {
+        key: "size",
+        docs: "Target edge length up to the radius; further out it grows as `growth` says. It only refines: where several sizes are asked \
+               for the smallest counts. A mapped face takes the least size on it for all its rows, and a written `count` stays.",
+        default: "",
+        ty: LENGTH,
+    },
+    Setting { key: "radius", docs: "How far around the size holds.", default: "0", ty: LENGTH },
+];
+
+/// `in box(a, b) { … }` inside a mesh.
+pub const IN: &[Setting] = &[Setting { key: "size", docs: "Target edge length in the box, as with `near`.", default: "", ty: LENGTH }];
 
 /// `shell s of … { … }`.
 pub const SHELL: &[Setting] = &[Setting {
@@ -137,6 +172,8 @@ pub const PICTURE: &[Setting] = &[
 pub const BLOCKS: &[(&str, &[Setting])] = &[
     ("mesh name of things { … }", MESH),
     ("on things { … }", ON),
+    ("near points { … }", NEAR),
+    ("in box(a, b) { … }", IN),
     ("shell name of surfaces { … }", SHELL),
     ("export things to \"file\" { … }", EXPORT),
     ("picture things to \"file\" { … }", PICTURE),

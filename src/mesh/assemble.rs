@@ -62,7 +62,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         refuse_too_many(input, &layout, &relations, &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
         let border = nodes.points(&layout, &input.plan.points);
-        let made = Made { input, layout: &layout, nodes: &nodes, points: &border };
+        let made = Made { input, layout: &layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
         let mut prepared = prepare(&made, &relations, &counts)?;
         let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
         let keys: Vec<Digest> = known.map(key).unwrap_or_default();
@@ -79,6 +79,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
                 mesh = fill(input, &border, &prepared, None, job)?;
             }
             sizing.take(&counts);
+            sizing.take_refined(input, &prepared);
             let explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
             return Ok(finish(input, Whole { layout, nodes, prepared, sizing }, mesh, explanation));
         }

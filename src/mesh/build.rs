@@ -56,7 +56,7 @@ pub struct Built {
 /// Fails as [`Outline::new`] and [`Outline::build`] do.
 pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
     let built = Outline::new(input)?.build(input, None, job)?;
-    sink.extend(built.remarks.iter().map(|remark| remark.fault(&input.plan.rules)));
+    sink.extend(built.remarks.iter().map(|remark| remark.fault(input.plan)));
     Ok(built)
 }
 

@@ -22,6 +22,32 @@ pub struct FaceNote {
     pub sides: Vec<u32>,
 }
 
+/// What decides sizes inside a free face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Why {
+    /// The size of the mesh or of a rule on the face.
+    Size,
+    /// A `near` or `in` clause, by its place in the plan.
+    Refined(usize),
+    /// Chord error or angle.
+    Bends,
+    /// Short edges of the border, from which lengths grow.
+    Border,
+    /// The floor of all sizes.
+    Floor,
+}
+
+/// A decider with what it decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decider {
+    /// Which.
+    pub why: Why,
+    /// Inner nodes whose distance it decided.
+    pub nodes: usize,
+    /// One of them.
+    pub at: glam::DVec3,
+}
+
 /// Who decided a count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Because {
@@ -95,7 +121,8 @@ impl Explanation {
                 sides,
             });
         }
-        let rule = |r: usize| input.plan.rules[r].origin;
+        let first = input.plan.rules.len();
+        let rule = |r: usize| input.plan.rules.get(r).map_or_else(|| input.plan.refines[r - first].origin, |rule| rule.origin);
         for (k, d) in sizing.decisions.iter().enumerate() {
             let because = match (d.count, d.size.1) {
                 (Some((_, r)), _) => Because::Count(rule(r)),

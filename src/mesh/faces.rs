@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::build::Input;
 use super::chart::{Chart, Grid, Lattice, Shape};
 use super::edges::Limits;
+use super::explain::Decider;
 use super::layout::{Face, Layout, side_parameters};
 use super::mapped;
 use super::nodes::Nodes;
@@ -47,6 +48,8 @@ pub struct Prepared {
     pub quads: u64,
     /// Points of the inner nodes, where they are not made from the chart alone.
     pub made: Vec<DVec3>,
+    /// What decided the sizes inside; of free faces.
+    pub deciders: Vec<Decider>,
 }
 
 /// A point in the middle of a face.
@@ -171,6 +174,7 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
         triangles,
         quads,
         made: Vec::new(),
+        deciders: Vec::new(),
     })
 }
 
@@ -197,6 +201,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
             triangles: n * n,
             quads: 0,
             made: Vec::new(),
+            deciders: Vec::new(),
         });
     }
     let Some(blocks) = Blocks::new(&values) else {
@@ -216,6 +221,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         elements: face.elements,
         first: 0,
         made: Vec::new(),
+        deciders: Vec::new(),
     })
 }
 

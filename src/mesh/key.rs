@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::build::Input;
 use super::layout::{Border, Face, Layout};
-use super::plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
+use super::plan::{Elements, GroupRequest, Method, Place, Plan, Refine, Rule, Target};
 use super::sizing::links_of;
 use crate::base::digest::{Content, Digest, Digester};
 use crate::model::{PatchId, SurfaceId};
@@ -62,6 +62,9 @@ impl Teller<'_> {
             size: _,
             chord_error,
             angle_error,
+            min_size,
+            growth,
+            smooth,
             elements,
             order,
             method,
@@ -69,6 +72,7 @@ impl Teller<'_> {
             // The tracks and faces of the layouts tell it.
             glue: _,
             rules,
+            refines,
             groups,
         } = self.input.plan;
         (name, size, (chord_error.map(|c| c.0), angle_error.map(|a| a.0))).tell(to);
@@ -81,6 +85,16 @@ impl Teller<'_> {
         (curves, points).tell(to);
         rules.len().tell(to);
         rules.iter().for_each(|rule| self.rule(rule, to));
+        (min_size.map(|s| s.0), growth.map(|g| g.0), smooth.map(|n| n.0)).tell(to);
+        refines.len().tell(to);
+        for Refine { at, size, radius, origin: _ } in refines {
+            (at.len(), size.0, *radius).tell(to);
+            at.iter().for_each(|place| match place {
+                Place::Point(p) => (0u8, *p).tell(to),
+                Place::Chain(chain) => (1u8, chain).tell(to),
+                Place::Box(b) => (2u8, b.min, b.max).tell(to),
+            });
+        }
         groups.len().tell(to);
         for GroupRequest { name, members } in groups {
             (name, members.len()).tell(to);

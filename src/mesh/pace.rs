@@ -1,30 +1,79 @@
-//! Steps along a border that follow the bends of the free faces beside it: small where they bend much.
+//! Steps along borders and curves that vary: short where the faces beside them bend, near what is refined, and next to
+//! shorter ones. Equal parts of ∫ ds / h.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
 
 use super::build::Input;
 use super::counts::steps;
 use super::edges::Limits;
 use super::free::{bound, face};
 use super::layout::Layout;
-use crate::base::par;
-use crate::base::tolerance::WHOLE_NUMBER;
+use super::sources::{Body, Source, Sources};
+use super::wanted::Wanted;
+use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
+use crate::base::{math, par};
 
-/// Places along a stretch at which lengths are asked for.
+/// Places along a stretch at which bends are asked for.
 const PLACES: usize = 64;
-/// Ratio of lengths a unit apart: how fast they may grow along a border.
-const GROWTH: f64 = 0.3;
+/// Distance of places along a stretch over the length wanted there.
+const APART: f64 = 0.5;
+/// Halvings of a stretch.
+const DEEPEST: u32 = 40;
+/// Places of one stretch.
+const MOST_PLACES: usize = 1 << 20;
+/// Rounds in which short steps are carried on to neighbours.
+const ROUNDS: usize = 64;
+/// What is lowered by less is not carried on.
+const WORTH: f64 = 0.99;
 
-/// Wanted lengths at even places along a stretch, model units; from its start to its end.
+/// Wanted lengths along a stretch, from its start to its end, linear between places.
 #[derive(Clone, Debug)]
 pub struct Pace {
+    /// Fractions of the length, 0 to 1.
+    at: Vec<f64>,
+    /// Model units.
     lengths: Vec<f64>,
 }
 
 impl Pace {
+    fn even(length: f64) -> Self {
+        Self { at: vec![0.0, 1.0], lengths: vec![length; 2] }
+    }
+
+    /// Steps that grow geometrically, the last `bias` times the first: their size is linear in the length.
+    pub fn of_count(length: f64, count: u32, bias: f64) -> Self {
+        let first = if bias == 1.0 { 1.0 } else { math::log(bias) / (bias - 1.0) } * length / f64::from(count);
+        Self { at: vec![0.0, 1.0], lengths: vec![first, first * bias] }
+    }
+
+    /// The shortest length.
+    pub fn least(&self) -> f64 {
+        self.lengths.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Places, fractions of the stretch.
+    pub fn places(&self) -> impl Iterator<Item = f64> + '_ {
+        self.at.iter().copied()
+    }
+
+    /// The length at a fraction, model units.
+    pub fn length_at(&self, f: f64) -> f64 {
+        let k = self.at.partition_point(|a| *a <= f).clamp(1, self.at.len() - 1);
+        let (a, b) = (self.at[k - 1], self.at[k]);
+        let t = if b > a { ((f - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
+        self.lengths[k - 1] + (self.lengths[k] - self.lengths[k - 1]) * t
+    }
+
     /// Number of steps over the whole for no step longer than wanted or than `size`.
     pub fn wish(&self, length: f64, size: f64, most: u32) -> u32 {
-        let sum: f64 = self.lengths.windows(2).map(|w| 0.5 * (1.0 / w[0].min(size) + 1.0 / w[1].min(size))).sum();
-        let n = length / (self.lengths.len() - 1) as f64 * sum;
-        let n = (n - WHOLE_NUMBER).ceil().clamp(1.0, f64::from(most)) as u32;
+        let part = |k: usize| {
+            let (a, b) = (self.lengths[k - 1].min(size), self.lengths[k].min(size));
+            (self.at[k] - self.at[k - 1]) * 0.5 * (1.0 / a + 1.0 / b)
+        };
+        let sum: f64 = length * (1..self.at.len()).map(part).sum::<f64>();
+        let n = (sum - WHOLE_NUMBER).ceil().clamp(1.0, f64::from(most)) as u32;
         // Even steps are what the size asks for at the least.
         n.max((length / size - WHOLE_NUMBER).ceil().clamp(1.0, f64::from(most)) as u32)
     }
@@ -32,50 +81,255 @@ impl Pace {
     /// Fractions 0…1 of so many steps.
     pub fn steps(&self, count: u32) -> Vec<f64> {
         let mut run = vec![0.0];
-        for w in self.lengths.windows(2) {
-            run.push(run[run.len() - 1] + 0.5 * (1.0 / w[0] + 1.0 / w[1]));
+        for k in 1..self.at.len() {
+            let part = (self.at[k] - self.at[k - 1]) * 0.5 * (1.0 / self.lengths[k - 1] + 1.0 / self.lengths[k]);
+            run.push(run[k - 1] + part);
         }
         let total = run[run.len() - 1];
-        let cells = (run.len() - 1) as f64;
         let mut at = steps(count, 1.0);
         let last = at.len() - 1;
         for f in &mut at[1..last] {
             let wanted = *f * total;
             let k = run.partition_point(|r| *r <= wanted).clamp(1, run.len() - 1);
-            *f = (k as f64 - 1.0 + (wanted - run[k - 1]) / (run[k] - run[k - 1])) / cells;
+            let share = (wanted - run[k - 1]) / (run[k] - run[k - 1]);
+            *f = self.at[k - 1] + (self.at[k] - self.at[k - 1]) * share;
         }
         at
     }
 }
 
-/// The paces of stretches on free faces under limits.
-pub fn along(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Option<Pace>> {
-    let mut paces: Vec<Option<Pace>> = vec![None; layout.pieces.atoms.len()];
-    if limits.chord.is_none() && limits.angle.is_none() {
-        return paces;
-    }
-    let found = par::map(layout.faces.len(), |f| of_face(input, layout, f, limits));
-    for (stretch, lengths) in found.into_iter().flatten() {
-        let pace = paces[stretch].get_or_insert_with(|| Pace { lengths: vec![f64::INFINITY; PLACES + 1] });
-        pace.lengths.iter_mut().zip(lengths).for_each(|(l, other)| *l = l.min(other));
-    }
-    for (stretch, pace) in paces.iter_mut().enumerate() {
-        if let Some(pace) = pace {
-            level(&mut pace.lengths, layout.length(stretch));
-        }
-    }
-    paces.iter_mut().filter(|p| p.as_ref().is_some_and(|p| !p.lengths.iter().all(|l| l.is_finite()))).for_each(|p| *p = None);
-    paces
+/// What is known of the stretches before their paces.
+pub struct Ask<'a> {
+    /// Lengths wanted at places.
+    pub wanted: &'a Wanted,
+    /// Chord error and angle.
+    pub limits: &'a Limits,
+    /// Size of each stretch, model units.
+    pub size: &'a [f64],
+    /// Steps that are written out.
+    pub written: &'a [Option<Pace>],
 }
 
-/// Lengths grow no faster than allowed; what is not wanted at all takes the largest.
-fn level(lengths: &mut [f64], length: f64) {
-    let step = GROWTH * length / PLACES as f64;
+/// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
+/// Stretches of mapped faces follow the bends of free ones beside them and nothing else: their rows are even.
+pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
+    let n = layout.pieces.atoms.len();
+    let mut paces: Vec<Pace> = ask.size.iter().map(|s| Pace::even(*s)).collect();
+    bends(input, layout, ask, &mut paces);
+    let mut even = vec![false; n];
+    layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|k| even[k] = true);
+    let walker = Walker { layout, ask, even: &even };
+    if !ask.wanted.sources.is_empty() {
+        let found = par::map(n, |k| walker.open(k).then(|| walker.lowered(k, &paces[k], &ask.wanted.sources)));
+        for (pace, found) in paces.iter_mut().zip(found) {
+            *pace = found.unwrap_or_else(|| pace.clone());
+        }
+    }
+    walker.grade(&mut paces);
+    let varies = |(k, pace): (usize, Pace)| {
+        let taken = ask.written[k].is_none() && pace.least() < ask.size[k] * (1.0 - EPSILON);
+        taken.then_some(pace)
+    };
+    paces.into_iter().enumerate().map(varies).collect()
+}
+
+/// Lowers paces to what the bends of free faces ask for.
+fn bends(input: &Input, layout: &Layout, ask: &Ask, paces: &mut [Pace]) {
+    if ask.limits.chord.is_none() && ask.limits.angle.is_none() {
+        return;
+    }
+    let found = par::map(layout.faces.len(), |f| of_face(input, layout, f, ask.limits));
+    for (stretch, lengths) in found.into_iter().flatten() {
+        let (pace, size) = (&mut paces[stretch], ask.size[stretch]);
+        if pace.at.len() == 2 {
+            *pace = Pace { at: (0..=PLACES).map(|k| k as f64 / PLACES as f64).collect(), lengths: vec![size; PLACES + 1] };
+        }
+        pace.lengths.iter_mut().zip(lengths).for_each(|(l, other)| *l = l.min(other.max(ask.wanted.written)));
+    }
+    for (stretch, pace) in paces.iter_mut().enumerate().filter(|(_, p)| p.at.len() > 2) {
+        level(&mut pace.lengths, input.plan.slope() * layout.length(stretch) / PLACES as f64);
+    }
+}
+
+/// Lengths grow by no more than `step` from place to place.
+fn level(lengths: &mut [f64], step: f64) {
     for k in 1..lengths.len() {
         lengths[k] = lengths[k].min(lengths[k - 1] + step);
     }
     for k in (1..lengths.len()).rev() {
         lengths[k - 1] = lengths[k - 1].min(lengths[k] + step);
+    }
+}
+
+struct Walker<'a> {
+    layout: &'a Layout,
+    ask: &'a Ask<'a>,
+    even: &'a [bool],
+}
+
+impl Walker<'_> {
+    /// Whether the steps of a stretch may vary.
+    fn open(&self, k: usize) -> bool {
+        !self.even[k] && self.ask.written[k].is_none()
+    }
+
+    /// A pace with what sources ask for as well; places are added where lengths change.
+    fn lowered(&self, k: usize, pace: &Pace, sources: &Sources) -> Pace {
+        let cap = self.ask.size[k];
+        if sources.least() >= pace.lengths.iter().copied().fold(0.0, f64::max) {
+            return pace.clone();
+        }
+        let mut sampler = Sampler { walker: self, k, pace, sources, cap, made: Pace { at: Vec::new(), lengths: Vec::new() } };
+        let mut last = sampler.place(0.0);
+        sampler.take(&last);
+        for next in &pace.at[1..] {
+            let next = sampler.place(*next);
+            sampler.between(&last, &next, DEEPEST);
+            sampler.take(&next);
+            last = next;
+        }
+        sampler.made
+    }
+
+    /// Carries short steps on to the neighbours across free faces, and from curve to curve outside faces.
+    fn grade(&self, paces: &mut [Pace]) {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut on_face = vec![false; paces.len()];
+        for face in &self.layout.faces {
+            let mut all: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).collect();
+            all.iter().for_each(|k| on_face[*k] = true);
+            all.sort_unstable();
+            all.dedup();
+            groups.push(if face.free { all } else { Vec::new() });
+        }
+        groups.push((0..paces.len()).filter(|k| !on_face[*k]).collect());
+        let mut of_stretch: Vec<Vec<usize>> = vec![Vec::new(); paces.len()];
+        groups.iter().enumerate().for_each(|(g, all)| all.iter().for_each(|k| of_stretch[*k].push(g)));
+        let mut open: BTreeSet<usize> = (0..groups.len()).collect();
+        for _ in 0..ROUNDS {
+            let now: Vec<usize> = std::mem::take(&mut open).into_iter().collect();
+            if now.is_empty() {
+                return;
+            }
+            let found = par::map(now.len(), |n| self.within(&groups[now[n]], paces));
+            for (k, pace) in found.into_iter().flatten() {
+                if pace.at.iter().zip(&pace.lengths).any(|(f, l)| *l < WORTH * paces[k].length_at(*f)) {
+                    // Two faces may both have lowered it.
+                    paces[k] = lower_of(&paces[k], &pace);
+                    open.extend(&of_stretch[k]);
+                }
+            }
+        }
+    }
+
+    /// Lowered paces of stretches round one face.
+    fn within(&self, all: &[usize], paces: &[Pace]) -> Vec<(usize, Pace)> {
+        let cap = all.iter().map(|k| self.ask.size[*k]).fold(0.0, f64::max);
+        let items: Vec<Source> = all.iter().flat_map(|k| self.steps_of(*k, &paces[*k], cap)).collect();
+        if items.is_empty() {
+            return Vec::new();
+        }
+        let sources = Sources::new(items, self.ask.wanted.sources.slope());
+        let open = all.iter().filter(|k| self.open(**k) && self.ask.size[**k] > sources.least());
+        open.map(|k| (*k, self.lowered(*k, &paces[*k], &sources))).collect()
+    }
+
+    /// Pieces of a stretch whose steps are shorter than lengths may be beside them.
+    fn steps_of(&self, k: usize, pace: &Pace, cap: f64) -> Vec<Source> {
+        let pace = self.ask.written[k].as_ref().unwrap_or(pace);
+        let length = self.layout.length(k);
+        let floor = self.ask.wanted.floor;
+        let least = cap / (1.0 + self.ask.wanted.sources.slope());
+        if pace.least().min(length).max(floor) >= least {
+            return Vec::new();
+        }
+        let place = |f: f64| (f, self.layout.point(k, f), pace.length_at(f).min(length));
+        let mut found = Vec::new();
+        for w in pace.at.windows(2) {
+            let mut open = vec![(place(w[0]), place(w[1]), DEEPEST)];
+            while let Some((a, b, left)) = open.pop() {
+                let middle = place(0.5 * (a.0 + b.0));
+                let size = a.2.min(b.2);
+                let straight = [(0.5, middle.1), (0.25, self.layout.point(k, 0.75 * a.0 + 0.25 * b.0))];
+                let off = straight.iter().map(|(t, p)| p.distance(a.1.lerp(b.1, *t))).fold(0.0, f64::max);
+                if left > 0 && (off > APART * size || a.2.max(b.2) > ALIKE * size) && a.1.distance(b.1) + off > APART * size {
+                    open.extend([(a, middle, left - 1), (middle, b, left - 1)]);
+                    continue;
+                }
+                // The larger of both, so that no stretch lowers itself.
+                let size = a.2.max(b.2).max(floor);
+                if size < least {
+                    found.push(Source { body: Body::Segment(a.1, b.1), radius: 0.0, size, tag: 0 });
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Ratio of lengths that count as one.
+const ALIKE: f64 = 1.15;
+
+/// The lower of two paces at the places of both.
+fn lower_of(a: &Pace, b: &Pace) -> Pace {
+    let mut at: Vec<f64> = a.at.iter().chain(&b.at).copied().collect();
+    at.sort_by(f64::total_cmp);
+    at.dedup();
+    let lengths = at.iter().map(|f| a.length_at(*f).min(b.length_at(*f))).collect();
+    Pace { at, lengths }
+}
+
+/// A place on a stretch.
+struct Spot {
+    f: f64,
+    p: DVec3,
+    length: f64,
+    /// The source that decides, whatever the size of the stretch.
+    item: Option<u32>,
+}
+
+struct Sampler<'a> {
+    walker: &'a Walker<'a>,
+    k: usize,
+    pace: &'a Pace,
+    sources: &'a Sources,
+    cap: f64,
+    made: Pace,
+}
+
+impl Sampler<'_> {
+    fn place(&self, f: f64) -> Spot {
+        let p = self.walker.layout.point(self.k, f);
+        let own = self.pace.length_at(f).min(self.cap);
+        let found = self.sources.who(p, own);
+        let length = found.map_or(own, |l| l.size);
+        Spot { f, p, length, item: found.map(|l| l.item) }
+    }
+
+    fn take(&mut self, spot: &Spot) {
+        self.made.at.push(spot.f);
+        self.made.lengths.push(spot.length);
+    }
+
+    /// Halves the way between two places until lengths can hardly change on it.
+    fn between(&mut self, a: &Spot, b: &Spot, left: u32) {
+        let gap = (b.f - a.f) * self.walker.layout.length(self.k);
+        // Nothing asks for less than is there.
+        let settled = a.length.max(b.length) <= self.sources.least() * (1.0 + WHOLE_NUMBER);
+        if left == 0 || settled || gap <= APART * a.length.min(b.length) || self.made.at.len() >= MOST_PLACES {
+            return;
+        }
+        if a.item == b.item && a.item.is_some_and(|item| self.sources.holds(item, a.p, b.p)) {
+            return;
+        }
+        let middle = self.place(0.5 * (a.f + b.f));
+        // No source reaches the way at all.
+        if self.sources.who(middle.p, self.cap + self.sources.slope() * 0.5 * gap).is_none() {
+            return;
+        }
+        self.between(a, &middle, left - 1);
+        self.take(&middle);
+        self.between(&middle, b, left - 1);
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
@@ -82,6 +83,30 @@ impl Rule {
     }
 }
 
+/// A place of a `near` or `in` clause.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// A point.
+    Point(DVec3),
+    /// A curve or link.
+    Chain(Chain),
+    /// A box along the axes.
+    Box(Box3),
+}
+
+/// `near … { size radius }` or `in … { size }`: smaller elements at some places.
+#[derive(Clone, Debug)]
+pub struct Refine {
+    /// Where.
+    pub at: Vec<Place>,
+    /// Target edge length there, model units, with its expression.
+    pub size: (f64, Origin),
+    /// How far around it holds, model units.
+    pub radius: f64,
+    /// The clause.
+    pub origin: Origin,
+}
+
 /// A `group`: its members become node and element sets.
 #[derive(Clone, Debug)]
 pub struct GroupRequest {
@@ -110,6 +135,12 @@ pub struct Plan {
     pub chord_error: Option<(f64, Origin)>,
     /// Largest turn of the normal across an element, radians.
     pub angle_error: Option<(f64, Origin)>,
+    /// Floor of the size, model units, with its expression.
+    pub min_size: Option<(f64, Origin)>,
+    /// Ratio of neighbouring sizes, with its expression; `None`: [`GROWTH`].
+    pub growth: Option<(f64, Origin)>,
+    /// Rounds of smoothing of free faces, with their expression; `None`: until nothing moves.
+    pub smooth: Option<(u32, Origin)>,
     /// Kind of elements.
     pub elements: Elements,
     /// 1 or 2.
@@ -123,6 +154,8 @@ pub struct Plan {
     pub glue: BTreeMap<SurfaceId, f64>,
     /// Rules in order of writing.
     pub rules: Vec<Rule>,
+    /// `near` and `in` clauses in order of writing.
+    pub refines: Vec<Refine>,
     /// Named sets beside those that every surface gets.
     pub groups: Vec<GroupRequest>,
 }
@@ -139,13 +172,24 @@ impl Plan {
             size: None,
             chord_error: None,
             angle_error: None,
+            min_size: None,
+            growth: None,
+            smooth: None,
             elements: Elements::Triangles,
             order: 1,
             method: Method::Auto,
             conforming: true,
             glue: BTreeMap::new(),
             rules: Vec::new(),
+            refines: Vec::new(),
             groups: Vec::new(),
         }
     }
+    /// What lengths grow by a unit of distance.
+    pub fn slope(&self) -> f64 {
+        self.growth.map_or(GROWTH, |g| g.0) - 1.0
+    }
 }
+
+/// Ratio of neighbouring sizes where none is written.
+pub const GROWTH: f64 = 1.3;

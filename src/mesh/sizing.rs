@@ -3,11 +3,14 @@
 use super::build::Input;
 use super::counts::{share, steps};
 use super::edges::{Limits, least_steps, wanted_steps};
+use super::explain::Why;
+use super::faces::Prepared;
 use super::layout::Layout;
-use super::pace::{self, Pace};
-use super::plan::{Elements, Rule, Target};
+use super::pace::{self, Ask, Pace};
+use super::plan::{Elements, Plan, Rule, Target};
 use super::reuse::{Known, recalled_if_sound};
 use super::strips::Stretch;
+use super::wanted::{Wanted, least_on};
 use crate::base::digest::Digester;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
@@ -55,7 +58,7 @@ pub struct Decision {
 pub struct Sizing {
     /// One a stretch.
     pub decisions: Vec<Decision>,
-    /// One a rule: whether it was taken anywhere.
+    /// One a rule, then one a `near` or `in` clause: whether it was taken anywhere.
     pub taken: Vec<bool>,
     /// Why a rule cannot be taken at all, in words.
     pub homeless: Vec<Option<String>>,
@@ -63,8 +66,13 @@ pub struct Sizing {
     pub paces: Vec<Option<Pace>>,
     /// The bias rule of each stretch.
     pub bias_rule: Vec<Option<usize>>,
+    /// What `near`, `in` and `min_size` ask for.
+    pub wanted: Wanted,
     overridden: Vec<(usize, usize, &'static str)>,
 }
+
+/// Steps under a bias that are looked at one by one.
+const MOST_BIASED: u32 = 1 << 20;
 
 const LINK: u8 = 3;
 const CURVE: u8 = 2;
@@ -89,9 +97,12 @@ impl Sizing {
     pub fn new(input: &Input, layout: &mut Layout, size: f64, known: Option<&Known>) -> Result<Self> {
         let n = layout.pieces.atoms.len();
         let rules = &input.plan.rules;
-        let mut sizing = Self { taken: vec![false; rules.len()], homeless: vec![None; rules.len()], ..Self::default() };
+        let clauses = rules.len() + input.plan.refines.len();
+        let wanted = Wanted::new(input, size)?;
+        let mut sizing = Self { taken: vec![false; clauses], homeless: vec![None; clauses], wanted, ..Self::default() };
         sizing.faces(input, layout, size);
         super::faces::choose(input, layout)?;
+        let refined = sizing.refine_mapped(input, layout);
         let mut division: Vec<Option<Ruled<Division>>> = vec![None; n];
         let mut bias: Vec<Option<Ruled<f64>>> = vec![None; n];
         for (index, rule) in rules.iter().enumerate() {
@@ -112,13 +123,29 @@ impl Sizing {
         }
         let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
         let shape = shapes(layout);
-        let counted = |k: usize| matches!(division[k].map(|d| d.value), Some(Division::Count(_)));
-        sizing.paces = pace::along(input, layout, &limits);
-        for k in (0..n).filter(|k| counted(*k) || bias[*k].is_some()) {
-            sizing.paces[k] = None;
+        let count_of = |k: usize| division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
+        let size_of = |k: usize| match division[k] {
+            Some(Ruled { value: Division::Size(s), rule, .. }) => (s, Some(rule)),
+            _ => own[k],
+        };
+        for (face, clause) in layout.faces.iter().zip(refined) {
+            let open = face.sides.iter().flat_map(|s| s.stretches()).any(|k| count_of(k).is_none());
+            if let Some(clause) = clause.filter(|_| open) {
+                sizing.taken[clause] = true;
+            }
         }
+        let bias_of = |k: usize| bias[k].map_or(1.0, |b| b.value);
+        let biased: Vec<Option<u32>> = par::map(n, |k| {
+            let free = bias[k].is_some() && count_of(k).is_none();
+            free.then(|| sizing.biased_steps(layout, k, size_of(k).0, bias_of(k)))
+        });
+        let written_steps = |k: usize| Some(Pace::of_count(layout.length(k), count_of(k).map(|c| c.0).or(biased[k])?, bias_of(k)));
+        let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
+        let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
+        sizing.paces = pace::along(input, layout, &Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written });
+        sizing.mark_refined(input, layout, &sizes);
         let least = par::try_map(n, |k| {
-            let bias = bias[k].map_or(1.0, |b| b.value);
+            let bias = bias_of(k);
             let divided = |count: u32| sizing.paces[k].as_ref().map_or_else(|| steps(count, bias), |pace| pace.steps(count));
             let atom = &layout.pieces.atoms[k];
             let key = |_: &Known| {
@@ -130,16 +157,17 @@ impl Sizing {
             recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, MOST)).map(|least| least.max(shape[k]))
         })?;
         for k in 0..n {
-            let count = division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
-            let ruled = division[k].and_then(|d| if let Division::Size(s) = d.value { Some((s, Some(d.rule))) } else { None });
-            let size = ruled.unwrap_or(own[k]);
-            let bias_of = bias[k].map_or(1.0, |b| b.value);
-            let wish = match &sizing.paces[k] {
-                Some(pace) => pace.wish(layout.length(k), size.0, MOST),
-                None => wanted_steps(layout.length(k), size.0, bias_of, MOST),
+            let (count, size, bias) = (count_of(k), size_of(k), bias_of(k));
+            let wish = match (&sizing.paces[k], biased[k]) {
+                (Some(pace), _) => pace.wish(layout.length(k), size.0, MOST),
+                (None, Some(steps)) => steps,
+                (None, None) => wanted_steps(layout.length(k), size.0, bias, MOST),
             };
+            if count.is_none() {
+                sizing.refuse_below_floor(input, layout, k, (least[k], shape[k]))?;
+            }
             let wish = wish.max(least[k]);
-            sizing.decisions.push(Decision { count, size, bias: bias_of, least: least[k], wish });
+            sizing.decisions.push(Decision { count, size, bias, least: least[k], wish });
         }
         sizing.bias_rule = bias.iter().map(|b| b.map(|b| b.rule)).collect();
         Ok(sizing)
@@ -150,6 +178,65 @@ impl Sizing {
         let one =
             |(k, d): (usize, &Decision)| Stretch { least: d.least, wish: d.wish, written: d.count.map(|c| c.0), length: layout.length(k) };
         self.decisions.iter().enumerate().map(one).collect()
+    }
+
+    /// Lowers the sizes of mapped faces to the least that is asked for on them; gives the clause of each that was.
+    fn refine_mapped(&self, input: &Input, layout: &mut Layout) -> Vec<Option<usize>> {
+        let sources = &self.wanted.sources;
+        let faces = &layout.faces;
+        let found = par::map(faces.len(), |f| {
+            let face = &faces[f];
+            let patch = &input.model.patches[face.patch.index()];
+            let surface = &input.model.surfaces[face.surface.index()].surface;
+            if face.free { None } else { least_on(surface, (patch.u, patch.v), sources, face.size.0) }
+        });
+        let clause = |item: u32| input.plan.rules.len() + sources.items()[item as usize].tag as usize;
+        layout.faces.iter_mut().zip(found).for_each(|(face, least)| {
+            if let Some(least) = least {
+                face.size = (least.size, Some(clause(least.item)));
+            }
+        });
+        let first = input.plan.rules.len();
+        layout.faces.iter().map(|face| face.size.1.filter(|clause| *clause >= first && !face.free)).collect()
+    }
+
+    /// Steps of a stretch under a bias, none of them longer than the size or what is wanted along it.
+    fn biased_steps(&self, layout: &Layout, k: usize, size: f64, bias: f64) -> u32 {
+        let length = layout.length(k);
+        let mut count = wanted_steps(length, size, bias, MOST);
+        while count < MOST_BIASED && !self.wanted.sources.is_empty() {
+            let over = steps(count, bias).windows(2).fold(1.0, |over: f64, w| {
+                let there = w.iter().map(|f| self.wanted.sources.at(layout.point(k, *f), size));
+                over.max((w[1] - w[0]) * length / there.fold(0.0, f64::max))
+            });
+            if over <= 1.0 + WHOLE_NUMBER {
+                break;
+            }
+            count = ((f64::from(count) * over).min(f64::from(MOST)) as u32).max(count + 1);
+        }
+        count
+    }
+
+    /// Marks the clauses that make steps of stretches shorter.
+    fn mark_refined(&mut self, input: &Input, layout: &Layout, sizes: &[f64]) {
+        let first = input.plan.rules.len();
+        for (k, pace) in self.paces.iter().enumerate() {
+            let places = pace.iter().flat_map(|pace| pace.places()).map(|f| layout.point(k, f));
+            for p in places {
+                if let Some(least) = self.wanted.sources.who(p, sizes[k]) {
+                    self.taken[first + self.wanted.sources.items()[least.item as usize].tag as usize] = true;
+                }
+            }
+        }
+    }
+
+    /// E707 where a limit asks for steps below the floor of the size.
+    fn refuse_below_floor(&self, input: &Input, layout: &Layout, k: usize, (least, shape): (u32, u32)) -> Result<()> {
+        let length = layout.length(k);
+        if least <= shape || length / f64::from(least) >= self.wanted.written * (1.0 - WHOLE_NUMBER) {
+            return Ok(());
+        }
+        Err(super::wanted::floor_keeps(input, length / f64::from(least), layout.point(k, 0.5)))
     }
 
     /// Size, elements and method of faces.
@@ -304,6 +391,15 @@ impl Sizing {
         }
     }
 
+    /// Notes which clauses decide sizes inside free faces.
+    pub fn take_refined(&mut self, input: &Input, prepared: &[Prepared]) {
+        for decider in prepared.iter().flat_map(|ready| &ready.deciders) {
+            if let Why::Refined(clause) = decider.why {
+                self.taken[input.plan.rules.len() + clause] = true;
+            }
+        }
+    }
+
     /// W706 for rules overridden by equal ones, W701 for rules that decide nothing.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut pairs = self.overridden.clone();
@@ -362,8 +458,9 @@ const KEYS: [&str; 5] = ["count", "size", "bias", "elements", "method"];
 
 impl Remark {
     /// The warning, at the places of the rules.
-    pub fn fault(&self, rules: &[Rule]) -> Fault {
-        let origin = |rule: usize| rules.get(rule).map_or(Origin::NONE, |r| r.origin);
+    pub fn fault(&self, plan: &Plan) -> Fault {
+        let clause = |n: usize| plan.refines.get(n).map_or(Origin::NONE, |r| r.origin);
+        let origin = |rule: usize| plan.rules.get(rule).map_or_else(|| clause(rule - plan.rules.len()), |r| r.origin);
         match self {
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {

@@ -7,7 +7,7 @@ use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, Value};
-use crate::mesh::plan::{GroupRequest, Target};
+use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::SurfaceId;
 use crate::surface::Surface;
@@ -46,6 +46,19 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         }
         idle_settings(rule, &plan.rules[first..], sink);
     }
+    for refine in &spec.refines {
+        let mut at: Vec<Place> = refine.boxes.iter().copied().map(Place::Box).collect();
+        for (value, _) in &refine.things {
+            for target in finder.targets(value)? {
+                match target {
+                    Target::Chain(chain) => at.push(Place::Chain(chain)),
+                    Target::Point(p) => at.push(Place::Point(p)),
+                    Target::Surface(_) | Target::Patches(_) => {}
+                }
+            }
+        }
+        plan.refines.push(Refine { at, size: refine.size, radius: refine.radius, origin: refine.origin });
+    }
     for group in &cx.groups(module)? {
         let mut members = Vec::new();
         for value in &group.value {
@@ -64,6 +77,9 @@ fn settings(plan: &mut Plan, spec: &MeshSpec) {
     plan.size = spec.size;
     plan.chord_error = spec.chord_error;
     plan.angle_error = spec.angle_error;
+    plan.min_size = spec.min_size;
+    plan.growth = spec.growth;
+    plan.smooth = spec.smooth;
     plan.elements = spec.elements.map_or(Elements::Triangles, |said| said.0);
     plan.order = spec.order.map_or(1, |said| said.0);
     plan.method = spec.method.map_or(Method::Auto, |said| said.0);

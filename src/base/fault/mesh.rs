@@ -107,6 +107,26 @@ pub enum MeshFault {
         /// The clause that holds.
         later: Origin,
     },
+    /// E707: a size below the floor of all sizes.
+    BelowFloor {
+        /// The size and its expression.
+        size: (f64, Origin),
+        /// The floor and its expression.
+        floor: (f64, Origin),
+    },
+    /// E707: a limit that the floor of the size keeps from being met.
+    FloorKeeps {
+        /// The setting.
+        limit: &'static str,
+        /// Its expression.
+        says: Origin,
+        /// The floor and its expression.
+        floor: (f64, Origin),
+        /// The size that the limit needs.
+        needed: f64,
+        /// Where.
+        at: DVec3,
+    },
     /// E711: two sides that should be one lie too far apart.
     EdgeMismatch {
         /// One surface.
@@ -243,6 +263,19 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help("remove the first of the two")
                 .edit(Subject::Entity(*earlier), Edit::DropRule(Some(key)))
         }
+        F::BelowFloor { size, floor } => {
+            Report::new("E707", format!("the size {} is below `min_size`, {}", say.length(size.0), say.length(floor.0)))
+                .at(size.1, "smaller than the floor")
+                .at(floor.1, "the floor of all sizes")
+                .help(format!("lower `min_size` to {} or less", say.length(size.0)))
+        }
+        F::FloorKeeps { limit, says, floor, needed, at } => {
+            let (place, size) = (say.point(*at), say.length(*needed));
+            Report::new("E707", format!("`min_size` keeps `{limit}` from being met at {place}, which takes edges of {size}"))
+                .at(*says, format!("asks for {size}"))
+                .at(floor.1, format!("edges are not made shorter than {}", say.length(floor.0)))
+                .help(format!("`min_size` below {size}, or a larger `{limit}`"))
+        }
         F::NotReached { limit, says, surface, reached, at } => {
             let reached = if *limit == "angle_error" { say.angle(*reached) } else { say.length(*reached) };
             Report::new("E703", format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
@@ -343,6 +376,8 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::MethodLater { .. }
         | F::CountBelowLinks { .. }
         | F::RuleOverridden { .. }
+        | F::BelowFloor { .. }
+        | F::FloorKeeps { .. }
         | F::NotReached { .. } => Report::new("E999", "a fault that another table has words for"),
     }
 }

@@ -7,7 +7,6 @@ use glam::DVec3;
 use super::kinds::PatchOf;
 use crate::base::bbox::Box3;
 use crate::base::fault::{SurfaceFault, ValueFault};
-use crate::fields;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Area, Point, Volume};
@@ -16,6 +15,7 @@ use crate::model::SurfaceId;
 use crate::model::measure::{self, Solid};
 use crate::network::Chain;
 use crate::surface::Surface;
+use crate::{builtins, fields};
 
 /// `{min, max, size}` of a box.
 fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
@@ -41,6 +41,21 @@ fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
 /// The smallest box of a curve: exact ends and, between them, where it turns back along an axis.
 fn box_of(chain: &Chain) -> Box3 {
     chain.bbox()
+}
+
+builtins! {
+    /// The box along the axes between two corners: `{min, max, size}`.
+    ///
+    /// ```loft
+    /// units m
+    /// let a = box((1, 0, 0), (0, 2, 3)).size.y // => 2m
+    /// ```
+    fn box(
+        /// A corner.
+        a: Point,
+        /// The opposite one.
+        b: Point,
+    ) -> Value = |cx, a, b| Ok(record_of(cx, Box3::of([a.0, b.0])));
 }
 
 fields! {

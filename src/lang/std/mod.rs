@@ -96,6 +96,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     transforms::BUILTINS,
     topology::BUILTINS,
     joins::BUILTINS,
+    measures::BUILTINS,
 ];
 
 /// All tables of fields.

@@ -98,7 +98,12 @@ pub static WORDS: [KeywordDoc; 36] = [
         "modeling curve name = chain\nmodeling curve name for i in list = chain",
         "A chain of links of the network, which surfaces stand on: `south[A .. ribs[2]] + ribs[2][south .. B]`.",
     ),
-    inside("near", Kind::Near, "near things { settings }", "A clause of a mesh: refines it near things. Not in this version."),
+    inside(
+        "near",
+        Kind::Near,
+        "near points { size: 5mm  radius: 20mm }",
+        "A clause of a mesh: smaller elements near points and curves, growing from there.",
+    ),
     inside("none", Kind::None, "none", "No value; an empty cell of a table."),
     inside("not", Kind::Not, "not a", "True when the condition is false."),
     inside("of", Kind::Of, "mesh name of things", "What a shell, group or mesh holds; nested lists are flattened."),

@@ -1,5 +1,7 @@
 //! A face from its border to its triangles.
 
+use std::collections::VecDeque;
+
 use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
@@ -89,15 +91,35 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
 
 /// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
 fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
-    let nodes = |t: usize| {
-        let c = coarse.corners[t].map(|n| n as usize);
-        let [p, q, r] = c.map(|n| task.outline.p[n]);
-        let size = task.field.size(c.map(|n| task.outline.xy[n]).into_iter().sum::<DVec2>() / 3.0, (p + q + r) / 3.0);
+    let corner = |n: u32| (task.outline.xy[n as usize], task.outline.p[n as usize]);
+    // Breadth first: what is left when there are too many is small.
+    let mut open: VecDeque<_> = (0..kept.len()).filter(|t| kept[*t]).map(|t| coarse.corners[t].map(corner)).collect();
+    let (mut total, mut left) = (0.0, LOOKS);
+    while let Some(c) = open.pop_front() {
+        let middle = (c.iter().map(|c| c.0).sum::<DVec2>() / 3.0, c.iter().map(|c| c.1).sum::<DVec3>() / 3.0);
+        let size = task.field.size(middle.0, middle.1);
+        let area = (c[1].1 - c[0].1).cross(c[2].1 - c[0].1).length();
         // Half a node a triangle of side `size`, whose area is √3/4 of its square.
-        0.5 * (q - p).cross(r - p).length() / (TALL * size * size)
-    };
-    (0..kept.len()).filter(|t| kept[*t]).map(nodes).sum()
+        let nodes = 0.5 * area / (TALL * size * size);
+        let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * ALIKE < size);
+        if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < FEW && !varies() {
+            total += nodes;
+            continue;
+        }
+        left -= 1;
+        let mid = |i: usize, j: usize| (0.5 * (c[i].0 + c[j].0), 0.5 * (c[i].1 + c[j].1));
+        let [a, b, d] = [mid(1, 2), mid(2, 0), mid(0, 1)];
+        open.extend([[c[0], d, b], [c[1], a, d], [c[2], b, a], [a, b, d]]);
+    }
+    total
 }
+
+/// Triangles that are divided when nodes are counted ahead.
+const LOOKS: usize = 50_000;
+/// Nodes up to which lengths are taken as one over a triangle.
+const FEW: f64 = 8.0;
+/// Ratio of lengths that count as one.
+const ALIKE: f64 = 1.25;
 
 /// Triangles left of an odd number of loop edges: flooded from outside, each loop edge turning in and out.
 fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::bound;
-use super::build::{Task, Trouble, triangulate};
-use super::ground::Even;
+use super::build::{Broken, Task, Trouble, triangulate};
+use super::ground::{Even, Field};
 use super::improve::Care;
 use super::outline::Outline;
 use super::sheet::Sheet;
-use super::size::Background;
+use super::size::{Background, Blend};
 use super::web::Web;
+use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
@@ -22,10 +23,13 @@ use crate::base::triangulate_points::PointsFault;
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
 use crate::mesh::edges::Limits;
+use crate::mesh::explain::{Decider, Why};
 use crate::mesh::faces::{Frame, Prepared, limits_of, middle};
 use crate::mesh::layout::{Face, Layout, side_parameters};
 use crate::mesh::nodes::Nodes;
 use crate::mesh::plan::Elements;
+use crate::mesh::sources::{Body, Source, Sources};
+use crate::mesh::wanted::{Wanted, floor_keeps};
 use crate::model::Trace;
 use crate::surface::{Domain, Side, Surface};
 
@@ -57,6 +61,8 @@ pub struct Made<'a> {
     pub nodes: &'a Nodes,
     /// Points of all border nodes.
     pub points: &'a [DVec3],
+    /// What `near`, `in` and `min_size` ask for.
+    pub wanted: &'a Wanted,
 }
 
 /// Nodes of a border with their places, in order of first use.
@@ -120,8 +126,8 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
         loops: border.edges.clone(),
         lines: Vec::new(),
     };
-    let web = match fitting(made, face, &sheet, &outline, job)? {
-        Ok(web) => web,
+    let (web, deciders) = match fitting(made, face, &sheet, &outline, job)? {
+        Ok(fitted) => fitted,
         Err(trouble) => return Err(fault(made, face, &border, trouble)),
     };
     let fixed = web.fixed as usize;
@@ -132,109 +138,265 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
     let mut uv = border.uv;
     uv.extend(web.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
     let inner = web.p[fixed..].to_vec();
-    Ok(prepared(made, face, Free { uv, border: fixed, triangles }, border.ids, inner))
+    Ok(Prepared { deciders, ..prepared(made, face, Free { uv, border: fixed, triangles }, border.ids, inner) })
 }
 
-/// Triangles that keep the limits: lengths by the bends at first, smaller where a triangle's bound says so.
-fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job) -> Result<std::result::Result<Web, Trouble>> {
+/// A face being fitted: what its triangles are made from and measured by.
+struct Fit<'a> {
+    made: &'a Made<'a>,
+    face: &'a Face,
+    surface: &'a Surface,
+    sheet: &'a Sheet,
+    outline: &'a Outline,
+    limits: Limits,
+    longest: Longest<'a>,
+    care: Care,
+}
+
+/// Most inner nodes of a face.
+const MOST: usize = MESH_ELEMENTS as usize / 2;
+
+type Fitted = Result<std::result::Result<Web, Trouble>>;
+
+/// Triangles that keep the limits, and what decided their sizes.
+fn fitting(
+    made: &Made,
+    face: &Face,
+    sheet: &Sheet,
+    outline: &Outline,
+    job: &Job,
+) -> Result<std::result::Result<(Web, Vec<Decider>), Trouble>> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let limits = limits_of(made.input);
-    let size = face.size.0 * SPACING;
-    let mut care = Care { smooth: SMOOTH, wanted: WANTED, longest: LONGEST / SPACING };
-    let most = MESH_ELEMENTS as usize / 2;
-    let longest = Longest::new(face.size.0, outline);
-    if surface.is_flat() || limits.chord.is_none() && limits.angle.is_none() {
-        let broken = |web: &Web| (0..web.tri.len() as u32).filter(|t| longest.broken(web, *t)).collect::<Vec<u32>>();
-        let mut spacing = size;
+    let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
+    let care = Care {
+        smooth: made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize),
+        wanted: if bent { WANTED_BENT } else { WANTED },
+        longest: LONGEST / SPACING,
+    };
+    let rules = near(made, face, outline);
+    let longest = Longest::new(face.size.0, outline, &rules);
+    let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
+    let background = bent.then(|| fit.background());
+    // Growth is that of distances of nodes.
+    let slope = rules.slope() / SPACING;
+    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref())].concat(), slope);
+    let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
+    Ok(web.map(|web| {
+        let deciders = fit.deciders(&field, &web);
+        (web, deciders)
+    }))
+}
+
+/// The sources of a plan that reach a face.
+fn near(made: &Made, face: &Face, outline: &Outline) -> Sources {
+    let all = &made.wanted.sources;
+    let hull = made.input.model.surfaces[face.surface.index()].surface.hull().union(Box3::of(outline.p.iter().copied()));
+    let items = all.items().iter().filter(|source| source.reaches(&hull, all.slope(), face.size.0));
+    Sources::new(items.copied().collect(), all.slope())
+}
+
+/// What stands for the edges of a border among sources.
+const BORDER: u32 = u32::MAX;
+
+impl Fit<'_> {
+    /// Distances of nodes by the bends of the surface.
+    fn background(&self) -> Background {
+        let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
+        let size = self.face.size.0 * SPACING;
+        let wanted = |xy: DVec2| FILLED * bound::wanted(self.surface, self.sheet.uv(xy), self.limits.chord, self.limits.angle);
+        let growth = 1.0 + self.made.input.plan.slope();
+        Background::new(self.sheet, whole, growth, |xy| wanted(xy).min(size))
+    }
+
+    /// Edges of the border that are so short that lengths have to grow from them.
+    fn short_edges(&self, background: Option<&Background>) -> Vec<Source> {
+        let growth = 1.0 + self.made.input.plan.slope();
+        let source = |edge: [u32; 2]| {
+            let [a, b] = edge.map(|n| n as usize);
+            let size = self.outline.length(edge);
+            let (xy, p) = (0.5 * (self.outline.xy[a] + self.outline.xy[b]), 0.5 * (self.outline.p[a] + self.outline.p[b]));
+            let there = background.map_or(f64::INFINITY, |field| field.size(xy, p)).min(self.face.size.0);
+            let body = Body::Segment(self.outline.p[a], self.outline.p[b]);
+            let from = size.max(self.made.wanted.floor);
+            // Nodes are as far from it as it is long.
+            (size > 0.0 && from * growth < there).then_some(Source { body, radius: 0.0, size: from / SPACING, tag: BORDER })
+        };
+        self.outline.edges().filter_map(source).collect()
+    }
+
+    fn task<'t>(&'t self, field: &'t dyn Field, broken: &'t Broken<'t>) -> Task<'t> {
+        Task { ground: self.sheet, field, outline: self.outline, care: self.care, most: MOST, broken: Some(broken) }
+    }
+
+    /// Without limits on bends: nodes nearer to each other until no side is too long.
+    fn even(&self, field: &mut Blend, job: &Job) -> Fitted {
+        let broken = |web: &Web| self.longest.broken(web);
         for _ in 0..ROUNDS {
-            let field = Even(spacing);
-            let task = Task { ground: sheet, field: &field, outline, care, most, broken: Some(&broken) };
-            match triangulate(&task, job)? {
-                Ok(web) if !broken(&web).is_empty() => spacing *= LESS,
+            let same = Even(field.spacing * self.face.size.0);
+            let field_now: &dyn Field = if field.sources.is_empty() { &same } else { &*field };
+            match triangulate(&self.task(field_now, &broken), job)? {
+                Ok(web) if !broken(&web).is_empty() => field.spacing *= LESS,
                 other => return Ok(other),
             }
         }
-        let (says, at) = (made.input.plan.size.map_or(made.input.plan.origin, |s| s.1), outline.p[0]);
-        return Err(MeshFault::NotReached { limit: "size", says, surface: surface.origin(), reached: longest.inside, at }.into());
+        let plan = self.made.input.plan;
+        let (says, at) = (plan.size.map_or(plan.origin, |s| s.1), self.outline.p[0]);
+        let reached = self.longest.inside;
+        Err(MeshFault::NotReached { limit: "size", says, surface: self.surface.origin(), reached, at }.into())
     }
-    let whole = outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
-    care.wanted = WANTED_BENT;
-    let wanted = |xy: DVec2| FILLED * bound::wanted(surface, sheet.uv(xy), limits.chord, limits.angle);
-    let mut field = Background::new(sheet, whole, GROWTH, |xy| wanted(xy).min(size));
-    let mut worst = (0.0, DVec3::ZERO, "chord_error");
-    for _ in 0..ROUNDS {
-        let broken = |web: &Web| {
-            let loads = loads(surface, sheet, web, &limits);
-            let over = |t: &u32| loads[*t as usize].chord.max(loads[*t as usize].angle) > 1.0 || longest.broken(web, *t);
-            (0..web.tri.len() as u32).filter(over).collect()
-        };
-        let web = match triangulate(&Task { ground: sheet, field: &field, outline, care, most, broken: Some(&broken) }, job)? {
-            Ok(web) => web,
-            Err(trouble) => return Ok(Err(trouble)),
-        };
-        let loads = loads(surface, sheet, &web, &limits);
-        worst = (0.0, DVec3::ZERO, "chord_error");
+
+    /// Lengths by the bends at first, smaller where a triangle's bound says so.
+    fn bent(&self, field: &mut Blend, job: &Job) -> Fitted {
+        let floor = self.made.wanted.written;
+        let mut worst = (0.0, DVec3::ZERO, "chord_error");
+        for _ in 0..ROUNDS {
+            let broken = |web: &Web| {
+                let loads = loads(self.surface, self.sheet, web, &self.limits);
+                let mut found = self.longest.broken(web);
+                let over = |t: &u32| loads[*t as usize].worst() > 1.0 && longest_side(web, *t) > floor;
+                found.extend((0..web.tri.len() as u32).filter(over));
+                found.sort_unstable();
+                found.dedup();
+                found
+            };
+            let web = match triangulate(&self.task(&*field, &broken), job)? {
+                Ok(web) => web,
+                Err(trouble) => return Ok(Err(trouble)),
+            };
+            worst = self.lower(field, &web)?;
+            if worst.0 == 0.0 {
+                return Ok(Ok(web));
+            }
+            if let Some(background) = &mut field.background {
+                background.level();
+            }
+            job.go_on()?;
+        }
+        let (limit, at) = (worst.2, worst.1);
+        let plan = self.made.input.plan;
+        let says = if limit == "chord_error" { plan.chord_error } else { plan.angle_error };
+        let reached = worst.0 * says.map_or(0.0, |s| s.0);
+        let says = says.map_or(plan.origin, |s| s.1);
+        Err(MeshFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
+    }
+
+    /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
+    fn lower(&self, field: &mut Blend, web: &Web) -> Result<(f64, DVec3, &'static str)> {
+        let loads = loads(self.surface, self.sheet, web, &self.limits);
+        let mut stretched = vec![false; loads.len()];
+        self.longest.broken(web).into_iter().for_each(|t| stretched[t as usize] = true);
+        let least = self.made.wanted.written;
+        let mut worst = (0.0, DVec3::ZERO, "chord_error");
         for (t, load) in loads.iter().enumerate() {
-            let stretched = if longest.broken(&web, t as u32) { 1.0 / LESS } else { 0.0 };
-            let over = load.chord.max(load.angle).max(stretched);
+            let over = load.worst().max(if stretched[t] { 1.0 / LESS } else { 0.0 });
             if over <= 1.0 {
                 continue;
             }
             let c = web.tri[t].map(|n| n as usize);
             let middle = (web.p[c[0]] + web.p[c[1]] + web.p[c[2]]) / 3.0;
+            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle };
+            if load.worst() > 1.0 && longest_side(web, t as u32) <= least {
+                return Err(floor_keeps(self.made.input, least / factor, middle));
+            }
             if over > worst.0 {
                 worst = (over, middle, if load.chord >= load.angle { "chord_error" } else { "angle_error" });
             }
-            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle };
             let smaller = (LESS / factor).max(0.5);
-            for n in c {
-                field.lower(web.xy[n], web.size[n] * smaller);
+            if let Some(background) = &mut field.background {
+                c.iter().for_each(|n| background.lower(web.xy[*n], web.size[*n] * smaller));
             }
         }
-        if worst.0 == 0.0 {
-            return Ok(Ok(web));
-        }
-        field.level();
-        job.go_on()?;
+        Ok(worst)
     }
-    let (limit, at) = (worst.2, worst.1);
-    let says = if limit == "chord_error" { made.input.plan.chord_error } else { made.input.plan.angle_error };
-    let reached = worst.0 * says.map_or(0.0, |s| s.0);
-    let says = says.map_or(made.input.plan.origin, |s| s.1);
-    Err(MeshFault::NotReached { limit, says, surface: surface.origin(), reached, at }.into())
+
+    /// What decided the sizes, with the number of inner nodes and one of them.
+    fn deciders(&self, field: &Blend, web: &Web) -> Vec<Decider> {
+        let mut found: Vec<Decider> = Vec::new();
+        let (most, least) = field.range;
+        for n in 0..web.p.len() {
+            let (xy, p) = (web.xy[n], web.p[n]);
+            let source = field.sources.who(p, most);
+            let by_sources = source.map_or(most, |s| s.size) * field.spacing;
+            let why = match source {
+                _ if by_sources.min(field.by_bends(xy, p)) < least * field.spacing => Why::Floor,
+                _ if field.by_bends(xy, p) < by_sources => Why::Bends,
+                Some(source) if field.sources.items()[source.item as usize].tag == BORDER => Why::Border,
+                Some(source) => Why::Refined(field.sources.items()[source.item as usize].tag as usize),
+                None => Why::Size,
+            };
+            let inner = usize::from(n >= web.fixed as usize);
+            match found.iter_mut().find(|d| d.why == why) {
+                Some(decider) if decider.nodes == 0 && inner == 1 => (decider.nodes, decider.at) = (1, p),
+                Some(decider) => decider.nodes += inner,
+                None => found.push(Decider { why, nodes: inner, at: p }),
+            }
+        }
+        found.sort_by_key(|d| d.why);
+        found
+    }
+}
+
+/// The longest side of a triangle.
+fn longest_side(web: &Web, t: u32) -> f64 {
+    let [a, b, c] = web.tri[t as usize].map(|n| web.p[n as usize]);
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
 /// How long sides inside a face may be.
-struct Longest {
-    /// Between inner nodes.
+struct Longest<'a> {
+    /// Between inner nodes where nothing is refined.
     inside: f64,
     /// At each border node: where the border itself has longer steps (a written count), what leans on them is as long.
     at_border: Vec<f64>,
+    /// Places where they have to be shorter.
+    rules: &'a Sources,
 }
 
-impl Longest {
-    fn new(size: f64, outline: &Outline) -> Self {
+impl<'a> Longest<'a> {
+    fn new(size: f64, outline: &Outline, rules: &'a Sources) -> Self {
         let inside = LONGEST * size * (1.0 + WHOLE_NUMBER);
-        let mut at_border = vec![inside; outline.p.len()];
+        let mut longest = Self { inside, at_border: Vec::new(), rules };
+        longest.at_border = outline.p.iter().map(|p| longest.there(*p)).collect();
+        // Where something is refined a border may step out of it: the shorter edge at a node counts.
+        let (start, pick): (f64, fn(f64, f64) -> f64) = if rules.is_empty() { (0.0, f64::max) } else { (f64::INFINITY, f64::min) };
+        let mut steps = vec![start; outline.p.len()];
         for edge in outline.edges() {
             let most = LONGEST * outline.length(edge);
-            edge.iter().for_each(|n| at_border[*n as usize] = at_border[*n as usize].max(most));
+            edge.iter().for_each(|n| steps[*n as usize] = pick(steps[*n as usize], most));
         }
-        Self { inside, at_border }
+        longest.at_border.iter_mut().zip(steps).filter(|(_, step)| step.is_finite()).for_each(|(most, step)| *most = most.max(step));
+        longest
     }
 
-    /// Whether a triangle has a side inside the face that is too long; those between two border nodes are what they are.
-    fn broken(&self, web: &Web, t: u32) -> bool {
-        let c = web.tri[t as usize];
-        (0..3).filter(|k| web.locked[t as usize] >> k & 1 == 0).any(|k| {
-            let ends = [c[(k + 1) % 3], c[(k + 2) % 3]];
-            let most = |n: u32| self.at_border.get(n as usize).copied();
-            let allowed = match ends.map(most) {
-                [Some(_), Some(_)] => return false,
-                [a, b] => a.or(b).unwrap_or(self.inside),
-            };
-            web.p[ends[0] as usize].distance(web.p[ends[1] as usize]) > allowed
-        })
+    fn there(&self, p: DVec3) -> f64 {
+        if self.rules.is_empty() {
+            return self.inside;
+        }
+        let share = LONGEST * (1.0 + WHOLE_NUMBER);
+        share * self.rules.plateau(p, self.inside / share)
+    }
+
+    /// Triangles with a side inside the face that is too long; those between two border nodes are what they are.
+    fn broken(&self, web: &Web) -> Vec<u32> {
+        let inner: Vec<f64> = if self.rules.is_empty() { Vec::new() } else { par::map(web.p.len(), |n| self.there(web.p[n])) };
+        let free = |n: u32| inner.get(n as usize).copied().unwrap_or(self.inside);
+        let border = |n: u32| self.at_border.get(n as usize).copied();
+        let too_long = |t: &u32| {
+            let c = web.tri[*t as usize];
+            (0..3).filter(|k| web.locked[*t as usize] >> k & 1 == 0).any(|k| {
+                let [a, b] = [c[(k + 1) % 3], c[(k + 2) % 3]];
+                let allowed = match (border(a), border(b)) {
+                    (Some(_), Some(_)) => return false,
+                    (None, None) => free(a).max(free(b)),
+                    (Some(most), None) => most.max(if inner.is_empty() { 0.0 } else { free(b) }),
+                    (None, Some(most)) => most.max(if inner.is_empty() { 0.0 } else { free(a) }),
+                };
+                web.p[a as usize].distance(web.p[b as usize]) > allowed
+            })
+        };
+        (0..web.tri.len() as u32).filter(too_long).collect()
     }
 }
 
@@ -243,6 +405,12 @@ impl Longest {
 struct Load {
     chord: f64,
     angle: f64,
+}
+
+impl Load {
+    fn worst(&self) -> f64 {
+        self.chord.max(self.angle)
+    }
 }
 
 /// Bounds of all triangles against the limits.
@@ -289,8 +457,6 @@ fn from_pole(surface: &Surface, at: [DVec2; 3]) -> [DVec2; 3] {
 
 /// First lengths over those that bends ask for: triangles are not all equilateral.
 pub const FILLED: f64 = 0.86;
-/// Ratio of neighbouring edges.
-const GROWTH: f64 = 1.3;
 /// What is made smaller is made a little more so.
 const LESS: f64 = 0.96;
 /// Times a face is made anew for its limits.
@@ -311,6 +477,7 @@ fn prepared(made: &Made, face: &Face, free: Free, mut ids: Vec<u32>, inner: Vec<
         triangles,
         quads: 0,
         made: inner,
+        deciders: Vec::new(),
     }
 }
 

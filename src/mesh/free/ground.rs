@@ -41,6 +41,11 @@ pub trait Ground: Sync {
 pub trait Field: Sync {
     /// Model units, positive.
     fn size(&self, xy: DVec2, p: DVec3) -> f64;
+
+    /// Whether it is the same everywhere.
+    fn is_even(&self) -> bool {
+        false
+    }
 }
 
 /// One length everywhere, model units.
@@ -49,6 +54,10 @@ pub struct Even(pub f64);
 impl Field for Even {
     fn size(&self, _: DVec2, _: DVec3) -> f64 {
         self.0
+    }
+
+    fn is_even(&self) -> bool {
+        true
     }
 }
 

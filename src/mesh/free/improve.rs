@@ -95,7 +95,7 @@ impl<'a> Gardener<'a> {
             if self.mend() == 0 {
                 break;
             }
-            self.smooth(4);
+            self.smooth(self.care.smooth.min(4));
             self.flip_all();
         }
         self.mend();

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
+use crate::mesh::sources::Sources;
 
 /// Grid lines along the longer side of the chart.
 const LINES: usize = 128;
@@ -91,6 +92,32 @@ impl Background {
                 }
             }
         }
+    }
+}
+
+/// Lengths by places with a size of their own, under those of a background.
+pub struct Blend<'a> {
+    /// Places, in lengths of edges.
+    pub sources: &'a Sources,
+    /// Largest and least length of an edge.
+    pub range: (f64, f64),
+    /// Distance of nodes over the length of edges.
+    pub spacing: f64,
+    /// Distances of nodes by bends.
+    pub background: Option<Background>,
+}
+
+impl Blend<'_> {
+    /// The distance of nodes that bends ask for.
+    pub fn by_bends(&self, xy: DVec2, p: DVec3) -> f64 {
+        self.background.as_ref().map_or(f64::INFINITY, |b| b.size(xy, p))
+    }
+}
+
+impl Field for Blend<'_> {
+    fn size(&self, xy: DVec2, p: DVec3) -> f64 {
+        let (most, least) = self.range;
+        (self.sources.at(p, most) * self.spacing).min(self.by_bends(xy, p)).max(least * self.spacing)
     }
 }
 

@@ -1,0 +1,76 @@
+//! `near` and `in` clauses of a mesh: places where elements are smaller.
+
+use super::collections::{number, said};
+use super::cx::{Cx, Stop};
+
+use super::eval::{Code, Gather};
+use super::plans::RefineSpec;
+use super::settings;
+use super::syntax::ast::{ClauseWord, ExprId, Keyword, MeshClause, Span};
+use super::types::Ty;
+use super::value::Value;
+use crate::base::bbox::Box3;
+use crate::base::origin::Origin;
+
+impl Cx<'_> {
+    /// `near points, curves { … }` or `in box { … }`.
+    pub(super) fn refine(&mut self, code: Code<'_>, clause: &MeshClause) -> Result<RefineSpec, Stop> {
+        let mut gather = Gather::default();
+        let (word, table) = if clause.word == ClauseWord::Near { ("near", settings::NEAR) } else { ("in", settings::IN) };
+        let (mut things, mut boxes) = (Vec::new(), Vec::new());
+        if clause.word == ClauseWord::Near {
+            things = gather.take(self.near_things(code, &clause.things)).unwrap_or_default();
+        } else {
+            boxes = gather.take(self.boxes(code, &clause.things)).unwrap_or_default();
+        }
+        let settings = gather.take(self.settings(code, word, table, &clause.settings));
+        gather.done()?;
+        let settings = settings.unwrap_or_default();
+        let Some(size) = said(&settings, "size", number) else {
+            let span = Span { start: clause.span.start, end: clause.span.start + word.len() as u32 };
+            let draft = self.error(code, "E301", format!("`{word}` needs `size`"), span, "`size` is missing");
+            return Err(draft.help("say how long edges may be there: `{ size: 5mm }`").stop());
+        };
+        let origin = clause.things.first().map_or(Origin::NONE, |thing| self.origin_at(*thing));
+        let radius = said(&settings, "radius", number).map_or(0.0, |r| r.0);
+        Ok(RefineSpec { things, boxes, size, radius, origin })
+    }
+
+    fn near_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Stop> {
+        let found = self.things(code, things, Keyword::Group)?;
+        let fits = |v: &Value| {
+            matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Curve(_) | Value::Link(..) | Value::Edge(..))
+        };
+        let Some((value, origin)) = found.iter().find(|(v, _)| !fits(v)) else { return Ok(found) };
+        let (kind, span) = (self.kind(value), self.span_of(*origin).map_or_else(Span::default, |s| s.1));
+        let text = format!("`near` takes points and curves, got {kind}");
+        Err(self.error(code, "E211", text, span, kind).stop())
+    }
+
+    /// Boxes as `box` and `bbox` give them: records with the points `min` and `max`.
+    fn boxes(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Box3>, Stop> {
+        let mut boxes = Vec::new();
+        let (min, max) = (self.names.intern("min"), self.names.intern("max"));
+        for &thing in things {
+            let value = self.eval(code, thing)?;
+            for value in self.flattened(code, thing, value)? {
+                let corners = match &value {
+                    Value::Record(record) => [min, max].map(|key| record.get(key).cloned()),
+                    _ => [None, None],
+                };
+                let [Some(low), Some(high)] = corners else {
+                    let kind = self.kind(&value);
+                    let text = format!("`in` takes boxes, got {kind}");
+                    return Err(self.error(code, "E211", text, code.span(thing), kind).help("in box((0, 0, 0), (1m, 1m, 1m))").stop());
+                };
+                let mut corner = |value: Value| {
+                    let point = self.fit_expr(code, thing, value, Ty::Point, "a corner of the box")?;
+                    self.as_vector(point)
+                };
+                let (a, b) = (corner(low)?.0, corner(high)?.0);
+                boxes.push(Box3::of([a, b]));
+            }
+        }
+        Ok(boxes)
+    }
+}

@@ -1,0 +1,216 @@
+//! Sizes of meshes: `near`, `in`, `growth` and `min_size` on faces, links and across borders.
+
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use lofting::base::bbox::Box3;
+use lofting::base::fault::Fault;
+use lofting::base::job::Job;
+use lofting::base::origin::Origin;
+use lofting::base::tolerance::Tolerance;
+use lofting::geometry::Curve;
+use lofting::geometry::build::line;
+use lofting::mesh::plan::{Place, Refine};
+use lofting::mesh::{Built, Input, Mesh, Method, Plan, build};
+use lofting::model::topology::Named;
+use lofting::model::{Model, SurfaceId};
+use lofting::network::graph::Input as NetInput;
+use lofting::network::{Chain, Network};
+use lofting::surface::{Surface, plane};
+
+fn p(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+fn tolerance() -> Tolerance {
+    Tolerance::new(1e-5, 10.0)
+}
+
+struct Scene {
+    network: Network,
+    model: Model,
+}
+
+/// A plate of 10 × 6 and a wall of 6 × 4 on its east side.
+fn scene(faces: usize) -> Scene {
+    let corners = [p(0.0, 0.0, 0.0), p(10.0, 0.0, 0.0), p(10.0, 6.0, 0.0), p(0.0, 6.0, 0.0), p(10.0, 0.0, 4.0), p(10.0, 6.0, 4.0)];
+    let side = |a: usize, b: usize| line(corners[a], corners[b], Origin::NONE).unwrap();
+    let curves: Vec<Curve> = [(0, 1), (1, 2), (2, 3), (3, 0), (1, 4), (4, 5), (5, 2)].into_iter().map(|(a, b)| side(a, b)).collect();
+    let over = |which: &[usize]| -> Surface {
+        let chains: Vec<Chain> = which.iter().map(|k| Chain::of_curve(&curves[*k])).collect();
+        plane::bounded(&chains, Origin::NONE, &tolerance()).unwrap().0
+    };
+    let surfaces = [over(&[0, 1, 2, 3]), over(&[1, 4, 5, 6])];
+    let inputs = curves.iter().enumerate().map(|(k, c)| NetInput { name: format!("c{k}"), curve: c.clone(), cuts: Vec::new() }).collect();
+    let network = Network::build(inputs, &[], &tolerance(), &Job::new(), &mut Vec::new()).unwrap();
+    let named = surfaces.into_iter().take(faces).enumerate().map(|(k, surface)| Named { name: format!("s{k}"), surface }).collect();
+    let model = Model::build(named, &network, &tolerance(), &Job::new()).unwrap();
+    Scene { network, model }
+}
+
+impl Scene {
+    fn plan(&self, size: f64, refines: Vec<Refine>) -> Plan {
+        let mut plan = Plan::of("m", (0..self.model.surfaces.len()).map(|k| (SurfaceId::at(k), false)).collect());
+        (plan.size, plan.method, plan.refines) = (Some((size, Origin::NONE)), Method::Delaunay, refines);
+        plan
+    }
+
+    fn build(&self, plan: &Plan) -> Result<Built, Fault> {
+        let tolerance = tolerance();
+        let input = Input { plan, model: &self.model, network: &self.network, tolerance: &tolerance };
+        build(&input, &Job::new(), &mut Vec::new())
+    }
+}
+
+fn near(at: DVec3, radius: f64, size: f64) -> Refine {
+    Refine { at: vec![Place::Point(at)], size: (size, Origin::NONE), radius, origin: Origin::NONE }
+}
+
+fn inside(a: DVec3, b: DVec3, size: f64) -> Refine {
+    Refine { at: vec![Place::Box(Box3::of([a, b]))], size: (size, Origin::NONE), radius: 0.0, origin: Origin::NONE }
+}
+
+/// Edges with the number of triangles on them.
+fn edges(mesh: &Mesh) -> BTreeMap<(u32, u32), usize> {
+    let mut edges = BTreeMap::new();
+    for t in &mesh.triangles {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            *edges.entry((a.min(b), a.max(b))).or_insert(0) += 1;
+        }
+    }
+    edges
+}
+
+fn length(mesh: &Mesh, (a, b): (u32, u32)) -> f64 {
+    mesh.nodes[a as usize].distance(mesh.nodes[b as usize])
+}
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * self.next()
+    }
+}
+
+/// Whether all of an edge is where a rule holds.
+fn holds(refine: &Refine, a: DVec3, b: DVec3) -> bool {
+    refine.at.iter().any(|place| {
+        [a, b].iter().all(|q| match place {
+            Place::Point(c) => c.distance(*q) <= refine.radius,
+            Place::Box(around) => around.touches(&Box3::of([*q]), 0.0),
+            Place::Chain(_) => false,
+        })
+    })
+}
+
+#[test]
+fn edges_keep_every_rule_and_grow_from_there() {
+    let scene = scene(2);
+    let mut random = Random(11);
+    for case in 0..4 {
+        let mut refines = Vec::new();
+        for k in 0..3 {
+            let at = p(random.between(0.0, 10.0), random.between(0.0, 6.0), 0.0);
+            let size = random.between(0.1, 0.4);
+            refines.push(if k == 2 { inside(at, at + p(1.5, 1.0, 1.0), size) } else { near(at, random.between(0.0, 1.5), size) });
+        }
+        let built = scene.build(&scene.plan(1.0, refines.clone())).unwrap();
+        let mesh = &built.mesh;
+        let edges = edges(mesh);
+        assert!(edges.values().all(|n| *n <= 2), "case {case}");
+        let mut around: BTreeMap<u32, (f64, f64)> = BTreeMap::new();
+        for &(a, b) in edges.keys() {
+            let l = length(mesh, (a, b));
+            assert!(l <= 1.05 + 1e-9, "case {case}: {l}");
+            for refine in refines.iter().filter(|r| holds(r, mesh.nodes[a as usize], mesh.nodes[b as usize])) {
+                assert!(l <= 1.05 * refine.size.0 + 1e-9, "case {case}: {l} where {} is asked for", refine.size.0);
+            }
+            for n in [a, b] {
+                let slot = around.entry(n).or_insert((f64::INFINITY, 0.0));
+                *slot = (slot.0.min(l), slot.1.max(l));
+            }
+        }
+        // Steps of 1.3 either way of the wanted lengths, times what triangles are off from equilateral ones.
+        let worst = around.values().map(|(low, high)| high / low).fold(0.0, f64::max);
+        assert!(worst < 3.5, "case {case}: neighbouring edges differ by {worst}");
+        assert!(mesh.quality().unwrap().min_angle.to_degrees() > 20.0, "case {case}");
+        // The order of rules means nothing.
+        refines.reverse();
+        let turned = scene.build(&scene.plan(1.0, refines)).unwrap();
+        assert_eq!(mesh.hash(), turned.mesh.hash(), "case {case}");
+    }
+}
+
+#[test]
+fn a_shared_border_is_fine_for_both_faces() {
+    let scene = scene(2);
+    let built = scene.build(&scene.plan(1.0, vec![near(p(10.0, 3.0, 0.0), 0.5, 0.1)])).unwrap();
+    let mesh = &built.mesh;
+    let on = |n: u32| (mesh.nodes[n as usize].x - 10.0).abs() < 1e-9 && mesh.nodes[n as usize].z.abs() < 1e-9;
+    let shared: Vec<(u32, u32)> =
+        edges(mesh).into_iter().filter(|((a, b), _)| on(*a) && on(*b)).inspect(|e| assert_eq!(e.1, 2)).map(|e| e.0).collect();
+    assert!((17..40).contains(&shared.len()), "{}", shared.len());
+    for y in [2.6, 3.0, 3.4] {
+        let holding = |e: &&(u32, u32)| {
+            let [a, b] = [mesh.nodes[e.0 as usize].y, mesh.nodes[e.1 as usize].y];
+            a.min(b) <= y && y <= a.max(b)
+        };
+        assert!(shared.iter().filter(holding).all(|e| length(mesh, *e) <= 0.1 + 1e-9));
+    }
+    // Both sides are fine beside it.
+    for probe in [p(9.8, 3.0, 0.0), p(10.0, 3.0, 0.2)] {
+        let nearest = mesh.nodes.iter().map(|q| q.distance(probe)).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 0.08, "{nearest}");
+    }
+}
+
+#[test]
+fn many_points_cost_little_and_one_rule_of_many_is_many_rules() {
+    let scene = scene(1);
+    let points: Vec<DVec3> = (0..10_000).map(|k| p(f64::from(k % 100) * 0.1, f64::from(k / 100) * 0.06, 0.0)).collect();
+    let one = Refine { at: points.iter().map(|q| Place::Point(*q)).collect(), ..near(p(0.0, 0.0, 0.0), 0.0, 0.2) };
+    let many: Vec<Refine> = points.iter().rev().map(|q| near(*q, 0.0, 0.2)).collect();
+    let (a, b) = (scene.build(&scene.plan(1.0, vec![one])).unwrap(), scene.build(&scene.plan(1.0, many)).unwrap());
+    assert_eq!(a.mesh.hash(), b.mesh.hash());
+    assert!(a.mesh.nodes.len() > 1500);
+}
+
+#[test]
+fn what_cannot_be_is_refused_and_what_decides_nothing_is_said() {
+    let scene = scene(1);
+    let endless = scene.build(&scene.plan(1.0, vec![near(p(5.0, 3.0, 0.0), 1.0, 1e-5)])).unwrap_err();
+    assert_eq!(endless.code().0, "E217", "{endless}");
+    for idle in [near(p(50.0, 3.0, 0.0), 1.0, 0.1), near(p(5.0, 3.0, 0.0), 1.0, 2.0), inside(p(0.0, 0.0, 5.0), p(9.0, 9.0, 6.0), 0.1)] {
+        let built = scene.build(&scene.plan(1.0, vec![idle])).unwrap();
+        assert_eq!(built.remarks.len(), 1);
+        assert_eq!(built.mesh.hash(), scene.build(&scene.plan(1.0, Vec::new())).unwrap().mesh.hash());
+    }
+    let mut plan = scene.plan(1.0, vec![near(p(5.0, 3.0, 0.0), 1.0, 0.1)]);
+    assert!(scene.build(&plan).unwrap().remarks.is_empty());
+    plan.min_size = Some((0.2, Origin::NONE));
+    assert_eq!(scene.build(&plan).unwrap_err().code().0, "E707");
+}
+
+#[test]
+fn growth_and_smoothing_are_followed() {
+    let scene = scene(1);
+    let nodes = |growth: Option<f64>, smooth: Option<u32>| {
+        let mut plan = scene.plan(1.0, vec![near(p(5.0, 3.0, 0.0), 0.2, 0.05)]);
+        (plan.growth, plan.smooth) = (growth.map(|g| (g, Origin::NONE)), smooth.map(|n| (n, Origin::NONE)));
+        let built = scene.build(&plan).unwrap();
+        (built.mesh.nodes.len(), built.mesh.quality().unwrap().mean_quality)
+    };
+    let (slow, plain, fast) = (nodes(Some(1.1), None), nodes(None, None), nodes(Some(1.8), None));
+    assert!(slow.0 > 2 * plain.0 && 5 * plain.0 > 6 * fast.0, "{} {} {}", slow.0, plain.0, fast.0);
+    let (raw, once) = (nodes(None, Some(0)), nodes(None, Some(1)));
+    assert!(raw.1 < once.1 && once.1 <= plain.1 + 0.01, "{} {} {}", raw.1, once.1, plain.1);
+}
