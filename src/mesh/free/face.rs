@@ -416,6 +416,7 @@ impl Load {
 /// Bounds of all triangles against the limits.
 fn loads(surface: &Surface, sheet: &Sheet, web: &Web, limits: &Limits) -> Vec<Load> {
     let places: Vec<DVec2> = web.xy.iter().map(|xy| sheet.uv(*xy).into()).collect();
+    let off = off_surface(surface, &places, web);
     let normals: Vec<DVec3> = match limits.angle {
         Some(_) => par::map(places.len(), |n| surface.normal(places[n].x, places[n].y)),
         None => Vec::new(),
@@ -426,7 +427,10 @@ fn loads(surface: &Surface, sheet: &Sheet, web: &Web, limits: &Limits) -> Vec<Lo
             .map(|t| {
                 let c = t.map(|n| n as usize);
                 let at = || from_pole(surface, c.map(|n| places[n]));
-                let chord = limits.chord.map_or(0.0, |limit| bound::chord(surface, at(), c.map(|n| web.p[n])) / limit);
+                let chord = limits.chord.map_or(0.0, |limit| {
+                    let beside = c.iter().filter_map(|n| off.get(*n)).fold(0.0, |m: f64, d| m.max(*d));
+                    (bound::chord(surface, at(), c.map(|n| web.p[n])) + beside) / limit
+                });
                 let angle = limits.angle.map_or(0.0, |limit| {
                     let turn = |i: usize, j: usize| angle_between(normals[c[i]], normals[c[j]]);
                     turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
@@ -436,6 +440,12 @@ fn loads(surface: &Surface, sheet: &Sheet, web: &Web, limits: &Limits) -> Vec<Lo
             .collect::<Vec<_>>()
     });
     batches.into_iter().flatten().collect()
+}
+
+/// How far border nodes are from the surface along its normal: glued edges run beside it.
+fn off_surface(surface: &Surface, places: &[DVec2], web: &Web) -> Vec<f64> {
+    let off = |n: usize| (web.p[n] - surface.point(places[n].x, places[n].y)).dot(surface.normal(places[n].x, places[n].y)).abs();
+    (0..web.fixed as usize).map(off).collect()
 }
 
 /// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two

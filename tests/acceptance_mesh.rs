@@ -1,0 +1,117 @@
+//! Models of the papers on meshing (math notes §16, P1 and P4), as scripts with checks, and the same bytes on any number of
+//! threads.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test fails by panicking and checks with the platform's functions"
+)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use glam::DVec3;
+use lofting::base::job::Job;
+use lofting::mesh::Mesh;
+use lofting::session::disk::{Disk, Outputs};
+use lofting::session::guard::guarded;
+use lofting::session::run::{Outcome, Task, run};
+use serde_json::Value as Json;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("acceptance-{name}"));
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs a script whose checks all hold.
+fn outcome(script: &Path) -> Outcome {
+    let text = std::fs::read(script).unwrap();
+    let disk = Disk::new(Some(script), Some(&folder("out")), &[], Outputs::Written).unwrap();
+    let name = script.file_name().unwrap().to_str().unwrap();
+    let clock = || 0.0;
+    let task = Task { name, text: &text, sets: &[], strict: false, keep_going: false, full: true, picture: None, clock: &clock };
+    let outcome = guarded(|| run(&task, &disk, &Job::default())).unwrap_or_else(|bug| panic!("{bug:?}"));
+    assert!(outcome.report.ok, "{name}:\n{}", outcome.drawn(false, false));
+    assert!(!outcome.report.checks.is_empty(), "{name} checks nothing");
+    outcome
+}
+
+/// Every triangle has an area, no edge has more than two, and two run along it in opposite senses.
+fn sound(mesh: &Mesh) {
+    let mut edges: BTreeMap<(u32, u32), Vec<bool>> = BTreeMap::new();
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|n| mesh.nodes[n as usize]);
+        assert!((b - a).cross(c - a).length() > 0.0, "{}: a triangle without area at {a}", mesh.name);
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            edges.entry((a.min(b), a.max(b))).or_default().push(a < b);
+        }
+    }
+    for ((a, _), senses) in edges {
+        let fine = senses.len() == 1 || senses.len() == 2 && senses[0] != senses[1];
+        assert!(fine, "{}: {senses:?} at {}", mesh.name, mesh.nodes[a as usize]);
+    }
+}
+
+#[test]
+fn models_of_the_papers_hold() {
+    let mut scripts: Vec<PathBuf> = std::fs::read_dir(root().join("tests/acceptance")).unwrap().map(|e| e.unwrap().path()).collect();
+    scripts.sort();
+    assert!(scripts.len() >= 3);
+    for script in scripts {
+        outcome(&script).meshes.iter().for_each(|(_, mesh)| sound(mesh));
+    }
+}
+
+fn facts(model: &str) -> Json {
+    let text = std::fs::read(root().join("tests/data/reference/acceptance_models.json")).unwrap();
+    serde_json::from_slice::<Json>(&text).unwrap()[model].clone()
+}
+
+/// P1 figure 17: 8 planes and 24 curved faces; what the triangles enclose differs from the block by the chord error at most.
+#[test]
+fn the_block_encloses_what_it_should() {
+    let outcome = outcome(&root().join("examples/block.loft"));
+    let facts = facts("filleted_L_block");
+    let (volume, area) = (facts["volume"].as_f64().unwrap(), facts["area"].as_f64().unwrap());
+    let shell = &outcome.report.shells[0];
+    assert!((shell.volume.unwrap() / volume - 1.0).abs() < 1e-9, "{:?}", shell.volume);
+    assert!((shell.area.unwrap() / area - 1.0).abs() < 1e-9, "{:?}", shell.area);
+    let topology = &outcome.report.topology;
+    let known = |key: &str| facts["euler"][key].as_u64().unwrap() as usize;
+    assert_eq!((topology.vertices, topology.edges, topology.patches), (known("V"), known("E"), known("F")));
+    let mesh = &outcome.meshes[0].1;
+    sound(mesh);
+    assert!(mesh.is_watertight());
+    let corners = |t: &[u32; 3]| t.map(|n| mesh.nodes[n as usize]);
+    let six: f64 = mesh.triangles.iter().map(corners).map(|[a, b, c]: [DVec3; 3]| a.dot(b.cross(c))).sum();
+    let chord = 0.1;
+    assert!((six.abs() / 6.0 - volume).abs() <= chord * area, "{}", six / 6.0);
+    let twice: f64 = mesh.triangles.iter().map(corners).map(|[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length()).sum();
+    // Of a convex quarter circle of 4 mm, the smallest radius, a chord error of 0.1 mm takes 1.7 % of the length.
+    assert!(0.5 * twice <= area && 0.5 * twice >= 0.983 * area, "{}", 0.5 * twice);
+    assert_eq!(mesh.nodes.len() as i64 - mesh.triangles.len() as i64 / 2, 2 - 2 * facts["euler"]["genus"].as_i64().unwrap());
+}
+
+#[test]
+fn the_block_has_the_same_bytes_on_any_number_of_threads() {
+    let mut known: Option<(Vec<u8>, Vec<u8>)> = None;
+    for threads in ["1", "2", "8"] {
+        let out = folder(&format!("threads-{threads}"));
+        let mut command = Command::new(env!("CARGO_BIN_EXE_loft"));
+        command.args(["run", "--json", "--threads", threads, "--set", "size=7mm", "examples/block.loft", "-o"]).arg(&out);
+        let done = command.current_dir(root()).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let report: Json = serde_json::from_slice(&done.stdout).unwrap();
+        let meshes = serde_json::to_vec(&report["meshes"]).unwrap();
+        let found = (std::fs::read(out.join("block.inp")).unwrap(), meshes);
+        assert!(*known.get_or_insert_with(|| found.clone()) == found, "{threads} threads make another file");
+    }
+}
