@@ -31,10 +31,16 @@ fn tolerance() -> Tolerance {
 struct Scene {
     network: Network,
     model: Model,
+    /// Curves beside the borders.
+    inner: Vec<Chain>,
 }
 
 /// A plate of 10 × 6 and a wall of 6 × 4 on its east side.
 fn scene(faces: usize) -> Scene {
+    scene_with(faces, Vec::new())
+}
+
+fn scene_with(faces: usize, inner: Vec<Curve>) -> Scene {
     let corners = [p(0.0, 0.0, 0.0), p(10.0, 0.0, 0.0), p(10.0, 6.0, 0.0), p(0.0, 6.0, 0.0), p(10.0, 0.0, 4.0), p(10.0, 6.0, 4.0)];
     let side = |a: usize, b: usize| line(corners[a], corners[b], Origin::NONE).unwrap();
     let curves: Vec<Curve> = [(0, 1), (1, 2), (2, 3), (3, 0), (1, 4), (4, 5), (5, 2)].into_iter().map(|(a, b)| side(a, b)).collect();
@@ -43,11 +49,13 @@ fn scene(faces: usize) -> Scene {
         plane::bounded(&chains, Origin::NONE, &tolerance()).unwrap().0
     };
     let surfaces = [over(&[0, 1, 2, 3]), over(&[1, 4, 5, 6])];
+    let lines: Vec<Chain> = inner.iter().map(Chain::of_curve).collect();
+    let curves: Vec<Curve> = curves.into_iter().chain(inner).collect();
     let inputs = curves.iter().enumerate().map(|(k, c)| NetInput { name: format!("c{k}"), curve: c.clone(), cuts: Vec::new() }).collect();
     let network = Network::build(inputs, &[], &tolerance(), &Job::new(), &mut Vec::new()).unwrap();
     let named = surfaces.into_iter().take(faces).enumerate().map(|(k, surface)| Named { name: format!("s{k}"), surface }).collect();
     let model = Model::build(named, &network, &tolerance(), &Job::new()).unwrap();
-    Scene { network, model }
+    Scene { network, model, inner: lines }
 }
 
 impl Scene {
@@ -170,6 +178,57 @@ fn a_shared_border_is_fine_for_both_faces() {
     for probe in [p(9.8, 3.0, 0.0), p(10.0, 3.0, 0.2)] {
         let nearest = mesh.nodes.iter().map(|q| q.distance(probe)).fold(f64::INFINITY, f64::min);
         assert!(nearest < 0.08, "{nearest}");
+    }
+}
+
+/// Every step of every curve is an edge of the triangles, and every point one of their nodes.
+fn holds_lines(mesh: &Mesh) {
+    let edges = edges(mesh);
+    assert!(!mesh.lines.is_empty());
+    for [a, b] in &mesh.lines {
+        assert!(edges.contains_key(&(*a.min(b), *a.max(b))), "{} {}", mesh.nodes[*a as usize], mesh.nodes[*b as usize]);
+    }
+    let used: std::collections::BTreeSet<u32> = mesh.triangles.iter().flatten().copied().collect();
+    assert!(mesh.points.iter().all(|n| used.contains(n)));
+    assert!(edges.values().all(|n| *n <= 2));
+}
+
+#[test]
+fn lines_and_points_inside_are_built_in() {
+    // A rib that starts on the border, a ring across it, one that runs over the shared edge up the wall, one that only touches.
+    let rib = line(p(0.0, 2.0, 0.0), p(7.0, 4.0, 0.0), Origin::NONE).unwrap();
+    let ring = lofting::geometry::build::circle_start(p(5.0, 3.0, 0.0), p(6.0, 3.0, 0.0), DVec3::Z, Origin::NONE).unwrap();
+    let over = lofting::geometry::build::polyline(&[p(8.0, 1.0, 0.0), p(10.0, 2.0, 0.0), p(10.0, 3.0, 3.0)], false, Origin::NONE).unwrap();
+    let stem = line(p(3.0, 6.0, 0.0), p(3.0, 4.5, 0.0), Origin::NONE).unwrap();
+    let scene = scene_with(2, vec![rib, ring, over, stem]);
+    for order in [1, 2] {
+        let mut plan = scene.plan(0.7, Vec::new());
+        (plan.method, plan.order) = (Method::Auto, order);
+        plan.curves = scene.inner.iter().enumerate().map(|(k, c)| (format!("inner{k}"), c.clone())).collect();
+        plan.points = vec![p(8.0, 5.0, 0.0), p(10.0, 5.0, 3.0), p(0.0, 0.0, 0.0), p(7.0, 4.0, 0.0)];
+        let built = scene.build(&plan).unwrap();
+        holds_lines(&built.mesh);
+        assert_eq!(built.mesh.points.len(), 4);
+        assert!((built.mesh.quality().unwrap().area - 84.0).abs() < 1e-9);
+        let alone = Plan { curves: Vec::new(), points: Vec::new(), ..plan.clone() };
+        assert!(scene.build(&alone).unwrap().explanation.faces.iter().all(|f| f.method == "mapped"));
+        plan.method = Method::Mapped;
+        assert_eq!(scene.build(&plan).unwrap_err().code().0, "E705");
+    }
+}
+
+#[test]
+fn any_line_on_a_plate_is_built_in() {
+    let mut random = Random(5);
+    for case in 0..12 {
+        let mut place = || p(random.between(0.0, 10.0), random.between(0.0, 6.0), 0.0);
+        let lines: Vec<Curve> = (0..4).map(|_| line(place(), place(), Origin::NONE).unwrap()).collect();
+        let scene = scene_with(1, lines);
+        let mut plan = scene.plan(1.0, Vec::new());
+        plan.curves = scene.inner.iter().enumerate().map(|(k, c)| (format!("inner{k}"), c.clone())).collect();
+        let built = scene.build(&plan).unwrap_or_else(|e| panic!("case {case}: {e}"));
+        holds_lines(&built.mesh);
+        assert!((built.mesh.quality().unwrap().area - 60.0).abs() < 1e-9, "case {case}");
     }
 }
 

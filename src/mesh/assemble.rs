@@ -17,7 +17,7 @@ use super::relations::Relations;
 use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Sizing};
-use super::{lines, second_order, shape_check, strips};
+use super::{inside, lines, second_order, shape_check, strips};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -46,7 +46,7 @@ pub struct Part {
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
-    lines::refuse_inside(input, &layout)?;
+    inside::place(input, &mut layout);
     let mut sizing = Sizing::new(input, &mut layout, size, known)?;
     let limits = faces::limits_of(input);
     let wishes = wishes(input, &layout, &sizing, &limits, known);

@@ -69,7 +69,8 @@ pub fn middle(input: &Input, face: &Face) -> DVec3 {
 pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
     for face in &mut layout.faces {
         let surface = &input.model.surfaces[face.surface.index()].surface;
-        let why = unmappable(surface, face);
+        let crossed = || (!face.lines.is_empty() || !face.points.is_empty()).then(|| crossed(face));
+        let why = unmappable(surface, face).or_else(crossed);
         let (of, at) = (surface.origin(), middle(input, face));
         let borderless = face.sides.iter().all(|s| s.uses.is_empty());
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
@@ -82,6 +83,18 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// What lies inside a face, in words that follow "a face".
+fn crossed(face: &Face) -> String {
+    let some = |n: usize, one: &str, many: &str| if n == 1 { one.to_owned() } else { format!("{n} {many}") };
+    let lines = some(face.lines.len(), "a curve", "pieces of curves");
+    let points = some(face.points.len(), "a point", "points");
+    match (face.lines.is_empty(), face.points.is_empty()) {
+        (false, true) => format!("with {lines} inside, off its mesh lines"),
+        (true, _) => format!("with {points} inside, off its mesh lines"),
+        (false, false) => format!("with {lines} and {points} inside, off its mesh lines"),
+    }
 }
 
 /// Why a face cannot be mapped, in words that follow "a face".

@@ -7,8 +7,6 @@ use crate::surface::{Domain, Surface};
 
 /// Steps before the nearest place found so far is taken.
 const STEPS: usize = 12;
-/// Samples along each direction when there is no guess.
-const SAMPLES: usize = 12;
 
 /// Distance of a point from a surface near (u, v), with the place of the foot: Gauss–Newton with second derivatives where
 /// they help, steps halved until the distance falls, held inside the ranges of u and v.
@@ -53,23 +51,4 @@ pub fn nearest(surface: &Surface, p: DVec3, guess: (f64, f64), u: (f64, f64), v:
         }
     }
     (best.sqrt(), at)
-}
-
-/// The same from the best of a grid of samples.
-pub fn nearest_anywhere(surface: &Surface, p: DVec3, u: (f64, f64), v: (f64, f64)) -> (f64, (f64, f64)) {
-    let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / (SAMPLES - 1) as f64;
-    let mut best = (f64::INFINITY, (u.0, v.0));
-    for j in 0..SAMPLES {
-        for i in 0..SAMPLES {
-            let mut place = (at(u, i), at(v, j));
-            if surface.domain() == Domain::Triangle {
-                place = ((1.0 - place.1) * place.0, place.1);
-            }
-            let distance = surface.point(place.0, place.1).distance_squared(p);
-            if distance < best.0 {
-                best = (distance, place);
-            }
-        }
-    }
-    nearest(surface, p, best.1, u, v)
 }

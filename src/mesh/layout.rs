@@ -50,6 +50,10 @@ pub struct Face {
     pub near: f64,
     /// Sides in the order of the patch: four, or three of a triangle.
     pub sides: Vec<Border>,
+    /// Stretches of curves inside it.
+    pub lines: Vec<usize>,
+    /// Points of the plan inside it.
+    pub points: Vec<usize>,
 }
 
 impl Face {
@@ -84,6 +88,11 @@ impl Layout {
         let mut parts: Vec<Part> = edges.iter().map(|e| edge_part(input, *e)).collect();
         let links = if with_lines { link_parts(input, &mut parts) } else { Vec::new() };
         let alone = if with_lines { lone_parts(input, &mut parts) } else { Vec::new() };
+        for part in links.iter().map(|l| l.1).chain(alone.iter().map(|l| l.1)) {
+            let part = &mut parts[part];
+            part.cuts.extend(super::inside::crossings(input, &ids, &part.track));
+            part.cuts.sort_by(f64::total_cmp);
+        }
         // Points and curves of the mesh join whatever edge is glued.
         let most = reach(input, patches.iter().map(|p| p.0));
         parts[edges.len()..].iter_mut().for_each(|part| part.near = most);
@@ -153,6 +162,8 @@ impl Layout {
             size: (0.0, None),
             near: reach(input, std::iter::once(patch)),
             sides,
+            lines: Vec::new(),
+            points: Vec::new(),
         }
     }
 

@@ -15,6 +15,7 @@ pub mod faces;
 mod foot;
 pub mod free;
 mod hash;
+mod inside;
 mod key;
 mod layout;
 mod limits;

@@ -9,6 +9,7 @@ use super::build::Input;
 use super::counts::steps;
 use super::edges::Limits;
 use super::free::{bound, face};
+use super::inside::trace;
 use super::layout::Layout;
 use super::sources::{Body, Source, Sources};
 use super::wanted::Wanted;
@@ -196,7 +197,7 @@ impl Walker<'_> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut on_face = vec![false; paces.len()];
         for face in &self.layout.faces {
-            let mut all: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).collect();
+            let mut all: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).chain(face.lines.iter().copied()).collect();
             all.iter().for_each(|k| on_face[*k] = true);
             all.sort_unstable();
             all.dedup();
@@ -361,6 +362,12 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
             }
             found.push((u.atom, wanted));
         }
+    }
+    for line in &own.lines {
+        let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
+        let places = trace(surface, &input.model.patches[own.patch.index()], &points);
+        let wanted = |at| (face::FILLED * bound::wanted(surface, at, limits.chord, limits.angle)).min(own.size.0);
+        found.push((*line, places.into_iter().map(wanted).collect()));
     }
     found
 }

@@ -115,7 +115,7 @@ impl Sizing {
         let mut own = vec![(size, None); n];
         let mut seen = vec![false; n];
         for face in &layout.faces {
-            for stretch in face.sides.iter().flat_map(|s| s.stretches()) {
+            for stretch in face.sides.iter().flat_map(|s| s.stretches()).chain(face.lines.iter().copied()) {
                 if !std::mem::replace(&mut seen[stretch], true) || face.size.0 < own[stretch].0 {
                     own[stretch] = face.size;
                 }

@@ -45,7 +45,7 @@ const WANTED_BENT: f64 = 0.85;
 const SMOOTH: usize = 30;
 
 /// Feet of one point nearer than this in u and v are one place.
-const ONE_PLACE: f64 = NUDGE;
+pub(super) const ONE_PLACE: f64 = NUDGE;
 
 /// Ends of two borders of one face that became one junction lie within this many glue distances of each other in the chart,
 /// whose lengths are right on average only.
@@ -67,10 +67,12 @@ pub struct Made<'a> {
 
 /// Nodes of a border with their places, in order of first use.
 #[derive(Default)]
-struct Border {
-    uv: Vec<(f64, f64)>,
-    ids: Vec<u32>,
-    edges: Vec<[u32; 2]>,
+pub(super) struct Border {
+    pub(super) uv: Vec<(f64, f64)>,
+    pub(super) ids: Vec<u32>,
+    pub(super) edges: Vec<[u32; 2]>,
+    /// Edges of lines inside.
+    pub(super) lines: Vec<[u32; 2]>,
 }
 
 impl Border {
@@ -102,6 +104,7 @@ impl Border {
         let kept: Vec<usize> = (0..into.len()).filter(|n| into[*n] == *n as u32).collect();
         let place = |n: u32| kept.partition_point(|k| *k < into[n as usize] as usize) as u32;
         self.edges = self.edges.iter().map(|e| e.map(place)).filter(|[a, b]| a != b).collect();
+        self.lines = self.lines.iter().map(|e| e.map(place)).filter(|[a, b]| a != b).collect();
         self.uv = kept.iter().map(|n| self.uv[*n]).collect();
         self.ids = kept.iter().map(|n| self.ids[*n]).collect();
     }
@@ -124,7 +127,7 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
         xy: border.uv.iter().map(|uv| sheet.xy(*uv)).collect(),
         p: border.ids.iter().map(|n| made.points[*n as usize]).collect(),
         loops: border.edges.clone(),
-        lines: Vec::new(),
+        lines: border.lines.clone(),
     };
     let (web, deciders) = match fitting(made, face, &sheet, &outline, job)? {
         Ok(fitted) => fitted,
@@ -538,6 +541,7 @@ fn border(made: &Made, face: &Face) -> Border {
     if surface.domain() == Domain::Loop {
         border.jump(&surface.loops(), &ends);
     }
+    super::inner::add(made, face, &mut border, &mut known);
     border
 }
 

@@ -7,6 +7,7 @@ pub mod face;
 pub mod ground;
 pub mod grow;
 pub mod improve;
+mod inner;
 pub mod outline;
 pub mod shape;
 pub mod sheet;
