@@ -15,7 +15,7 @@ use lofting::network::Chain;
 use lofting::surface::meet;
 use lofting::surface::nurbs::{self, Net};
 use lofting::surface::revolve::{Axis, revolve};
-use lofting::surface::{Nearest, Surface, extrude, plane};
+use lofting::surface::{Nearest, Surface, divide, extrude, plane};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -333,4 +333,27 @@ fn small_loops_inside_are_found() {
         assert_eq!(curves.len(), 1, "{below}");
         assert!(curves[0].is_closed(&tolerance()));
     }
+}
+
+/// One plane that cuts a bicubic in two: the part that is kept is the side of the point, place by place.
+#[test]
+fn the_part_with_the_point_stays() {
+    let heights = prop::collection::vec(-0.6..0.6_f64, 16);
+    let run = runner(40).run(&(heights, vector(0.6), -0.3..0.3_f64, (0.1..0.9_f64, 0.1..0.9_f64)), |(heights, tilt, height, (u, v))| {
+        let sheet = sheet(&heights);
+        let (at, normal) = (DVec3::new(0.5, 0.5, height), (DVec3::Z + tilt * DVec3::new(1.0, 1.0, 0.0)).normalize());
+        let side = |u: f64, v: f64| (sheet.point(u, v) - at).dot(normal);
+        let (_, steep) = lines_of_zeros(side);
+        let curves = cut(&sheet, &flat(at, normal));
+        prop_assume!(curves.len() == 1 && steep > 0.08 && side(u, v).abs() > 1e-3);
+        let kept = divide(&sheet, &curves, sheet.point(u, v), Origin::NONE, &tolerance()).unwrap();
+        for k in 0..400 {
+            let (x, y) = ((f64::from(k % 20) + 0.5) / 20.0, (f64::from(k / 20) + 0.5) / 20.0);
+            if side(x, y).abs() > 1e-4 {
+                prop_assert_eq!(kept.holds(x, y), side(x, y) * side(u, v) > 0.0, "{} {}", x, y);
+            }
+        }
+        Ok(())
+    });
+    run.unwrap();
 }

@@ -2,11 +2,11 @@
 
 use super::cx::{Cx, Stop};
 use super::eval::Code;
-use super::std::kinds::Meeting;
+use super::std::kinds::{Cutters, Meeting};
 use super::syntax::ast::{Expr, ExprId};
 use super::types::{FromValue, Ty};
 use super::value::{Dim, Value};
-use crate::base::fault::ValueFault;
+use crate::base::fault::{CutFault, Fault, ValueFault};
 use crate::base::origin::Origin;
 use crate::network::Chain;
 use crate::network::meet;
@@ -68,6 +68,35 @@ pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
 }
 
 const MESH: &str = "`meet` of a mesh";
+
+/// The curves by which things cut a surface: curves themselves, of surfaces those in which they meet it.
+pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Cutters) -> Result<Vec<Chain>, Stop> {
+    let values = match by {
+        Cutters::Curve(chain) => vec![Value::Curve(chain)],
+        Cutters::Surface(surface) => vec![Value::Surface(surface)],
+        Cutters::Shell(shell) => vec![Value::Shell(shell)],
+        Cutters::Plane(plane) => vec![Value::Plane(plane)],
+        Cutters::Several(values) => values,
+    };
+    let tolerance = cx.tolerance()?;
+    let mut chains = Vec::new();
+    for value in values {
+        match Meeting::from_value(plain(cx, &value)?) {
+            Some(Meeting::Curve(chain)) => chains.push(chain),
+            Some(other) => {
+                let faces = faces(&other)?.ok_or(Stop::Bug("a mesh does not cut"))?;
+                let found = surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
+                if found.is_empty() {
+                    let b = faces.first().map_or(Origin::NONE, Surface::origin);
+                    return Err(Fault::from(CutFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());
+                }
+                chains.extend(found);
+            }
+            None => return Err(Stop::Bug("a cutter was not coerced to its type")),
+        }
+    }
+    Ok(chains)
+}
 
 /// A link as the curve it is.
 fn plain(cx: &mut Cx, value: &Value) -> Result<Value, Stop> {

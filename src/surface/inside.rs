@@ -34,11 +34,19 @@ impl Surface {
 
     /// The angle by which border `k` turns about a place.
     fn turning(&self, k: usize, course: &Course, p: DVec2) -> f64 {
+        match self.side(k) {
+            Side::Chain { chain, .. } => self.turn_along(course, Some(&chain), p),
+            _ => self.turn_along(course, None, p),
+        }
+    }
+
+    /// The angle by which a way over the surface turns about a place; the chain is the one whose feet it has.
+    pub(super) fn turn_along(&self, course: &Course, chain: Option<&Chain>, p: DVec2) -> f64 {
         match course {
             Course::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
             Course::Pull(pull) => {
-                let Side::Chain { chain, .. } = self.side(k) else { return 0.0 };
-                pull.stations().windows(2).map(|w| self.turn_of(&chain, w[0], w[1], p, DEEPEST)).sum()
+                let Some(chain) = chain else { return 0.0 };
+                pull.stations().windows(2).map(|w| self.turn_of(chain, w[0], w[1], p, DEEPEST)).sum()
             }
         }
     }

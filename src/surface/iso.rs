@@ -41,7 +41,7 @@ impl IsoLine {
 }
 
 /// A part of a chain between two fractions, in the direction from the first to the second.
-fn between(chain: &Chain, from: f64, to: f64, tolerance: &Tolerance) -> Result<Chain> {
+pub(super) fn between(chain: &Chain, from: f64, to: f64, tolerance: &Tolerance) -> Result<Chain> {
     let (chain, from, to) = if from > to { (chain.reversed(), 1.0 - from, 1.0 - to) } else { (chain.clone(), from, to) };
     if from <= 0.0 && to >= 1.0 { Ok(chain) } else { chain.slice(from, to, tolerance) }
 }

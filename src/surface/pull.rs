@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::core::Surface;
-use crate::base::tolerance::{EPSILON, SINGULAR};
+use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
 use crate::network::Chain;
 
 /// Steps between two breaks of a curve at the least.
@@ -37,6 +37,29 @@ impl Course {
                 Self::Pull(Arc::new(Pull { at: at.collect(), off: pull.off }))
             }
         }
+    }
+
+    /// The same backwards.
+    pub fn turned(&self) -> Self {
+        match self {
+            Self::Line(a, b) => Self::Line(*b, *a),
+            Self::Pull(pull) => Self::Pull(Arc::new(pull.turned())),
+        }
+    }
+
+    /// Whether a straight line passes a place within a distance in (u, v); a curve is not asked.
+    pub fn touches(&self, p: DVec2, distance: f64) -> bool {
+        let Self::Line(a, b) = self else { return false };
+        let (a, b) = (DVec2::from(*a), DVec2::from(*b));
+        let share = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        a.lerp(b, share).distance(p) <= distance
+    }
+
+    /// Whether all of it is a line along which a parameter is whole: the seam of a surface that closes in that direction.
+    pub fn is_seam(&self, closed: (bool, bool)) -> bool {
+        let places = self.places();
+        let whole = |x: fn(&DVec2) -> f64| places.iter().all(|p| (x(p) - x(&places[0]).round()).abs() <= NUDGE);
+        closed.0 && whole(|p| p.x) || closed.1 && whole(|p| p.y)
     }
 
     /// Shifted in (u, v).
@@ -131,6 +154,23 @@ impl Pull {
         (self.at[0].1, self.at[self.at.len() - 1].1)
     }
 
+    /// This way and then another that goes on from its end.
+    pub fn then(mut self, more: &Self) -> Self {
+        self.at.extend(more.at.iter().skip(1));
+        self
+    }
+
+    /// The chain's fraction at a share of the way.
+    pub fn fraction(&self, share: f64) -> f64 {
+        let (from, to) = (self.at[0].0, self.at[self.at.len() - 1].0);
+        from + (to - from) * share
+    }
+
+    /// About where a share of the way lies.
+    pub fn share(&self, share: f64) -> DVec2 {
+        self.guess(self.fraction(share))
+    }
+
     /// Fractions with their places, in the order of the loop.
     pub fn stations(&self) -> &[(f64, DVec2)] {
         &self.at
@@ -146,7 +186,7 @@ impl Pull {
 }
 
 /// Whether the surface stands still at a place in one direction.
-fn is_pole(surface: &Surface, uv: DVec2) -> bool {
+pub(super) fn is_pole(surface: &Surface, uv: DVec2) -> bool {
     let uv = surface.hold(uv);
     let jet = surface.jet(uv.x, uv.y);
     let (du, dv) = (jet.du.length(), jet.dv.length());

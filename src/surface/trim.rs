@@ -59,17 +59,14 @@ impl Walk {
             .collect()
     }
 
+    /// Twice its signed area in (u, v).
+    pub fn area2(&self) -> f64 {
+        area2(&self.polygon())
+    }
+
     fn turned(self) -> Self {
         let borders = self.borders.iter().rev().map(Border::turned).collect();
-        let courses = self
-            .courses
-            .iter()
-            .rev()
-            .map(|c| match c {
-                Course::Line(a, b) => Course::Line(*b, *a),
-                Course::Pull(pull) => Course::Pull(Arc::new(pull.turned())),
-            })
-            .collect();
+        let courses = self.courses.iter().rev().map(Course::turned).collect();
         Self { borders, courses, ..self }
     }
 
@@ -120,6 +117,11 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
         *hole = place.shifted(by);
     }
     walks.extend(holes);
+    assembled(base, walks, origin)
+}
+
+/// A surface with these loops, the outer one first.
+pub(super) fn assembled(base: &Surface, walks: Vec<Walk>, origin: Origin) -> Result<Surface> {
     let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
     (parts.borders, parts.chains) = (Vec::new(), Vec::new());
     let mut trim = Trim { ground: base.ground(), loops: Vec::new(), courses: Vec::new() };

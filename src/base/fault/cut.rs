@@ -44,6 +44,28 @@ pub enum CutFault {
         /// What was asked for.
         of: Origin,
     },
+    /// E659 `cut-open`: a curve ends inside a surface that it should divide.
+    CutOpen {
+        /// The curve.
+        cutter: Origin,
+        /// The surface.
+        surface: Origin,
+        /// Where it ends.
+        at: DVec3,
+    },
+    /// E660 `keep-off`: the point that says which part to keep is not on the surface, or on a cut.
+    KeepOff {
+        /// The surface.
+        surface: Origin,
+        /// The point.
+        at: DVec3,
+        /// Its distance from the surface.
+        off: f64,
+        /// The curve it lies on.
+        on: Option<Origin>,
+        /// The model's tolerance.
+        tolerance: f64,
+    },
 }
 
 impl Describe for CutFault {
@@ -81,6 +103,30 @@ impl Describe for CutFault {
             .at(*a, "this surface")
             .at(*b, "and this one")
             .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
+            Self::CutOpen { cutter, surface, at } => Report::new(
+                "E659",
+                format!(
+                    "{} cuts nothing off {}: it ends inside at {}",
+                    say.quoted(*cutter, "a curve"),
+                    say.quoted(*surface, "the surface"),
+                    say.point(*at)
+                ),
+            )
+            .at(*cutter, "ends inside")
+            .at(*surface, "this surface")
+            .help("a curve divides a surface when it runs from border to border, or closes, alone or with others"),
+            Self::KeepOff { surface, at, off, on, tolerance } => {
+                let (p, name) = (say.point(*at), say.quoted(*surface, "the surface"));
+                let report = match on {
+                    Some(cutter) => {
+                        let message = format!("the point {p} to keep lies on {}, between two parts", say.quoted(*cutter, "a cut"));
+                        Report::new("E660", message).at(*cutter, "cuts here")
+                    }
+                    None if *off > 0.0 => Report::new("E660", format!("the point {p} to keep is {} off {name}", say.length(*off))),
+                    None => Report::new("E660", format!("the point {p} to keep lies in no part of {name}")),
+                };
+                report.at(*surface, "this surface").note(format!("the model's tolerance is {}", say.length(*tolerance)))
+            }
             Self::WithoutEnd { of } => Report::new("E658", "two unbounded planes meet in a line without end")
                 .at(*of, "no curve has its length")
                 .help("bound one of them: `plane(curves)` is the face inside curves"),

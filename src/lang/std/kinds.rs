@@ -62,6 +62,22 @@ one_of! {
 }
 
 one_of! {
+    /// What cuts a surface.
+    Cutters {
+        /// A curve.
+        Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+        /// A shell.
+        Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
+        /// An unbounded plane.
+        Plane(Arc<Plane>) = Ty::Plane, Value::Plane(p) => Self::Plane(p);
+        /// Several.
+        Several(Vec<Value>) = Ty::List(&Ty::OneOf(&[Ty::Curve, Ty::Surface, Ty::Shell, Ty::Plane])), Value::List(items) => Self::Several(items.to_vec());
+    }
+}
+
+one_of! {
     /// Faces that may join: of a surface, a shell, or several of them.
     Faces {
         /// A surface.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::curves::unit;
+use super::kinds::Cutters;
 use super::transforms::axis_line;
 use crate::base::fault::{Fault, ValueFault};
 use crate::builtins;
@@ -106,6 +107,7 @@ fn rows(net: Vec<Vec<Point>>) -> Vec<Vec<DVec3>> {
     net.into_iter().map(|row| row.into_iter().map(|p| p.0).collect()).collect()
 }
 
+const TRIM_EXAMPLE: &str = "trim(s, by: [c], keep: P)";
 const PLANE_EXAMPLE: &str = "plane(a, b, c), or plane(at: P, normal: (0, 0, 1))";
 
 builtins! {
@@ -242,14 +244,16 @@ builtins! {
         Ok(Chain::of_curve(&carried(&onto, &curve, way, cx.origin(), &tolerance)?))
     };
 
-    /// The part of a surface inside a loop of curves and outside others.
+    /// The part of a surface inside a loop of curves, outside others, or cut off.
     ///
     /// Curves of a loop come in any order and direction and must lie on the surface within the tolerance. Without `outer:`
-    /// the surface's own border is the outer loop.
+    /// the surface's own border is the outer loop. `by:` takes curves on the surface, or surfaces that it meets, which
+    /// divide it from border to border or in closed loops; the part with the point `keep:` stays.
     /// ```loft
     /// curve rim = circle(center: (0, 0, 0), radius: 1m)
     /// curve eye = circle(center: (300mm, 0, 0), radius: 200mm)
     /// surface lid = trim(plane(rim), holes: [eye])
+    /// surface half = trim(lid, by: plane(at: (0, 0, 0), normal: (1, 0, 0)), keep: (-500mm, 0, 0))
     /// ```
     fn trim(
         /// The surface that is trimmed.
@@ -258,9 +262,13 @@ builtins! {
         outer: Option<Ring>,
         /// A curve, or a list of curves, for each hole.
         holes: Option<Vec<Ring>>,
-        /// Whether x and y of the curves are u and v of the surface.
+        /// A curve, surface, shell or plane that cuts, or a list of them.
+        by: Option<Cutters>,
+        /// A point of the part that stays.
+        keep: Option<Point>,
+        /// Whether x and y of the curves of loops are u and v of the surface.
         uv: bool = "false",
-    ) -> Surface = |cx, s, outer, holes, uv| {
+    ) -> Surface = |cx, s, outer, holes, by, keep, uv| {
         let tolerance = cx.tolerance()?;
         let mut outer = outer.map(|ring| ring.0).unwrap_or_default();
         let mut holes: Vec<Vec<Chain>> = holes.unwrap_or_default().into_iter().map(|ring| ring.0).collect();
@@ -269,7 +277,19 @@ builtins! {
                 *chain = Chain::of_curve(&carried(&s, chain, Way::Parameters, chain.origin(), &tolerance)?);
             }
         }
-        let surface = crate::surface::trim(&s, &outer, &holes, cx.origin(), &tolerance)?;
+        let (by, keep) = match (by, keep) {
+            (None, None) => {
+                let surface = crate::surface::trim(&s, &outer, &holes, cx.origin(), &tolerance)?;
+                return finished(cx, surface, &[]);
+            }
+            (Some(by), Some(keep)) => (by, keep),
+            (Some(_), None) => return Err(ValueFault::Missing { function: "trim", what: "a point of the part to keep", example: TRIM_EXAMPLE }.into()),
+            (None, Some(_)) => return Err(ValueFault::Missing { function: "trim", what: "what cuts", example: TRIM_EXAMPLE }.into()),
+        };
+        let loops = !(outer.is_empty() && holes.is_empty());
+        let whole = if loops { crate::surface::trim(&s, &outer, &holes, s.origin(), &tolerance)? } else { s };
+        let cutters = crate::lang::meetings::cutters(cx, &whole, by)?;
+        let surface = crate::surface::divide(&whole, &cutters, keep.0, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
 

@@ -1,0 +1,244 @@
+//! What divides a surface: its border and the curves that cut it, parted where they meet.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::carry::{Way, carried};
+use super::core::{Border, Side, Surface};
+use super::pull::{Course, Off, Pull, is_pole};
+use super::trim::natural;
+use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::{Hit, build, self_intersect};
+use crate::network::{Chain, meet};
+
+/// A border of the surface or a cutter, whole.
+#[derive(Clone, Debug)]
+pub(super) struct Strand {
+    /// In the direction of the loop; `None` at a pole.
+    pub chain: Option<Chain>,
+    /// The border of the surface; `None` for a cutter.
+    pub border: Option<(Border, Course)>,
+    /// Both sides of it are one place of a closed surface.
+    pub seam: bool,
+    /// Which cutter.
+    pub cutter: Option<usize>,
+    /// The chain is only drawn along the border to meet it.
+    drawn: bool,
+    cuts: Vec<f64>,
+}
+
+/// A part of a strand between two meetings.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub strand: usize,
+    pub border: Border,
+    pub course: Course,
+    /// Ends in (u, v).
+    pub uv: (DVec2, DVec2),
+    /// Ends and a point between.
+    pub p: (DVec3, DVec3, DVec3),
+    /// Whether the face goes on across it, round a closed surface.
+    pub seam: bool,
+}
+
+impl Piece {
+    /// The chain whose fractions its course in (u, v) knows.
+    pub fn own_chain(&self) -> Option<&Chain> {
+        if let Side::Chain { chain, .. } = &self.border.side { Some(chain) } else { None }
+    }
+}
+
+/// Borders and cutters with the places where they part each other.
+pub(super) fn strands(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) -> Result<Vec<Strand>> {
+    let mut all = Vec::new();
+    for walk in natural(base, tolerance)? {
+        let sides = walk.borders.len();
+        for k in 0..sides {
+            let (border, course) = (walk.borders[k].clone(), walk.courses[k].clone());
+            let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
+            all.push(of_border(base, (border, course), opposite, tolerance)?);
+        }
+    }
+    for (k, chain) in cutters.iter().enumerate() {
+        let strand = Strand { chain: Some(chain.clone()), border: None, seam: false, cutter: Some(k), drawn: false, cuts: Vec::new() };
+        all.push(strand);
+    }
+    part(&mut all, tolerance)?;
+    Ok(all)
+}
+
+fn of_border(base: &Surface, (border, course): (Border, Course), opposite: Option<Border>, tolerance: &Tolerance) -> Result<Strand> {
+    let along = |side: &Side| match side {
+        Side::Chain { chain, from, to } => super::iso::between(chain, *from, *to, tolerance).map(Some),
+        _ => Ok(None),
+    };
+    let is_seam = !matches!(border.side, Side::Pole(_)) && course.is_seam(base.closed());
+    let mut chain = along(&border.side)?;
+    if chain.is_none() && is_seam {
+        chain = opposite.map(|o| along(&o.side)).transpose()?.flatten();
+    }
+    let mut drawn = false;
+    if chain.is_none()
+        && !matches!(border.side, Side::Pole(_))
+        && let Course::Line(a, b) = &course
+    {
+        let line = build::line(DVec3::new(a.0, a.1, 0.0), DVec3::new(b.0, b.1, 0.0), Origin::NONE)?;
+        chain = carried(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
+        drawn = true;
+    }
+    Ok(Strand { chain, border: Some((border, course)), seam: is_seam, cutter: None, drawn, cuts: Vec::new() })
+}
+
+/// Cuts strands where cutters meet them and each other.
+fn part(all: &mut [Strand], tolerance: &Tolerance) -> Result<()> {
+    for j in 0..all.len() {
+        let Some(b) = all[j].chain.clone() else { continue };
+        if all[j].cutter.is_none() {
+            continue;
+        }
+        for i in 0..j {
+            let Some(a) = all[i].chain.clone() else { continue };
+            for m in meet(&a, &b, tolerance)? {
+                all[i].cuts.push(m.fa);
+                all[j].cuts.push(m.fb);
+                if let Some((fa, fb)) = m.shared_to {
+                    all[i].cuts.push(fa);
+                    all[j].cuts.push(fb);
+                }
+            }
+        }
+        let curve = b.to_curve()?;
+        let share = |t: f64| curve.length_at(t) / curve.length();
+        for hit in self_intersect(&curve, tolerance)? {
+            if let Hit::Point { ta, tb, .. } = hit {
+                all[j].cuts.extend([share(ta), share(tb)]);
+            }
+        }
+    }
+    for strand in all {
+        let Some(chain) = &strand.chain else { continue };
+        let near = tolerance.point / chain.length();
+        // A loop that is cut begins at a cut: its own start is no end.
+        strand.cuts.retain(|f| *f > near && *f < 1.0 - near);
+        strand.cuts.extend([0.0, 1.0]);
+        strand.cuts.sort_by(f64::total_cmp);
+        strand.cuts.dedup_by(|b, a| *b - *a <= 2.0 * near);
+    }
+    Ok(())
+}
+
+/// The parts of all strands; cutters that run along a border or an earlier cutter count once.
+pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) -> Result<Vec<Piece>> {
+    let mut out: Vec<Piece> = Vec::new();
+    for (k, strand) in strands.iter().enumerate() {
+        let Some(chain) = &strand.chain else { continue };
+        for w in strand.cuts.windows(2) {
+            let whole = strand.cuts.len() == 2;
+            let run = if whole { chain.clone() } else { chain.slice(w[0], w[1], tolerance)? };
+            let middle = run.point(MIDDLE);
+            let lies_on = |other: &Strand| other.chain.as_ref().is_some_and(|c| c.closest(middle).2 <= 2.0 * tolerance.point);
+            if strand.cutter.is_some() && strands[..k].iter().any(lies_on) {
+                continue;
+            }
+            // A cutter along a seam makes a border of it.
+            let seam = strand.seam && !strands.iter().any(|s| s.cutter.is_some() && lies_on(s));
+            let piece = match &strand.border {
+                Some((border, course)) if whole => of_whole(k, border, course, run, seam),
+                Some((border, course)) => of_part(base, (k, strand.drawn), (border, course), (run, (w[0], w[1])), tolerance, seam)?,
+                None => of_cutter(base, k, run, tolerance)?,
+            };
+            out.push(piece);
+        }
+    }
+    for (k, strand) in strands.iter().enumerate() {
+        if strand.chain.is_none()
+            && let Some((border, Course::Line(a, b))) = &strand.border
+        {
+            out.extend(at_pole(base, (k, border), (DVec2::from(*a), DVec2::from(*b)), &out, tolerance));
+        }
+    }
+    Ok(out)
+}
+
+/// Where a piece is asked where it lies: no place that is special for anything.
+const MIDDLE: f64 = 0.4873;
+
+fn of_whole(strand: usize, border: &Border, course: &Course, run: Chain, seam: bool) -> Piece {
+    let places = course.places();
+    let p = (run.start(), run.point(MIDDLE), run.end());
+    let uv = (places[0], places[places.len() - 1]);
+    Piece { strand, border: border.clone(), course: course.clone(), uv, p, seam }
+}
+
+fn of_part(
+    base: &Surface,
+    (strand, drawn): (usize, bool),
+    (border, course): (&Border, &Course),
+    (run, (from, to)): (Chain, (f64, f64)),
+    tolerance: &Tolerance,
+    seam: bool,
+) -> Result<Piece> {
+    let about = |f: f64| match course {
+        Course::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
+        Course::Pull(pull) => pull.share(f),
+    };
+    let p = (run.start(), run.point(MIDDLE), run.end());
+    let off = |off: Off| outside(base, &run, off, tolerance);
+    let pull = Pull::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point).map_err(off)?;
+    if !drawn {
+        let (uv, course) = (pull.ends(), Course::Pull(Arc::new(pull)));
+        return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam });
+    }
+    // The border is straight in (u, v): its parts are.
+    let (a, b) = (about(0.0), about(1.0));
+    let onto = |q: DVec2, f: f64| {
+        let share = if f <= 0.0 || f >= 1.0 { f } else { (q - a).dot(b - a) / (b - a).length_squared() };
+        a.lerp(b, share)
+    };
+    let uv = (onto(pull.ends().0, from), onto(pull.ends().1, to));
+    let course = Course::Line(uv.0.into(), uv.1.into());
+    Ok(Piece { strand, border: Border::straight(border.side.clone()), course, uv, p, seam })
+}
+
+fn of_cutter(base: &Surface, strand: usize, run: Chain, tolerance: &Tolerance) -> Result<Piece> {
+    let near = super::closest::closest(&base.untrimmed(), run.point(MIDDLE)).uv;
+    let off = |off: Off| outside(base, &run, off, tolerance);
+    let start = DVec2::new(near.0, near.1);
+    let before = Pull::follow(base, (&run, MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
+    let after = Pull::follow(base, (&run, MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
+    let pull = before.turned().then(&after);
+    let p = (run.start(), run.point(MIDDLE), run.end());
+    let (uv, border) = (pull.ends(), Border::chain(run.clone(), false));
+    Ok(Piece { strand, border, course: Course::Pull(Arc::new(pull)), uv, p, seam: false })
+}
+
+fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Fault {
+    let (of, at) = (run.origin(), off.at);
+    SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point }.into()
+}
+
+/// A pole, parted where cutters run into it.
+fn at_pole(
+    base: &Surface,
+    (strand, border): (usize, &Border),
+    (a, b): (DVec2, DVec2),
+    pieces: &[Piece],
+    tolerance: &Tolerance,
+) -> Vec<Piece> {
+    let p = base.point(a.x, a.y);
+    let ends = pieces.iter().flat_map(|piece| [(piece.uv.0, piece.p.0), (piece.uv.1, piece.p.2)]);
+    let share = |uv: DVec2| (uv - a).dot(b - a) / (b - a).length_squared();
+    let at = ends.filter(|(uv, q)| q.distance(p) <= 2.0 * tolerance.point && is_pole(base, *uv)).map(|(uv, _)| share(uv));
+    let mut cuts: Vec<f64> = at.filter(|s| *s > tolerance.parameter && *s < 1.0 - tolerance.parameter).chain([0.0, 1.0]).collect();
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|b, a| *b - *a <= tolerance.parameter);
+    let piece = |w: &[f64]| {
+        let uv = (a.lerp(b, w[0]), a.lerp(b, w[1]));
+        let course = Course::Line(uv.0.into(), uv.1.into());
+        Piece { strand, border: border.clone(), course, uv, p: (p, p, p), seam: false }
+    };
+    cuts.windows(2).map(piece).collect()
+}
