@@ -273,3 +273,24 @@ fn growth_and_smoothing_are_followed() {
     let (raw, once) = (nodes(None, Some(0)), nodes(None, Some(1)));
     assert!(raw.1 < once.1 && once.1 <= plain.1 + 0.01, "{} {} {}", raw.1, once.1, plain.1);
 }
+
+#[test]
+fn it_is_told_what_decided_where() {
+    let scene = scene(2);
+    let mut plan = scene.plan(1.0, vec![near(p(10.0, 3.0, 0.0), 0.3, 0.1), inside(p(0.0, 0.0, -1.0), p(1.0, 1.0, 1.0), 0.5)]);
+    let lines = scene.build(&plan).unwrap().explanation.lines;
+    let told = |what: &str, words: &[&str]| {
+        let line = lines.iter().find(|l| l.contains(what)).unwrap();
+        words.iter().for_each(|w| assert!(line.contains(w), "{line}"));
+    };
+    told(
+        "face 0 of s0",
+        &["delaunay", " by size 0.1 near (10.000, 3.000, 0.000), one at (", " by size 0.5 in the box (0.000, 0.000, -1.000)"],
+    );
+    told("strip of c1", &["by sizes along it", "steps 0.100 to", "% by size 0.1 near (10.000, 3.000, 0.000)"]);
+    told("strip of c0", &["% by the size", "% by size 0.5 in the box"]);
+    told("strip of c5", &["6 steps, by the size"]);
+    plan.method = Method::Mapped;
+    let lines = scene.build(&plan).unwrap().explanation.lines;
+    assert!(lines[0].contains("mapped") && lines[0].contains("; by size 0.1 near"), "{}", lines[0]);
+}

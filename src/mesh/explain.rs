@@ -3,6 +3,7 @@
 use super::build::Input;
 use super::faces::{Frame, Prepared};
 use super::layout::Layout;
+use super::reasons;
 use super::sizing::{Sizing, elements_name};
 use crate::base::origin::Origin;
 use crate::model::SurfaceId;
@@ -53,8 +54,10 @@ pub struct Decider {
 pub enum Because {
     /// A written count.
     Count(Origin),
-    /// The size of a rule.
+    /// The size of a rule, or of a `near` or `in` clause.
     RuleSize(Origin),
+    /// A pace: sizes that vary along it.
+    Varies,
     /// The size of the mesh.
     Size,
     /// Chord error or angle, or the shape of a face.
@@ -127,6 +130,7 @@ impl Explanation {
             let because = match (d.count, d.size.1) {
                 (Some((_, r)), _) => Because::Count(rule(r)),
                 _ if d.wish != counts[k] => Because::Neighbours,
+                _ if sizing.paces[k].is_some() => Because::Varies,
                 _ if d.wish == d.least && d.wish > 1 => Because::Limit,
                 (None, Some(r)) => Because::RuleSize(rule(r)),
                 _ => Because::Size,
@@ -141,17 +145,21 @@ impl Explanation {
                 because,
             });
         }
-        notes.lines = notes.words(input, layout);
+        notes.lines = notes.words(input, layout, sizing, prepared);
         notes
     }
 
-    fn words(&self, input: &Input, layout: &Layout) -> Vec<String> {
-        let face = |f: &FaceNote| {
+    fn words(&self, input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[Prepared]) -> Vec<String> {
+        let face = |(k, f): (usize, &FaceNote)| {
             let sides: Vec<String> = f.sides.iter().map(|n| if *n == 0 { "pole".to_owned() } else { n.to_string() }).collect();
             let name = &input.model.surfaces[f.surface.index()].name;
-            format!("face {} of {name}: {}, {}, sides {}", f.patch, f.method, f.elements, sides.join(" "))
+            let face = &layout.faces[k];
+            let why = face.why.as_ref().map_or_else(String::new, |why| format!(" (a face {why})"));
+            let size = face.size.1.map_or_else(String::new, |clause| format!("; by {}", reasons::clause(input, clause)));
+            let inside = reasons::of_face(input, &prepared[k].deciders);
+            format!("face {} of {name}: {}{why}, {}, sides {}{size}{inside}", f.patch, f.method, f.elements, sides.join(" "))
         };
-        let mut lines: Vec<String> = self.faces.iter().map(face).collect();
+        let mut lines: Vec<String> = self.faces.iter().enumerate().map(face).collect();
         let mut order: Vec<usize> = (0..self.stretches.len()).collect();
         order.sort_by_key(|k| (self.stretches[*k].strip, *k));
         for strip in order.chunk_by(|a, b| self.stretches[*a].strip == self.stretches[*b].strip) {
@@ -160,20 +168,24 @@ impl Explanation {
             let ranked = |k: &&usize| match self.stretches[**k].because {
                 Because::Count(_) => 0,
                 Because::RuleSize(_) => 1,
-                Because::Limit => 2,
-                Because::Size => 3,
-                Because::Neighbours => 4,
+                Because::Varies => 2,
+                Because::Limit => 3,
+                Because::Size => 4,
+                Because::Neighbours => 5,
             };
             let Some(first) = strip.iter().min_by_key(ranked) else { continue };
-            let why = match self.stretches[*first].because {
-                Because::Count(_) => "a written count",
-                Because::RuleSize(_) => "the size of a rule",
-                Because::Limit => "chord_error, angle_error or the shape",
-                Because::Size => "the size",
-                Because::Neighbours => "the rows or faces beside it",
+            let decision = &sizing.decisions[*first];
+            let why = match (self.stretches[*first].because, decision.count, decision.size.1) {
+                (Because::Count(_), Some((_, clause)), _) | (Because::RuleSize(_), _, Some(clause)) => reasons::clause(input, clause),
+                (Because::Count(_) | Because::RuleSize(_), ..) => "a rule".to_owned(),
+                (Because::Varies, ..) => "sizes along it".to_owned(),
+                (Because::Limit, ..) => "chord_error, angle_error or the shape".to_owned(),
+                (Because::Size, ..) => "the size".to_owned(),
+                (Because::Neighbours, ..) => "the rows or faces beside it".to_owned(),
             };
+            let pace = sizing.paces[*first].as_ref().map_or_else(String::new, |pace| reasons::of_pace(input, pace));
             lines.push(format!(
-                "strip of {}: {} steps, by {why} (on {})",
+                "strip of {}: {} steps, by {why} (on {}){pace}",
                 names.join(", "),
                 self.stretches[*first].count,
                 layout.name_of(input, *first)

@@ -77,6 +77,7 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
             return Err(MeshFault::CannotMap { surface: of, why, at }.into());
         }
         face.free = face.method == Method::Delaunay || why.is_some();
+        face.why = why.clone().filter(|_| face.method != Method::Delaunay);
         if face.free && face.elements == Elements::Quads {
             let what = format!("`elements: quads` on a face {}", why.unwrap_or_else(|| "made freely".to_owned()));
             return Err(MeshFault::NeedsLater { of, what, method: "quadtree", at }.into());

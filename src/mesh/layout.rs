@@ -50,6 +50,8 @@ pub struct Face {
     pub near: f64,
     /// Sides in the order of the patch: four, or three of a triangle.
     pub sides: Vec<Border>,
+    /// Why it is made freely though no method says so, in words that follow "a face".
+    pub why: Option<String>,
     /// Stretches of curves inside it.
     pub lines: Vec<usize>,
     /// Points of the plan inside it.
@@ -162,6 +164,7 @@ impl Layout {
             size: (0.0, None),
             near: reach(input, std::iter::once(patch)),
             sides,
+            why: None,
             lines: Vec::new(),
             points: Vec::new(),
         }

@@ -26,6 +26,7 @@ mod nodes;
 mod pace;
 pub mod plan;
 pub mod quality;
+mod reasons;
 pub mod record;
 mod relations;
 pub mod reuse;

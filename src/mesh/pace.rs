@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::build::Input;
 use super::counts::steps;
 use super::edges::Limits;
+use super::explain::Why;
 use super::free::{bound, face};
 use super::inside::trace;
 use super::layout::Layout;
@@ -36,22 +37,43 @@ pub struct Pace {
     at: Vec<f64>,
     /// Model units.
     lengths: Vec<f64>,
+    /// What decides at each place; empty until all is known.
+    why: Vec<Why>,
 }
 
 impl Pace {
     fn even(length: f64) -> Self {
-        Self { at: vec![0.0, 1.0], lengths: vec![length; 2] }
+        Self { at: vec![0.0, 1.0], lengths: vec![length; 2], why: Vec::new() }
     }
 
     /// Steps that grow geometrically, the last `bias` times the first: their size is linear in the length.
     pub fn of_count(length: f64, count: u32, bias: f64) -> Self {
         let first = if bias == 1.0 { 1.0 } else { math::log(bias) / (bias - 1.0) } * length / f64::from(count);
-        Self { at: vec![0.0, 1.0], lengths: vec![first, first * bias] }
+        Self { at: vec![0.0, 1.0], lengths: vec![first, first * bias], why: Vec::new() }
     }
 
     /// The shortest length.
     pub fn least(&self) -> f64 {
         self.lengths.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// What decides which share of the steps, in order.
+    pub fn shares(&self) -> Vec<(Why, f64)> {
+        let mut shares: std::collections::BTreeMap<Why, f64> = std::collections::BTreeMap::new();
+        let mut total = 0.0;
+        for k in 1..self.why.len() {
+            let half = 0.5 * (self.at[k] - self.at[k - 1]);
+            for end in [k - 1, k] {
+                *shares.entry(self.why[end]).or_insert(0.0) += half / self.lengths[end];
+                total += half / self.lengths[end];
+            }
+        }
+        shares.into_iter().map(|(why, sum)| (why, sum / total)).collect()
+    }
+
+    /// The longest length.
+    pub fn most(&self) -> f64 {
+        self.lengths.iter().copied().fold(0.0, f64::max)
     }
 
     /// Places, fractions of the stretch.
@@ -117,6 +139,7 @@ pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
     let n = layout.pieces.atoms.len();
     let mut paces: Vec<Pace> = ask.size.iter().map(|s| Pace::even(*s)).collect();
     bends(input, layout, ask, &mut paces);
+    let bent = paces.clone();
     let mut even = vec![false; n];
     layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|k| even[k] = true);
     let walker = Walker { layout, ask, even: &even };
@@ -126,12 +149,16 @@ pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
             *pace = found.unwrap_or_else(|| pace.clone());
         }
     }
+    let bent = if ask.limits.chord.is_some() || ask.limits.angle.is_some() { bent } else { Vec::new() };
     walker.grade(&mut paces);
-    let varies = |(k, pace): (usize, Pace)| {
+    par::map(n, |k| {
+        let pace = &paces[k];
         let taken = ask.written[k].is_none() && pace.least() < ask.size[k] * (1.0 - EPSILON);
-        taken.then_some(pace)
-    };
-    paces.into_iter().enumerate().map(varies).collect()
+        taken.then(|| {
+            let why = pace.at.iter().zip(&pace.lengths).map(|(f, l)| walker.why(k, (*f, *l), bent.get(k))).collect();
+            Pace { why, ..pace.clone() }
+        })
+    })
 }
 
 /// Lowers paces to what the bends of free faces ask for.
@@ -143,7 +170,7 @@ fn bends(input: &Input, layout: &Layout, ask: &Ask, paces: &mut [Pace]) {
     for (stretch, lengths) in found.into_iter().flatten() {
         let (pace, size) = (&mut paces[stretch], ask.size[stretch]);
         if pace.at.len() == 2 {
-            *pace = Pace { at: (0..=PLACES).map(|k| k as f64 / PLACES as f64).collect(), lengths: vec![size; PLACES + 1] };
+            *pace = Pace { at: (0..=PLACES).map(|k| k as f64 / PLACES as f64).collect(), lengths: vec![size; PLACES + 1], why: Vec::new() };
         }
         pace.lengths.iter_mut().zip(lengths).for_each(|(l, other)| *l = l.min(other.max(ask.wanted.written)));
     }
@@ -169,6 +196,20 @@ struct Walker<'a> {
 }
 
 impl Walker<'_> {
+    /// What decides the length at a place of a stretch; `bent` is its pace by bends alone.
+    fn why(&self, k: usize, (f, length): (f64, f64), bent: Option<&Pace>) -> Why {
+        let size = self.ask.size[k];
+        let sources = &self.ask.wanted.sources;
+        let about = |x: f64| x * WORTH <= length;
+        match sources.who(self.layout.point(k, f), size) {
+            _ if length >= size * WORTH => Why::Size,
+            Some(least) if about(least.size) => Why::Refined(sources.items()[least.item as usize].tag as usize),
+            _ if length <= self.ask.wanted.written => Why::Floor,
+            _ if bent.is_some_and(|pace| about(pace.length_at(f))) => Why::Bends,
+            _ => Why::Border,
+        }
+    }
+
     /// Whether the steps of a stretch may vary.
     fn open(&self, k: usize) -> bool {
         !self.even[k] && self.ask.written[k].is_none()
@@ -180,7 +221,8 @@ impl Walker<'_> {
         if sources.least() >= pace.lengths.iter().copied().fold(0.0, f64::max) {
             return pace.clone();
         }
-        let mut sampler = Sampler { walker: self, k, pace, sources, cap, made: Pace { at: Vec::new(), lengths: Vec::new() } };
+        let mut sampler =
+            Sampler { walker: self, k, pace, sources, cap, made: Pace { at: Vec::new(), lengths: Vec::new(), why: Vec::new() } };
         let mut last = sampler.place(0.0);
         sampler.take(&last);
         for next in &pace.at[1..] {
@@ -277,7 +319,7 @@ fn lower_of(a: &Pace, b: &Pace) -> Pace {
     at.sort_by(f64::total_cmp);
     at.dedup();
     let lengths = at.iter().map(|f| a.length_at(*f).min(b.length_at(*f))).collect();
-    Pace { at, lengths }
+    Pace { at, lengths, why: Vec::new() }
 }
 
 /// A place on a stretch.

@@ -33,6 +33,7 @@ impl Notebook {
         // What was found on the way speaks of surfaces and meshes by name.
         let names = [format!("surface {what}"), format!("mesh {what}")];
         let speaks = |note: &&String| names.iter().any(|n| note.strip_prefix(n.as_str()).is_some_and(|rest| rest.starts_with([':', '['])));
+        let speaks = |note: &&String| speaks(note) || of_mesh(note, what);
         outcome.notes.iter().filter(speaks).for_each(|note| answer.say(note.clone()));
         let why = self.why(what);
         answer.parts.extend(why.parts);
@@ -60,6 +61,16 @@ impl Notebook {
         }
         details.into_iter().for_each(|line| answer.say(line));
         answer
+    }
+}
+
+/// Whether a note on a mesh speaks of a face or of an edge of what has this name: "mesh m: strip of south, north: …".
+fn of_mesh(note: &str, what: &str) -> bool {
+    let Some((_, said)) = note.strip_prefix("mesh ").and_then(|rest| rest.split_once(": ")) else { return false };
+    let named = |words: &str| words.split_once(": ").is_some_and(|(names, _)| names.split(", ").any(|name| name == what));
+    match said.strip_prefix("strip of ") {
+        Some(strip) => named(strip),
+        None => said.strip_prefix("face ").and_then(|rest| rest.split_once(" of ")).is_some_and(|(_, rest)| named(rest)),
     }
 }
 
