@@ -270,3 +270,59 @@ fn nearest_points_of_the_peers() {
     }
     assert_eq!(seen, 2);
 }
+
+/// A net with weights that go up and down from point to point: parameters run unevenly where the surface hardly bends.
+fn uneven_net(degree: usize, repeated: usize) -> Surface {
+    let (n, m) = (9, 8);
+    let at = |i: usize, j: usize| {
+        let (x, y) = (i as f64, j as f64);
+        p(x, y + 0.2 * (x * 0.7).sin(), 1.5 * (x * 0.9).sin() * (y * 0.6).cos())
+    };
+    let rows: Vec<Vec<DVec3>> = (0..m).map(|j| (0..n).map(|i| at(i, j)).collect()).collect();
+    let weights: Vec<Vec<f64>> = (0..m).map(|j| (0..n).map(|i| 1.0 + 0.3 * (1.3 * i as f64 + 0.7 * j as f64).sin()).collect()).collect();
+    let knots = |count: usize| {
+        let inner = count - degree - 1;
+        let place = |k: usize| (k / repeated + 1) as f64 / (inner.div_ceil(repeated) + 1) as f64;
+        let ends = |x: f64| std::iter::repeat_n(x, degree + 1);
+        ends(0.0).chain((0..inner).map(place)).chain(ends(1.0)).collect::<Vec<f64>>()
+    };
+    let (knots_u, knots_v) = (knots(n), knots(m));
+    let net = Net { rows: &rows, weights: Some(&weights) };
+    nurbs(&net, (degree, degree), (Some(&knots_u), Some(&knots_v)), Origin::NONE, &tolerance()).unwrap()
+}
+
+#[test]
+fn nets_made_ready_are_the_nets_and_their_bends_are_bounded() {
+    for surface in [uneven_net(3, 1), uneven_net(4, 2), uneven_net(2, 1), uneven_net(3, 1).flipped()] {
+        let quick = surface.quick().unwrap();
+        let mut seed = 7_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut answered = 0;
+        for _ in 0..300 {
+            let (u, v) = (random(), random());
+            let (near, far) = (quick.jet(u, v), surface.jet(u, v));
+            let [point, du, dv] = quick.tangents(u, v);
+            assert!(near.p.distance(far.p).max(point.distance(far.p)) < 1e-12);
+            assert!(near.du.distance(far.du).max(near.dv.distance(far.dv)) < 1e-10);
+            assert!(du.distance(far.du).max(dv.distance(far.dv)) < 1e-10);
+            let second = [(near.duu, far.duu), (near.duv, far.duv), (near.dvv, far.dvv)];
+            assert!(second.iter().all(|(a, b)| a.distance(*b) < 1e-8), "{second:?}");
+            let width = glam::DVec2::new(random(), random()) * 0.1;
+            let low = glam::DVec2::new(u, v).min(glam::DVec2::ONE - width);
+            let along = glam::DVec3::new(random() - 0.5, random() - 0.5, random()).normalize();
+            let Some(bends) = quick.bends((low, low + width), along) else { continue };
+            answered += 1;
+            for (i, j) in (0..=8).flat_map(|i| (0..=8).map(move |j| (f64::from(i) / 8.0, f64::from(j) / 8.0))) {
+                let jet = surface.jet(low.x + width.x * i, low.y + width.y * j);
+                for (k, d) in [jet.duu, jet.duv, jet.dvv].iter().enumerate() {
+                    let off = (d.dot(along) - bends.mid[k]).abs();
+                    assert!(off <= bends.slack[k] * (1.0 + 1e-9) + 1e-9, "{off} against {} of {k}", bends.slack[k]);
+                }
+            }
+        }
+        assert!(answered > 20, "{answered}");
+    }
+}

@@ -72,7 +72,8 @@ fn rational_direction(poles: &[DVec4], h: f64, out: &mut [DVec3; MOST]) -> usize
     degree + 1
 }
 
-fn binomial(n: usize, k: usize) -> f64 {
+/// n over k.
+pub(crate) fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |value, i| value * (n - i) as f64 / (i + 1) as f64)
 }
 

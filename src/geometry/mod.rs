@@ -4,7 +4,7 @@
 
 pub mod arc;
 mod arclength;
-mod bounds;
+pub(crate) mod bounds;
 pub mod build;
 pub mod closest;
 pub mod composite;

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::build::Input;
 use super::counts::steps;
@@ -17,6 +17,8 @@ use super::wanted::Wanted;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::base::{math, par};
 
+/// Borders cannot be divided any more when their triangles are made: a little shorter than inside.
+const ROOM: f64 = 0.93;
 /// Places along a stretch at which bends are asked for.
 const PLACES: usize = 64;
 /// Distance of places along a stretch over the length wanted there.
@@ -383,6 +385,7 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
     if !own.free || surface.is_flat() {
         return Vec::new();
     }
+    let quick = surface.quick();
     let mut found = Vec::new();
     for (k, side) in own.sides.iter().enumerate() {
         for u in &side.uses {
@@ -395,10 +398,16 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
                 lengths.reverse();
             }
             let places = face::places(input, own, k, &lengths);
-            let mut wanted: Vec<f64> = places
-                .into_iter()
-                .map(|place| (face::FILLED * bound::wanted(surface, place, limits.chord, limits.angle)).min(own.size.0))
-                .collect();
+            let next = |i: usize| DVec2::from(places[(i + 1).min(PLACES)]) - DVec2::from(places[(i + 1).min(PLACES) - 1]);
+            let length = |i: usize| {
+                let jet = surface.jet(places[i].0, places[i].1);
+                let plain = bound::wanted(&jet, limits.chord, limits.angle).min(own.size.0 / face::FILLED);
+                let along = jet.du * next(i).x + jet.dv * next(i).y;
+                let at = (DVec2::from(places[i]), &jet);
+                let sure = |limit| bound::surely((surface, quick.as_ref()), at, along, (limit, plain));
+                ROOM * face::FILLED * limits.chord.map_or(plain, sure)
+            };
+            let mut wanted: Vec<f64> = (0..=PLACES).map(length).collect();
             if u.against {
                 wanted.reverse();
             }

@@ -253,7 +253,7 @@ impl Surface {
     }
 
     /// Into 0…1 where a trimmed surface closes: its borders may run over the seam.
-    fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
+    pub(super) fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
         if self.0.domain != Domain::Loop {
             return (u, v);
         }
@@ -262,7 +262,7 @@ impl Surface {
     }
 
     /// From this surface's parameters to the shape's.
-    fn inner(&self, u: f64, v: f64, lean: (Lean, Lean)) -> (f64, f64, (Lean, Lean)) {
+    pub(super) fn inner(&self, u: f64, v: f64, lean: (Lean, Lean)) -> (f64, f64, (Lean, Lean)) {
         match (self.0.flipped, self.ground()) {
             (false, _) => (u, v, lean),
             (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
@@ -271,7 +271,7 @@ impl Surface {
     }
 
     /// From the shape's derivatives to this surface's.
-    fn outer(&self, jet: Jet2) -> Jet2 {
+    pub(super) fn outer(&self, jet: Jet2) -> Jet2 {
         match (self.0.flipped, self.ground()) {
             (false, _) => jet,
             (true, Domain::Triangle) => Jet2 { du: jet.dv, dv: jet.du, duu: jet.dvv, dvv: jet.duu, ..jet },

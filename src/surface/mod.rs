@@ -24,6 +24,7 @@ mod net_spread;
 pub mod nurbs;
 pub mod plane;
 mod pull;
+pub mod quick;
 mod rail;
 mod reparam;
 mod review;

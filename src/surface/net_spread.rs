@@ -19,6 +19,13 @@ pub struct NetStrip {
     shares: Vec<[f64; MAX_DEGREE + 1]>,
 }
 
+impl NetStrip {
+    /// Its width in the parameter.
+    pub(super) fn width(&self) -> f64 {
+        self.width
+    }
+}
+
 /// Blossom values of the basis functions of one span: how much each active pole adds [Ramshaw 1989].
 fn shares(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> [f64; MAX_DEGREE + 1] {
     let mut out = [0.0; MAX_DEGREE + 1];
@@ -40,11 +47,11 @@ fn shares(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> [f64; MAX_
 type Net = Vec<Vec<DVec4>>;
 
 /// Differences along u (within rows) times `f`.
-fn along_u(net: &Net, f: f64) -> Net {
+pub(super) fn along_u(net: &Net, f: f64) -> Net {
     net.iter().map(|row| row.windows(2).map(|w| (w[1] - w[0]) * f).collect()).collect()
 }
 
-fn along_v(net: &Net, f: f64) -> Net {
+pub(super) fn along_v(net: &Net, f: f64) -> Net {
     net.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(a, b)| (*b - *a) * f).collect()).collect()
 }
 
@@ -115,7 +122,7 @@ impl NurbsSurface {
     }
 
     /// Bézier points over a rectangle, rows along u.
-    fn piece(&self, u: &NetStrip, v: &NetStrip) -> Net {
+    pub(super) fn piece(&self, u: &NetStrip, v: &NetStrip) -> Net {
         let (p, q) = self.degree;
         let rows: Net = (0..=q)
             .map(|j| {

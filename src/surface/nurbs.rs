@@ -86,10 +86,10 @@ fn basis(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis {
 }
 
 /// Homogeneous sums: value, ∂u, ∂v, ∂uu, ∂uv, ∂vv.
-type Sums = [DVec4; 6];
+pub(super) type Sums = [DVec4; 6];
 
 /// The quotient rule up to order two.
-fn quotient(a: &Sums) -> Jet2 {
+pub(super) fn quotient(a: &Sums) -> Jet2 {
     let (w, n) = (a.map(|q| q.w), a.map(|q| q.truncate()));
     let p = n[0] / w[0];
     let du = (n[1] - p * w[1]) / w[0];

@@ -7,29 +7,120 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::range::Range;
-use crate::surface::Surface;
+use super::ground::Spot;
+use super::grow::TALL;
+use crate::base::range::Ranges;
+use crate::surface::quick::{Bends, Quick};
+use crate::surface::{Domain, Jet2, Surface};
 
 /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).
 const WIDER: f64 = 0.05;
 
+/// Bounds over a box of (u, v) inside the surface's own; `None` where nothing is known.
+fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
+    if let Some(bends) = quick.and_then(|quick| quick.bends((low, high), normal)) {
+        return Some(bends);
+    }
+    let spread = surface.spread((low.x, high.x), (low.y, high.y));
+    let all = [spread.duu, spread.duv, spread.dvv];
+    if all.iter().any(Ranges::is_vast) {
+        return None;
+    }
+    let along = all.map(|r| r.along(normal));
+    Some(Bends { mid: along.map(|r| 0.5 * (r.low + r.high)), slack: along.map(|r| 0.5 * (r.high - r.low)) })
+}
+
+/// How often a box is quartered when the bound over the whole of it does not do.
+const QUARTERS: u32 = 3;
+
+/// The same by the four quarters of the box: nearer to what is there, for four times the work.
+fn quartered(surface: &Surface, quick: &Quick, (low, high): (DVec2, DVec2), normal: DVec3, left: u32) -> Option<Bends> {
+    if left == 0 {
+        return bent_over(surface, Some(quick), (low, high), normal);
+    }
+    let middle = 0.5 * (low + high);
+    let (right, top) = (DVec2::new(middle.x, low.y), DVec2::new(low.x, middle.y));
+    let quarters = [(low, middle), (right, DVec2::new(high.x, middle.y)), (top, DVec2::new(middle.x, high.y)), (middle, high)];
+    let mut whole: Option<Bends> = None;
+    for quarter in quarters {
+        let own = quartered(surface, quick, quarter, normal, left - 1)?;
+        whole = Some(whole.map_or(own, |w| union(&w, &own)));
+    }
+    whole
+}
+
+/// The same over any box: where the surface closes, parameters go on over the seam.
+fn bent_over(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
+    let closed = turning(surface);
+    if surface.is_flat() || low.cmpge(DVec2::ZERO).all() && high.cmple(DVec2::ONE).all() {
+        return bent(surface, quick, (low, high), normal);
+    }
+    let mut whole: Option<Bends> = None;
+    for (x0, x1) in turns(low.x, high.x, closed.0).into_iter().flatten() {
+        for (y0, y1) in turns(low.y, high.y, closed.1).into_iter().flatten() {
+            let own = bent(surface, quick, (DVec2::new(x0, y0), DVec2::new(x1, y1)), normal)?;
+            whole = Some(whole.map_or(own, |w| union(&w, &own)));
+        }
+    }
+    whole
+}
+
+/// Directions in which parameters may go on over a seam.
+fn turning(surface: &Surface) -> (bool, bool) {
+    if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) }
+}
+
+/// An interval in 0…1: held there, or cut at the seams of a closed direction and each part turned back.
+fn turns(low: f64, high: f64, closed: bool) -> [Option<(f64, f64)>; 2] {
+    if !closed {
+        return [Some((low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))), None];
+    }
+    if high - low >= 1.0 {
+        return [Some((0.0, 1.0)), None];
+    }
+    let (low, high) = (low - low.floor(), high - low.floor());
+    if high <= 1.0 { [Some((low, high)), None] } else { [Some((low, 1.0)), Some((0.0, high - 1.0))] }
+}
+
+fn union(a: &Bends, b: &Bends) -> Bends {
+    let range = |k: usize| {
+        let low = (a.mid[k] - a.slack[k]).min(b.mid[k] - b.slack[k]);
+        let high = (a.mid[k] + a.slack[k]).max(b.mid[k] + b.slack[k]);
+        (0.5 * (low + high), 0.5 * (high - low))
+    };
+    let ranges = [0, 1, 2].map(range);
+    Bends { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1) }
+}
+
 /// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
-/// has no bounded second derivative.
-pub fn chord(surface: &Surface, uv: [DVec2; 3], p: [DVec3; 3]) -> f64 {
+/// has no bounded second derivative. `quick` is the surface made ready, where it can be; a bound above `wanted` is then
+/// found more closely.
+pub fn chord((surface, quick): (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
         return 0.0;
     }
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
     let width = high - low;
-    let Some([uu, uv_, vv]) = bends(surface, low - width * WIDER, high + width * WIDER, normal) else { return f64::INFINITY };
-    let (mid, half) = (|r: Range| 0.5 * (r.low + r.high), |r: Range| 0.5 * (r.high - r.low));
+    let whole = (low - width * WIDER, high + width * WIDER);
+    let Some(bends) = bent_over(surface, quick, whole, normal) else { return f64::INFINITY };
+    let first = over_sides(&bends, uv, width);
+    let Some(quick) = quick.filter(|_| first > wanted && first < FAR * wanted) else { return first };
+    let nearer = |depth: u32| quartered(surface, quick, whole, normal, depth).map_or(first, |bends| over_sides(&bends, uv, width));
+    (1..=QUARTERS).map(nearer).find(|found| *found <= wanted).unwrap_or_else(|| nearer(QUARTERS)).min(first)
+}
+
+/// A bound farther off than this is not looked at more closely.
+const FAR: f64 = 4.0;
+
+/// The bound of a triangle by second derivatives over its box.
+fn over_sides(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> f64 {
     // 2 |x y| ≤ a x² + y² / a, with a that makes both alike over the box.
     let a = if width.x > 0.0 && width.y > 0.0 { width.y / width.x } else { 1.0 };
-    let (ru, rv) = (half(uu) + half(uv_) * a, half(vv) + half(uv_) / a);
+    let (ru, rv) = (slack[0] + slack[1] * a, slack[2] + slack[1] / a);
     let side = |i: usize, j: usize| {
         let e = uv[j] - uv[i];
-        let m = mid(uu) * e.x * e.x + 2.0 * mid(uv_) * e.x * e.y + mid(vv) * e.y * e.y;
+        let m = mid[0] * e.x * e.x + 2.0 * mid[1] * e.x * e.y + mid[2] * e.y * e.y;
         (m, ru * e.x * e.x + rv * e.y * e.y)
     };
     let sides = [side(1, 2), side(2, 0), side(0, 1)];
@@ -37,6 +128,43 @@ pub fn chord(surface: &Surface, uv: [DVec2; 3], p: [DVec3; 3]) -> f64 {
     let below = most(sides.map(|(m, r)| r - m));
     0.5 * above.max(below)
 }
+
+/// The longest side up to `from` of an equilateral triangle that keeps a chord error for sure: over an edge along `along`
+/// with its middle at a place, to either side of it where the surface is.
+pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
+    let spot = Spot { p: jet.p, dx: jet.du, dy: jet.dv };
+    let normal = spot.normal();
+    let Some(along) = along.reject_from_normalized(normal).try_normalize() else { return from };
+    let aside = normal.cross(along);
+    let closed = turning(surface);
+    let inside = |uv: DVec2| surface.is_flat() || (closed.0 || (0.0..=1.0).contains(&uv.x)) && (closed.1 || (0.0..=1.0).contains(&uv.y));
+    let point = |uv: DVec2| quick.map_or_else(|| surface.point(uv.x, uv.y), |quick| quick.tangents(uv.x, uv.y)[0]);
+    let mut h = from;
+    for way in [aside, -aside] {
+        for _ in 0..TRIES {
+            let corners = [along * (-0.5 * h), along * (0.5 * h), way * (TALL * h)].map(|d| spot.step(d).map(|step| at + step));
+            let [Some(a), Some(b), Some(c)] = corners else { break };
+            if !inside(c) {
+                break;
+            }
+            let hold = |uv: DVec2| {
+                DVec2::new(if closed.0 { uv.x } else { uv.x.clamp(0.0, 1.0) }, if closed.1 { uv.y } else { uv.y.clamp(0.0, 1.0) })
+            };
+            let uv = [hold(a), hold(b), c];
+            let load = chord((surface, quick), uv, uv.map(point), limit) / limit;
+            if load <= 1.0 {
+                break;
+            }
+            h *= (LESS / load.sqrt()).max(0.5);
+        }
+    }
+    h
+}
+
+/// Lengths tried until one keeps a limit for sure.
+const TRIES: usize = 4;
+/// What is made smaller is made a little more so.
+const LESS: f64 = 0.98;
 
 /// The most that Σ c λi λj can be for barycentric λ, `c` in the order of the sides opposite the corners.
 fn most(c: [f64; 3]) -> f64 {
@@ -53,44 +181,10 @@ fn most(c: [f64; 3]) -> f64 {
     on_side.max(c[0] * l[1] * l[2] + c[1] * l[2] * l[0] + c[2] * l[0] * l[1])
 }
 
-/// Second derivatives along a direction over a box of (u, v): by u twice, by both, by v twice. `None` where they have no bound.
-fn bends(surface: &Surface, low: DVec2, high: DVec2, along: DVec3) -> Option<[Range; 3]> {
-    let (closed_u, closed_v) = surface.closed();
-    let mut found: Option<[Range; 3]> = None;
-    for u in parts(surface, closed_u, (low.x, high.x)) {
-        for v in parts(surface, closed_v, (low.y, high.y)) {
-            let spread = surface.spread(u, v);
-            if spread.duu.is_vast() || spread.duv.is_vast() || spread.dvv.is_vast() {
-                return None;
-            }
-            let here = [&spread.duu, &spread.duv, &spread.dvv].map(|d| d.along(along));
-            found = Some(found.map_or(here, |before| [0, 1, 2].map(|k| before[k].union(here[k]))));
-        }
-    }
-    found
-}
-
-/// A range of u or v inside the surface's own: where it closes, what lies over the seam is at the other end.
-fn parts(surface: &Surface, closed: bool, (low, high): (f64, f64)) -> Vec<(f64, f64)> {
-    if surface.is_flat() {
-        return vec![(low, high)];
-    }
-    if !closed || (low >= 0.0 && high <= 1.0) {
-        return vec![(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))];
-    }
-    if high - low >= 1.0 {
-        return vec![(0.0, 1.0)];
-    }
-    let turns = low.floor();
-    let (low, high) = (low - turns, high - turns);
-    if high <= 1.0 { vec![(low, high)] } else { vec![(low, 1.0), (0.0, high - 1.0)] }
-}
-
 /// Wanted edge length for limits at a place: of an equilateral triangle, however it lies.
 ///
 /// On the local quadric of principal curvatures k1 ≥ |k2| it is at most k1 h² (1/8 + max(k2/k1, 0)/24) away.
-pub fn wanted(surface: &Surface, (u, v): (f64, f64), chord: Option<f64>, angle: Option<f64>) -> f64 {
-    let jet = surface.jet(u, v);
+pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
     let normal = jet.du.cross(jet.dv).normalize_or_zero();
     let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
     let (l, m, n) = (jet.duu.dot(normal), jet.duv.dot(normal), jet.dvv.dot(normal));

@@ -1,5 +1,6 @@
 //! A face of a mesh made freely: its border from the divided stretches, its inside grown.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
@@ -8,6 +9,7 @@ use super::bound;
 use super::build::{Broken, Task, Trouble, triangulate};
 use super::ground::{Even, Field};
 use super::improve::Care;
+use super::loads::Loads;
 use super::outline::Outline;
 use super::sheet::Sheet;
 use super::size::{Background, Blend};
@@ -16,9 +18,8 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
-use crate::base::math::angle_between;
 use crate::base::par;
-use crate::base::tolerance::{NUDGE, SINGULAR, WHOLE_NUMBER};
+use crate::base::tolerance::{NUDGE, WHOLE_NUMBER};
 use crate::base::triangulate_points::PointsFault;
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
@@ -208,7 +209,13 @@ impl Fit<'_> {
     fn background(&self) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
-        let wanted = |xy: DVec2| FILLED * bound::wanted(self.surface, self.sheet.uv(xy), self.limits.chord, self.limits.angle);
+        let surface = (self.surface, self.sheet.quick());
+        let wanted = |xy: DVec2| {
+            let jet = self.sheet.jet(xy);
+            let plain = bound::wanted(&jet, self.limits.chord, self.limits.angle).min(size / FILLED);
+            let at = (DVec2::from(self.sheet.uv(xy)), &jet);
+            FILLED * self.limits.chord.map_or(plain, |limit| bound::surely(surface, at, jet.du, (limit, plain)))
+        };
         let growth = 1.0 + self.made.input.plan.slope();
         Background::new(self.sheet, whole, growth, |xy| wanted(xy).min(size))
     }
@@ -254,11 +261,13 @@ impl Fit<'_> {
     fn bent(&self, field: &mut Blend, job: &Job) -> Fitted {
         let floor = self.made.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
+        let loads = RefCell::new(Loads::default());
         for _ in 0..ROUNDS {
             let broken = |web: &Web| {
-                let loads = loads(self.surface, self.sheet, web, &self.limits);
+                let mut loads = loads.borrow_mut();
+                loads.update(self.sheet, web, &self.limits);
                 let mut found = self.longest.broken(web);
-                let over = |t: &u32| loads[*t as usize].worst() > 1.0 && longest_side(web, *t) > floor;
+                let over = |t: &u32| web.alive(*t) && loads.of(*t).worst() > 1.0 && longest_side(web, *t) > floor;
                 found.extend((0..web.tri.len() as u32).filter(over));
                 found.sort_unstable();
                 found.dedup();
@@ -268,7 +277,7 @@ impl Fit<'_> {
                 Ok(web) => web,
                 Err(trouble) => return Ok(Err(trouble)),
             };
-            worst = self.lower(field, &web)?;
+            worst = self.lower(field, &web, &mut loads.borrow_mut())?;
             if worst.0 == 0.0 {
                 return Ok(Ok(web));
             }
@@ -286,13 +295,14 @@ impl Fit<'_> {
     }
 
     /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
-    fn lower(&self, field: &mut Blend, web: &Web) -> Result<(f64, DVec3, &'static str)> {
-        let loads = loads(self.surface, self.sheet, web, &self.limits);
-        let mut stretched = vec![false; loads.len()];
+    fn lower(&self, field: &mut Blend, web: &Web, loads: &mut Loads) -> Result<(f64, DVec3, &'static str)> {
+        loads.update(self.sheet, web, &self.limits);
+        let mut stretched = vec![false; web.tri.len()];
         self.longest.broken(web).into_iter().for_each(|t| stretched[t as usize] = true);
         let least = self.made.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
-        for (t, load) in loads.iter().enumerate() {
+        for t in 0..web.tri.len() {
+            let load = loads.of(t as u32);
             let over = load.worst().max(if stretched[t] { 1.0 / LESS } else { 0.0 });
             if over <= 1.0 {
                 continue;
@@ -403,79 +413,12 @@ impl<'a> Longest<'a> {
     }
 }
 
-/// How far a triangle is from its limits: 1 is just kept.
-#[derive(Clone, Copy)]
-struct Load {
-    chord: f64,
-    angle: f64,
-}
-
-impl Load {
-    fn worst(&self) -> f64 {
-        self.chord.max(self.angle)
-    }
-}
-
-/// Bounds of all triangles against the limits.
-fn loads(surface: &Surface, sheet: &Sheet, web: &Web, limits: &Limits) -> Vec<Load> {
-    let places: Vec<DVec2> = web.xy.iter().map(|xy| sheet.uv(*xy).into()).collect();
-    let off = off_surface(surface, &places, web);
-    let normals: Vec<DVec3> = match limits.angle {
-        Some(_) => par::map(places.len(), |n| surface.normal(places[n].x, places[n].y)),
-        None => Vec::new(),
-    };
-    let batches = par::map(web.tri.len().div_ceil(BATCH), |batch| {
-        let some = &web.tri[batch * BATCH..web.tri.len().min((batch + 1) * BATCH)];
-        some.iter()
-            .map(|t| {
-                let c = t.map(|n| n as usize);
-                let at = || from_pole(surface, c.map(|n| places[n]));
-                let chord = limits.chord.map_or(0.0, |limit| {
-                    let beside = c.iter().filter_map(|n| off.get(*n)).fold(0.0, |m: f64, d| m.max(*d));
-                    (bound::chord(surface, at(), c.map(|n| web.p[n])) + beside) / limit
-                });
-                let angle = limits.angle.map_or(0.0, |limit| {
-                    let turn = |i: usize, j: usize| angle_between(normals[c[i]], normals[c[j]]);
-                    turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
-                });
-                Load { chord, angle }
-            })
-            .collect::<Vec<_>>()
-    });
-    batches.into_iter().flatten().collect()
-}
-
-/// How far border nodes are from the surface along its normal: glued edges run beside it.
-fn off_surface(surface: &Surface, places: &[DVec2], web: &Web) -> Vec<f64> {
-    let off = |n: usize| (web.p[n] - surface.point(places[n].x, places[n].y)).dot(surface.normal(places[n].x, places[n].y)).abs();
-    (0..web.fixed as usize).map(off).collect()
-}
-
-/// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two
-/// corners spans the least.
-fn from_pole(surface: &Surface, at: [DVec2; 3]) -> [DVec2; 3] {
-    let mut best = at;
-    for k in 0..3 {
-        let jet = surface.jet(at[k].x, at[k].y);
-        let middle = 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]);
-        let (du, dv) = (jet.du.length(), jet.dv.length());
-        if du <= SINGULAR * dv {
-            best[k].x = middle.x;
-        } else if dv <= SINGULAR * du {
-            best[k].y = middle.y;
-        }
-    }
-    best
-}
-
 /// First lengths over those that bends ask for: triangles are not all equilateral.
-pub const FILLED: f64 = 0.86;
+pub const FILLED: f64 = 0.93;
 /// What is made smaller is made a little more so.
 const LESS: f64 = 0.96;
 /// Times a face is made anew for its limits.
 const ROUNDS: usize = 12;
-/// Triangles that one thread bounds at a time.
-const BATCH: usize = 1024;
 
 fn prepared(made: &Made, face: &Face, free: Free, mut ids: Vec<u32>, inner: Vec<DVec3>) -> Prepared {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;

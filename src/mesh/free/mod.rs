@@ -8,6 +8,7 @@ pub mod ground;
 pub mod grow;
 pub mod improve;
 mod inner;
+pub mod loads;
 pub mod outline;
 pub mod shape;
 pub mod sheet;

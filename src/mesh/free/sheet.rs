@@ -4,12 +4,14 @@ use glam::{DVec2, DVec3};
 
 use super::ground::{Ground, Spot};
 use crate::base::tolerance::EPSILON;
-use crate::surface::{Domain, Surface};
+use crate::surface::quick::Quick;
+use crate::surface::{Domain, Jet2, Surface};
 
 /// A surface under a chart (x, y) = (a u + b v, c v).
 #[derive(Clone, Debug)]
 pub struct Sheet {
     surface: Surface,
+    quick: Option<Quick>,
     domain: Domain,
     /// Directions in which borders may run over the seam.
     closed: (bool, bool),
@@ -37,6 +39,7 @@ impl Sheet {
         let c = if rest > EPSILON * g { rest.sqrt() } else { g.sqrt() };
         (a.is_finite() && c.is_finite() && a > 0.0 && c > 0.0).then(|| Self {
             surface: surface.clone(),
+            quick: surface.quick(),
             domain: surface.ground(),
             closed: if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) },
             a,
@@ -51,6 +54,36 @@ impl Sheet {
         ((xy.x - self.b * v) / self.a, v)
     }
 
+    /// The surface.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The surface made ready for many evaluations, where it can be.
+    pub fn quick(&self) -> Option<&Quick> {
+        self.quick.as_ref()
+    }
+
+    /// Point, ∂/∂u and ∂/∂v.
+    pub fn tangents(&self, (u, v): (f64, f64)) -> [DVec3; 3] {
+        match &self.quick {
+            Some(quick) => quick.tangents(u, v),
+            None => {
+                let jet = self.surface.jet(u, v);
+                [jet.p, jet.du, jet.dv]
+            }
+        }
+    }
+
+    /// Point and all derivatives by u and v at a place of the chart.
+    pub fn jet(&self, xy: DVec2) -> Jet2 {
+        let (u, v) = self.uv(xy);
+        match &self.quick {
+            Some(quick) => quick.jet(u, v),
+            None => self.surface.jet(u, v),
+        }
+    }
+
     /// The place of surface parameters in the chart.
     pub fn xy(&self, (u, v): (f64, f64)) -> DVec2 {
         DVec2::new(self.a * u + self.b * v, self.c * v)
@@ -60,9 +93,9 @@ impl Sheet {
 impl Ground for Sheet {
     fn spot(&self, xy: DVec2) -> Spot {
         let (u, v) = self.uv(xy);
-        let jet = self.surface.jet(u, v);
-        let dx: DVec3 = jet.du / self.a;
-        Spot { p: jet.p, dx, dy: (jet.dv - dx * self.b) / self.c }
+        let [p, du, dv] = self.tangents((u, v));
+        let dx: DVec3 = du / self.a;
+        Spot { p, dx, dy: (dv - dx * self.b) / self.c }
     }
 
     fn clamp(&self, xy: DVec2) -> DVec2 {

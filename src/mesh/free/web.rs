@@ -263,7 +263,8 @@ impl Web {
                 }
             }
         }
-        (patch.inner.len() == inside).then_some(())
+        // Two nodes round a patch leave nothing to fill.
+        (patch.inner.len() == inside && patch.rim.len() > 2).then_some(())
     }
 
     /// Replaces a patch by the star of a node: a node of the rim (`Star` holds the sides it does not touch), or one inside.

@@ -1,0 +1,101 @@
+//! How far the triangles of a free face are from the limits of their mesh.
+
+use glam::{DVec2, DVec3};
+
+use super::bound;
+use super::ground::Ground;
+use super::sheet::Sheet;
+use super::web::Web;
+use crate::base::math::angle_between;
+use crate::base::par;
+use crate::base::tolerance::SINGULAR;
+use crate::mesh::edges::Limits;
+
+/// Triangles that one thread bounds at a time.
+const BATCH: usize = 1024;
+
+/// How far a triangle is from its limits: 1 is just kept.
+#[derive(Clone, Copy, Default)]
+pub struct Load {
+    /// Bound of the chord error over the limit.
+    pub chord: f64,
+    /// Turn of the normal over the limit.
+    pub angle: f64,
+}
+
+impl Load {
+    /// The worse of the two.
+    pub fn worst(&self) -> f64 {
+        self.chord.max(self.angle)
+    }
+}
+
+/// Loads of the triangles of a web, each found once for the same corners at the same places.
+#[derive(Default)]
+pub struct Loads {
+    seen: Vec<([DVec2; 3], Load)>,
+}
+
+impl Loads {
+    /// The load of a triangle after [`Loads::update`].
+    pub fn of(&self, t: u32) -> Load {
+        self.seen[t as usize].1
+    }
+
+    /// Finds those of triangles that are new or have changed.
+    pub fn update(&mut self, sheet: &Sheet, web: &Web, limits: &Limits) {
+        self.seen.resize(web.tri.len(), ([DVec2::INFINITY; 3], Load::default()));
+        let corners = |t: u32| web.tri[t as usize].map(|n| web.xy[n as usize]);
+        let stale: Vec<u32> = (0..web.tri.len() as u32).filter(|t| web.alive(*t) && corners(*t) != self.seen[*t as usize].0).collect();
+        let batches = par::map(stale.len().div_ceil(BATCH), |batch| {
+            let some = &stale[batch * BATCH..stale.len().min((batch + 1) * BATCH)];
+            some.iter().map(|t| load(sheet, web, *t, limits)).collect::<Vec<_>>()
+        });
+        for (t, load) in stale.iter().zip(batches.into_iter().flatten()) {
+            self.seen[*t as usize] = (corners(*t), load);
+        }
+    }
+}
+
+/// A triangle's bounds against the limits.
+fn load(sheet: &Sheet, web: &Web, t: u32, limits: &Limits) -> Load {
+    let c = web.tri[t as usize].map(|n| n as usize);
+    let (places, p) = (c.map(|n| DVec2::from(sheet.uv(web.xy[n]))), c.map(|n| web.p[n]));
+    let surface = (sheet.surface(), sheet.quick());
+    let chord = limits.chord.map_or(0.0, |limit| {
+        let beside = c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n)).fold(0.0, f64::max);
+        (bound::chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit
+    });
+    let angle = limits.angle.map_or(0.0, |limit| {
+        let normals = c.map(|n| sheet.spot(web.xy[n]).normal());
+        let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
+        turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
+    });
+    Load { chord, angle }
+}
+
+/// How far a border node is from the surface along its normal: glued edges run beside it.
+fn off_surface(sheet: &Sheet, web: &Web, n: usize) -> f64 {
+    let spot = sheet.spot(web.xy[n]);
+    (web.p[n] - spot.p).dot(spot.normal()).abs()
+}
+
+/// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two
+/// corners spans the least.
+fn from_pole(sheet: &Sheet, at: [DVec2; 3]) -> [DVec2; 3] {
+    let mut best = at;
+    for k in 0..3 {
+        // Poles lie on the border of (u, v).
+        if at[k].cmpgt(DVec2::ZERO).all() && at[k].cmplt(DVec2::ONE).all() {
+            continue;
+        }
+        let [_, du, dv] = sheet.tangents((at[k].x, at[k].y)).map(DVec3::length);
+        let middle = 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]);
+        if du <= SINGULAR * dv {
+            best[k].x = middle.x;
+        } else if dv <= SINGULAR * du {
+            best[k].y = middle.y;
+        }
+    }
+    best
+}

@@ -1,0 +1,277 @@
+//! A net made ready for many evaluations: one polynomial a span, and bounds of its third derivatives.
+//!
+//! The power form over 0…1 of a span costs a few dozen multiplications a point where the basis functions cost hundreds.
+//! With |∂³| known over a box, second derivatives in it are those in its middle and a little more: a bound for the price
+//! of one evaluation. `docs/notes/bounds.md` has the formulas.
+
+use glam::{DVec2, DVec3, DVec4};
+
+use super::Jet2;
+use super::core::Surface;
+use super::net_spread::{NetStrip, along_u, along_v};
+use super::nurbs::{NurbsSurface, quotient};
+use super::rail::Lean;
+use super::shape::Shape;
+use crate::base::tolerance::EPSILON;
+use crate::geometry::bounds::binomial;
+use crate::geometry::nurbs::projected;
+
+/// Boxes along each side of a span for which third derivatives are bounded apart.
+const BOXES: usize = 3;
+
+/// A net, ready.
+#[derive(Clone, Debug)]
+pub struct Quick {
+    surface: Surface,
+    degree: (usize, usize),
+    /// Knots without repetition, 0 and 1 among them.
+    stops: (Vec<f64>, Vec<f64>),
+    /// Coefficients of each span (u fastest): those of s^i t^j with i fastest.
+    powers: Vec<DVec4>,
+    /// Over [`BOXES`]² boxes a span.
+    thirds: Vec<Third>,
+    /// Knots at which second derivatives may jump.
+    rough: (Vec<f64>, Vec<f64>),
+}
+
+/// Bounds of |∂uuu|, |∂uuv|, |∂uvv|, |∂vvv| over a box: along a unit vector, and as a whole.
+#[derive(Clone, Copy, Debug)]
+struct Third {
+    normal: DVec3,
+    upright: [f64; 4],
+    whole: [f64; 4],
+}
+
+/// Second derivatives along a unit vector over a box.
+#[derive(Clone, Copy, Debug)]
+pub struct Bends {
+    /// Those in the middle: ∂uu, ∂uv, ∂vv.
+    pub mid: [f64; 3],
+    /// How far they may be from there.
+    pub slack: [f64; 3],
+}
+
+impl Surface {
+    /// The net made ready; `None` for surfaces that are none.
+    pub fn quick(&self) -> Option<Quick> {
+        match &self.parts().shape {
+            Shape::Nurbs(net) => Some(Quick::new(self, net)),
+            _ => None,
+        }
+    }
+}
+
+impl Quick {
+    fn new(surface: &Surface, net: &NurbsSurface) -> Self {
+        let (us, vs) = net.breaks();
+        let stops = |inner: Vec<f64>| [vec![0.0], inner, vec![1.0]].concat();
+        let stops = (stops(us), stops(vs));
+        let (u_spans, v_spans) = (spans(net, true, &stops.0), spans(net, false, &stops.1));
+        let powers = v_spans.iter().flat_map(|v| u_spans.iter().map(move |u| (u, v))).flat_map(|(u, v)| powers(&net.piece(u, v)));
+        let (us, vs) = (divided(&stops.0), divided(&stops.1));
+        let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
+        let mut thirds = Vec::with_capacity(u_boxes.len() * v_boxes.len());
+        for (j, v) in v_boxes.iter().enumerate() {
+            for (i, u) in u_boxes.iter().enumerate() {
+                let jet = net.jet(0.5 * (us[i] + us[i + 1]), 0.5 * (vs[j] + vs[j + 1]), (Lean::After, Lean::After));
+                thirds.push(net.third(u, v, jet.du.cross(jet.dv).normalize_or_zero()));
+            }
+        }
+        let rough = |stops: &[f64], knots: &[f64], degree: usize| {
+            let repeated = |x: &f64| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count() + 2 > degree;
+            stops[1..stops.len() - 1].iter().copied().filter(repeated).collect::<Vec<_>>()
+        };
+        Self {
+            surface: surface.clone(),
+            degree: net.degree,
+            powers: powers.collect(),
+            thirds,
+            rough: (rough(&stops.0, &net.knots.0, net.degree.0), rough(&stops.1, &net.knots.1, net.degree.1)),
+            stops,
+        }
+    }
+
+    /// Point, ∂/∂u and ∂/∂v.
+    pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 3] {
+        let (u, v) = self.surface.wrapped(u, v);
+        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let ((i, s, w), (j, t, h)) = (place(&self.stops.0, u), place(&self.stops.1, v));
+        let mut sums = [DVec4::ZERO; 3];
+        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+            let (mut value, mut slope) = (DVec4::ZERO, DVec4::ZERO);
+            for c in row.iter().rev() {
+                slope = slope * s + value;
+                value = value * s + *c;
+            }
+            sums[2] = sums[2] * t + sums[0];
+            sums[0] = sums[0] * t + value;
+            sums[1] = sums[1] * t + slope;
+        }
+        let over = 1.0 / sums[0].w;
+        let p = sums[0].truncate() * over;
+        let du = (sums[1].truncate() - p * sums[1].w) * (over / w);
+        let dv = (sums[2].truncate() - p * sums[2].w) * (over / h);
+        let jet = self.surface.outer(Jet2 { p, du, dv, ..Jet2::default() });
+        [jet.p, jet.du, jet.dv]
+    }
+
+    /// Point and all derivatives.
+    pub fn jet(&self, u: f64, v: f64) -> Jet2 {
+        let (u, v) = self.surface.wrapped(u, v);
+        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let ((i, s, w), (j, t, h)) = (place(&self.stops.0, u), place(&self.stops.1, v));
+        // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
+        let mut sums = [DVec4::ZERO; 6];
+        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+            let (mut value, mut slope, mut bend) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
+            for c in row.iter().rev() {
+                bend = bend * s + slope;
+                slope = slope * s + value;
+                value = value * s + *c;
+            }
+            sums[5] = sums[5] * t + sums[2];
+            sums[2] = sums[2] * t + sums[0];
+            sums[0] = sums[0] * t + value;
+            sums[4] = sums[4] * t + sums[1];
+            sums[1] = sums[1] * t + slope;
+            sums[3] = sums[3] * t + bend;
+        }
+        let scale = [1.0, 1.0 / w, 1.0 / h, 2.0 / (w * w), 1.0 / (w * h), 2.0 / (h * h)];
+        for (sum, scale) in sums.iter_mut().zip(scale) {
+            *sum *= scale;
+        }
+        self.surface.outer(quotient(&sums))
+    }
+
+    /// Second derivatives along a unit vector over a box of (u, v); `None` where they jump inside.
+    pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
+        let middle = 0.5 * (low + high);
+        let half = 0.5 * (high - low);
+        let inner = |uv: DVec2| {
+            let (u, v) = self.surface.wrapped(uv.x, uv.y);
+            let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+            DVec2::new(u, v)
+        };
+        // Round the middle: a box over a seam leaves the parameters at one side and is not answered.
+        let centre = inner(middle);
+        let (low, high) = (centre - half, centre + half);
+        if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
+            return None;
+        }
+        let jumps = |rough: &[f64], a: f64, b: f64| rough.iter().any(|x| *x > a + EPSILON && *x < b - EPSILON);
+        if jumps(&self.rough.0, low.x, high.x) || jumps(&self.rough.1, low.y, high.y) {
+            return None;
+        }
+        let range = |stops: &[f64], a: f64, b: f64| {
+            let ((i, s, _), (j, t, _)) = (place(stops, a), place(stops, b));
+            let boxed = |k: usize, s: f64| k * BOXES + ((s * BOXES as f64) as usize).min(BOXES - 1);
+            (boxed(i, s.max(0.0)), boxed(j, t.max(0.0)))
+        };
+        let ((i0, i1), (j0, j1)) = (range(&self.stops.0, low.x, high.x), range(&self.stops.1, low.y, high.y));
+        let n = (self.stops.0.len() - 1) * BOXES;
+        let mut most = [0.0_f64; 4];
+        for j in j0..=j1 {
+            for third in &self.thirds[j * n + i0..=j * n + i1] {
+                let (up, aside) = (along.dot(third.normal).abs(), along.cross(third.normal).length());
+                for (k, m) in most.iter_mut().enumerate() {
+                    *m = m.max((up * third.upright[k] + aside * third.whole[k]).min(third.whole[k]));
+                }
+            }
+        }
+        let jet = self.jet(middle.x, middle.y);
+        let slack = [0, 1, 2].map(|k| most[k] * half.x + most[k + 1] * half.y);
+        Some(Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack })
+    }
+
+    fn span(&self, i: usize, j: usize) -> &[DVec4] {
+        let n = (self.degree.0 + 1) * (self.degree.1 + 1);
+        &self.powers[(j * (self.stops.0.len() - 1) + i) * n..][..n]
+    }
+}
+
+/// The span of a parameter, the place in it from 0 to 1, and its width.
+fn place(stops: &[f64], x: f64) -> (usize, f64, f64) {
+    let n = stops.len() - 1;
+    // Even knots are met at once.
+    let mut k = ((x * n as f64) as usize).min(n - 1);
+    while k > 0 && x < stops[k] {
+        k -= 1;
+    }
+    while k + 1 < n && x >= stops[k + 1] {
+        k += 1;
+    }
+    let width = stops[k + 1] - stops[k];
+    (k, (x - stops[k]) / width, width)
+}
+
+fn spans(net: &NurbsSurface, in_u: bool, stops: &[f64]) -> Vec<NetStrip> {
+    stops.windows(2).map(|w| net.strip(in_u, (w[0], w[1]))).collect()
+}
+
+/// Each span cut into boxes.
+fn divided(stops: &[f64]) -> Vec<f64> {
+    let inside = |w: &[f64]| (0..BOXES).map(|k| w[0] + (w[1] - w[0]) * k as f64 / BOXES as f64).collect::<Vec<_>>();
+    stops.windows(2).flat_map(inside).chain([1.0]).collect()
+}
+
+/// Coefficients of powers from Bézier points, in both directions.
+fn powers(net: &[Vec<DVec4>]) -> Vec<DVec4> {
+    let one = |points: &[DVec4]| -> Vec<DVec4> {
+        let p = points.len() - 1;
+        let term = |k: usize, i: usize| {
+            let sign = if (k - i) % 2 == 0 { 1.0 } else { -1.0 };
+            points[i] * (sign * binomial(p, k) * binomial(k, i))
+        };
+        (0..=p).map(|k| (0..=k).map(|i| term(k, i)).sum()).collect()
+    };
+    let rows: Vec<Vec<DVec4>> = net.iter().map(|row| one(row)).collect();
+    let n = rows[0].len();
+    let columns: Vec<Vec<DVec4>> = (0..n).map(|i| one(&rows.iter().map(|row| row[i]).collect::<Vec<_>>())).collect();
+    (0..rows.len()).flat_map(|j| columns.iter().map(move |c| c[j])).collect()
+}
+
+impl NurbsSurface {
+    /// Bounds of the third derivatives over a rectangle inside one span: hulls of differences, and the quotient rule
+    /// about the first point; apart along the normal in the middle, where a change of parameters adds nothing.
+    fn third(&self, u: &NetStrip, v: &NetStrip, normal: DVec3) -> Third {
+        let net = self.piece(u, v);
+        let origin = projected(net[0][0]);
+        let local: Vec<Vec<DVec4>> =
+            net.iter().map(|row| row.iter().map(|q| (q.truncate() - origin * q.w).extend(q.w)).collect()).collect();
+        let all = |f: &dyn Fn(DVec3) -> f64, net: &[Vec<DVec4>]| net.iter().flatten().map(|q| f(q.truncate())).fold(0.0, f64::max);
+        let light = net.iter().flatten().map(|q| q.w).fold(f64::INFINITY, f64::min);
+        let (upright, whole) = (|q: DVec3| q.dot(normal).abs(), |q: DVec3| q.length());
+        let points: Vec<Vec<DVec4>> = local.iter().map(|row| row.iter().map(|q| projected(*q).extend(1.0)).collect()).collect();
+        // Bounds of the i-th difference along u and the j-th along v: normal and whole numerator, weight.
+        let (mut a, mut b, mut w) = ([[0.0; 4]; 4], [[0.0; 4]; 4], [[0.0; 4]; 4]);
+        let mut in_u = local;
+        for i in 0..4_usize {
+            let mut in_v = in_u.clone();
+            for j in 0..4 - i {
+                (a[i][j], b[i][j]) = (all(&upright, &in_v), all(&whole, &in_v));
+                w[i][j] = in_v.iter().flatten().map(|q| q.w.abs()).fold(0.0, f64::max);
+                in_v = along_v(&in_v, (self.degree.1 as f64 - j as f64) / v.width());
+            }
+            in_u = along_u(&in_u, (self.degree.0 as f64 - i as f64) / u.width());
+        }
+        let upright = highest(&a, &w, all(&upright, &points), light);
+        Third { normal, upright, whole: highest(&b, &w, all(&whole, &points), light) }
+    }
+}
+
+/// Leibniz' rule N = S w solved for the derivatives of S, by bounds of those of N and w, of S and of 1 / w.
+fn highest(a: &[[f64; 4]; 4], w: &[[f64; 4]; 4], reach: f64, light: f64) -> [f64; 4] {
+    let mut s = [[0.0; 4]; 4];
+    s[0][0] = reach;
+    for order in 1..4_usize {
+        for i in 0..=order {
+            let j = order - i;
+            let mut sum = a[i][j];
+            for (k, l) in (0..=i).flat_map(|k| (0..=j).map(move |l| (k, l))).filter(|kl| *kl != (i, j)) {
+                sum += binomial(i, k) * binomial(j, l) * s[k][l] * w[i - k][j - l];
+            }
+            s[i][j] = sum / light;
+        }
+    }
+    [s[3][0], s[2][1], s[1][2], s[0][3]]
+}
