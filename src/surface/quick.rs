@@ -219,7 +219,7 @@ fn powers(net: &[Vec<DVec4>]) -> Vec<DVec4> {
     let one = |points: &[DVec4]| -> Vec<DVec4> {
         let p = points.len() - 1;
         let term = |k: usize, i: usize| {
-            let sign = if (k - i) % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if (k - i).is_multiple_of(2) { 1.0 } else { -1.0 };
             points[i] * (sign * binomial(p, k) * binomial(k, i))
         };
         (0..=p).map(|k| (0..=k).map(|i| term(k, i)).sum()).collect()

@@ -301,9 +301,9 @@ impl Fit<'_> {
         self.longest.broken(web).into_iter().for_each(|t| stretched[t as usize] = true);
         let least = self.made.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
-        for t in 0..web.tri.len() {
+        for (t, stretched) in stretched.into_iter().enumerate() {
             let load = loads.of(t as u32);
-            let over = load.worst().max(if stretched[t] { 1.0 / LESS } else { 0.0 });
+            let over = load.worst().max(if stretched { 1.0 / LESS } else { 0.0 });
             if over <= 1.0 {
                 continue;
             }
