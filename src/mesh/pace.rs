@@ -16,6 +16,8 @@ use super::sources::{Body, Source, Sources};
 use super::wanted::Wanted;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::base::{math, par};
+use crate::surface::Surface;
+use crate::surface::quick::Quick;
 
 /// Borders cannot be divided any more when their triangles are made: a little shorter than inside.
 const ROOM: f64 = 0.93;
@@ -398,16 +400,7 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
                 lengths.reverse();
             }
             let places = face::places(input, own, k, &lengths);
-            let next = |i: usize| DVec2::from(places[(i + 1).min(PLACES)]) - DVec2::from(places[(i + 1).min(PLACES) - 1]);
-            let length = |i: usize| {
-                let jet = surface.jet(places[i].0, places[i].1);
-                let plain = bound::wanted(&jet, limits.chord, limits.angle).min(own.size.0 / face::FILLED);
-                let along = jet.du * next(i).x + jet.dv * next(i).y;
-                let at = (DVec2::from(places[i]), &jet);
-                let sure = |limit| bound::surely((surface, quick.as_ref()), at, along, (limit, plain));
-                ROOM * face::FILLED * limits.chord.map_or(plain, sure)
-            };
-            let mut wanted: Vec<f64> = (0..=PLACES).map(length).collect();
+            let mut wanted = by_bends((surface, quick.as_ref()), &places, own.size.0, limits);
             if u.against {
                 wanted.reverse();
             }
@@ -417,8 +410,21 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
     for line in &own.lines {
         let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
         let places = trace(surface, &input.model.patches[own.patch.index()], &points);
-        let wanted = |at| (face::FILLED * bound::wanted(surface, at, limits.chord, limits.angle)).min(own.size.0);
-        found.push((*line, places.into_iter().map(wanted).collect()));
+        found.push((*line, by_bends((surface, quick.as_ref()), &places, own.size.0, limits)));
     }
     found
+}
+
+/// Lengths along a row of places so that triangles on both sides of it keep the limits.
+fn by_bends((surface, quick): (&Surface, Option<&Quick>), places: &[(f64, f64)], size: f64, limits: &Limits) -> Vec<f64> {
+    let last = places.len() - 1;
+    let step = |i: usize| DVec2::from(places[(i + 1).min(last)]) - DVec2::from(places[(i + 1).min(last) - 1]);
+    let length = |i: usize| {
+        let jet = surface.jet(places[i].0, places[i].1);
+        let plain = bound::wanted(&jet, limits.chord, limits.angle).min(size / face::FILLED);
+        let along = jet.du * step(i).x + jet.dv * step(i).y;
+        let sure = |limit| bound::surely((surface, quick), (DVec2::from(places[i]), &jet), along, (limit, plain));
+        ROOM * face::FILLED * limits.chord.map_or(plain, sure)
+    };
+    (0..=last).map(length).collect()
 }
