@@ -41,6 +41,9 @@ pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop
 pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Value>, Stop> {
     let tolerance = cx.tolerance()?;
     match (a, b) {
+        (Meeting::Mesh(mesh), Meeting::Plane(plane)) | (Meeting::Plane(plane), Meeting::Mesh(mesh)) => {
+            Ok(super::std::mesh::sections(cx, mesh, plane)?.into_iter().map(Value::Curve).collect())
+        }
         (Meeting::Curve(a), Meeting::Curve(b)) => {
             let mut places = Vec::new();
             for meeting in meet::meet(a, b, &tolerance)? {

@@ -32,6 +32,7 @@ mod relations;
 pub mod reuse;
 mod rows;
 mod second_order;
+pub mod section;
 mod sets;
 mod shape_check;
 pub mod sizing;

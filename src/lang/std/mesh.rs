@@ -3,12 +3,15 @@
 use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
-use crate::fields;
+use crate::geometry::build;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Angle, Length, Point};
-use crate::lang::value::{MeshValue, Value};
+use crate::lang::value::{MeshValue, Plane, Value};
 use crate::mesh::Mesh;
 use crate::mesh::quality::Quality;
+use crate::mesh::section::section;
+use crate::network::Chain;
+use crate::{builtins, fields};
 
 /// Shape of the elements; a mesh without faces has none.
 fn quality(cx: &mut Cx, mesh: &MeshValue) -> Result<Quality, Stop> {
@@ -23,6 +26,35 @@ fn elements<const N: usize>(elements: &[[u32; N]]) -> Vec<Value> {
 
 fn points(mesh: &Mesh) -> Vec<Point> {
     mesh.nodes.iter().map(|p| Point(*p)).collect()
+}
+
+builtins! {
+    /// Plane section of a mesh: the polylines in which its faces meet a plane.
+    ///
+    /// They are closed, or open where they run into a free edge of the mesh, and joined by its edges, so they have no gaps. What
+    /// lies in the plane counts as above it. Around material they run counter-clockwise seen against the normal.
+    /// ```loft
+    /// surface tube = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 3m))
+    /// mesh skin of tube { size: 300mm }
+    /// let rings = [for k in 1..3: section(skin, plane(at: (0, 0, k * 1m), normal: (0, 0, 1)))[0]]
+    /// check rings[0].closed and rings[1].closed
+    /// ```
+    fn section(
+        /// The mesh.
+        of: Arc<MeshValue>,
+        /// The plane: `plane(at:, normal:)`.
+        by: Arc<Plane>,
+    ) -> Vec<Chain> = |cx, of, by| sections(cx, &of, &by);
+}
+
+/// The sections of a mesh as curves.
+pub(in crate::lang) fn sections(cx: &mut Cx, of: &MeshValue, by: &Plane) -> Result<Vec<Chain>, Stop> {
+    let tolerance = cx.tolerance()?;
+    let mesh = cx.mesh(of)?;
+    let rows = section(&mesh, (by.at, by.normal), tolerance.rounding, tolerance.point);
+    cx.room(rows.iter().map(|row| row.points.len()).sum())?;
+    let origin = cx.origin();
+    rows.iter().map(|row| Ok(Chain::of_curve(&build::polyline(&row.points, row.closed, origin)?))).collect()
 }
 
 fields! {

@@ -14,7 +14,7 @@ mod joins;
 pub mod kinds;
 mod lists;
 mod measures;
-mod mesh;
+pub(in crate::lang) mod mesh;
 mod network;
 mod numbers;
 mod surfaces;
@@ -96,6 +96,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     transforms::BUILTINS,
     topology::BUILTINS,
     joins::BUILTINS,
+    mesh::BUILTINS,
     measures::BUILTINS,
 ];
 
