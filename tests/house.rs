@@ -49,10 +49,10 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// each other, and `lang` the grammar over tokens and its tree, the evaluator, its memory between runs, all words with
 /// their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 5_500),
+    ("base", 5_600),
     ("geometry", 5_500),
     ("network", 3_500),
-    ("surface", 9_000),
+    ("surface", 9_200),
     ("model", 3_200),
     ("mesh", 11_000),
     ("io", 8_500),

@@ -115,6 +115,9 @@ impl Layout {
         layout.points = layout.pieces.of_anchor[nodes..].to_vec();
         for (patch, flipped) in patches {
             let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
+            if input.model.is_sliver(*patch, (&edges, &layout.pieces), reach(input, std::iter::once(*patch))) {
+                continue;
+            }
             let face = layout.face(input, (*patch, *flipped), &edges, junction);
             layout.faces.push(face);
         }

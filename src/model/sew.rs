@@ -1,12 +1,17 @@
 //! How near the borders of a shell's faces must be to be one, and what joining them did [math notes §14.2].
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
+use super::atoms::Atoms;
 use super::feet::Piece;
+use super::measure;
 use super::shells::{Joins, ShellRequest};
-use super::topology::{EdgeId, Model, SurfaceId};
+use super::topology::{EdgeId, Model, Patch, PatchId, SurfaceId};
 use crate::base::fault::{Fault, MeshFault, Result, SurfaceFault};
 use crate::base::tolerance::{GAP_ROOM, MISMATCH, Tolerance};
+use crate::surface::Domain;
 
 /// A place where two borders that became one are apart.
 struct Gap {
@@ -29,6 +34,43 @@ impl Model {
         let own = || surfaces.into_iter().map(|s| self.surfaces[s.index()].surface.gap()).fold(0.0, f64::max);
         // What is just as far apart as stated is within it.
         stated.map_or_else(|| GAP_ROOM * own(), |d| d + tolerance.rounding).max(tolerance.point)
+    }
+}
+
+/// Places along each direction at which the area of a patch is sampled.
+const SAMPLES: usize = 8;
+
+impl Model {
+    /// Whether a patch is thinner than what was glued: its loop runs along every atom there and back, and it has no more area than
+    /// a strip as wide as `near` along half its border. A tube or a torus runs there and back along its seam, too, but has area.
+    pub fn is_sliver(&self, id: PatchId, (edges, pieces): (&[EdgeId], &Atoms), near: f64) -> bool {
+        let patch = &self.patches[id.index()];
+        let mut net: BTreeMap<usize, i32> = BTreeMap::new();
+        let mut around = 0.0;
+        for (k, side) in patch.sides.iter().enumerate() {
+            let backwards = self.runs_back(patch, k);
+            for (edge, against) in &side.edges {
+                around += self.edges[edge.index()].length;
+                let Ok(part) = edges.binary_search(edge) else { return false };
+                for u in &pieces.of_track[part] {
+                    *net.entry(u.atom).or_default() += if (*against != backwards) == u.against { 1 } else { -1 };
+                }
+            }
+        }
+        net.values().all(|n| *n == 0) && self.patch_area(patch) <= 0.5 * around * near
+    }
+
+    /// Area of a patch: of a rectangle of (u, v) about, by samples.
+    fn patch_area(&self, patch: &Patch) -> f64 {
+        let surface = &self.surfaces[patch.surface.index()].surface;
+        if surface.domain() != Domain::Square {
+            return measure::area(surface);
+        }
+        let n = SAMPLES as f64;
+        let at = |(low, high): (f64, f64), k: usize| low + (high - low) * (k as f64 + 0.5) / n;
+        let places = (0..SAMPLES * SAMPLES).map(|k| (at(patch.u, k % SAMPLES), at(patch.v, k / SAMPLES)));
+        let rates = places.map(|(u, v)| surface.jet(u, v)).map(|jet| jet.du.cross(jet.dv).length());
+        rates.sum::<f64>() * (patch.u.1 - patch.u.0) * (patch.v.1 - patch.v.0) / (n * n)
     }
 }
 
@@ -61,8 +103,8 @@ impl Seams<'_> {
         found
     }
 
-    /// N712 for edges that became a corner, N513 where borders apart became one.
-    pub fn tell(&self, request: &ShellRequest, tolerance: &Tolerance, sink: &mut Vec<Fault>) {
+    /// N712 for edges that became a corner and faces that became an edge, N513 where borders apart became one.
+    pub fn tell(&self, request: &ShellRequest, slivers: &[PatchId], tolerance: &Tolerance, sink: &mut Vec<Fault>) {
         let parts = &self.joins.parts;
         let gone = |n: &usize| self.joins.pieces.of_track[*n].is_empty() && parts[*n].track.length() > tolerance.point;
         let short: Vec<usize> = (0..parts.len()).filter(gone).collect();
@@ -71,6 +113,12 @@ impl Seams<'_> {
             let of = self.model.origin_of(self.surface(longest));
             let at = parts[longest].track.point(0.5 * length(longest));
             sink.push(MeshFault::EdgeTooShort { of, length: length(longest), at, more: short.len() - 1 }.into());
+        }
+        if let Some(first) = slivers.first() {
+            let surface = self.model.patches[first.index()].surface;
+            let around = self.model.loop_of(*first);
+            let fault = MeshFault::FaceTooThin { surface: self.model.origin_of(surface), at: around.at(0.5).1, more: slivers.len() - 1 };
+            sink.push(fault.into());
         }
         if let Some(gap) = self.widest().filter(|gap| gap.width > tolerance.point) {
             let (a, b) = (self.model.origin_of(gap.surfaces.0), self.model.origin_of(gap.surfaces.1));

@@ -8,7 +8,7 @@ use super::atoms::{Atoms, Part, atoms};
 use super::gather::Station;
 use super::glue::{preference, root};
 use super::sew::Seams;
-use super::topology::{EdgeId, Model, Shell, SurfaceId};
+use super::topology::{EdgeId, Model, PatchId, Shell, SurfaceId};
 use super::trace::Track;
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
@@ -43,11 +43,12 @@ impl Model {
         let near = self.reach(members.iter().copied(), request.snap.map(|s| s.0), tolerance);
         let (edges, joins) = self.joins(&members, near, network, tolerance);
         let pieces = &joins.pieces;
+        let slivers = self.slivers(&members, (&edges, pieces), near);
         let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.atoms.len()];
         for (edge, uses) in edges.iter().zip(&pieces.of_track) {
             for (patch, against) in &self.edges[edge.index()].users {
                 let surface = self.patches[patch.index()].surface;
-                if members.contains(&surface) {
+                if members.contains(&surface) && slivers.binary_search(patch).is_err() {
                     uses.iter().for_each(|u| usages[u.atom].push((surface, *against != u.against)));
                 }
             }
@@ -56,8 +57,8 @@ impl Model {
         let seams = Seams { model: self, edges: &edges, joins: &joins };
         seams.refuse_gaps(request, &free)?;
         self.manifold(request, &joins, &usages)?;
-        let sides = self.orient(request, &joins, &usages)?;
-        seams.tell(request, tolerance, sink);
+        let sides = self.orient(request, &joins, (&usages, &slivers))?;
+        seams.tell(request, &slivers, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.atoms[*a].length().total_cmp(&pieces.atoms[*b].length())) {
             let length = free.iter().map(|a| pieces.atoms[*a].length()).sum();
             let at = joins.middle(longest);
@@ -95,6 +96,14 @@ impl Model {
         (edges, Joins { parts, pieces })
     }
 
+    /// Patches of some surfaces that are thinner than what was glued, ascending.
+    fn slivers(&self, members: &BTreeSet<SurfaceId>, (edges, pieces): (&[EdgeId], &Atoms), near: f64) -> Vec<PatchId> {
+        let mut found: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
+        found.retain(|p| self.is_sliver(*p, (edges, pieces), near));
+        found.sort_unstable();
+        found
+    }
+
     pub(super) fn origin_of(&self, surface: SurfaceId) -> Origin {
         self.surfaces[surface.index()].surface.origin()
     }
@@ -112,7 +121,7 @@ impl Model {
     }
 
     /// Side of each surface of the model: `true` for the other one, `None` for surfaces outside the shell.
-    fn orient(&self, request: &ShellRequest, joins: &Joins, usages: &[Vec<Usage>]) -> Result<Vec<Option<bool>>> {
+    fn orient(&self, request: &ShellRequest, joins: &Joins, (usages, slivers): (&[Vec<Usage>], &[PatchId])) -> Result<Vec<Option<bool>>> {
         let mut sides: Vec<Option<bool>> = vec![None; self.surfaces.len()];
         let mut neighbours: Vec<Vec<(SurfaceId, bool, usize)>> = vec![Vec::new(); self.surfaces.len()];
         let mut parent: Vec<usize> = (0..self.surfaces.len()).collect();
@@ -126,7 +135,8 @@ impl Model {
                 parent[ra.max(rb)] = ra.min(rb);
             }
         }
-        let Some(&first) = request.surfaces.first() else {
+        let whole = |s: &&SurfaceId| self.patches_of(**s).any(|p| slivers.binary_search(&p).is_err());
+        let Some(&first) = request.surfaces.iter().find(whole) else {
             return Ok(sides);
         };
         sides[first.index()] = Some(false);
@@ -148,6 +158,9 @@ impl Model {
                 }
             }
         }
+        // What became an edge has no side.
+        let thin = |s: SurfaceId| self.patches_of(s).all(|p| slivers.binary_search(&p).is_ok());
+        request.surfaces.iter().filter(|s| thin(**s)).for_each(|s| sides[s.index()] = Some(false));
         match request.surfaces.iter().find(|s| sides[s.index()].is_none()) {
             None => Ok(sides),
             Some(apart) => Err(self.not_connected(request, &sides, *apart)),

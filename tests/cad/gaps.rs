@@ -144,6 +144,25 @@ fn edges_shorter_than_the_reach_become_corners() {
     assert!(census.least_angle > 30.0, "{}", census.least_angle);
 }
 
+/// Faces thinner than the reach, as wide all along or to a point, become the edge between their neighbours.
+#[test]
+fn slivers_become_edges() {
+    for width in [0.006, 0.0] {
+        let [left, _] = two_squares(0.0);
+        let right = flat(&[[5.0 + width, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 5.0, 0.0], [5.008, 5.0, 0.0]]);
+        let mut strip = vec![[5.0, 0.0, 0.0], [5.0 + width, 0.0, 0.0], [5.008, 5.0, 0.0], [5.0, 5.0, 0.0]];
+        if width == 0.0 {
+            strip.remove(1);
+        }
+        let skin = glued(&[flat(&strip), left, right], 0.01).unwrap();
+        assert_eq!(codes(&skin).iter().filter(|c| **c == "N712").count(), 2, "{:?}", skin.said);
+        let (mesh, census) = meshed(&skin, 1.0);
+        assert_eq!((census.euler, census.loops), (1, 1), "{width}");
+        assert_eq!(mesh.faces.len(), 2);
+        assert!(census.least_angle > 30.0);
+    }
+}
+
 /// A fillet in steps shorter than the reach keeps its steps: corners are not passed on along it.
 #[test]
 fn a_row_of_short_edges_stays_a_row() {

@@ -151,6 +151,15 @@ pub enum MeshFault {
         /// How many others that are shorter.
         more: usize,
     },
+    /// N712: a face thinner than what is glued became an edge.
+    FaceTooThin {
+        /// The surface.
+        surface: Origin,
+        /// A point of its border.
+        at: DVec3,
+        /// How many others.
+        more: usize,
+    },
     /// E715: elements that are turned over or have no area.
     Inverted {
         /// The surface.
@@ -339,6 +348,16 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             ),
         )
         .at(*of, "has two corners that are almost one"),
+        F::FaceTooThin { surface, at, more } => Report::new(
+            "N712",
+            format!(
+                "{} is thinner than what is glued and became an edge at {}{}",
+                say.quoted(*surface, "a face"),
+                say.point(*at),
+                if *more == 0 { String::new() } else { format!(", as {more} others did") }
+            ),
+        )
+        .at(*surface, "has no inside left"),
         F::Inverted { surface, count, uv, at } => Report::new(
             "E715",
             format!(
