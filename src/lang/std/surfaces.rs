@@ -10,7 +10,7 @@ use super::transforms::axis_line;
 use crate::base::fault::{Fault, ValueFault};
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::types::{Angle, Axis, Direction, Point, Rest, Ring};
+use crate::lang::types::{Angle, Axis, Direction, Length, Point, Rest, Ring};
 use crate::lang::value::{Plane, Value};
 use crate::network::{self, Chain, ChainFlow};
 use crate::surface::coons::{self, Grid, Method, Settings};
@@ -349,6 +349,40 @@ builtins! {
         let tolerance = cx.tolerance()?;
         let net = rows(net);
         let surface = nurbs::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
+        finished(cx, surface, &[])
+    };
+
+    /// Polynomial patch: in each coordinate the sum of coefficients times powers of u and v.
+    ///
+    /// The coefficient in row i, place j belongs to u^i v^j. The patch is kept as a Bézier surface, exactly but for rounding, and
+    /// may be trimmed by curves in u and v. Records of patches: `[for p in part.patches: polynomial(x: p.x, y: p.y, z: p.z)]`.
+    /// ```loft
+    /// surface saddle = polynomial(
+    ///   x: [[0, 0, 0], [2, 0, 0]],
+    ///   y: [[0, 3, 0], [0, 0, 0]],
+    ///   z: [[0, 0, 1], [0, -2, 0]]
+    /// )
+    /// let p = saddle.at(0.5, 1) // => (1mm, 3mm, 0mm)
+    /// ```
+    fn polynomial(
+        /// Coefficients of x: a row for each power of u, in it one for each power of v.
+        x: Vec<Vec<Length>>,
+        /// Those of y, in as many rows.
+        y: Vec<Vec<Length>>,
+        /// Those of z.
+        z: Vec<Vec<Length>>,
+    ) -> Surface = |cx, x, y, z| {
+        let tolerance = cx.tolerance()?;
+        let shape = |rows: &[Vec<Length>]| rows.iter().map(Vec::len).collect::<Vec<_>>();
+        for (argument, other) in [("y", &y), ("z", &z)] {
+            if shape(other) != shape(&x) {
+                let (found, range) = (format!("rows of {:?}", shape(other)), format!("rows of {:?} as in `x`", shape(&x)));
+                return Err(ValueFault::OutsideRange { argument, found, range }.into());
+            }
+        }
+        let row = |i: usize| (0..x[i].len()).map(|j| DVec3::new(x[i][j].0, y[i][j].0, z[i][j].0)).collect();
+        let coefficients: Vec<Vec<DVec3>> = (0..x.len()).map(row).collect();
+        let surface = crate::surface::polynomial(&coefficients, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
 
