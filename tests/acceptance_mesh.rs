@@ -32,11 +32,16 @@ fn folder(name: &str) -> PathBuf {
 
 /// Runs a script whose checks all hold.
 fn outcome(script: &Path) -> Outcome {
+    outcome_with(script, &[])
+}
+
+/// The same with params set from outside.
+fn outcome_with(script: &Path, sets: &[(String, String)]) -> Outcome {
     let text = std::fs::read(script).unwrap();
     let disk = Disk::new(Some(script), Some(&folder("out")), &[], Outputs::Written).unwrap();
     let name = script.file_name().unwrap().to_str().unwrap();
     let clock = || 0.0;
-    let task = Task { name, text: &text, sets: &[], strict: false, keep_going: false, full: true, picture: None, clock: &clock };
+    let task = Task { name, text: &text, sets, strict: false, keep_going: false, full: true, picture: None, clock: &clock };
     let outcome = guarded(|| run(&task, &disk, &Job::default())).unwrap_or_else(|bug| panic!("{bug:?}"));
     assert!(outcome.report.ok, "{name}:\n{}", outcome.drawn(false, false));
     assert!(!outcome.report.checks.is_empty(), "{name} checks nothing");
@@ -85,6 +90,20 @@ fn long_models_of_the_papers_hold() {
 fn facts(model: &str) -> Json {
     let text = std::fs::read(root().join("tests/data/reference/acceptance_models.json")).unwrap();
     serde_json::from_slice::<Json>(&text).unwrap()[model].clone()
+}
+
+/// P1 figure 16, with points that were measured once for all faces and with errors of each: no node of an edge belongs to one
+/// face alone, and the mesh is within 0.1 mm of every face.
+#[test]
+fn the_fender_has_no_unmatched_nodes() {
+    for error in ["0mm", "0.02mm"] {
+        let sets = [("error".to_owned(), error.to_owned())];
+        let outcome = outcome_with(&root().join("examples/fender.loft"), &sets);
+        let mesh = &outcome.meshes[0].1;
+        sound(mesh);
+        assert_eq!(mesh.faces.len(), 14);
+        assert!(outcome.report.meshes[0].chord_error.unwrap() <= facts("fender_14")["settings"]["chord_error"].as_f64().unwrap());
+    }
 }
 
 /// P1 figure 17: 8 planes and 24 curved faces; what the triangles enclose differs from the block by the chord error at most.
