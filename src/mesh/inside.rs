@@ -22,6 +22,9 @@ pub fn place(input: &Input, layout: &mut Layout) {
     lines.dedup();
     let probes: Vec<[DVec3; 3]> = lines.iter().map(|k| [0.25, 0.5, 0.75].map(|f| layout.point(*k, f))).collect();
     let points: Vec<usize> = (0..layout.points.len()).filter(|k| layout.points[*k].is_none()).collect();
+    for (face, lines) in layout.creases.clone() {
+        layout.faces[face].lines.extend(lines.iter().filter(|k| !on_face[**k]));
+    }
     if lines.is_empty() && points.is_empty() {
         return;
     }
@@ -33,7 +36,10 @@ pub fn place(input: &Input, layout: &mut Layout) {
         let nearest = known.entry(face.surface).or_insert_with(|| Nearest::new(surface));
         let patch = &input.model.patches[face.patch.index()];
         let holds = |p: &DVec3| on(nearest, patch, *p, input.tolerance);
-        face.lines = (0..lines.len()).filter(|n| near(&probes[*n]) && probes[*n].iter().all(holds)).map(|n| lines[n]).collect();
+        let own: Vec<usize> = (0..lines.len()).filter(|n| near(&probes[*n]) && probes[*n].iter().all(holds)).map(|n| lines[n]).collect();
+        face.lines.extend(own);
+        face.lines.sort_unstable();
+        face.lines.dedup();
         let inside = |k: &usize| near(&[input.plan.points[*k]]) && holds(&input.plan.points[*k]);
         face.points = points.iter().copied().filter(inside).collect();
     }
@@ -82,7 +88,7 @@ fn unwrapped(surface: &Surface, (u, v): (f64, f64)) -> (f64, f64) {
 }
 
 /// Whether a polygon winds round a point.
-fn surrounds(polygon: &[DVec2], p: DVec2) -> bool {
+pub fn surrounds(polygon: &[DVec2], p: DVec2) -> bool {
     let mut inside = false;
     for (k, b) in polygon.iter().enumerate() {
         let a = polygon[(k + polygon.len() - 1) % polygon.len()];
@@ -162,6 +168,10 @@ fn walls(input: &Input, surface: SurfaceId) -> (Vec<f64>, Vec<f64>) {
         let record = &input.model.patches[patch.index()];
         us.push(record.u.0);
         vs.push(record.v.0);
+        if whole.domain() == Domain::Loop {
+            us.extend(whole.kinks().0);
+            vs.extend(whole.kinks().1);
+        }
     }
     for (all, closed) in [(&mut us, closed.0), (&mut vs, closed.1)] {
         all.sort_by(f64::total_cmp);

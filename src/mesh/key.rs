@@ -129,10 +129,10 @@ impl Teller<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut Digester) {
-        let Layout { faces, parts, pieces, of_link, curves, points } = layout;
+        let Layout { faces, parts, pieces, of_link, curves, points, creases } = layout;
         faces.len().tell(to);
         faces.iter().for_each(|face| self.face(face, to));
-        (parts, pieces, (curves, points)).tell(to);
+        (parts, pieces, (curves, points, creases)).tell(to);
         of_link.len().tell(to);
         for (link, uses) in of_link {
             let network = self.input.network;

@@ -80,6 +80,8 @@ pub struct Layout {
     pub curves: Vec<Vec<Use>>,
     /// Junction of each point of the plan; `None`: a node of its own.
     pub points: Vec<Option<usize>>,
+    /// Stretches of kink lines inside trimmed faces, with the place of the face.
+    pub creases: Vec<(usize, Vec<usize>)>,
 }
 
 impl Layout {
@@ -95,6 +97,17 @@ impl Layout {
             part.cuts.extend(super::inside::crossings(input, &ids, &part.track));
             part.cuts.sort_by(f64::total_cmp);
         }
+        let creased = parts.len();
+        let of_face: Vec<usize> = ids
+            .iter()
+            .enumerate()
+            .flat_map(|(face, patch)| {
+                let found = super::creases::of_patch(input, *patch);
+                let n = found.len();
+                parts.extend(found);
+                std::iter::repeat_n(face, n)
+            })
+            .collect();
         // Points and curves of the mesh join whatever edge is glued.
         let most = reach(input, patches.iter().map(|p| p.0));
         parts[edges.len()..].iter_mut().for_each(|part| part.near = most);
@@ -113,6 +126,8 @@ impl Layout {
         let of_link = by_link(input, &edges, &links, &pieces);
         let mut layout = Self { parts, pieces, of_link, ..Self::default() };
         layout.points = layout.pieces.of_anchor[nodes..].to_vec();
+        let stretches = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.atom).collect();
+        layout.creases = of_face.iter().enumerate().map(|(k, face)| (*face, stretches(creased + k))).collect();
         for (patch, flipped) in patches {
             let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
             if input.model.is_sliver(*patch, (&edges, &layout.pieces), reach(input, std::iter::once(*patch))) {

@@ -8,6 +8,7 @@ pub mod build;
 pub mod chart;
 mod chord;
 pub mod counts;
+mod creases;
 pub mod data;
 mod edges;
 pub mod explain;

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use super::ground::Spot;
 use super::grow::TALL;
 use crate::base::range::Ranges;
+use crate::base::tolerance::NUDGE;
 use crate::surface::quick::{Bends, Quick};
 use crate::surface::{Domain, Jet2, Surface};
 
@@ -102,7 +103,7 @@ pub fn chord((surface, quick): (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [D
     }
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
     let width = high - low;
-    let whole = (low - width * WIDER, high + width * WIDER);
+    let whole = beside_kinks(surface, (low, high), (low - width * WIDER, high + width * WIDER));
     let Some(bends) = bent_over(surface, quick, whole, normal) else { return f64::INFINITY };
     let first = over_sides(&bends, uv, width);
     let Some(quick) = quick.filter(|_| first > wanted && first < FAR * wanted) else { return first };
@@ -165,6 +166,22 @@ pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &
 const TRIES: usize = 4;
 /// What is made smaller is made a little more so.
 const LESS: f64 = 0.98;
+
+/// The wider one of two boxes in (u, v), held on the side of each kink line on which the other lies: a triangle beside a kink
+/// line sees nothing of what is beyond.
+fn beside_kinks(surface: &Surface, own: (DVec2, DVec2), (mut low, mut high): (DVec2, DVec2)) -> (DVec2, DVec2) {
+    let (us, vs) = surface.kinks();
+    for (axis, kinks) in [us, vs].into_iter().enumerate() {
+        for kink in kinks.iter().copied() {
+            if low[axis] < kink && own.0[axis] >= kink - NUDGE {
+                low[axis] = kink;
+            } else if high[axis] > kink && own.1[axis] <= kink + NUDGE {
+                high[axis] = kink;
+            }
+        }
+    }
+    (low, high)
+}
 
 /// The most that Σ c λi λj can be for barycentric λ, `c` in the order of the sides opposite the corners.
 fn most(c: [f64; 3]) -> f64 {

@@ -1,0 +1,85 @@
+//! Kink lines inside trimmed faces, cut at the loops: lines that triangles have to hold, as those between patches are.
+
+use glam::DVec2;
+
+use super::build::Input;
+use super::inside::surrounds;
+use crate::model::atoms::Part;
+use crate::model::{PatchId, Trace, Track};
+use crate::surface::{Domain, Side, Surface};
+
+/// Samples of a border between which it crosses a kink line once at most.
+const SAMPLES: usize = 128;
+/// Halvings until a crossing is found.
+const HALVINGS: usize = 60;
+/// Tracks of lower rank give the geometry of what several share: all others come first.
+const RANK: u8 = u8::MAX;
+
+/// The kink lines inside a trimmed patch as tracks; none for others, which are cut at theirs.
+pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
+    let surface = &input.model.surfaces[input.model.patches[patch.index()].surface.index()].surface;
+    let (us, vs) = surface.kinks();
+    if surface.domain() != Domain::Loop || surface.is_flat() || us.is_empty() && vs.is_empty() {
+        return Vec::new();
+    }
+    let borders: Vec<Box<dyn Fn(f64) -> DVec2 + '_>> = (0..surface.n_sides()).filter_map(|k| border(surface, k)).collect();
+    let outlines = surface.outlines();
+    let closed = surface.closed();
+    let mut parts = Vec::new();
+    for (axis, lines, others, turns) in [(0, us, vs, closed.0), (1, vs, us, closed.1)] {
+        let shifts: &[f64] = if turns { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+        for at in lines.iter().flat_map(|x| shifts.iter().map(move |s| x + s)) {
+            let mut ends: Vec<f64> = borders.iter().flat_map(|border| crossings(border, axis, at)).collect();
+            ends.sort_by(f64::total_cmp);
+            for w in ends.windows(2) {
+                let place = |other: f64| if axis == 0 { DVec2::new(at, other) } else { DVec2::new(other, at) };
+                let middle = place(0.5 * (w[0] + w[1]));
+                if !outlines.iter().fold(false, |kept, polygon| kept != surrounds(polygon, middle)) {
+                    continue;
+                }
+                let trace = Trace::new(surface, place(w[0]).into(), place(w[1]).into());
+                if trace.length() <= 2.0 * input.tolerance.point {
+                    continue;
+                }
+                let inner = others.iter().filter(|x| **x > w[0] && **x < w[1]);
+                let cuts = inner.map(|x| trace.length_at((x - w[0]) / (w[1] - w[0]))).collect();
+                parts.push(Part { track: Track::Iso(trace), cuts, rank: RANK, near: input.tolerance.point });
+            }
+        }
+    }
+    parts
+}
+
+/// Places along a border in the direction of its loop, by a fraction.
+fn border(surface: &Surface, k: usize) -> Option<Box<dyn Fn(f64) -> DVec2 + '_>> {
+    if let Some((a, b)) = surface.border_line(k) {
+        return Some(Box::new(move |t| DVec2::from(a).lerp(DVec2::from(b), t)));
+    }
+    let Side::Chain { from, to, .. } = surface.side(k) else { return None };
+    Some(Box::new(move |t| surface.border_place(k, from + (to - from) * t).unwrap_or_default().into()))
+}
+
+/// The other parameter where a border crosses a line on which one parameter (0: u) stays.
+fn crossings(border: &dyn Fn(f64) -> DVec2, axis: usize, at: f64) -> Vec<f64> {
+    let below = |t: f64| border(t)[axis] < at;
+    let fraction = |k: usize| k as f64 / SAMPLES as f64;
+    let mut found = Vec::new();
+    let mut before = below(0.0);
+    for k in 1..=SAMPLES {
+        let now = below(fraction(k));
+        if now != before {
+            let (mut low, mut high) = (fraction(k - 1), fraction(k));
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if below(middle) == before {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            found.push(border(0.5 * (low + high))[1 - axis]);
+        }
+        before = now;
+    }
+    found
+}
