@@ -352,7 +352,7 @@ builtins! {
         finished(cx, surface, &[])
     };
 
-    /// Polynomial patch: in each coordinate the sum of coefficients times powers of u and v.
+    /// Polynomial patch: coordinates are sums of coefficients times powers of u, v.
     ///
     /// The coefficient in row i, place j belongs to u^i v^j. The patch is kept as a Bézier surface, exactly but for rounding, and
     /// may be trimmed by curves in u and v. Records of patches: `[for p in part.patches: polynomial(x: p.x, y: p.y, z: p.z)]`.
