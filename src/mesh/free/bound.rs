@@ -151,7 +151,7 @@ pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &
             let hold = |uv: DVec2| {
                 DVec2::new(if closed.0 { uv.x } else { uv.x.clamp(0.0, 1.0) }, if closed.1 { uv.y } else { uv.y.clamp(0.0, 1.0) })
             };
-            let uv = [hold(a), hold(b), c];
+            let uv = [hold(a), hold(b), c].map(|corner| on_side(surface, (at, c), corner));
             let load = chord((surface, quick), uv, uv.map(point), limit) / limit;
             if load <= 1.0 {
                 break;
@@ -160,6 +160,18 @@ pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &
         }
     }
     h
+}
+
+/// A place held on the side of each kink line on which another is, or where that is on the line, a third.
+fn on_side(surface: &Surface, (at, beyond): (DVec2, DVec2), mut place: DVec2) -> DVec2 {
+    let (us, vs) = surface.kinks();
+    for (axis, kinks) in [us, vs].into_iter().enumerate() {
+        for kink in kinks.iter().copied() {
+            let below = if (at[axis] - kink).abs() > NUDGE { at[axis] < kink } else { beyond[axis] < kink };
+            place[axis] = if below { place[axis].min(kink) } else { place[axis].max(kink) };
+        }
+    }
+    place
 }
 
 /// Lengths tried until one keeps a limit for sure.
