@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::base::math::{cos, sin, sin_cos};
 use lofting::base::triangulate_points::NO_TRIANGLE;
-use lofting::mesh::free::build::{Task, triangulate};
+use lofting::mesh::free::build::{Lattice, Task, triangulate};
 use lofting::mesh::free::ground::{Even, Field, Ground, Spot};
 use lofting::mesh::free::improve::Care;
 use lofting::mesh::free::outline::Outline;
@@ -107,7 +107,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
         add_loop(&mut outline, &ground, &star(DVec2::ZERO, &inner, turn), size);
         let (even, by_place) = (Even(size), Graded(size));
         let field: &dyn Field = if graded { &by_place } else { &even };
-        let task = Task { ground: &ground, field, outline: &outline, care: CARE, most: 100_000, broken: None };
+        let task = Task { ground: &ground, field, outline: &outline, lattice: Lattice::Crystal, care: CARE, most: 100_000, broken: None };
         match triangulate(&task, &Job::new()).unwrap() {
             Ok(web) => sound(&web, &outline, None),
             Err(_) => Ok(()),
@@ -132,7 +132,15 @@ fn holes_of_any_size_are_kept() {
             let center = cell + DVec2::new(r + x * (room - 2.0 * r), r + y * (room - 2.0 * r));
             add_loop(&mut outline, &ground, &star(center, &vec![r; *n], 0.3), size);
         }
-        let task = Task { ground: &ground, field: &Even(size), outline: &outline, care: CARE, most: 100_000, broken: None };
+        let task = Task {
+            ground: &ground,
+            field: &Even(size),
+            outline: &outline,
+            lattice: Lattice::Crystal,
+            care: CARE,
+            most: 100_000,
+            broken: None,
+        };
         let web = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?;
         sound(&web, &outline, Some(holes.len()))
     });
@@ -154,7 +162,8 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
         }
     }
     let care = Care { smooth: 30, wanted: 0.92, longest: 1.4 };
-    let task = Task { ground: &ground, field: &Even(size), outline: &outline, care, most: 100_000, broken: None };
+    let task =
+        Task { ground: &ground, field: &Even(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, broken: None };
     let web = triangulate(&task, &Job::new()).unwrap().unwrap();
     sound(&web, &outline, Some(20)).unwrap();
     let all: Vec<f64> = (0..web.tri.len() as u32).map(|t| web.quality(t)).collect();

@@ -6,7 +6,7 @@ use super::faces::{LOOKS, MOST, Show, curvature, even};
 use super::scene::Sheet;
 use crate::base::bbox::Box3;
 use crate::base::job::Job;
-use crate::mesh::free::build::{Task, triangulate};
+use crate::mesh::free::build::{Lattice, Task, triangulate};
 use crate::mesh::free::ground::Even;
 use crate::mesh::free::improve::Care;
 use crate::mesh::free::outline::Outline;
@@ -74,7 +74,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let flat = surface.is_flat();
     let field = Even(if flat { 4.0 * bounds.diagonal() } else { size });
     let care = Care { smooth: 0, wanted: 0.0, longest: f64::INFINITY };
-    let task = Task { ground: &chart, field: &field, outline: &outline, care, most: MOST * MOST, broken: None };
+    let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, broken: None };
     match triangulate(&task, &Job::new()) {
         Ok(Ok(web)) => {
             let uv = web.xy.iter().map(|xy| chart.uv(*xy)).collect();

@@ -54,6 +54,7 @@ fn method(value: &Value) -> Option<Method> {
     Some(match &**w {
         "mapped" => Method::Mapped,
         "delaunay" => Method::Delaunay,
+        "quadtree" => Method::Quadtree,
         _ => Method::Auto,
     })
 }
@@ -249,7 +250,7 @@ impl Cx<'_> {
     }
 
     fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
-        if key == "method" && !matches!(&value, Value::Word(w) if matches!(&**w, "auto" | "mapped" | "delaunay")) {
+        if key == "method" && !matches!(&value, Value::Word(w) if matches!(&**w, "auto" | "mapped" | "delaunay" | "quadtree")) {
             let what = format!("`method: {}`", self.show(&value));
             return Err(self.not_yet(code, &what, code.span(id)));
         }

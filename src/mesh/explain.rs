@@ -3,6 +3,7 @@
 use super::build::Input;
 use super::faces::{Frame, Prepared};
 use super::layout::Layout;
+use super::plan::Method;
 use super::reasons;
 use super::sizing::{Sizing, elements_name};
 use crate::base::origin::Origin;
@@ -119,7 +120,11 @@ impl Explanation {
             notes.faces.push(FaceNote {
                 surface: face.surface,
                 patch: face.patch.index() - first,
-                method: if matches!(ready.chart.frame, Frame::Free(_)) { "delaunay" } else { "mapped" },
+                method: match &ready.chart.frame {
+                    Frame::Free(_) if face.method == Method::Quadtree => "quadtree",
+                    Frame::Free(_) => "delaunay",
+                    _ => "mapped",
+                },
                 elements: elements_name(ready.elements),
                 sides,
             });

@@ -76,8 +76,8 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
             return Err(MeshFault::CannotMap { surface: of, why, at }.into());
         }
-        face.free = face.method == Method::Delaunay || why.is_some();
-        face.why = why.clone().filter(|_| face.method != Method::Delaunay);
+        face.free = matches!(face.method, Method::Delaunay | Method::Quadtree) || why.is_some();
+        face.why = why.clone().filter(|_| !matches!(face.method, Method::Delaunay | Method::Quadtree));
         if face.free && face.elements == Elements::Quads {
             let what = format!("`elements: quads` on a face {}", why.unwrap_or_else(|| "made freely".to_owned()));
             return Err(MeshFault::NeedsLater { of, what, method: "quadtree", at }.into());

@@ -39,6 +39,7 @@ impl Content for Method {
             Self::Mapped => 1u8.tell(to),
             Self::Later(word) => (2u8, *word).tell(to),
             Self::Delaunay => 3u8.tell(to),
+            Self::Quadtree => 4u8.tell(to),
         }
     }
 }

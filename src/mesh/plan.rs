@@ -29,6 +29,8 @@ pub enum Method {
     Mapped,
     /// Nodes grown over the surface, Delaunay triangles improved in space.
     Delaunay,
+    /// Nodes at the corners of a quadtree's cells, Delaunay triangles improved in space.
+    Quadtree,
     /// A method of a later version, by its word.
     Later(&'static str),
 }

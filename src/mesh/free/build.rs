@@ -8,6 +8,7 @@ use super::ground::{Field, Ground};
 use super::grow::{STRAIGHT, Soil, TALL, grow};
 use super::improve::{Care, Gardener};
 use super::outline::Outline;
+use super::quadtree::{self, Plot};
 use super::web::Web;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -15,6 +16,15 @@ use crate::base::triangulate_points::{NO_TRIANGLE, PointsFault, Triangles, point
 
 /// Triangles of a web that break a limit.
 pub type Broken<'a> = dyn Fn(&Web) -> Vec<u32> + 'a;
+
+/// Where inner nodes come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lattice {
+    /// A crystal of equilateral triangles, grown from the border.
+    Crystal,
+    /// The corners of a quadtree's cells.
+    Tree,
+}
 
 /// What a face is made from.
 pub struct Task<'a> {
@@ -26,6 +36,8 @@ pub struct Task<'a> {
     pub outline: &'a Outline,
     /// How triangles are improved.
     pub care: Care,
+    /// Where inner nodes come from.
+    pub lattice: Lattice,
     /// Most inner nodes.
     pub most: usize,
     /// Triangles that break a limit and are to be divided; asked again after each division.
@@ -58,8 +70,16 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
     if expected(task, &coarse, &kept) > task.most as f64 {
         return Ok(Err(Trouble::Full));
     }
-    let seeds = seeds(&coarse, &kept, outline);
-    let grown = grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, most: task.most }, job)?;
+    let grown = match task.lattice {
+        Lattice::Crystal => {
+            let seeds = seeds(&coarse, &kept, outline);
+            grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, most: task.most }, job)?
+        }
+        Lattice::Tree => match quadtree::nodes(&Plot { ground: task.ground, field: task.field, outline, most: task.most }) {
+            Some(grown) => grown,
+            None => return Ok(Err(Trouble::Full)),
+        },
+    };
     if grown.full {
         return Ok(Err(Trouble::Full));
     }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::bound;
-use super::build::{Broken, Task, Trouble, triangulate};
+use super::build::{Broken, Lattice, Task, Trouble, triangulate};
 use super::ground::{Even, Field};
 use super::improve::Care;
 use super::loads::Loads;
@@ -28,7 +28,7 @@ use crate::mesh::explain::{Decider, Why};
 use crate::mesh::faces::{Frame, Prepared, limits_of, middle};
 use crate::mesh::layout::{Face, Layout, side_parameters};
 use crate::mesh::nodes::Nodes;
-use crate::mesh::plan::Elements;
+use crate::mesh::plan::{Elements, Method};
 use crate::mesh::sources::{Body, Source, Sources};
 use crate::mesh::wanted::{Wanted, floor_keeps};
 use crate::model::Trace;
@@ -42,6 +42,8 @@ const LONGEST: f64 = 1.05;
 const WANTED: f64 = 0.92;
 /// The same where lengths vary with the bends: neighbouring triangles cannot all be equilateral there.
 const WANTED_BENT: f64 = 0.85;
+/// The same for halves of squares, which have 0.83.
+const WANTED_TREE: f64 = 0.8;
 /// Rounds of smoothing at most.
 const SMOOTH: usize = 30;
 
@@ -175,7 +177,13 @@ fn fitting(
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let care = Care {
         smooth: made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize),
-        wanted: if bent { WANTED_BENT } else { WANTED },
+        wanted: if face.method == Method::Quadtree {
+            WANTED_TREE
+        } else if bent {
+            WANTED_BENT
+        } else {
+            WANTED
+        },
         longest: LONGEST / SPACING,
     };
     let rules = near(made, face, outline);
@@ -237,7 +245,8 @@ impl Fit<'_> {
     }
 
     fn task<'t>(&'t self, field: &'t dyn Field, broken: &'t Broken<'t>) -> Task<'t> {
-        Task { ground: self.sheet, field, outline: self.outline, care: self.care, most: MOST, broken: Some(broken) }
+        let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
+        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, broken: Some(broken) }
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.

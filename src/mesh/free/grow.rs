@@ -23,7 +23,7 @@ const CLEAR: f64 = 0.52;
 /// How far along the border its samples are apart, as a share of the wanted length.
 const SAMPLES: f64 = 0.5;
 /// How far the border is looked for, as a share of the wanted length: a step and half a sample's distance.
-const SIGHT: f64 = 1.3;
+pub(super) const SIGHT: f64 = 1.3;
 /// Nodes between two questions whether to go on.
 const WATCH: usize = 4096;
 
@@ -112,17 +112,7 @@ impl Front<'_> {
         for (p, xy) in outline.p.iter().zip(&outline.xy) {
             self.nodes.add(*p, *xy, self.soil.field.size(*xy, *p), u32::MAX);
         }
-        for (k, [a, b]) in self.edges.clone().into_iter().enumerate() {
-            let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
-            let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
-            let size = |t: f64| self.soil.field.size(xa.lerp(xb, t), pa.lerp(pb, t));
-            let least = [0.0, 0.5, 1.0].map(size).into_iter().fold(f64::INFINITY, f64::min);
-            let n = (pa.distance(pb) / (least * SAMPLES)).ceil().clamp(1.0, 1e6) as usize;
-            for i in 0..=n {
-                let t = i as f64 / n as f64;
-                self.border.add(pa.lerp(pb, t), xa.lerp(xb, t), size(t), k as u32);
-            }
-        }
+        self.border = samples(outline, self.soil.field);
     }
 
     /// A row of nodes along the border, each the tip of an equilateral triangle over an edge; they do not grow further but
@@ -292,6 +282,24 @@ impl Front<'_> {
     }
 }
 
+/// Places along the edges of a border, near enough to each other that none is overlooked from a step away; tagged by edge.
+pub(super) fn samples(outline: &Outline, field: &dyn Field) -> Cells {
+    let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
+    let mut cells = Cells::new(unit);
+    for (k, [a, b]) in outline.edges().enumerate() {
+        let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
+        let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
+        let size = |t: f64| field.size(xa.lerp(xb, t), pa.lerp(pb, t));
+        let least = [0.0, 0.5, 1.0].map(size).into_iter().fold(f64::INFINITY, f64::min);
+        let n = (pa.distance(pb) / (least * SAMPLES)).ceil().clamp(1.0, 1e6) as usize;
+        for i in 0..=n {
+            let t = i as f64 / n as f64;
+            cells.add(pa.lerp(pb, t), xa.lerp(xb, t), size(t), k as u32);
+        }
+    }
+    cells
+}
+
 /// Height of an equilateral triangle of side 1.
 pub(super) const TALL: f64 = 0.866_025_403_784_438_6;
 /// Share of the length by which a step may be off before it is made again.
@@ -304,7 +312,7 @@ const WIDE: f64 = 2.618;
 pub(super) const STRAIGHT: f64 = 1.0 - NUDGE;
 
 /// Distance of a point from a segment.
-fn apart(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+pub(super) fn apart(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     let d = b - a;
     let t = ((p - a).dot(d) / d.length_squared()).clamp(0.0, 1.0);
     p.distance(a + d * t)

@@ -21,6 +21,12 @@ impl Outline {
         self.loops.iter().chain(&self.lines).copied()
     }
 
+    /// Edge `k` of [`Outline::edges`].
+    pub fn edge(&self, k: u32) -> [u32; 2] {
+        let k = k as usize;
+        if k < self.loops.len() { self.loops[k] } else { self.lines[k - self.loops.len()] }
+    }
+
     /// Length of an edge in space.
     pub fn length(&self, [a, b]: [u32; 2]) -> f64 {
         self.p[a as usize].distance(self.p[b as usize])

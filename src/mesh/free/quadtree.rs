@@ -1,0 +1,114 @@
+//! Inner nodes from a quadtree: corners of its cells that lie inside and not too near to the border.
+//!
+//! Roots have the largest wanted length; a cell is split while its side in space is longer than wanted there, and a cell on
+//! the border while its side is longer than the shortest segment in it. After balancing, no cell has a neighbour over an
+//! edge of less than half its side, so lengths grow by two at most.
+
+use glam::{DVec2, DVec3};
+
+use super::ground::{Field, Ground};
+use super::grow::{Grown, SIGHT, apart, samples};
+use super::outline::Outline;
+use super::tree::{Cell, Class, Tree};
+
+/// Side of a cell over the wanted length: its diagonal is then hardly longer than a side may be.
+const SIDE: f64 = 0.74;
+/// Distance of a node to the border over the side of the cells about it.
+const CLEAR: f64 = 0.5;
+/// Roots along a side at most.
+const ROOTS: f64 = 2048.0;
+/// Places along each direction at which the largest wanted length is looked for.
+const LOOKS: usize = 16;
+
+/// What a tree is made for.
+pub struct Plot<'a> {
+    /// The surface.
+    pub ground: &'a dyn Ground,
+    /// Wanted lengths.
+    pub field: &'a dyn Field,
+    /// The border.
+    pub outline: &'a Outline,
+    /// Most nodes.
+    pub most: usize,
+}
+
+/// The nodes of a balanced tree; `None` when there are more cells than four for each node allowed.
+pub fn nodes(task: &Plot) -> Option<Grown> {
+    let outline = task.outline;
+    let segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| outline.xy[n as usize])).collect();
+    let lengths: Vec<f64> = outline.edges().map(|e| outline.length(e)).collect();
+    let (low, high) = outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
+    let side = SIDE * largest(task, low, high);
+    let count = |x: f64| (x / side).ceil().clamp(1.0, ROOTS) as u32;
+    let mut tree = Tree::new(&segments, (low, high), (count(high.x - low.x), count(high.y - low.y)));
+    let wants = |tree: &Tree, cell: &Cell| {
+        if cell.class == Class::Exterior {
+            return false;
+        }
+        let shortest = cell.segments.iter().map(|s| lengths[*s as usize]).fold(f64::INFINITY, f64::min);
+        let (long, middle, p) = span(task.ground, tree, cell);
+        long > (SIDE * task.field.size(middle, p)).min(shortest)
+    };
+    if !tree.refine(&wants, 4 * task.most) {
+        return None;
+    }
+    tree.balance();
+    Some(corners(task, &tree))
+}
+
+/// The largest wanted length over a box of the chart, by looking.
+fn largest(task: &Plot, low: DVec2, high: DVec2) -> f64 {
+    let at = |k: usize| (k as f64 + 0.5) / LOOKS as f64;
+    let size = |k: usize| {
+        let xy = task.ground.clamp(low + (high - low) * DVec2::new(at(k % LOOKS), at(k / LOOKS)));
+        task.field.size(xy, task.ground.spot(xy).p)
+    };
+    (0..LOOKS * LOOKS).map(size).fold(0.0, f64::max).min((high - low).max_element())
+}
+
+/// Longer side of a cell in space, its middle in the chart and in space.
+fn span(ground: &dyn Ground, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
+    let side = tree.side(cell.level);
+    let middle = ground.clamp(tree.corner(cell.level, cell.at) + 0.5 * side);
+    let spot = ground.spot(middle);
+    ((spot.dx.length() * side.x).max(spot.dy.length() * side.y), middle, spot.p)
+}
+
+/// A corner of leaves: its place on the finest grid, and a leaf.
+type Corner = ((u32, u32), u32);
+
+fn corners(task: &Plot, tree: &Tree) -> Grown {
+    let depth = tree.cells().iter().map(|c| c.level).max().unwrap_or(0);
+    let mut found: Vec<Corner> = Vec::new();
+    for (k, cell) in tree.cells().iter().enumerate().filter(|(_, c)| c.is_leaf() && c.class != Class::Exterior) {
+        let up = depth - cell.level;
+        for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            found.push((((cell.at.0 + i) << up, (cell.at.1 + j) << up), k as u32));
+        }
+    }
+    let border = samples(task.outline, task.field);
+    // Row by row, as the lattice lies: neighbours in the list are neighbours on the face.
+    found.sort_unstable_by_key(|((i, j), k)| (*j, *i, *k));
+    let mut grown = Grown::default();
+    for run in found.chunk_by(|a, b| a.0 == b.0) {
+        let leaves: Vec<&Cell> = run.iter().map(|(_, k)| &tree.cells()[*k as usize]).collect();
+        let xy = tree.corner(depth, run[0].0);
+        if leaves.iter().all(|c| c.class == Class::Partial) && !tree.holds(xy) {
+            continue;
+        }
+        let side = leaves.iter().map(|c| span(task.ground, tree, c).0).fold(f64::INFINITY, f64::min);
+        let p = task.ground.spot(xy).p;
+        let size = task.field.size(xy, p);
+        let near = border.any(p, SIGHT * size, size, |sample, _| {
+            let [a, b] = task.outline.edge(sample.tag).map(|n| task.outline.p[n as usize]);
+            apart(p, a, b) < CLEAR * side
+        });
+        if near {
+            continue;
+        }
+        grown.xy.push(xy);
+        grown.p.push(p);
+        grown.size.push(size);
+    }
+    grown
+}
