@@ -52,7 +52,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_600),
     ("geometry", 5_500),
     ("network", 3_500),
-    ("surface", 9_200),
+    ("surface", 9_600),
     ("model", 3_200),
     ("mesh", 12_000),
     ("io", 8_500),
