@@ -30,8 +30,10 @@ pub struct Quick {
     powers: Vec<DVec4>,
     /// Over [`BOXES`]² boxes a span.
     thirds: Vec<Third>,
-    /// Knots at which second derivatives may jump.
+    /// Knots at which second derivatives may jump, not first ones.
     rough: (Vec<f64>, Vec<f64>),
+    /// Knots at which first derivatives may jump.
+    corners: (Vec<f64>, Vec<f64>),
 }
 
 /// Bounds of |∂uuu|, |∂uuv|, |∂uvv|, |∂vvv| over a box: along a unit vector, and as a whole.
@@ -49,6 +51,19 @@ pub struct Bends {
     pub mid: [f64; 3],
     /// How far they may be from there.
     pub slack: [f64; 3],
+}
+
+impl Bends {
+    /// What holds both.
+    pub fn union(&self, other: &Self) -> Self {
+        let range = |k: usize| {
+            let low = (self.mid[k] - self.slack[k]).min(other.mid[k] - other.slack[k]);
+            let high = (self.mid[k] + self.slack[k]).max(other.mid[k] + other.slack[k]);
+            (0.5 * (low + high), 0.5 * (high - low))
+        };
+        let ranges = [0, 1, 2].map(range);
+        Self { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1) }
+    }
 }
 
 impl Surface {
@@ -77,16 +92,22 @@ impl Quick {
                 thirds.push(net.third(u, v, jet.du.cross(jet.dv).normalize_or_zero()));
             }
         }
-        let rough = |stops: &[f64], knots: &[f64], degree: usize| {
-            let repeated = |x: &f64| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count() + 2 > degree;
-            stops[1..stops.len() - 1].iter().copied().filter(repeated).collect::<Vec<_>>()
+        let repeated = |stops: &[f64], knots: &[f64], wanted: &dyn Fn(usize) -> bool| -> Vec<f64> {
+            let often = |x: &f64| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count();
+            stops[1..stops.len() - 1].iter().copied().filter(|x| wanted(often(x))).collect()
+        };
+        let both = |wanted: &dyn Fn(usize, usize) -> bool| {
+            let (p, q) = net.degree;
+            let u = repeated(&stops.0, &net.knots.0, &|often| wanted(often, p));
+            (u, repeated(&stops.1, &net.knots.1, &|often| wanted(often, q)))
         };
         Self {
             surface: surface.clone(),
             degree: net.degree,
             powers: powers.collect(),
             thirds,
-            rough: (rough(&stops.0, &net.knots.0, net.degree.0), rough(&stops.1, &net.knots.1, net.degree.1)),
+            rough: both(&|often, degree| often + 1 == degree),
+            corners: both(&|often, degree| often >= degree),
             stops,
         }
     }
@@ -119,6 +140,11 @@ impl Quick {
     pub fn jet(&self, u: f64, v: f64) -> Jet2 {
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        self.surface.outer(self.own_jet(u, v))
+    }
+
+    /// The same in the net's own parameters.
+    fn own_jet(&self, u: f64, v: f64) -> Jet2 {
         let ((i, s, w), (j, t, h)) = (place(&self.stops.0, u), place(&self.stops.1, v));
         // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
         let mut sums = [DVec4::ZERO; 6];
@@ -140,32 +166,43 @@ impl Quick {
         for (sum, scale) in sums.iter_mut().zip(scale) {
             *sum *= scale;
         }
-        self.surface.outer(quotient(&sums))
+        quotient(&sums)
     }
 
-    /// Second derivatives along a unit vector over a box of (u, v); `None` where they jump inside.
+    /// Second derivatives along a unit vector over a box of (u, v); `None` where first ones jump inside.
     pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
-        let middle = 0.5 * (low + high);
-        let half = 0.5 * (high - low);
-        let inner = |uv: DVec2| {
-            let (u, v) = self.surface.wrapped(uv.x, uv.y);
-            let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
-            DVec2::new(u, v)
-        };
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // Round the middle: a box over a seam leaves the parameters at one side and is not answered.
-        let centre = inner(middle);
-        let (low, high) = (centre - half, centre + half);
+        let (u, v) = self.surface.wrapped(middle.x, middle.y);
+        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let (low, high) = (DVec2::new(u, v) - half, DVec2::new(u, v) + half);
         if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
             return None;
         }
-        let jumps = |rough: &[f64], a: f64, b: f64| rough.iter().any(|x| *x > a + EPSILON && *x < b - EPSILON);
-        if jumps(&self.rough.0, low.x, high.x) || jumps(&self.rough.1, low.y, high.y) {
+        if crossed(&self.corners.0, low.x, high.x).next().is_some() || crossed(&self.corners.1, low.y, high.y).next().is_some() {
             return None;
         }
+        let mut whole: Option<Bends> = None;
+        let mut from = low;
+        for y in crossed(&self.rough.1, low.y, high.y).chain([high.y]) {
+            from.x = low.x;
+            for x in crossed(&self.rough.0, low.x, high.x).chain([high.x]) {
+                let own = self.smooth((from, DVec2::new(x, y)), along);
+                whole = Some(whole.map_or(own, |w| w.union(&own)));
+                from.x = x;
+            }
+            from.y = y;
+        }
+        whole
+    }
+
+    /// The same over a box of the net's own parameters in which second derivatives do not jump.
+    fn smooth(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Bends {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let range = |stops: &[f64], a: f64, b: f64| {
             let ((i, s, _), (j, t, _)) = (place(stops, a), place(stops, b));
-            let boxed = |k: usize, s: f64| k * BOXES + ((s * BOXES as f64) as usize).min(BOXES - 1);
-            (boxed(i, s.max(0.0)), boxed(j, t.max(0.0)))
+            let boxed = |k: usize, s: f64| k * BOXES + ((s.max(0.0) * BOXES as f64) as usize).min(BOXES - 1);
+            (boxed(i, s), boxed(j, t))
         };
         let ((i0, i1), (j0, j1)) = (range(&self.stops.0, low.x, high.x), range(&self.stops.1, low.y, high.y));
         let n = (self.stops.0.len() - 1) * BOXES;
@@ -178,15 +215,20 @@ impl Quick {
                 }
             }
         }
-        let jet = self.jet(middle.x, middle.y);
+        let jet = self.surface.outer(self.own_jet(middle.x, middle.y));
         let slack = [0, 1, 2].map(|k| most[k] * half.x + most[k + 1] * half.y);
-        Some(Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack })
+        Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack }
     }
 
     fn span(&self, i: usize, j: usize) -> &[DVec4] {
         let n = (self.degree.0 + 1) * (self.degree.1 + 1);
         &self.powers[(j * (self.stops.0.len() - 1) + i) * n..][..n]
     }
+}
+
+/// Lines strictly inside an interval.
+fn crossed(lines: &[f64], low: f64, high: f64) -> impl Iterator<Item = f64> + '_ {
+    lines.iter().copied().filter(move |x| *x > low + EPSILON && *x < high - EPSILON)
 }
 
 /// The span of a parameter, the place in it from 0 to 1, and its width.

@@ -45,7 +45,7 @@ fn quartered(surface: &Surface, quick: &Quick, (low, high): (DVec2, DVec2), norm
     let mut whole: Option<Bends> = None;
     for quarter in quarters {
         let own = quartered(surface, quick, quarter, normal, left - 1)?;
-        whole = Some(whole.map_or(own, |w| union(&w, &own)));
+        whole = Some(whole.map_or(own, |w| w.union(&own)));
     }
     whole
 }
@@ -60,7 +60,7 @@ fn bent_over(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec
     for (x0, x1) in turns(low.x, high.x, closed.0).into_iter().flatten() {
         for (y0, y1) in turns(low.y, high.y, closed.1).into_iter().flatten() {
             let own = bent(surface, quick, (DVec2::new(x0, y0), DVec2::new(x1, y1)), normal)?;
-            whole = Some(whole.map_or(own, |w| union(&w, &own)));
+            whole = Some(whole.map_or(own, |w| w.union(&own)));
         }
     }
     whole
@@ -81,16 +81,6 @@ fn turns(low: f64, high: f64, closed: bool) -> [Option<(f64, f64)>; 2] {
     }
     let (low, high) = (low - low.floor(), high - low.floor());
     if high <= 1.0 { [Some((low, high)), None] } else { [Some((low, 1.0)), Some((0.0, high - 1.0))] }
-}
-
-fn union(a: &Bends, b: &Bends) -> Bends {
-    let range = |k: usize| {
-        let low = (a.mid[k] - a.slack[k]).min(b.mid[k] - b.slack[k]);
-        let high = (a.mid[k] + a.slack[k]).max(b.mid[k] + b.slack[k]);
-        (0.5 * (low + high), 0.5 * (high - low))
-    };
-    let ranges = [0, 1, 2].map(range);
-    Bends { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1) }
 }
 
 /// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
