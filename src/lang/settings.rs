@@ -71,7 +71,7 @@ pub const MESH: &[Setting] = &[
     Setting { key: "order", docs: "1, or 2 with mid nodes.", default: "1", ty: Ty::Count },
     Setting {
         key: "method",
-        docs: "How faces are meshed; this version has `auto`, `mapped`, `delaunay` and `quadtree` (right-angled triangles in rows, finer where a border asks for it).",
+        docs: "How faces are meshed; this version has `auto`, `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it) and `display` (few and long triangles within `chord_error`).",
         default: "auto",
         ty: Ty::Choice(METHODS),
     },
@@ -86,7 +86,7 @@ pub const ON: &[Setting] = &[
     Setting { key: "elements", docs: "Kind of elements of these faces.", default: "", ty: Ty::Choice(ELEMENTS) },
     Setting {
         key: "method",
-        docs: "How these faces are meshed; this version has `auto`, `mapped`, `delaunay` and `quadtree`.",
+        docs: "How these faces are meshed; this version has `auto`, `mapped`, `delaunay`, `quadtree` and `display`.",
         default: "",
         ty: Ty::Choice(METHODS),
     },

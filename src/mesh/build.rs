@@ -182,5 +182,7 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
         around = around.union(Box3::of(points));
     }
     let diagonal = around.diagonal();
-    if diagonal > 0.0 { SHARE * diagonal } else { 1.0 }
+    // A mesh for showing has its chord error for a size.
+    let share = if input.plan.method == Method::Display && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
+    if diagonal > 0.0 { share * diagonal } else { 1.0 }
 }

@@ -122,6 +122,7 @@ impl Explanation {
                 patch: face.patch.index() - first,
                 method: match &ready.chart.frame {
                     Frame::Free(_) if face.method == Method::Quadtree => "quadtree",
+                    Frame::Free(_) if face.method == Method::Display => "display",
                     Frame::Free(_) => "delaunay",
                     _ => "mapped",
                 },

@@ -76,8 +76,8 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
             return Err(MeshFault::CannotMap { surface: of, why, at }.into());
         }
-        face.free = matches!(face.method, Method::Delaunay | Method::Quadtree) || why.is_some();
-        face.why = why.clone().filter(|_| !matches!(face.method, Method::Delaunay | Method::Quadtree));
+        face.free = face.method.is_free() || why.is_some();
+        face.why = why.clone().filter(|_| !face.method.is_free());
         if face.free && face.elements == Elements::Quads {
             let what = format!("`elements: quads` on a face {}", why.unwrap_or_else(|| "made freely".to_owned()));
             return Err(MeshFault::NeedsLater { of, what, method: "quadtree", at }.into());

@@ -40,6 +40,7 @@ impl Content for Method {
             Self::Later(word) => (2u8, *word).tell(to),
             Self::Delaunay => 3u8.tell(to),
             Self::Quadtree => 4u8.tell(to),
+            Self::Display => 5u8.tell(to),
         }
     }
 }

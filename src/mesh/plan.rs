@@ -31,8 +31,17 @@ pub enum Method {
     Delaunay,
     /// Nodes at the corners of a quadtree's cells, Delaunay triangles improved in space.
     Quadtree,
+    /// As few triangles as keep the limits, however long.
+    Display,
     /// A method of a later version, by its word.
     Later(&'static str),
+}
+
+impl Method {
+    /// Whether it makes faces freely, however many sides they have.
+    pub fn is_free(self) -> bool {
+        matches!(self, Self::Delaunay | Self::Quadtree | Self::Display)
+    }
 }
 
 /// What a rule or a group speaks of.

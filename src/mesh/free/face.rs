@@ -9,10 +9,11 @@ use super::bound;
 use super::build::{Broken, Lattice, Task, Trouble, triangulate};
 use super::ground::{Even, Field};
 use super::improve::Care;
-use super::loads::Loads;
+use super::loads::{self, Loads};
 use super::outline::Outline;
 use super::sheet::Sheet;
 use super::size::{Background, Blend};
+use super::thin::Thinner;
 use super::web::Web;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, MeshFault, Result};
@@ -194,7 +195,14 @@ fn fitting(
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref())].concat(), slope);
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
-    let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
+    let mut web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
+    if let (Method::Display, Ok(web)) = (face.method, &mut web) {
+        let limits = if bent { &fit.limits } else { &Limits::default() };
+        let bound = |web: &Web, c: [u32; 3]| loads::load(sheet, web, c, limits).worst();
+        let allowed = |web: &Web, a: u32, b: u32| fit.longest.allows(web, a, b);
+        Thinner { bound: &bound, allowed: &allowed }.thin(web, job)?;
+        web.compact();
+    }
     Ok(web.map(|web| {
         let deciders = fit.deciders(&field, &web);
         (web, deciders)
@@ -398,6 +406,12 @@ impl<'a> Longest<'a> {
         }
         let share = LONGEST * (1.0 + WHOLE_NUMBER);
         share * self.rules.plateau(p, self.inside / share)
+    }
+
+    /// Whether a side inside the face between two nodes may be as long as it is.
+    fn allows(&self, web: &Web, a: u32, b: u32) -> bool {
+        let at = |n: u32| self.at_border.get(n as usize).copied().unwrap_or_else(|| self.there(web.p[n as usize]));
+        web.p[a as usize].distance(web.p[b as usize]) <= at(a).max(at(b))
     }
 
     /// Triangles with a side inside the face that is too long; those between two border nodes are what they are.

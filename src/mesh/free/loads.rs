@@ -49,7 +49,7 @@ impl Loads {
         let stale: Vec<u32> = (0..web.tri.len() as u32).filter(|t| web.alive(*t) && corners(*t) != self.seen[*t as usize].0).collect();
         let batches = par::map(stale.len().div_ceil(BATCH), |batch| {
             let some = &stale[batch * BATCH..stale.len().min((batch + 1) * BATCH)];
-            some.iter().map(|t| load(sheet, web, *t, limits)).collect::<Vec<_>>()
+            some.iter().map(|t| load(sheet, web, web.tri[*t as usize], limits)).collect::<Vec<_>>()
         });
         for (t, load) in stale.iter().zip(batches.into_iter().flatten()) {
             self.seen[*t as usize] = (corners(*t), load);
@@ -57,9 +57,9 @@ impl Loads {
     }
 }
 
-/// A triangle's bounds against the limits.
-fn load(sheet: &Sheet, web: &Web, t: u32, limits: &Limits) -> Load {
-    let c = web.tri[t as usize].map(|n| n as usize);
+/// The bounds of three nodes as a triangle against the limits.
+pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+    let c = corners.map(|n| n as usize);
     let (places, p) = (c.map(|n| DVec2::from(sheet.uv(web.xy[n]))), c.map(|n| web.p[n]));
     let surface = (sheet.surface(), sheet.quick());
     let chord = limits.chord.map_or(0.0, |limit| {

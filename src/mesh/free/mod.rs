@@ -14,5 +14,6 @@ pub mod quadtree;
 pub mod shape;
 pub mod sheet;
 pub mod size;
+pub mod thin;
 pub mod tree;
 pub mod web;
