@@ -4,10 +4,15 @@ use glam::DVec2;
 
 use super::build::Input;
 use super::inside::surrounds;
+use crate::base::math::angle_between;
 use crate::model::atoms::Part;
 use crate::model::{PatchId, Trace, Track};
-use crate::surface::{Domain, Side, Surface};
+use crate::surface::{Domain, Lean, Side, Surface};
 
+/// A line that folds by less, radians (3°), is no crease that has to be seen.
+const CREASE: f64 = 0.052;
+/// Places along a line at which its fold is looked at.
+const LOOKS: usize = 16;
 /// Samples of a border between which it crosses a kink line once at most.
 const SAMPLES: usize = 128;
 /// Halvings until a crossing is found.
@@ -25,6 +30,7 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
     let borders: Vec<Box<dyn Fn(f64) -> DVec2 + '_>> = (0..surface.n_sides()).filter_map(|k| border(surface, k)).collect();
     let outlines = surface.outlines();
     let closed = surface.closed();
+    let limited = input.plan.chord_error.is_some();
     let mut parts = Vec::new();
     for (axis, lines, others, turns) in [(0, us, vs, closed.0), (1, vs, us, closed.1)] {
         let shifts: &[f64] = if turns { &[-1.0, 0.0, 1.0] } else { &[0.0] };
@@ -35,6 +41,10 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
                 let place = |other: f64| if axis == 0 { DVec2::new(at, other) } else { DVec2::new(other, at) };
                 let middle = place(0.5 * (w[0] + w[1]));
                 if !outlines.iter().fold(false, |kept, polygon| kept != surrounds(polygon, middle)) {
+                    continue;
+                }
+                // Nets of other programs have knots at which directions jump by a hair: held only for a limit on bends.
+                if !limited && (0..=LOOKS).all(|k| fold(surface, axis, place(w[0] + (w[1] - w[0]) * k as f64 / LOOKS as f64)) < CREASE) {
                     continue;
                 }
                 let trace = Trace::new(surface, place(w[0]).into(), place(w[1]).into());
@@ -48,6 +58,16 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
         }
     }
     parts
+}
+
+/// Angle between the normals on both sides of a line, radians.
+fn fold(surface: &Surface, axis: usize, at: DVec2) -> f64 {
+    let normal = |side: Lean| {
+        let lean = if axis == 0 { (side, Lean::After) } else { (Lean::After, side) };
+        let jet = surface.jet_lean(at.x, at.y, lean);
+        jet.du.cross(jet.dv)
+    };
+    angle_between(normal(Lean::Before), normal(Lean::After))
 }
 
 /// Places along a border in the direction of its loop, by a fraction.
