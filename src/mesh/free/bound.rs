@@ -86,7 +86,12 @@ fn turns(low: f64, high: f64, closed: bool) -> [Option<(f64, f64)>; 2] {
 /// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
 /// has no bounded second derivative. `quick` is the surface made ready, where it can be; a bound above `wanted` is then
 /// found more closely.
-pub fn chord((surface, quick): (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+pub fn chord(surface: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+    chord_to(QUARTERS, surface, (uv, p), wanted)
+}
+
+/// The same with so many quarterings at most.
+fn chord_to(depth: u32, (surface, quick): (&Surface, Option<&Quick>), (uv, p): ([DVec2; 3], [DVec3; 3]), wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
         return 0.0;
@@ -97,8 +102,15 @@ pub fn chord((surface, quick): (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [D
     let Some(bends) = bent_over(surface, quick, whole, normal) else { return f64::INFINITY };
     let first = over_sides(&bends, uv, width);
     let Some(quick) = quick.filter(|_| first > wanted && first < FAR * wanted) else { return first };
-    let nearer = |depth: u32| quartered(surface, quick, whole, normal, depth).map_or(first, |bends| over_sides(&bends, uv, width));
-    (1..=QUARTERS).map(nearer).find(|found| *found <= wanted).unwrap_or_else(|| nearer(QUARTERS)).min(first)
+    let mut best = first;
+    for depth in 1..=depth {
+        let found = quartered(surface, quick, whole, normal, depth).map_or(first, |bends| over_sides(&bends, uv, width));
+        best = best.min(found);
+        if best <= wanted {
+            break;
+        }
+    }
+    best
 }
 
 /// A bound farther off than this is not looked at more closely.
@@ -142,7 +154,7 @@ pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &
                 DVec2::new(if closed.0 { uv.x } else { uv.x.clamp(0.0, 1.0) }, if closed.1 { uv.y } else { uv.y.clamp(0.0, 1.0) })
             };
             let uv = [hold(a), hold(b), c].map(|corner| on_side(surface, (at, c), corner));
-            let load = chord((surface, quick), uv, uv.map(point), limit) / limit;
+            let load = chord_to(1, (surface, quick), (uv, uv.map(point)), limit) / limit;
             if load <= 1.0 {
                 break;
             }
@@ -165,7 +177,7 @@ fn on_side(surface: &Surface, (at, beyond): (DVec2, DVec2), mut place: DVec2) ->
 }
 
 /// Lengths tried until one keeps a limit for sure.
-const TRIES: usize = 4;
+const TRIES: usize = 2;
 /// What is made smaller is made a little more so.
 const LESS: f64 = 0.98;
 

@@ -6,7 +6,7 @@ use super::ground::{Field, Ground};
 use crate::mesh::sources::Sources;
 
 /// Grid lines along the longer side of the chart.
-const LINES: usize = 128;
+const LINES: usize = 96;
 
 /// Lengths at the nodes of a grid, read between them by the mean of the four round a place.
 #[derive(Clone, Debug)]

@@ -12,8 +12,10 @@ use super::pair::{Pair, Spot};
 use super::sheet::{Cell, Sheet};
 use crate::base::bbox::Box3;
 
-/// Pairs looked at before giving up.
-const MOST_PAIRS: usize = 400_000;
+/// Pairs looked at before giving up; a solved place counts as many as it costs.
+const MOST_PAIRS: usize = 300_000;
+/// What a place that is solved for, or a touch, costs in pairs.
+const SOLVED: usize = 2;
 /// Share of the tolerance within which cells count as flat.
 const FINE: f64 = 0.25;
 /// Flat cells that part by no more than this many tolerances run along each other.
@@ -109,6 +111,7 @@ impl Search<'_> {
 
     /// Whether a common place of two cells is known; a new one is marched from.
     fn settled(&mut self, i: usize, j: usize) -> Result<bool, Stopped> {
+        self.looked_at += SOLVED;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };
         let Some(spot) = pair.correct(x.middle(), y.middle(), None) else { return Ok(false) };
@@ -123,6 +126,7 @@ impl Search<'_> {
     /// Flat cells along each other: a touch when they come within the tolerance.
     fn touch(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
         const ROUNDS: usize = 16;
+        self.looked_at += SOLVED;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         let (mut a, mut b) = (x.middle(), y.middle());
         let mut gap = f64::INFINITY;
