@@ -10,6 +10,7 @@ use super::counts::steps;
 use super::edges::Limits;
 use super::explain::Why;
 use super::free::{bound, face};
+use super::gaps::{self, Beside, PLACES};
 use super::inside::trace;
 use super::layout::Layout;
 use super::sources::{Body, Source, Sources};
@@ -21,8 +22,6 @@ use crate::surface::quick::Quick;
 
 /// Borders cannot be divided any more when their triangles are made: a little shorter than inside.
 const ROOM: f64 = 0.93;
-/// Places along a stretch at which bends are asked for.
-const PLACES: usize = 64;
 /// Distance of places along a stretch over the length wanted there.
 const APART: f64 = 0.5;
 /// Halvings of a stretch.
@@ -389,42 +388,44 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
     }
     let quick = surface.quick();
     let mut found = Vec::new();
+    let apart = |stretch: usize| layout.length(stretch) / PLACES as f64;
     for (k, side) in own.sides.iter().enumerate() {
         for u in &side.uses {
-            let at = |i: usize| {
-                let share = i as f64 / PLACES as f64;
-                u.s.0 + (u.s.1 - u.s.0) * if u.against { 1.0 - share } else { share }
-            };
-            let mut lengths: Vec<f64> = (0..=PLACES).map(at).collect();
-            if u.against {
-                lengths.reverse();
-            }
-            let places = face::places(input, own, k, &lengths);
-            let mut wanted = by_bends((surface, quick.as_ref()), &places, own.size.0, limits);
-            if u.against {
-                wanted.reverse();
-            }
-            found.push((u.atom, wanted));
+            let row = gaps::beside(input, layout, own, (k, u));
+            found.push((u.atom, by_bends((surface, quick.as_ref()), &row, apart(u.atom), (own.size.0, limits))));
         }
     }
     for line in &own.lines {
         let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
         let places = trace(surface, &input.model.patches[own.patch.index()], &points);
-        found.push((*line, by_bends((surface, quick.as_ref()), &places, own.size.0, limits)));
+        let row = Beside::new(surface, (places, points), input.tolerance.point * gaps::SLIGHT);
+        found.push((*line, by_bends((surface, quick.as_ref()), &row, apart(*line), (own.size.0, limits))));
     }
     found
 }
 
-/// Lengths along a row of places so that triangles on both sides of it keep the limits.
-fn by_bends((surface, quick): (&Surface, Option<&Quick>), places: &[(f64, f64)], size: f64, limits: &Limits) -> Vec<f64> {
-    let last = places.len() - 1;
-    let step = |i: usize| DVec2::from(places[(i + 1).min(last)]) - DVec2::from(places[(i + 1).min(last) - 1]);
-    let length = |i: usize| {
-        let jet = surface.jet(places[i].0, places[i].1);
-        let plain = bound::wanted(&jet, limits.chord, limits.angle).min(size / face::FILLED);
+/// Lengths along a row of places `apart` so that triangles on both sides of it keep the limits, the chord error less how far
+/// `off` the surface the row is within a step.
+fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits): (f64, &Limits)) -> Vec<f64> {
+    let (surface, last) = (surfaces.0, row.places.len() - 1);
+    let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
+    let length = |i: usize, off: f64| {
+        let at = row.places[i];
+        let jet = surface.jet(at.0, at.1);
+        let chord = limits.chord.map(|limit| gaps::left(limit, off));
+        let plain = bound::wanted(&jet, chord, limits.angle).min(size / face::FILLED);
         let along = jet.du * step(i).x + jet.dv * step(i).y;
-        let sure = |limit| bound::surely((surface, quick), (DVec2::from(places[i]), &jet), along, (limit, plain));
-        ROOM * face::FILLED * limits.chord.map_or(plain, sure)
+        let sure = |limit| bound::surely(surfaces, (DVec2::from(at), &jet), along, (limit, plain));
+        ROOM * face::FILLED * chord.map_or(plain, sure)
     };
-    (0..=last).map(length).collect()
+    let within = |i: usize, h: f64| {
+        let reach = (h / apart).ceil().min(last as f64) as usize;
+        row.off[i.saturating_sub(reach)..=(i + reach).min(last)].iter().copied().fold(0.0, f64::max)
+    };
+    let one = |i: usize| {
+        let own = length(i, row.off[i]);
+        let worst = within(i, own);
+        if worst > row.off[i] { length(i, worst) } else { own }
+    };
+    (0..=last).map(one).collect()
 }

@@ -122,6 +122,7 @@ impl Sizing {
             }
         }
         let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
+        super::gaps::refuse(input, layout, &limits)?;
         let shape = shapes(layout);
         let count_of = |k: usize| division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
         let size_of = |k: usize| match division[k] {

@@ -187,6 +187,17 @@ pub enum MeshFault {
         /// Where.
         at: DVec3,
     },
+    /// E703 without a count: an edge glued so far beside a face that no step keeps the chord error.
+    GapTooWide {
+        /// How far the edge is from the surface, model units.
+        gap: f64,
+        /// The chord error with its expression.
+        limit: (f64, Origin),
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        at: DVec3,
+    },
     /// E703 without a count: a limit that is still broken after the last refinement.
     NotReached {
         /// The setting.
@@ -291,6 +302,17 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .at(*says, "not kept")
                 .at(*surface, "this face")
                 .help(format!("raise `{limit}`"))
+        }
+        F::GapTooWide { gap, limit, surface, at } => {
+            let off = say.length(*gap);
+            let whose = say.quoted(*surface, "a face");
+            Report::new(
+                "E703",
+                format!("`chord_error` cannot be kept on {whose}: an edge glued to it runs {off} beside it at {}", say.point(*at)),
+            )
+            .at(limit.1, format!("{} leaves nothing beside the gap", say.length(limit.0)))
+            .at(*surface, "this face")
+            .help(format!("a `chord_error` well above {off}"))
         }
         _ => return None,
     })
@@ -397,6 +419,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::RuleOverridden { .. }
         | F::BelowFloor { .. }
         | F::FloorKeeps { .. }
+        | F::GapTooWide { .. }
         | F::NotReached { .. } => Report::new("E999", "a fault that another table has words for"),
     }
 }

@@ -10,6 +10,7 @@ use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::tolerance::SINGULAR;
 use crate::mesh::edges::Limits;
+use crate::mesh::gaps;
 
 /// Triangles that one thread bounds at a time.
 const BATCH: usize = 1024;
@@ -63,7 +64,7 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Loa
     let (places, p) = (c.map(|n| DVec2::from(sheet.uv(web.xy[n]))), c.map(|n| web.p[n]));
     let surface = (sheet.surface(), sheet.quick());
     let chord = limits.chord.map_or(0.0, |limit| {
-        let beside = c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n)).fold(0.0, f64::max);
+        let beside = c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max);
         (bound::chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit
     });
     let angle = limits.angle.map_or(0.0, |limit| {
@@ -74,10 +75,9 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Loa
     Load { chord, angle }
 }
 
-/// How far a border node is from the surface along its normal: glued edges run beside it.
-fn off_surface(sheet: &Sheet, web: &Web, n: usize) -> f64 {
-    let spot = sheet.spot(web.xy[n]);
-    (web.p[n] - spot.p).dot(spot.normal()).abs()
+/// How far a border node is from the surface: glued edges run beside it.
+fn off_surface(sheet: &Sheet, web: &Web, n: usize, limit: f64) -> f64 {
+    gaps::distance(sheet.surface(), web.p[n], sheet.uv(web.xy[n]), limit * gaps::SLIGHT)
 }
 
 /// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two

@@ -1,0 +1,107 @@
+//! How far glued borders run beside the faces they bound: what is left of a chord error there.
+//!
+//! An edge that two faces share lies on one of them, or on neither. Its nodes are then off the other face by up to the gap, and
+//! a triangle at them is off by that and by the bend: steps beside the gap have the limit less the gap for the bend.
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::edges::Limits;
+use super::foot;
+use super::free::face;
+use super::layout::{Face, Layout};
+use crate::base::fault::{MeshFault, Result};
+use crate::base::par;
+use crate::model::atoms::Use;
+use crate::surface::{Domain, Surface};
+
+/// Places along a stretch at which gaps and bends are asked for, less one.
+pub const PLACES: usize = 64;
+/// Least share of a chord error that a gap has to leave to the bend: a tenth of the step that would do without a gap.
+const LEFT: f64 = 0.01;
+/// Share of a distance that matters up to which another one is taken for what it seems at first.
+pub const SLIGHT: f64 = 0.001;
+
+/// A stretch beside a face, from its start to its end.
+pub struct Beside {
+    /// Places in (u, v) of the face.
+    pub places: Vec<(f64, f64)>,
+    /// Points of the stretch.
+    pub points: Vec<DVec3>,
+    /// How far these are from the surface, model units.
+    pub off: Vec<f64>,
+}
+
+impl Beside {
+    /// Of points of a stretch with their places on the surface.
+    pub fn new(surface: &Surface, (places, points): (Vec<(f64, f64)>, Vec<DVec3>), slight: f64) -> Self {
+        let off = places.iter().zip(&points).map(|(uv, p)| distance(surface, *p, *uv, slight)).collect();
+        Self { places, points, off }
+    }
+}
+
+/// How far a point is from a surface near a place; no more than `slight` is not looked at closely.
+pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> f64 {
+    let first = p.distance(surface.point(place.0, place.1));
+    if first <= slight {
+        return first;
+    }
+    let over = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
+    let (u, v) = if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) };
+    foot::nearest(surface, p, place, over(u), over(v)).0
+}
+
+/// A stretch as one side of a face has it.
+pub fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &Use)) -> Beside {
+    let surface = &input.model.surfaces[own.surface.index()].surface;
+    let share = |i: usize| i as f64 / PLACES as f64;
+    let points: Vec<DVec3> = (0..=PLACES).map(|i| layout.point(u.atom, share(i))).collect();
+    let flat = points.iter().map(|p| surface.flat_uv(*p)).collect::<Option<Vec<_>>>();
+    let places = flat.unwrap_or_else(|| {
+        let lengths: Vec<f64> = (0..=PLACES).map(|i| u.s.0 + (u.s.1 - u.s.0) * share(i)).collect();
+        let mut places = face::places(input, own, side, &lengths);
+        if u.against {
+            places.reverse();
+        }
+        places
+    });
+    Beside::new(surface, (places, points), input.tolerance.point * SLIGHT)
+}
+
+/// What is left of a chord error for the bend where an edge is so far off; never nothing.
+pub fn left(limit: f64, off: f64) -> f64 {
+    (limit - off).max(limit * LEFT)
+}
+
+/// E703 where an edge is glued so far beside a face that nothing is left of the chord error.
+pub fn refuse(input: &Input, layout: &Layout, limits: &Limits) -> Result<()> {
+    let (Some(limit), Some((_, says))) = (limits.chord, input.plan.chord_error) else { return Ok(()) };
+    let widest = par::map(layout.faces.len(), |f| widest(input, layout, &layout.faces[f]));
+    for (face, (gap, at)) in layout.faces.iter().zip(widest) {
+        if gap > limit * (1.0 - LEFT) {
+            let surface = input.model.surfaces[face.surface.index()].surface.origin();
+            return Err(MeshFault::GapTooWide { gap, limit: (limit, says), surface, at }.into());
+        }
+    }
+    Ok(())
+}
+
+/// The widest gap beside a face, with its place; 0 where borders come from the face itself.
+fn widest(input: &Input, layout: &Layout, own: &Face) -> (f64, DVec3) {
+    let surface = &input.model.surfaces[own.surface.index()].surface;
+    let mut found = (0.0, DVec3::ZERO);
+    if own.near <= input.tolerance.point && surface.domain() != Domain::Loop {
+        return found;
+    }
+    for (k, side) in own.sides.iter().enumerate() {
+        for u in &side.uses {
+            let row = beside(input, layout, own, (k, u));
+            for (gap, at) in row.off.iter().zip(&row.points) {
+                if *gap > found.0 {
+                    found = (*gap, *at);
+                }
+            }
+        }
+    }
+    found
+}
