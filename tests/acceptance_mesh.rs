@@ -12,9 +12,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::mesh::Mesh;
+use lofting::mesh::chart::Shape;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::run::{Outcome, Task, run};
@@ -65,13 +66,47 @@ fn sound(mesh: &Mesh) {
     }
 }
 
+/// The chord error, mm, that a script writes for a mesh whose name begins with `iso`.
+fn written_limit(script: &Path, mesh: &str) -> Option<f64> {
+    let text = std::fs::read_to_string(script).unwrap();
+    let line = text.lines().find(|l| mesh.starts_with("iso") && l.starts_with(&format!("mesh {mesh} of")))?;
+    line.split("chord_error: ").nth(1)?.split("mm").next()?.parse().ok()
+}
+
+/// The largest distance along their normals of triangles from their surface at 25 places in each.
+fn sampled(mesh: &Mesh) -> f64 {
+    let mut worst = 0.0_f64;
+    for (chart, face) in mesh.charts.0.iter().zip(&mesh.faces) {
+        let Shape::Free(free) = &chart.shape else { panic!("{} is not made freely", mesh.name) };
+        let own = &mesh.triangles[face.triangles.start as usize..face.triangles.end as usize];
+        for (places, nodes) in free.triangles.iter().zip(own) {
+            let uv = places.map(|n| DVec2::from(free.uv[n as usize]));
+            let p = nodes.map(|n| mesh.nodes[n as usize]);
+            let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize();
+            for (i, j) in (0..7).flat_map(|i| (0..7 - i).map(move |j| (i, j))).filter(|(i, j)| (i + j) % 8 < 7).take(25) {
+                let (s, t) = (f64::from(i) / 6.0, f64::from(j) / 6.0);
+                let at = uv[0] + (uv[1] - uv[0]) * s + (uv[2] - uv[0]) * t;
+                worst = worst.max((chart.surface.point(at.x, at.y) - p[0]).dot(normal).abs());
+            }
+        }
+    }
+    worst
+}
+
 fn all_hold(folder: &str) {
     let entries = std::fs::read_dir(root().join(folder)).unwrap().map(|e| e.unwrap().path());
     let mut scripts: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "loft")).collect();
     scripts.sort();
     assert!(scripts.len() >= 2, "{folder}");
     for script in scripts {
-        outcome(&script).meshes.iter().for_each(|(_, mesh)| sound(mesh));
+        let outcome = outcome(&script);
+        for ((_, mesh), report) in outcome.meshes.iter().zip(&outcome.report.meshes) {
+            sound(mesh);
+            if let Some(limit) = written_limit(&script, &mesh.name) {
+                let seen = sampled(mesh);
+                assert!(seen <= limit && report.chord_error.unwrap() <= limit, "{}: {} is {seen} off", script.display(), mesh.name);
+            }
+        }
     }
 }
 

@@ -55,6 +55,7 @@ fn method(value: &Value) -> Option<Method> {
         "mapped" => Method::Mapped,
         "delaunay" => Method::Delaunay,
         "quadtree" => Method::Quadtree,
+        "isoline" => Method::Isoline,
         "display" => Method::Display,
         _ => Method::Auto,
     })
@@ -251,10 +252,6 @@ impl Cx<'_> {
     }
 
     fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
-        if key == "method" && !matches!(&value, Value::Word(w) if matches!(&**w, "auto" | "mapped" | "delaunay" | "quadtree" | "display")) {
-            let what = format!("`method: {}`", self.show(&value));
-            return Err(self.not_yet(code, &what, code.span(id)));
-        }
         let Some(x) = number(&value) else { return Ok(value) };
         let (least, most) = (f64::from(limits::PICTURE_LEAST), f64::from(limits::PICTURE_SIDE));
         let range = match key {

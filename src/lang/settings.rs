@@ -71,7 +71,7 @@ pub const MESH: &[Setting] = &[
     Setting { key: "order", docs: "1, or 2 with mid nodes.", default: "1", ty: Ty::Count },
     Setting {
         key: "method",
-        docs: "How faces are meshed; this version has `auto`, `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it) and `display` (few and long triangles within `chord_error`).",
+        docs: "How faces are meshed: `auto` (`mapped` where it fits, else `delaunay`), `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of constant u and v, as large as `chord_error` and `size` let them be) or `display` (few and long triangles within `chord_error`).",
         default: "auto",
         ty: Ty::Choice(METHODS),
     },
@@ -86,7 +86,7 @@ pub const ON: &[Setting] = &[
     Setting { key: "elements", docs: "Kind of elements of these faces.", default: "", ty: Ty::Choice(ELEMENTS) },
     Setting {
         key: "method",
-        docs: "How these faces are meshed; this version has `auto`, `mapped`, `delaunay`, `quadtree` and `display`.",
+        docs: "How these faces are meshed, by the words of the mesh's own `method`.",
         default: "",
         ty: Ty::Choice(METHODS),
     },

@@ -15,7 +15,7 @@ use super::sizing::Remark;
 use super::{key, sets};
 use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
-use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
 use crate::model::{Model, PatchId, SurfaceId};
@@ -74,7 +74,6 @@ impl Outline {
     pub fn new(input: &Input) -> Result<Self> {
         let patches: Vec<(PatchId, bool)> =
             input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
-        refuse_later(input)?;
         let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
         let layouts = if input.plan.conforming {
             vec![Layout::new(input, &patches, true)]
@@ -142,17 +141,6 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Built {
     built
 }
 
-/// E230 for methods of a later version.
-fn refuse_later(input: &Input) -> Result<()> {
-    let asked = std::iter::once((input.plan.method, input.plan.origin)).chain(input.plan.rules.iter().filter_map(|r| r.method));
-    for (method, origin) in asked {
-        if let Method::Later(name) = method {
-            return Err(MeshFault::MethodLater { of: origin, method: name }.into());
-        }
-    }
-    Ok(())
-}
-
 /// A twentieth of the diagonal of what is meshed.
 fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
     let mut around = Box3::of(input.plan.points.iter().copied());
@@ -182,7 +170,8 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
         around = around.union(Box3::of(points));
     }
     let diagonal = around.diagonal();
-    // A mesh for showing has its chord error for a size.
-    let share = if input.plan.method == Method::Display && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
+    // What is to be sparing has its chord error for a size.
+    let sparing = input.plan.method.is_sparing() || input.plan.method == Method::Display;
+    let share = if sparing && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
     if diagonal > 0.0 { share * diagonal } else { 1.0 }
 }

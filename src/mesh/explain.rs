@@ -50,6 +50,19 @@ pub struct Decider {
     pub at: glam::DVec3,
 }
 
+/// The cells of a face between lines of constant u and v.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Cells inside.
+    pub whole: usize,
+    /// Cells that a border crosses.
+    pub crossed: usize,
+    /// Corners of cells that a loop crosses, those on borders left out.
+    pub corners: usize,
+    /// Those at which the marks 0, 1 and 2 say what the winding does.
+    pub agree: usize,
+}
+
 /// Who decided a count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Because {
@@ -123,6 +136,7 @@ impl Explanation {
                 method: match &ready.chart.frame {
                     Frame::Free(_) if face.method == Method::Quadtree => "quadtree",
                     Frame::Free(_) if face.method == Method::Display => "display",
+                    Frame::Free(_) if face.method == Method::Isoline => "isoline",
                     Frame::Free(_) => "delaunay",
                     _ => "mapped",
                 },
@@ -162,7 +176,7 @@ impl Explanation {
             let face = &layout.faces[k];
             let why = face.why.as_ref().map_or_else(String::new, |why| format!(" (a face {why})"));
             let size = face.size.1.map_or_else(String::new, |clause| format!("; by {}", reasons::clause(input, clause)));
-            let inside = reasons::of_face(input, &prepared[k].deciders);
+            let inside = reasons::of_face(input, &prepared[k].deciders) + &prepared[k].tally.map_or_else(String::new, reasons::of_cells);
             format!("face {} of {name}: {}{why}, {}, sides {}{size}{inside}", f.patch, f.method, f.elements, sides.join(" "))
         };
         let mut lines: Vec<String> = self.faces.iter().enumerate().map(face).collect();

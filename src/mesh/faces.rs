@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::build::Input;
 use super::chart::{Chart, Grid, Lattice, Shape};
 use super::edges::Limits;
-use super::explain::Decider;
+use super::explain::{Decider, Tally};
 use super::layout::{Face, Layout, side_parameters};
 use super::mapped;
 use super::nodes::Nodes;
@@ -50,6 +50,8 @@ pub struct Prepared {
     pub made: Vec<DVec3>,
     /// What decided the sizes inside; of free faces.
     pub deciders: Vec<Decider>,
+    /// Its cells between lines of constant u and v, where it was made of such.
+    pub tally: Option<Tally>,
 }
 
 /// A point in the middle of a face.
@@ -189,6 +191,7 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
         quads,
         made: Vec::new(),
         deciders: Vec::new(),
+        tally: None,
     })
 }
 
@@ -216,6 +219,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
             quads: 0,
             made: Vec::new(),
             deciders: Vec::new(),
+            tally: None,
         });
     }
     let Some(blocks) = Blocks::new(&values) else {
@@ -236,6 +240,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         first: 0,
         made: Vec::new(),
         deciders: Vec::new(),
+        tally: None,
     })
 }
 

@@ -37,7 +37,7 @@ impl Content for Method {
         match self {
             Self::Auto => 0u8.tell(to),
             Self::Mapped => 1u8.tell(to),
-            Self::Later(word) => (2u8, *word).tell(to),
+            Self::Isoline => 2u8.tell(to),
             Self::Delaunay => 3u8.tell(to),
             Self::Quadtree => 4u8.tell(to),
             Self::Display => 5u8.tell(to),

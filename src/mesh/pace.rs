@@ -177,9 +177,18 @@ fn bends(input: &Input, layout: &Layout, ask: &Ask, paces: &mut [Pace]) {
         }
         pace.lengths.iter_mut().zip(lengths).for_each(|(l, other)| *l = l.min(other.max(ask.wanted.written)));
     }
-    for (stretch, pace) in paces.iter_mut().enumerate().filter(|(_, p)| p.at.len() > 2) {
+    let graded = graded(layout, paces.len());
+    for (stretch, pace) in paces.iter_mut().enumerate().filter(|(k, p)| p.at.len() > 2 && graded[*k]) {
         level(&mut pace.lengths, input.plan.slope() * layout.length(stretch) / PLACES as f64);
     }
+}
+
+/// Stretches beside a free face on which lengths grow step by step.
+fn graded(layout: &Layout, n: usize) -> Vec<bool> {
+    let mut graded = vec![false; n];
+    let grown = layout.faces.iter().filter(|f| f.free && !f.method.is_sparing());
+    grown.flat_map(|f| f.sides.iter().flat_map(|s| s.stretches()).chain(f.lines.iter().copied())).for_each(|k| graded[k] = true);
+    graded
 }
 
 /// Lengths grow by no more than `step` from place to place.
@@ -246,7 +255,7 @@ impl Walker<'_> {
             all.iter().for_each(|k| on_face[*k] = true);
             all.sort_unstable();
             all.dedup();
-            groups.push(if face.free { all } else { Vec::new() });
+            groups.push(if face.free && !face.method.is_sparing() { all } else { Vec::new() });
         }
         groups.push((0..paces.len()).filter(|k| !on_face[*k]).collect());
         let mut of_stretch: Vec<Vec<usize>> = vec![Vec::new(); paces.len()];
@@ -387,19 +396,27 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
         return Vec::new();
     }
     let quick = surface.quick();
+    let ready = (surface, quick.as_ref());
+    let wanted = |row: &Beside, apart: f64| {
+        if own.method.is_sparing() {
+            spared(ready, row, apart, (own.size.0, limits))
+        } else {
+            by_bends(ready, row, apart, (own.size.0, limits))
+        }
+    };
     let mut found = Vec::new();
     let apart = |stretch: usize| layout.length(stretch) / PLACES as f64;
     for (k, side) in own.sides.iter().enumerate() {
         for u in &side.uses {
             let row = gaps::beside(input, layout, own, (k, u));
-            found.push((u.atom, by_bends((surface, quick.as_ref()), &row, apart(u.atom), (own.size.0, limits))));
+            found.push((u.atom, wanted(&row, apart(u.atom))));
         }
     }
     for line in &own.lines {
         let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
         let places = trace(surface, &input.model.patches[own.patch.index()], &points);
         let row = Beside::new(surface, (places, points), input.tolerance.point * gaps::SLIGHT);
-        found.push((*line, by_bends((surface, quick.as_ref()), &row, apart(*line), (own.size.0, limits))));
+        found.push((*line, wanted(&row, apart(*line))));
     }
     found
 }
@@ -428,4 +445,25 @@ fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (siz
         if worst > row.off[i] { length(i, worst) } else { own }
     };
     (0..=last).map(one).collect()
+}
+
+/// The same where triangles may be long: an edge is no longer than what any place on it wants.
+fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits): (f64, &Limits)) -> Vec<f64> {
+    let (surface, last) = (ready.0, row.places.len() - 1);
+    let wide = surface.hull().diagonal().min(size);
+    let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
+    let length = |i: usize| {
+        let at = row.places[i];
+        let jet = surface.jet(at.0, at.1);
+        let along = jet.du * step(i).x + jet.dv * step(i).y;
+        let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
+        bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), wide).min(size)
+    };
+    let lengths: Vec<f64> = (0..=last).map(length).collect();
+    // An edge about a place reaches half its length to both sides.
+    let reached = |i: usize| {
+        let shorter = |(j, other): (usize, &f64)| other.max(2.0 * apart * i.abs_diff(j) as f64);
+        lengths.iter().enumerate().map(shorter).fold(lengths[i], f64::min)
+    };
+    (0..=last).map(reached).collect()
 }

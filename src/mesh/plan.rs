@@ -33,14 +33,19 @@ pub enum Method {
     Quadtree,
     /// As few triangles as keep the limits, however long.
     Display,
-    /// A method of a later version, by its word.
-    Later(&'static str),
+    /// Cells between lines of constant u and v, triangles beside borders.
+    Isoline,
 }
 
 impl Method {
+    /// Whether sides are only as short as limits and written sizes ask for, and triangles as long as they may be.
+    pub fn is_sparing(self) -> bool {
+        self == Self::Isoline
+    }
+
     /// Whether it makes faces freely, however many sides they have.
     pub fn is_free(self) -> bool {
-        matches!(self, Self::Delaunay | Self::Quadtree | Self::Display)
+        matches!(self, Self::Delaunay | Self::Quadtree | Self::Isoline | Self::Display)
     }
 }
 

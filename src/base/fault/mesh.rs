@@ -57,13 +57,6 @@ pub enum MeshFault {
         /// Where.
         at: DVec3,
     },
-    /// E230: a method of a later version.
-    MethodLater {
-        /// The expression.
-        of: Origin,
-        /// The method.
-        method: &'static str,
-    },
     /// E703: counts of chains that are fewer than their links.
     CountBelowLinks {
         /// The count and its expression.
@@ -268,10 +261,6 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help(format!("count: {needed}"))
                 .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
         }
-        F::MethodLater { of, method } => Report::new("E230", format!("`method: {method}` is not in this version"))
-            .at(*of, "asked for here")
-            .help("method: mapped")
-            .edit(Subject::Entity(*of), Edit::Set("method", "mapped".to_owned())),
         F::CountBelowLinks { count, links } => Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
             .at(count.1, steps(count.0))
             .help(format!("count: {links}"))
@@ -414,7 +403,6 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::SidesDoNotClose { .. }
         | F::CountTooCoarse { .. }
         | F::CountTooFew { .. }
-        | F::MethodLater { .. }
         | F::CountBelowLinks { .. }
         | F::RuleOverridden { .. }
         | F::BelowFloor { .. }

@@ -134,7 +134,28 @@ fn over_sides(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> f64
 
 /// The longest side up to `from` of an equilateral triangle that keeps a chord error for sure: over an edge along `along`
 /// with its middle at a place, to either side of it where the surface is.
-pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
+pub fn surely(surface: (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
+    surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, held: false, tries: TRIES })
+}
+
+/// Isosceles triangles over an edge.
+struct Apex {
+    /// Height over base.
+    tall: f64,
+    /// What stands out of the surface is held on its border; otherwise it is none.
+    held: bool,
+    /// Lengths tried.
+    tries: usize,
+}
+
+/// The same of isosceles triangles.
+fn surely_tall(
+    (surface, quick): (&Surface, Option<&Quick>),
+    (at, jet): (DVec2, &Jet2),
+    along: DVec3,
+    (limit, from): (f64, f64),
+    Apex { tall, held, tries }: Apex,
+) -> f64 {
     let spot = Spot { p: jet.p, dx: jet.du, dy: jet.dv };
     let normal = spot.normal();
     let Some(along) = along.reject_from_normalized(normal).try_normalize() else { return from };
@@ -144,15 +165,18 @@ pub fn surely((surface, quick): (&Surface, Option<&Quick>), (at, jet): (DVec2, &
     let point = |uv: DVec2| quick.map_or_else(|| surface.point(uv.x, uv.y), |quick| quick.tangents(uv.x, uv.y)[0]);
     let mut h = from;
     for way in [aside, -aside] {
-        for _ in 0..TRIES {
-            let corners = [along * (-0.5 * h), along * (0.5 * h), way * (TALL * h)].map(|d| spot.step(d).map(|step| at + step));
+        for _ in 0..tries {
+            let corners = [along * (-0.5 * h), along * (0.5 * h), way * (tall * h)].map(|d| spot.step(d).map(|step| at + step));
             let [Some(a), Some(b), Some(c)] = corners else { break };
-            if !inside(c) {
-                break;
-            }
             let hold = |uv: DVec2| {
                 DVec2::new(if closed.0 { uv.x } else { uv.x.clamp(0.0, 1.0) }, if closed.1 { uv.y } else { uv.y.clamp(0.0, 1.0) })
             };
+            let kept = hold(c);
+            let out = if held { kept.distance(at) < LOW * c.distance(at) } else { !inside(c) };
+            if out {
+                break;
+            }
+            let c = if held { kept } else { c };
             let uv = [hold(a), hold(b), c].map(|corner| on_side(surface, (at, c), corner));
             let load = chord_to(1, (surface, quick), (uv, uv.map(point)), limit) / limit;
             if load <= 1.0 {
@@ -229,6 +253,49 @@ pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
     let share = 1.0 / 8.0 + (k2 / k1).max(0.0) / 24.0;
     let by_chord = chord.map_or(f64::INFINITY, |limit| (limit / (k1 * share)).sqrt());
     let by_angle = angle.map_or(f64::INFINITY, |limit| limit / k1);
+    by_chord.min(by_angle)
+}
+
+/// The most of a limit that an edge of a border uses up, and the least that is worth leaving to it.
+const MOST_USED: f64 = 0.9;
+const LEAST_USED: f64 = 0.5;
+
+/// Share of a height that must be left of it on the surface.
+const LOW: f64 = 0.25;
+/// Heights over bases of triangles that stand for those beside a border.
+const LEAST_TALL: f64 = 0.001;
+const MOST_TALL: f64 = 2.0;
+/// Lengths tried for them.
+const MORE_TRIES: usize = 8;
+
+/// Wanted length of an edge along a direction of a border, where triangles may be long, on a face that is nowhere wider than
+/// `wide`: by the curvature along it and the twist, which no shape of triangles beside it makes up for.
+///
+/// Of errors A h² + B w² ≤ c along and across, the longest triangles have half in each, or all of the first where the second is
+/// small all over the face.
+pub fn wanted_along(
+    surface: (&Surface, Option<&Quick>),
+    (at, jet): (DVec2, &Jet2),
+    along: DVec3,
+    (chord, angle): (Option<f64>, Option<f64>),
+    wide: f64,
+) -> f64 {
+    let spot = Spot { p: jet.p, dx: jet.du, dy: jet.dv };
+    let normal = spot.normal();
+    let Some(along) = along.reject_from_normalized(normal).try_normalize() else { return f64::INFINITY };
+    let (Some(x), Some(y)) = (spot.step(along), spot.step(normal.cross(along))) else { return f64::INFINITY };
+    let form = |a: DVec2, b: DVec2| (jet.duu * (a.x * b.x) + jet.duv * (a.x * b.y + a.y * b.x) + jet.dvv * (a.y * b.y)).dot(normal);
+    let (bend, twist, across) = (form(x, x).abs(), form(x, y).abs(), form(y, y).abs());
+    let used = |rest: f64| (1.0 - rest).clamp(LEAST_USED, MOST_USED);
+    let by_chord = chord.map_or(f64::INFINITY, |limit| {
+        let most = 8.0 * limit;
+        let plain = (most * used(across * wide * wide / most) / (bend + twist)).sqrt().min(wide);
+        // The height at which the rest is used up.
+        let tall = ((1.0 - used(across * wide * wide / most)) * most / across).sqrt().min(wide) / plain;
+        let apex = Apex { tall: tall.clamp(LEAST_TALL, MOST_TALL), held: true, tries: MORE_TRIES };
+        surely_tall(surface, (at, jet), along, (limit, plain), apex)
+    });
+    let by_angle = angle.map_or(f64::INFINITY, |limit| limit * used(across * wide / limit) / (bend * bend + twist * twist).sqrt());
     by_chord.min(by_angle)
 }
 

@@ -9,6 +9,7 @@ use super::bound;
 use super::build::{Broken, Lattice, Task, Trouble, triangulate};
 use super::ground::{Even, Field};
 use super::improve::Care;
+use super::lay::{Ask, Failure, lay};
 use super::loads::{self, Loads};
 use super::outline::Outline;
 use super::sheet::Sheet;
@@ -25,7 +26,7 @@ use crate::base::triangulate_points::PointsFault;
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
 use crate::mesh::edges::Limits;
-use crate::mesh::explain::{Decider, Why};
+use crate::mesh::explain::{Decider, Tally, Why};
 use crate::mesh::faces::{Frame, Prepared, limits_of, middle};
 use crate::mesh::layout::{Face, Layout, side_parameters};
 use crate::mesh::nodes::Nodes;
@@ -133,7 +134,7 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
         loops: border.edges.clone(),
         lines: border.lines.clone(),
     };
-    let (web, deciders) = match fitting(made, face, &sheet, &outline, job)? {
+    let (web, deciders, tally) = match fitting(made, face, &sheet, &outline, job)? {
         Ok(fitted) => fitted,
         Err(trouble) => return Err(fault(made, face, &border, trouble)),
     };
@@ -145,7 +146,7 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
     let mut uv = border.uv;
     uv.extend(web.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
     let inner = web.p[fixed..].to_vec();
-    Ok(Prepared { deciders, ..prepared(made, face, Free { uv, border: fixed, triangles }, border.ids, inner) })
+    Ok(Prepared { deciders, tally, ..prepared(made, face, Free { uv, border: fixed, triangles }, border.ids, inner) })
 }
 
 /// A face being fitted: what its triangles are made from and measured by.
@@ -163,16 +164,13 @@ struct Fit<'a> {
 /// Most inner nodes of a face.
 const MOST: usize = MESH_ELEMENTS as usize / 2;
 
+/// Triangles, what decided their sizes, and the cells they were made of.
+type Shown = (Web, Vec<Decider>, Option<Tally>);
+
 type Fitted = Result<std::result::Result<Web, Trouble>>;
 
 /// Triangles that keep the limits, and what decided their sizes.
-fn fitting(
-    made: &Made,
-    face: &Face,
-    sheet: &Sheet,
-    outline: &Outline,
-    job: &Job,
-) -> Result<std::result::Result<(Web, Vec<Decider>), Trouble>> {
+fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job) -> Result<std::result::Result<Shown, Trouble>> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let limits = limits_of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
@@ -190,6 +188,9 @@ fn fitting(
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules);
     let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
+    if face.method.is_sparing() {
+        return fit.laid(&rules, job);
+    }
     let background = bent.then(|| fit.background());
     // Growth is that of distances of nodes.
     let slope = rules.slope() / SPACING;
@@ -197,15 +198,11 @@ fn fitting(
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     let mut web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
     if let (Method::Display, Ok(web)) = (face.method, &mut web) {
-        let limits = if bent { &fit.limits } else { &Limits::default() };
-        let bound = |web: &Web, c: [u32; 3]| loads::load(sheet, web, c, limits).worst();
-        let allowed = |web: &Web, a: u32, b: u32| fit.longest.allows(web, a, b);
-        Thinner { bound: &bound, allowed: &allowed }.thin(web, job)?;
-        web.compact();
+        fit.thin(web, job)?;
     }
     Ok(web.map(|web| {
         let deciders = fit.deciders(&field, &web);
-        (web, deciders)
+        (web, deciders, None)
     }))
 }
 
@@ -255,6 +252,38 @@ impl Fit<'_> {
     fn task<'t>(&'t self, field: &'t dyn Field, broken: &'t Broken<'t>) -> Task<'t> {
         let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
         Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, broken: Some(broken) }
+    }
+
+    /// Fewer triangles for the same limits.
+    fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
+        let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
+        let bound = |web: &Web, c: [u32; 3]| loads::load(self.sheet, web, c, limits).worst();
+        let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b);
+        Thinner { bound: &bound, allowed: &allowed }.thin(web, job)?;
+        web.compact();
+        Ok(())
+    }
+
+    /// Between lines of constant u and v.
+    fn laid(&self, rules: &Sources, job: &Job) -> Result<std::result::Result<Shown, Trouble>> {
+        let plan = self.made.input.plan;
+        let floor = self.made.wanted.written;
+        let flat = Limits::default();
+        let limits = if self.surface.is_flat() { &flat } else { &self.limits };
+        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: MOST };
+        match lay(&ask, job)? {
+            Ok(laid) => Ok(Ok((laid.web, laid.deciders, Some(laid.tally)))),
+            Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
+            Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
+            Err(Failure::Missed(load, at)) => {
+                let (limit, says, over) = match (plan.chord_error, plan.angle_error) {
+                    (Some(says), _) if load.chord >= load.angle => ("chord_error", says, load.chord),
+                    (_, Some(says)) => ("angle_error", says, load.angle),
+                    _ => ("size", plan.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
+                };
+                Err(MeshFault::NotReached { limit, says: says.1, surface: self.surface.origin(), reached: over * says.0, at }.into())
+            }
+        }
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
@@ -457,6 +486,7 @@ fn prepared(made: &Made, face: &Face, free: Free, mut ids: Vec<u32>, inner: Vec<
         quads: 0,
         made: inner,
         deciders: Vec::new(),
+        tally: None,
     }
 }
 

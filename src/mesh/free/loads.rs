@@ -16,7 +16,7 @@ use crate::mesh::gaps;
 const BATCH: usize = 1024;
 
 /// How far a triangle is from its limits: 1 is just kept.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Load {
     /// Bound of the chord error over the limit.
     pub chord: f64,
@@ -61,14 +61,20 @@ impl Loads {
 /// The bounds of three nodes as a triangle against the limits.
 pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
-    let (places, p) = (c.map(|n| DVec2::from(sheet.uv(web.xy[n]))), c.map(|n| web.p[n]));
+    let beside = match limits.chord {
+        Some(limit) => c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max),
+        None => 0.0,
+    };
+    load_of(sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n])), beside, limits)
+}
+
+/// The same of three places of the chart with their points, which are up to `beside` off the surface.
+pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), beside: f64, limits: &Limits) -> Load {
+    let places = xy.map(|xy| DVec2::from(sheet.uv(xy)));
     let surface = (sheet.surface(), sheet.quick());
-    let chord = limits.chord.map_or(0.0, |limit| {
-        let beside = c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max);
-        (bound::chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit
-    });
+    let chord = limits.chord.map_or(0.0, |limit| (bound::chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit);
     let angle = limits.angle.map_or(0.0, |limit| {
-        let normals = c.map(|n| sheet.spot(web.xy[n]).normal());
+        let normals = xy.map(|xy| sheet.spot(xy).normal());
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
         turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
     });

@@ -113,16 +113,9 @@ impl<'a> Tree<'a> {
         &self.cells
     }
 
-    /// Whether an open segment meets an open square: no axis parts them, nor the segment's own line.
+    /// Whether an open segment meets an open square.
     fn meets(&self, segment: u32, level: u8, at: (u32, u32)) -> bool {
-        let [a, b] = self.segments[segment as usize];
-        let (low, high) = (self.corner(level, at), self.corner(level, (at.0 + 1, at.1 + 1)));
-        if !(a.max(b).cmpgt(low).all() && a.min(b).cmplt(high).all()) {
-            return false;
-        }
-        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
-        let sides = corners.map(|c| orient(a, b, c));
-        sides.iter().any(|s| *s > 0.0) && sides.iter().any(|s| *s < 0.0)
+        meets(self.segments[segment as usize], (self.corner(level, at), self.corner(level, (at.0 + 1, at.1 + 1))))
     }
 
     /// Inside or outside by the middle.
@@ -220,4 +213,14 @@ impl<'a> Tree<'a> {
         }
         Some(k)
     }
+}
+
+/// Whether an open segment meets an open box: no axis parts them, nor the segment's own line.
+pub fn meets([a, b]: [DVec2; 2], (low, high): (DVec2, DVec2)) -> bool {
+    if !(a.max(b).cmpgt(low).all() && a.min(b).cmplt(high).all()) {
+        return false;
+    }
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    let sides = corners.map(|c| orient(a, b, c));
+    sides.iter().any(|s| *s > 0.0) && sides.iter().any(|s| *s < 0.0)
 }
