@@ -216,11 +216,11 @@ pub enum Shape {
     Lattice(Lattice),
     /// Three grids of quads that meet inside a triangle, by the (u, v) of their nodes.
     Blocks(super::trilateral::Blocks),
-    /// Triangles that no map gave, by the (u, v) of their nodes.
+    /// Elements that no map gave, by the (u, v) of their nodes.
     Free(Free),
 }
 
-/// Triangles over (u, v): nodes of the border first, then inner ones.
+/// Triangles and quads over (u, v): nodes of the border first, then inner ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Free {
     /// Places of the nodes.
@@ -229,6 +229,8 @@ pub struct Free {
     pub border: usize,
     /// Corners of the triangles, counter-clockwise in (u, v).
     pub triangles: Vec<[u32; 3]>,
+    /// Corners of the quads, counter-clockwise in (u, v).
+    pub quads: Vec<[u32; 4]>,
 }
 
 #[cfg(test)]

@@ -55,14 +55,17 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
     }
 }
 
-/// Cells of a lattice or of blocks by places in their lists of (u, v).
+/// Cells of a lattice, of blocks or of a free face by places in their lists of (u, v).
 pub fn each_cell(shape: &Shape, mut visit: impl FnMut(&[usize])) {
     match shape {
         Shape::Lattice(lattice) => {
             LatticeFrame::triangles(lattice.size()).for_each(|t| visit(&t.map(|(i, j)| lattice.index(i, j))));
         }
         Shape::Blocks(blocks) => blocks.quads.iter().for_each(|q| visit(&q.map(|n| n as usize))),
-        Shape::Free(free) => free.triangles.iter().for_each(|t| visit(&t.map(|n| n as usize))),
+        Shape::Free(free) => {
+            free.triangles.iter().for_each(|t| visit(&t.map(|n| n as usize)));
+            free.quads.iter().for_each(|q| visit(&q.map(|n| n as usize)));
+        }
         Shape::Grid(_) => {}
     }
 }

@@ -25,7 +25,7 @@ pub enum Frame {
     Lattice(LatticeFrame),
     /// Of three blocks: ids by place among the blocks' nodes.
     Blocks(Vec<u32>),
-    /// Of free triangles: ids by place, border first.
+    /// Of a free face: ids by place, border first.
     Free(Vec<u32>),
 }
 
@@ -79,10 +79,9 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
             return Err(MeshFault::CannotMap { surface: of, why, at }.into());
         }
         face.free = face.method.is_free() || why.is_some();
-        face.why = why.clone().filter(|_| !face.method.is_free());
-        if face.free && face.elements == Elements::Quads {
-            let what = format!("`elements: quads` on a face {}", why.unwrap_or_else(|| "made freely".to_owned()));
-            return Err(MeshFault::NeedsLater { of, what, method: "quadtree", at }.into());
+        face.why = why.filter(|_| !face.method.is_free());
+        if let Some(method) = face.method.of_triangles().filter(|_| face.takes_quads()) {
+            return Err(MeshFault::TrianglesOnly { of: input.plan.origin, method, surface: of, at }.into());
         }
     }
     Ok(())
@@ -334,6 +333,10 @@ impl Prepared {
                 for (slot, t) in triangles.iter_mut().zip(&free.triangles) {
                     let [a, b, c] = t.map(|n| places[n as usize]);
                     *slot = if self.chart.flipped { [a, c, b] } else { [a, b, c] };
+                }
+                for (slot, q) in quads.iter_mut().zip(&free.quads) {
+                    let [a, b, c, d] = q.map(|n| places[n as usize]);
+                    *slot = if self.chart.flipped { [a, d, c, b] } else { [a, b, c, d] };
                 }
             }
             _ => {}

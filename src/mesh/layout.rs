@@ -63,6 +63,16 @@ impl Face {
     pub fn is_triangle(&self) -> bool {
         self.sides.len() == 3
     }
+
+    /// Whether it is made freely of nothing but quads.
+    pub fn takes_quads(&self) -> bool {
+        self.free && self.elements == Elements::Quads
+    }
+
+    /// Stretches round it and inside it.
+    pub fn stretches(&self) -> impl Iterator<Item = usize> + '_ {
+        self.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).chain(self.lines.iter().copied())
+    }
 }
 
 /// Faces, stretches and where they meet.

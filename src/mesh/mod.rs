@@ -26,6 +26,7 @@ pub mod mapped;
 mod moved;
 mod nodes;
 mod pace;
+mod parity;
 pub mod plan;
 pub mod quality;
 mod reasons;

@@ -43,6 +43,15 @@ impl Method {
         self == Self::Isoline
     }
 
+    /// Its word, where it makes nothing but triangles.
+    pub fn of_triangles(self) -> Option<&'static str> {
+        match self {
+            Self::Display => Some("display"),
+            Self::Isoline => Some("isoline"),
+            Self::Auto | Self::Mapped | Self::Delaunay | Self::Quadtree => None,
+        }
+    }
+
     /// Whether it makes faces freely, however many sides they have.
     pub fn is_free(self) -> bool {
         matches!(self, Self::Delaunay | Self::Quadtree | Self::Isoline | Self::Display)

@@ -15,7 +15,7 @@ crate::plain!(FaceRange { name, triangles, quads, lines });
 crate::plain!(Group { name, nodes, lines, triangles, quads });
 crate::plain!(Grid { u, v, sides, straight });
 crate::plain!(Lattice { sides });
-crate::plain!(Free { uv, border, triangles });
+crate::plain!(Free { uv, border, triangles, quads });
 crate::plain!(Blocks { uv, inner, quads, sides });
 crate::plain!(mapped::Frame { sides, poles, first });
 crate::plain!(LatticeFrame { sides, first });
@@ -190,7 +190,7 @@ fn fits(chart: &Chart, nodes: u32) -> bool {
             places.len() == free.uv.len()
                 && node(places)
                 && free.border <= places.len()
-                && free.triangles.iter().flatten().all(|n| (*n as usize) < free.uv.len())
+                && free.triangles.iter().flatten().chain(free.quads.iter().flatten()).all(|n| (*n as usize) < free.uv.len())
         }
         _ => false,
     }

@@ -70,7 +70,7 @@ impl Relations {
 
     fn row(&mut self, face: usize, wish: &Wish, least: u32) -> usize {
         let least = whole(wish.least).max(least);
-        let stretch = Stretch { least, wish: whole(wish.size).max(least), written: None, length: wish.length };
+        let stretch = Stretch { least, wish: whole(wish.size).max(least), written: None, length: wish.length, even: false };
         self.rows.push(Row { face, stretch, limit: "" });
         let row = self.first_row + self.rows.len() - 1;
         self.of_face[face].push(row);
@@ -141,6 +141,13 @@ impl Relations {
                 by.sort_by_key(|b| b.1);
                 by.dedup_by_key(|b| b.1);
                 MeshFault::SidesDoNotClose { counts: *counts, written: by, surface: place(*relation).0 }.into()
+            }
+            Conflict::Odd { written: by, needs } => {
+                let at = layout.point(*needs, 0.5);
+                let on = |f: &&Face| f.takes_quads() && f.stretches().any(|s| s == *needs);
+                let surface =
+                    layout.faces.iter().find(on).map_or(Origin::NONE, |f| input.model.surfaces[f.surface.index()].surface.origin());
+                MeshFault::OddCount { count: by.map_or((0, Origin::NONE), written), surface, at }.into()
             }
             Conflict::TooCoarse { written: by, needs, least } => self.too_coarse(input, layout, written(*by), (*needs, *least)),
         }

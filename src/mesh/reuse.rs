@@ -143,7 +143,7 @@ impl Known<'_> {
 
 crate::content!(Grid { u, v, sides, straight });
 crate::content!(Lattice { sides });
-crate::content!(Free { uv, border, triangles });
+crate::content!(Free { uv, border, triangles, quads });
 crate::content!(Blocks { uv, inner, quads, sides });
 crate::content!(Limits { chord, angle });
 crate::content!(Wish { size, least, length, bend });

@@ -7,9 +7,11 @@ use super::chart::{Chart, Shape};
 use super::chord::{each_cell, ids};
 use super::data::Mesh;
 use super::faces::{Frame, Prepared};
+use super::foot;
 use super::layout::Layout;
 use super::nodes::Nodes;
 use crate::base::par;
+use crate::surface::Surface;
 
 /// Mid nodes by edge: for each lower node a short list of higher nodes.
 struct Table {
@@ -61,10 +63,13 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
     for ready in prepared {
         let surface = &input.model.surfaces[ready.surface.index()].surface;
         let places = Places { chart: &ready.chart, frame: &ready.chart.frame };
-        let mut made: Vec<(f64, f64)> = Vec::new();
+        let mut made: Vec<Edge> = Vec::new();
+        let free = matches!(ready.chart.shape, Shape::Free(_));
+        let corner = &mesh.nodes;
         let mut mid = |a: u32, b: u32, uv: &dyn Fn(u32, u32) -> (f64, f64)| {
             table.mid(a, b, || {
-                made.push(uv(a, b));
+                let ends = free.then(|| ([a, b].map(|n| corner[n as usize]), [uv(a, a), uv(b, b)]));
+                made.push(Edge { uv: uv(a, b), ends });
                 next += 1;
                 next - 1
             })
@@ -86,10 +91,40 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
         );
         triangle += ready.triangles as usize;
         quad += ready.quads as usize;
-        let points: Vec<DVec3> = par::map(made.len(), |k| surface.point(made[k].0, made[k].1));
+        let points: Vec<DVec3> = par::map(made.len(), |k| middle_of(surface, &made[k]));
         mesh.nodes.extend(points);
     }
     mesh.line_mids = mesh.lines.iter().map(|l| table.mid(l[0], l[1], || l[0])).collect();
+}
+
+/// An edge inside a face.
+struct Edge {
+    /// The middle of its ends in (u, v).
+    uv: (f64, f64),
+    /// Of free faces its ends, and their places.
+    ends: Option<Ends>,
+}
+
+/// Two points and their places.
+type Ends = ([DVec3; 2], [(f64, f64); 2]);
+
+/// How far a mid node may be from the middle of its edge, over the length of the edge, before it is looked for in space.
+const ASIDE: f64 = 0.15;
+
+/// The mid node of an edge: on the surface in the middle of (u, v). Beside a pole that says nothing on a free face, and the
+/// foot of the middle in space is taken.
+fn middle_of(surface: &Surface, edge: &Edge) -> DVec3 {
+    let plain = surface.point(edge.uv.0, edge.uv.1);
+    let Some(([a, b], places)) = edge.ends else { return plain };
+    let middle = 0.5 * (a + b);
+    if plain.distance(middle) <= ASIDE * a.distance(b) {
+        return plain;
+    }
+    let range = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
+    let (u, v) = surface.closed();
+    let feet = [edge.uv, places[0], places[1]].map(|from| foot::nearest(surface, middle, from, range(u), range(v)));
+    let best = feet.into_iter().fold((f64::INFINITY, edge.uv), |best, foot| if foot.0 < best.0 { foot } else { best });
+    surface.point(best.1.0, best.1.1)
 }
 
 /// (u, v) of the corners of elements, cell by cell.

@@ -176,8 +176,15 @@ impl Sizing {
 
     /// The stretches as unknowns of the solver.
     pub fn stretches(&self, layout: &Layout) -> Vec<Stretch> {
-        let one =
-            |(k, d): (usize, &Decision)| Stretch { least: d.least, wish: d.wish, written: d.count.map(|c| c.0), length: layout.length(k) };
+        let mut even = vec![false; self.decisions.len()];
+        layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| even[s] = true);
+        let one = |(k, d): (usize, &Decision)| Stretch {
+            least: d.least,
+            wish: d.wish,
+            written: d.count.map(|c| c.0),
+            length: layout.length(k),
+            even: even[k],
+        };
         self.decisions.iter().enumerate().map(one).collect()
     }
 
@@ -482,6 +489,9 @@ fn shapes(layout: &Layout) -> Vec<u32> {
     let n = layout.pieces.atoms.len();
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by_key(|k| (ends(*k), *k));
+    // Free quads come from cells of twice the length, whose borders may not fall together either.
+    let mut cells = vec![1; n];
+    layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| cells[s] = 2);
     let mut least = vec![1; n];
     for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
         let length = |k: &usize| layout.pieces.atoms[*k].length();
@@ -489,11 +499,12 @@ fn shapes(layout: &Layout) -> Vec<u32> {
         let alike = group.iter().filter(|k| length(k) <= shortest * (1.0 + WHOLE_NUMBER)).count();
         for k in group {
             let (a, b) = ends(*k);
-            least[*k] = match () {
-                () if a == b => 3,
-                () if group.len() == 1 || (alike == 1 && length(k) == shortest) => 1,
-                () => 2,
-            };
+            least[*k] = cells[*k]
+                * match () {
+                    () if a == b => 3,
+                    () if group.len() == 1 || (alike == 1 && length(k) == shortest) => 1,
+                    () => 2,
+                };
         }
     }
     least

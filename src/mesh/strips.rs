@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::counts::share;
+use super::parity::{self, Sum};
 use crate::model::glue::root;
 
 /// One stretch (or one inner direction of a face without a side that could tell).
@@ -19,6 +20,8 @@ pub struct Stretch {
     pub written: Option<u32>,
     /// Length, model units; the longest step is the first to be halved.
     pub length: f64,
+    /// The count has to be even.
+    pub even: bool,
 }
 
 /// What a face asks.
@@ -60,6 +63,13 @@ pub enum Conflict {
         /// Written stretches behind them.
         written: Vec<usize>,
     },
+    /// A written count is odd where quads that no map gives need an even one, or makes such a count odd.
+    Odd {
+        /// The written stretch, where there is one.
+        written: Option<usize>,
+        /// The stretch that needs an even count.
+        needs: usize,
+    },
     /// Counts would grow without end: a side is opposite to a part of itself.
     Endless {
         /// The face's relation.
@@ -74,6 +84,22 @@ struct Strip {
     length: f64,
     /// The count, once it follows from a written one, and the written stretch it follows from.
     fixed: Option<(u32, usize)>,
+    /// A stretch that needs an even count.
+    even: Option<usize>,
+    /// Whether the count is odd, where that is settled ahead.
+    odd: Option<bool>,
+}
+
+impl Strip {
+    /// The least count from `count` on that is as even or odd as it has to be.
+    fn from(&self, count: u32) -> u32 {
+        count + u32::from(self.odd.is_some_and(|odd| odd != (count % 2 == 1)))
+    }
+
+    /// What the count is raised by.
+    fn step(&self) -> u32 {
+        1 + u32::from(self.odd.is_some())
+    }
 }
 
 struct Solver<'a> {
@@ -87,9 +113,10 @@ struct Solver<'a> {
 /// Least counts that satisfy all relations, and the strip of each stretch. Sums stay below `limit`.
 pub fn solve(stretches: &[Stretch], relations: &[Relation], limit: u32) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
     let mut solver = Solver::new(stretches, relations, limit)?;
+    solver.parities()?;
     solver.pass_on()?;
     for (n, strip) in solver.strips.iter().enumerate() {
-        solver.count[n] = strip.fixed.map_or(strip.wish.max(strip.least.0), |f| f.0);
+        solver.count[n] = strip.fixed.map_or(strip.from(strip.wish.max(strip.least.0)), |f| f.0);
     }
     solver.raise()?;
     Ok((solver.strip_of.iter().map(|s| solver.count[*s]).collect(), solver.strip_of))
@@ -111,13 +138,14 @@ impl<'a> Solver<'a> {
             let r = root(&mut parent, n);
             if r == n {
                 strip_of[n] = strips.len();
-                strips.push(Strip { least: (0, n), wish: 0, length: 0.0, fixed: None });
+                strips.push(Strip { least: (0, n), wish: 0, length: 0.0, fixed: None, even: None, odd: None });
             } else {
                 strip_of[n] = strip_of[r];
             }
             let strip = &mut strips[strip_of[n]];
             strip.wish = strip.wish.max(stretch.wish);
             strip.length = strip.length.max(stretch.length);
+            strip.even = strip.even.or(stretch.even.then_some(n));
             if stretch.least > strip.least.0 {
                 strip.least = (stretch.least, n);
             }
@@ -140,6 +168,49 @@ impl<'a> Solver<'a> {
         }
         let count = vec![0; strips.len()];
         Ok(Self { strip_of, strips, relations, count, limit })
+    }
+
+    /// Settles which counts are even and which odd, where some have to be even.
+    fn parities(&mut self) -> Result<(), Conflict> {
+        let needed: Vec<usize> = (0..self.strips.len()).filter(|s| self.strips[*s].even.is_some()).collect();
+        if needed.is_empty() {
+            return Ok(());
+        }
+        let odd = |strip: &&Strip| strip.fixed.is_some_and(|f| f.0 % 2 == 1);
+        if let Some((needs, strip)) = self.strips.iter().filter(odd).find_map(|strip| Some((strip.even?, strip))) {
+            return Err(Conflict::Odd { written: strip.fixed.map(|f| f.1), needs });
+        }
+        let known: Vec<Option<bool>> = self.strips.iter().map(|s| s.even.map(|_| false).or(s.fixed.map(|f| f.0 % 2 == 1))).collect();
+        let sums: Vec<Sum> = self.relations.iter().map(|relation| self.sum_of(relation)).collect();
+        let found = parity::solve(&known, &needed, &sums).map_err(|relation| self.odd(&sums[relation]))?;
+        self.strips.iter_mut().zip(found).for_each(|(strip, odd)| strip.odd = odd);
+        for strip in &mut self.strips {
+            strip.least.0 = strip.from(strip.least.0);
+        }
+        Ok(())
+    }
+
+    /// The strips that a relation has an odd number of times.
+    fn sum_of(&self, relation: &Relation) -> Sum {
+        let mut sum = Sum::new();
+        let mut add = |n: &usize| {
+            let strip = self.strip_of[*n];
+            if !sum.remove(&strip) {
+                sum.insert(strip);
+            }
+        };
+        match relation {
+            Relation::Equal(a, b) => a.iter().chain(b).for_each(&mut add),
+            Relation::ThreeSides(sides) => sides.iter().flatten().for_each(&mut add),
+        }
+        sum
+    }
+
+    /// What to say where a sum cannot be even: a written stretch in it and one that needs to be even, of it or of any.
+    fn odd(&self, sum: &Sum) -> Conflict {
+        let strips = || sum.iter().map(|s| &self.strips[*s]).chain(&self.strips);
+        let written = strips().find_map(|s| s.fixed.filter(|f| f.0 % 2 == 1).map(|f| f.1));
+        Conflict::Odd { written, needs: strips().find_map(|s| s.even).unwrap_or(0) }
     }
 
     /// Strips of a side with how often each is on it.
@@ -225,6 +296,9 @@ impl<'a> Solver<'a> {
 
     /// Gives strips counts whose weighted sum is `target`, by their wishes.
     fn settle(&mut self, open: &[(usize, i64)], target: u32, by: usize) -> Option<()> {
+        if open.iter().any(|(s, _)| self.strips[*s].odd.is_some()) {
+            return self.settle_by_two(open, target, by);
+        }
         let weights: Vec<f64> = open.iter().map(|(s, c)| c.abs() as f64 * f64::from(self.strips[*s].wish)).collect();
         let least: Vec<u32> = open.iter().map(|(s, c)| c.unsigned_abs() as u32 * self.strips[*s].least.0).collect();
         let shares = share(target, &weights, &least)?;
@@ -237,6 +311,25 @@ impl<'a> Solver<'a> {
             let i = (0..open.len()).filter(fits).max_by(|x, y| room(x).total_cmp(&room(y)).then(y.cmp(x)))?;
             counts[i] += 1;
             left -= open[i].1.unsigned_abs() as u32;
+        }
+        for (n, (s, _)) in counts.iter().zip(open) {
+            self.strips[*s].fixed = Some((*n, by));
+        }
+        Some(())
+    }
+
+    /// The same where counts are even or odd ahead: the strips with the longest steps get two more, until it is made up.
+    fn settle_by_two(&mut self, open: &[(usize, i64)], target: u32, by: usize) -> Option<()> {
+        let mut counts: Vec<u32> = open.iter().map(|(s, _)| self.strips[*s].least.0).collect();
+        let sum: u32 = counts.iter().zip(open).map(|(n, (_, c))| n * c.unsigned_abs() as u32).sum();
+        let mut left = target.checked_sub(sum)?;
+        while left > 0 {
+            let more = |i: usize| open[i].1.unsigned_abs() as u32 * self.strips[open[i].0].step();
+            let room = |i: &usize| f64::from(self.strips[open[*i].0].wish) / f64::from(counts[*i]);
+            let fits = (0..open.len()).filter(|i| more(*i) <= left);
+            let i = fits.max_by(|x, y| room(x).total_cmp(&room(y)).then(y.cmp(x)))?;
+            left -= more(i);
+            counts[i] += self.strips[open[i].0].step();
         }
         for (n, (s, _)) in counts.iter().zip(open) {
             self.strips[*s].fixed = Some((*n, by));
@@ -314,8 +407,9 @@ impl<'a> Solver<'a> {
             if self.count[s] >= self.limit {
                 return Err(Conflict::Endless { relation });
             }
-            self.count[s] += 1;
-            deficit -= c;
+            let step = self.strips[s].step();
+            self.count[s] += step;
+            deficit -= c * i64::from(step);
         }
         Ok(())
     }
@@ -357,7 +451,7 @@ mod tests {
     use super::*;
 
     fn soft(wish: u32) -> Stretch {
-        Stretch { least: 1, wish, written: None, length: f64::from(wish) }
+        Stretch { least: 1, wish, written: None, length: f64::from(wish), even: false }
     }
 
     fn written(count: u32) -> Stretch {
@@ -426,6 +520,29 @@ mod tests {
     #[test]
     fn a_side_opposite_to_a_part_of_itself_has_no_count() {
         check(&[soft(3), soft(2)], &[equal(&[0], &[0, 1])], Err(Conflict::Endless { relation: 0 }));
+    }
+
+    fn even(wish: u32) -> Stretch {
+        Stretch { even: true, ..soft(wish) }
+    }
+
+    #[test]
+    fn even_counts_pass_over_mapped_faces() {
+        check(&[even(5)], &[], Ok(&[6]));
+        check(&[even(5), soft(7), soft(3)], &[equal(&[0], &[1])], Ok(&[8, 8, 3]));
+        check(&[even(9), soft(4), soft(3)], &[equal(&[0], &[1, 2])], Ok(&[10, 6, 4]));
+        // What is written odd makes its neighbour odd.
+        check(&[even(9), written(5), soft(3)], &[equal(&[0], &[1, 2])], Ok(&[10, 5, 5]));
+        check(&[written(10), even(4), soft(4)], &[equal(&[0], &[1, 2])], Ok(&[10, 6, 4]));
+        check(&[written(5)], &[], Ok(&[5]));
+    }
+
+    #[test]
+    fn odd_counts_that_must_be_even_are_refused() {
+        let odd = Stretch { even: true, ..written(5) };
+        check(&[odd], &[], Err(Conflict::Odd { written: Some(0), needs: 0 }));
+        check(&[even(4), written(7)], &[equal(&[0], &[1])], Err(Conflict::Odd { written: Some(1), needs: 0 }));
+        check(&[even(4), written(7), written(4)], &[equal(&[0], &[1, 2])], Err(Conflict::Odd { written: Some(1), needs: 0 }));
     }
 
     #[test]

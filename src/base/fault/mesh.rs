@@ -71,6 +71,26 @@ pub enum MeshFault {
         /// Surface, number of triangles, place.
         places: Vec<(Origin, u64, DVec3)>,
     },
+    /// E704: a written count that is odd, or makes a count odd, on the border of quads that no map gives.
+    OddCount {
+        /// The count and its expression; none where other faces alone are behind it.
+        count: (u32, Origin),
+        /// The surface.
+        surface: Origin,
+        /// A point of the border that needs an even count.
+        at: DVec3,
+    },
+    /// E704: a method that makes triangles only.
+    TrianglesOnly {
+        /// The mesh or rule that asks for quads.
+        of: Origin,
+        /// The method.
+        method: &'static str,
+        /// The surface.
+        surface: Origin,
+        /// A point of the face.
+        at: DVec3,
+    },
     /// E705: a face that the mapped method cannot do.
     CannotMap {
         /// The surface.
@@ -78,17 +98,6 @@ pub enum MeshFault {
         /// Why, in words.
         why: String,
         /// A point of the face.
-        at: DVec3,
-    },
-    /// E230: what only a method of a later version can do.
-    NeedsLater {
-        /// The expression that asks for it.
-        of: Origin,
-        /// What it is, in words: "a point inside a face".
-        what: String,
-        /// The method, as scripts write it.
-        method: &'static str,
-        /// Where.
         at: DVec3,
     },
     /// W706: of two equal rules the later one holds.
@@ -322,13 +331,23 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             }
             report.help("elements: mixed").edit(Subject::Entity(*mesh), Edit::Set("elements", "mixed".to_owned()))
         }
+        F::OddCount { count, surface, at } => {
+            let mut report = Report::new("E704", format!("only quads is impossible here: an odd number of steps at {}", say.point(*at)));
+            if count.1.is_some() {
+                let even = (count.0 + 1).to_string();
+                report = report.at(count.1, steps(count.0)).help(format!("count: {even}")).edit(Subject::Entity(count.1), Edit::Put(even));
+            }
+            report.at(*surface, "has no map, so that each part of its border takes an even number of steps")
+        }
+        F::TrianglesOnly { of, method, surface, at } => {
+            Report::new("E704", format!("only quads is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))
+                .at(*of, "`elements: quads`")
+                .at(*surface, "this face")
+                .help("method: delaunay")
+        }
         F::CannotMap { surface, why, at } => {
             Report::new("E705", format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*surface, "this face")
-        }
-        F::NeedsLater { of, what, method, at } => {
-            Report::new("E230", format!("{what} at {} needs `method: {method}`, which is not in this version", say.point(*at)))
-                .at(*of, "asked for here")
         }
         F::EdgeMismatch { a, b, gap, at, stated } => Report::new(
             "E711",

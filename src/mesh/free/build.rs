@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
-use super::grow::{STRAIGHT, Soil, TALL, grow};
+use super::grow::{Cell, STRAIGHT, Soil, TALL, grow};
 use super::improve::{Care, Gardener};
 use super::outline::Outline;
 use super::quadtree::{self, Plot};
@@ -22,6 +22,8 @@ pub type Broken<'a> = dyn Fn(&Web) -> Vec<u32> + 'a;
 pub enum Lattice {
     /// A crystal of equilateral triangles, grown from the border.
     Crystal,
+    /// A crystal of squares, grown from the border.
+    Squares,
     /// The corners of a quadtree's cells.
     Tree,
 }
@@ -57,6 +59,22 @@ pub enum Trouble {
 
 /// Triangulates a face; the outer result is an interruption.
 pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>> {
+    let web = match plant(task, job)? {
+        Ok(web) => web,
+        Err(trouble) => return Ok(Err(trouble)),
+    };
+    let mut gardener = Gardener::new(web, task.ground, task.field, task.care);
+    gardener.improve(job)?;
+    if let Some(broken) = task.broken {
+        gardener.divide(broken, job)?;
+    }
+    let mut web = gardener.web;
+    web.compact();
+    Ok(Ok(web))
+}
+
+/// The Delaunay triangles of a face in its chart, over its border and the nodes of its lattice; nothing is improved yet.
+pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>> {
     let outline = task.outline;
     let edges: Vec<[u32; 2]> = outline.edges().collect();
     let coarse = match points(&outline.xy, &edges) {
@@ -71,9 +89,10 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
         return Ok(Err(Trouble::Full));
     }
     let grown = match task.lattice {
-        Lattice::Crystal => {
+        Lattice::Crystal | Lattice::Squares => {
             let seeds = seeds(&coarse, &kept, outline);
-            grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, most: task.most }, job)?
+            let cell = if task.lattice == Lattice::Squares { Cell::Square } else { Cell::Triangle };
+            grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
         }
         Lattice::Tree => match quadtree::nodes(&Plot { ground: task.ground, field: task.field, outline, most: task.most }) {
             Some(grown) => grown,
@@ -97,16 +116,7 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
     let mut size: Vec<f64> = outline.p.iter().zip(&outline.xy).map(|(p, xy)| task.field.size(*xy, *p)).collect();
     size.extend(&grown.size);
     drop(grown);
-    let web = Web::new(p, xy, size, outline.p.len() as u32, &all, &kept);
-    drop(all);
-    let mut gardener = Gardener::new(web, task.ground, task.field, task.care);
-    gardener.improve(job)?;
-    if let Some(broken) = task.broken {
-        gardener.divide(broken, job)?;
-    }
-    let mut web = gardener.web;
-    web.compact();
-    Ok(Ok(web))
+    Ok(Ok(Web::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
 }
 
 /// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
@@ -119,8 +129,9 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
         let middle = (c.iter().map(|c| c.0).sum::<DVec2>() / 3.0, c.iter().map(|c| c.1).sum::<DVec3>() / 3.0);
         let size = task.field.size(middle.0, middle.1);
         let area = (c[1].1 - c[0].1).cross(c[2].1 - c[0].1).length();
-        // Half a node a triangle of side `size`, whose area is √3/4 of its square.
-        let nodes = 0.5 * area / (TALL * size * size);
+        // Half a node a triangle of side `size`, whose area is √3/4 of its square, or one a square.
+        let cell = if task.lattice == Lattice::Squares { 1.0 } else { TALL };
+        let nodes = 0.5 * area / (cell * size * size);
         let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * ALIKE < size);
         if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < FEW && !varies() {
             total += nodes;

@@ -1,5 +1,7 @@
 //! A face of a mesh made freely: its border from the divided stretches, its inside grown.
 
+mod quads;
+
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -134,6 +136,9 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
         loops: border.edges.clone(),
         lines: border.lines.clone(),
     };
+    if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
+        return quads::prepare(made, face, border, (&sheet, &outline), job);
+    }
     let (web, deciders, tally) = match fitting(made, face, &sheet, &outline, job)? {
         Ok(fitted) => fitted,
         Err(trouble) => return Err(fault(made, face, &border, trouble)),
@@ -146,7 +151,8 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
     let mut uv = border.uv;
     uv.extend(web.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
     let inner = web.p[fixed..].to_vec();
-    Ok(Prepared { deciders, tally, ..prepared(made, face, Free { uv, border: fixed, triangles }, border.ids, inner) })
+    let free = Free { uv, border: fixed, triangles, ..Free::default() };
+    Ok(Prepared { deciders, tally, ..prepared(made, face, free, border.ids, inner) })
 }
 
 /// A face being fitted: what its triangles are made from and measured by.
@@ -194,7 +200,7 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
     let background = bent.then(|| fit.background());
     // Growth is that of distances of nodes.
     let slope = rules.slope() / SPACING;
-    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref())].concat(), slope);
+    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     let mut web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
     if let (Method::Display, Ok(web)) = (face.method, &mut web) {
@@ -233,8 +239,9 @@ impl Fit<'_> {
         Background::new(self.sheet, whole, growth, |xy| wanted(xy).min(size))
     }
 
-    /// Edges of the border that are so short that lengths have to grow from them.
-    fn short_edges(&self, background: Option<&Background>) -> Vec<Source> {
+    /// Edges of the border that are so short that lengths have to grow from them; nodes are `spacing` times as far apart as
+    /// sides are long.
+    fn short_edges(&self, background: Option<&Background>, spacing: f64) -> Vec<Source> {
         let growth = 1.0 + self.made.input.plan.slope();
         let source = |edge: [u32; 2]| {
             let [a, b] = edge.map(|n| n as usize);
@@ -244,7 +251,7 @@ impl Fit<'_> {
             let body = Body::Segment(self.outline.p[a], self.outline.p[b]);
             let from = size.max(self.made.wanted.floor);
             // Nodes are as far from it as it is long.
-            (size > 0.0 && from * growth < there).then_some(Source { body, radius: 0.0, size: from / SPACING, tag: BORDER })
+            (size > 0.0 && from * growth < there).then_some(Source { body, radius: 0.0, size: from / spacing, tag: BORDER })
         };
         self.outline.edges().filter_map(source).collect()
     }
@@ -474,16 +481,16 @@ const ROUNDS: usize = 12;
 
 fn prepared(made: &Made, face: &Face, free: Free, mut ids: Vec<u32>, inner: Vec<DVec3>) -> Prepared {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let triangles = free.triangles.len() as u64;
+    let (triangles, quads) = (free.triangles.len() as u64, free.quads.len() as u64);
     ids.resize(free.uv.len(), 0);
     Prepared {
         surface: face.surface,
         chart: Chart { surface: surface.clone(), shape: Shape::Free(free), frame: Frame::Free(ids), flipped: face.flipped },
-        elements: Elements::Triangles,
+        elements: face.elements,
         first: 0,
         inner: inner.len() as u64,
         triangles,
-        quads: 0,
+        quads,
         made: inner,
         deciders: Vec::new(),
         tally: None,

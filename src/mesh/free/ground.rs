@@ -63,6 +63,12 @@ impl Field for Even {
 
 /// Foot of a point near a place of the chart: one or two Gauss–Newton steps, enough where the point is near the surface.
 pub fn foot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
+    let (xy, spot) = foot_spot(ground, from, wanted);
+    (xy, spot.p)
+}
+
+/// The same with the derivatives there.
+pub fn foot_spot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, Spot) {
     let mut xy = from;
     let mut spot = ground.spot(xy);
     for _ in 0..2 {
@@ -76,7 +82,7 @@ pub fn foot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
             break;
         }
     }
-    (xy, spot.p)
+    (xy, spot)
 }
 
 /// Share of a step that may be missing at its end.

@@ -1,8 +1,10 @@
-//! Inner nodes: a crystal of equilateral triangles that grows over the surface from a seed until it meets the border.
+//! Inner nodes: a crystal of equilateral triangles or of squares that grows over the surface from a seed until it meets the border.
 //!
-//! Each node proposes six neighbours at the wanted distance, in directions carried along from its parent; what comes too
+//! Each node proposes its neighbours at the wanted distance, in directions carried along from its parent; what comes too
 //! near to a known point or to the border is dropped. On a plane with one size this is the regular lattice; on curved
 //! surfaces and where sizes change, neighbouring fronts meet at distances that smoothing evens out.
+
+mod squares;
 
 use std::collections::VecDeque;
 
@@ -27,6 +29,15 @@ pub(super) const SIGHT: f64 = 1.3;
 /// Nodes between two questions whether to go on.
 const WATCH: usize = 4096;
 
+/// What a crystal is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cell {
+    /// Equilateral triangles: six neighbours a node.
+    Triangle,
+    /// Squares: four neighbours a node.
+    Square,
+}
+
 /// What growing needs.
 pub struct Soil<'a> {
     /// The surface.
@@ -37,6 +48,8 @@ pub struct Soil<'a> {
     pub outline: &'a Outline,
     /// Places where a crystal may start, with a direction in space (zero: any).
     pub seeds: &'a [(DVec2, DVec3)],
+    /// What grows.
+    pub cell: Cell,
     /// Most nodes.
     pub most: usize,
 }
@@ -64,6 +77,12 @@ struct Front<'a> {
     grown: Grown,
     along: Vec<DVec3>,
     open: VecDeque<u32>,
+    /// Steps of squares along and across the crystal, over the wanted length.
+    steps: [f64; 2],
+    /// Nodes of the first row of squares.
+    row: u32,
+    /// Their directions from the border.
+    arms: Vec<DVec3>,
 }
 
 /// Grows nodes from the seeds, the first ones first.
@@ -79,9 +98,15 @@ pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
         grown: Grown::default(),
         along: Vec::new(),
         open: VecDeque::new(),
+        steps: [1.0; 2],
+        row: 0,
+        arms: Vec::new(),
     };
     front.border();
-    let first = front.layer();
+    let first = match soil.cell {
+        Cell::Triangle => front.layer(),
+        Cell::Square => front.layer_of_squares(),
+    };
     let firsts = first.into_iter().map(|n| (None, n));
     let seeds = soil.seeds.iter().map(|s| (Some(*s), 0));
     for (seed, node) in firsts.chain(seeds) {
@@ -219,27 +244,35 @@ impl Front<'_> {
         self.open.push_back(id);
     }
 
-    /// Proposes the six neighbours of a node.
+    /// Proposes the neighbours of a node.
     fn spread(&mut self, node: usize) {
         let (xy, p, size) = (self.grown.xy[node], self.grown.p[node], self.grown.size[node]);
         let spot = self.soil.ground.spot(xy);
         let normal = spot.normal();
         let ahead = self.along[node];
         let aside = normal.cross(ahead);
+        if self.soil.cell == Cell::Square {
+            let [along, across] = self.steps;
+            for (way, stretch) in [(ahead, along), (aside, across), (-ahead, along), (-aside, across)] {
+                self.propose((xy, p, size), &spot, (way, stretch), Some(ahead));
+            }
+            return;
+        }
         const HALF: f64 = 0.5;
         let tall = aside * TALL;
         let ways = [ahead, ahead * HALF + tall, -ahead * HALF + tall, -ahead, -ahead * HALF - tall, ahead * HALF - tall];
         for way in ways {
-            self.propose((xy, p, size), &spot, way);
+            self.propose((xy, p, size), &spot, (way, 1.0), None);
         }
     }
 
-    fn propose(&mut self, (xy, p, size): (DVec2, DVec3, f64), spot: &Spot, way: DVec3) {
+    /// A neighbour in a direction, `stretch` times the wanted length away; it carries `ahead` on, or looks on along the arm.
+    fn propose(&mut self, (xy, p, size): (DVec2, DVec3, f64), spot: &Spot, (way, stretch): (DVec3, f64), ahead: Option<DVec3>) {
         let guess = p + way * size;
         let Some(step) = spot.step(way * size) else { return };
         // The mean of the lengths wanted here and there.
         let there = self.soil.field.size(self.soil.ground.clamp(xy + step), guess);
-        let length = 0.5 * (size + there);
+        let length = 0.5 * (size + there) * stretch;
         if self.near_node(p + way * length, there) {
             return;
         }
@@ -261,7 +294,7 @@ impl Front<'_> {
         if new.p.distance_squared(p + way * length) > 0.0 && self.near_node(new.p, there) {
             return;
         }
-        let arm = new.p - p;
+        let arm = ahead.unwrap_or(new.p - p);
         let along = arm.reject_from_normalized(new.normal()).normalize_or_zero();
         if along != DVec3::ZERO {
             self.take(to, new.p, there, along);
@@ -269,6 +302,9 @@ impl Front<'_> {
     }
 
     fn near_node(&self, p: DVec3, size: f64) -> bool {
+        if self.soil.cell == Cell::Square {
+            return self.near_square(p, size);
+        }
         self.nodes.any(p, APART * size, size, |_, _| true)
     }
 

@@ -45,6 +45,11 @@ impl Background {
         }
     }
 
+    /// Makes all lengths so many times as large.
+    pub fn scale(&mut self, by: f64) {
+        self.size.iter_mut().for_each(|size| *size *= by);
+    }
+
     /// No length exceeds that of a neighbour by more than the growth over their distance in space; after lowering.
     pub fn level(&mut self) {
         let slope = (self.growth - 1.0).max(0.0);

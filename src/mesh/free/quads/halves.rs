@@ -1,0 +1,113 @@
+//! A border of which every second node is left out: the border of cells that are halved afterwards.
+
+use glam::{DVec2, DVec3};
+
+use super::net::NONE;
+use crate::mesh::free::outline::Outline;
+
+/// A border with that of its cells.
+#[derive(Clone, Debug, Default)]
+pub struct Halves {
+    /// Points of all nodes.
+    pub p: Vec<DVec3>,
+    /// Their places in the chart.
+    pub xy: Vec<DVec2>,
+    /// The border of the cells.
+    pub outline: Outline,
+    /// The place of each of its nodes in the whole border.
+    pub of: Vec<u32>,
+    /// Numbers of the nodes of the cells' border in the mesh.
+    ids: Vec<u32>,
+    /// Edges of the cells' border, lower node first, with the node in the middle of each.
+    mids: Vec<([u32; 2], u32)>,
+}
+
+/// Edges and the nodes in their middles.
+type Halved = (Vec<[u32; 2]>, Vec<([u32; 2], u32)>);
+
+impl Halves {
+    /// The border itself: its edges are not halved.
+    pub fn whole(outline: &Outline, ids: &[u32]) -> Self {
+        Self {
+            p: outline.p.clone(),
+            xy: outline.xy.clone(),
+            outline: outline.clone(),
+            of: (0..outline.p.len() as u32).collect(),
+            ids: ids.to_vec(),
+            mids: Vec::new(),
+        }
+    }
+
+    /// Two edges at a time; `middle` tells the nodes that are in the middle of two, `ids` are numbers in the mesh.
+    ///
+    /// `None` where edges at a middle node do not follow each other.
+    pub fn new(outline: &Outline, ids: &[u32], middle: impl Fn(u32) -> bool) -> Option<Self> {
+        let of: Vec<u32> = (0..outline.p.len() as u32).filter(|n| !middle(ids[*n as usize])).collect();
+        let mut place = vec![NONE; outline.p.len()];
+        of.iter().enumerate().for_each(|(k, n)| place[*n as usize] = k as u32);
+        let (loops, mut mids) = halved(&outline.loops, &place)?;
+        let (lines, inner) = halved(&outline.lines, &place)?;
+        mids.extend(inner);
+        mids.sort_unstable();
+        Some(Self {
+            p: outline.p.clone(),
+            xy: outline.xy.clone(),
+            outline: Outline {
+                xy: of.iter().map(|n| outline.xy[*n as usize]).collect(),
+                p: of.iter().map(|n| outline.p[*n as usize]).collect(),
+                loops,
+                lines,
+            },
+            ids: of.iter().map(|n| ids[*n as usize]).collect(),
+            of,
+            mids,
+        })
+    }
+
+    /// The node in the middle of an edge of the cells' border; [`NONE`] where there is none.
+    pub fn mid(&self, a: u32, b: u32) -> u32 {
+        let key = [a.min(b), a.max(b)];
+        self.mids.binary_search_by_key(&key, |m| m.0).map_or(NONE, |k| self.mids[k].1)
+    }
+
+    /// The number in the mesh of a node of the cells' border; [`NONE`] of inner nodes.
+    pub fn id(&self, n: u32) -> u32 {
+        self.ids.get(n as usize).copied().unwrap_or(NONE)
+    }
+}
+
+/// Every two edges that meet in a node without a place as one.
+fn halved(edges: &[[u32; 2]], place: &[u32]) -> Option<Halved> {
+    let (mut found, mut mids) = (Vec::new(), Vec::new());
+    let mut rest = edges.iter();
+    while let Some(&[a, b]) = rest.next() {
+        let (from, to) = (place[a as usize], place[b as usize]);
+        if from != NONE && to != NONE {
+            found.push([from, to]);
+            continue;
+        }
+        let &[c, d] = rest.next()?;
+        let (mid, edge) = if b == c && to == NONE { (b, [from, place[d as usize]]) } else { (a, [place[c as usize], to]) };
+        let fits = (b == c && to == NONE || a == d && from == NONE) && !edge.contains(&NONE) && edge[0] != edge[1];
+        fits.then_some(())?;
+        mids.push(([edge[0].min(edge[1]), edge[0].max(edge[1])], mid));
+        found.push(edge);
+    }
+    Some((found, mids))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_are_joined_two_by_two_whichever_way_they_run() {
+        let place = [0, NONE, 1, NONE];
+        let joined = (vec![[0, 1], [1, 0]], vec![([0, 1], 1), ([0, 1], 3)]);
+        assert_eq!(halved(&[[0, 1], [1, 2], [2, 3], [3, 0]], &place), Some(joined));
+        assert_eq!(halved(&[[1, 0], [2, 1]], &place), Some((vec![[1, 0]], vec![([0, 1], 1)])));
+        // An edge that is a point in space stays.
+        assert_eq!(halved(&[[0, 2]], &place), Some((vec![[0, 1]], vec![])));
+        assert_eq!(halved(&[[0, 1], [2, 3]], &place), None);
+    }
+}

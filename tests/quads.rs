@@ -1,0 +1,217 @@
+//! Quads on faces that no map fits: only quads, conforming, none turned over, within their limits; or an error that says where.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec3;
+use lofting::base::job::Job;
+use lofting::mesh::Mesh;
+use lofting::mesh::quality::of_element;
+use lofting::session::disk::{Disk, Outputs};
+use lofting::session::run::{Outcome, Task, run};
+
+const PLATE: &str = "units mm
+curve rim = polyline([(0, 0), (20, 0), (20, 10), (0, 10)], closed: true)
+curve hole for k in 0..2 = circle(center: (5 + 9 * k, 5, 0), radius: 2mm)
+surface plate = trim(plane(rim), holes: hole)
+";
+
+fn outcome(text: &str) -> Outcome {
+    let clock = || 0.0;
+    let task = Task {
+        name: "m.loft",
+        text: text.as_bytes(),
+        sets: &[],
+        strict: false,
+        keep_going: false,
+        full: true,
+        picture: None,
+        clock: &clock,
+    };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    run(&task, &Disk::new(None, Some(folder), &[], Outputs::Written).unwrap(), &Job::default())
+}
+
+fn meshes(text: &str) -> Vec<Arc<Mesh>> {
+    let outcome = outcome(text);
+    assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
+    outcome.meshes.into_iter().map(|m| m.1).collect()
+}
+
+fn mesh(text: &str) -> Arc<Mesh> {
+    meshes(text).remove(0)
+}
+
+fn refused(text: &str) -> String {
+    let outcome = outcome(text);
+    assert!(!outcome.report.ok);
+    outcome.drawn(false, false)
+}
+
+/// Conforming and right side up all over; gives its Euler number.
+fn sound(mesh: &Mesh, least: f64) -> i64 {
+    let mut edges: BTreeMap<(u32, u32), Vec<bool>> = BTreeMap::new();
+    let mut used = vec![false; mesh.nodes.len()];
+    for face in mesh.quads.iter().map(|q| q.as_slice()).chain(mesh.triangles.iter().map(|t| t.as_slice())) {
+        let corners: Vec<DVec3> = face.iter().map(|n| mesh.nodes[*n as usize]).collect();
+        let quality = of_element(&corners);
+        assert!(quality > least, "{}: quality {quality} at {}", mesh.name, corners[0]);
+        for k in 0..face.len() {
+            let (a, b) = (face[k], face[(k + 1) % face.len()]);
+            used[a as usize] = true;
+            edges.entry((a.min(b), a.max(b))).or_default().push(a < b);
+        }
+    }
+    for ((a, _), senses) in &edges {
+        let fine = senses.len() == 1 || senses.len() == 2 && senses[0] != senses[1];
+        assert!(fine, "{}: {senses:?} at {}", mesh.name, mesh.nodes[*a as usize]);
+    }
+    assert!(used.iter().all(|u| *u), "{}: a node of no element", mesh.name);
+    used.len() as i64 - edges.len() as i64 + (mesh.quads.len() + mesh.triangles.len()) as i64
+}
+
+/// Only quads, of at least a quality and of an Euler number.
+fn all_quads(mesh: &Mesh, least: f64, euler: i64) {
+    assert!(mesh.triangles.is_empty() && !mesh.quads.is_empty(), "{}", mesh.triangles.len());
+    assert_eq!(sound(mesh, least), euler, "{}", mesh.name);
+}
+
+#[test]
+fn a_plate_with_holes() {
+    let fine = mesh(&format!("{PLATE}mesh fine of plate {{ size: 0.5mm  elements: quads }}"));
+    all_quads(&fine, 0.6, -1);
+    let quality = fine.quality().unwrap();
+    assert!(quality.mean_quality > 0.96, "{}", quality.mean_quality);
+    for (center, radius) in [(5.0, 2.0), (14.0, 2.0)] {
+        let on = |p: &&DVec3| (p.distance(DVec3::new(center, 5.0, 0.0)) - radius).abs() < 1e-9;
+        assert!(fine.nodes.iter().filter(on).count() >= 26);
+    }
+}
+
+#[test]
+fn poles_and_seams() {
+    let turned = "units mm
+let axis = line((0, 0, 0), (0, 0, 2))
+curve slope = line((0, 0, 1), (1, 0, 0))
+surface cone = revolve(slope, axis: axis)
+curve half = arc(center: (0, 0, 0), start: (0, 0, -1), angle: 180deg, normal: (0, -1, 0))
+surface ball = revolve(half, axis: axis)
+curve ring = circle(center: (3, 0, 0), radius: 1mm, normal: (0, 1, 0))
+surface torus = revolve(ring, axis: axis)
+";
+    let settings = "{ size: 0.3mm  elements: quads  method: delaunay }";
+    let made = meshes(&format!("{turned}mesh a of cone {settings}\nmesh b of ball {settings}\nmesh c of torus {settings}"));
+    for (mesh, euler) in made.iter().zip([1, 2, 0]) {
+        all_quads(mesh, 0.4, euler);
+        assert_eq!(mesh.is_watertight(), euler != 1, "{}", mesh.name);
+    }
+}
+
+#[test]
+fn limits_on_a_trimmed_dome() {
+    let dome = "units mm
+surface dome = bezier_surface([
+  [(0, 0, 0), (40, 0, 25), (80, 0, 25), (120, 0, 0)],
+  [(0, 40, 25), (40, 40, 75), (80, 40, 75), (120, 40, 25)],
+  [(0, 80, 25), (40, 80, 75), (80, 80, 75), (120, 80, 25)],
+  [(0, 120, 0), (40, 120, 25), (80, 120, 25), (120, 120, 0)]
+])
+curve eye = project(circle(center: (50, 50, 80), radius: 18mm), onto: dome, along: (0, 0, 1))
+surface top = trim(dome, holes: [eye])
+mesh a of top { size: 60mm  chord_error: 0.5mm  elements: quads }
+mesh b of top { size: 60mm  chord_error: 0.1mm  elements: quads }
+mesh c of top { size: 60mm  angle_error: 15deg  elements: quads }
+";
+    let outcome = outcome(dome);
+    assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
+    let error = |k: usize| outcome.report.meshes[k].chord_error.unwrap();
+    assert!(error(0) <= 0.5 && error(1) <= 0.1, "{} {}", error(0), error(1));
+    outcome.meshes.iter().for_each(|m| all_quads(&m.1, 0.3, 0));
+    assert!(outcome.meshes[0].1.quads.len() < outcome.meshes[1].1.quads.len());
+}
+
+#[test]
+fn mapped_neighbours_take_even_counts() {
+    let text = "units mm
+let a = line((0, 0, 0), (10, 0, 0))
+curve rim = polyline([(0, 0), (10, 0), (10, 6), (0, 6)], closed: true)
+curve hole = circle(center: (5, 3, 0), radius: 1.5mm)
+surface floor = trim(plane(rim), holes: [hole])
+surface wall = extrude(rim[..10mm], (0, 0, 4))
+mesh m of floor, wall { size: 0.95mm  elements: quads }
+mesh n of floor, wall { size: 0.95mm  elements: quads  on hole { count: 14 } }
+";
+    for mesh in meshes(text) {
+        all_quads(&mesh, 0.3, 0);
+        let on = mesh.nodes.iter().filter(|p| p.z == 0.0 && p.y == 0.0).count();
+        assert_eq!(on % 2, 1, "{on} nodes on the common edge");
+    }
+}
+
+#[test]
+fn curves_and_points_inside_stay() {
+    let text = format!(
+        "{PLATE}curve rib = line((0, 3.2mm, 0), (20, 1.1mm, 0))
+point bolt = (9.3mm, 7.1mm, 0)
+mesh m of plate, rib, bolt {{ size: 0.8mm  elements: quads }}"
+    );
+    let fine = mesh(&text);
+    all_quads(&fine, 0.2, -1);
+    assert!(fine.nodes.iter().any(|p| p.distance(DVec3::new(9.3, 7.1, 0.0)) < 1e-9));
+    assert!(!fine.lines.is_empty());
+    for [a, b] in &fine.lines {
+        let side = |q: &[u32; 4]| (0..4).any(|k| [q[k], q[(k + 1) % 4]] == [*a, *b] || [q[(k + 1) % 4], q[k]] == [*a, *b]);
+        assert_eq!(fine.quads.iter().filter(|q| side(q)).count(), 2);
+    }
+}
+
+#[test]
+fn mixed_leaves_triangles_where_pairs_are_bad() {
+    for method in ["delaunay", "quadtree"] {
+        let fine = mesh(&format!("{PLATE}mesh fine of plate {{ size: 0.5mm  elements: mixed  method: {method} }}"));
+        assert_eq!(sound(&fine, 0.3), -1);
+        assert!(fine.quads.len() > 8 * fine.triangles.len(), "{method}: {} {}", fine.quads.len(), fine.triangles.len());
+    }
+}
+
+#[test]
+fn second_order_lies_on_the_surface() {
+    let text = "units mm
+let axis = line((0, 0, 0), (0, 0, 2))
+curve half = arc(center: (0, 0, 0), start: (0, 0, -1), angle: 180deg, normal: (0, -1, 0))
+surface ball = revolve(half, axis: axis)
+mesh m of ball { size: 0.3mm  elements: quads  order: 2  method: delaunay }
+";
+    let fine = mesh(text);
+    assert_eq!(fine.quad_mids.len(), fine.quads.len());
+    assert!(fine.nodes.iter().all(|p| (p.length() - 1.0).abs() < 1e-9));
+    for (quad, mids) in fine.quads.iter().zip(&fine.quad_mids) {
+        for k in 0..4 {
+            let [a, b, m] = [quad[k], quad[(k + 1) % 4], mids[k]].map(|n| fine.nodes[n as usize]);
+            assert!(m.distance(0.5 * (a + b)) < 0.2 * a.distance(b), "{m} between {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn quadtrees_and_growing_sizes() {
+    let grown = format!("{PLATE}mesh m of plate {{ size: 1.5mm  elements: quads  near (0, 0, 0) {{ size: 0.1mm  radius: 0.5mm }} }}");
+    all_quads(&mesh(&grown), 0.3, -1);
+    let tree = format!("{PLATE}mesh m of plate {{ size: 1mm  elements: quads  method: quadtree }}");
+    all_quads(&mesh(&tree), 0.2, -1);
+}
+
+#[test]
+fn what_cannot_be_is_said_with_its_place() {
+    let odd = format!("{PLATE}mesh m of plate {{ size: 1mm  elements: quads  on hole[0] {{ count: 13 }} }}");
+    let said = refused(&odd);
+    assert!(said.contains("E704") && said.contains("13 elements") && said.contains("count: 14"), "{said}");
+    let few = format!("{PLATE}mesh m of plate {{ size: 1mm  elements: quads  on hole[0] {{ count: 4 }} }}");
+    let said = refused(&few);
+    assert!(said.contains("E703") && said.contains("count: 6"), "{said}");
+    let shown = format!("{PLATE}mesh m of plate {{ size: 1mm  elements: quads  method: display }}");
+    let said = refused(&shown);
+    assert!(said.contains("E704") && said.contains("method: display"), "{said}");
+}
