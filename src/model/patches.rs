@@ -43,13 +43,48 @@ pub(super) struct Pieces {
 struct OnChain {
     chain: Chain,
     links: Option<Vec<(LinkId, bool)>>,
+    /// How far the links reach out before the start of the chain and beyond its end.
+    over: (f64, f64),
     fractions: Vec<f64>,
 }
 
 impl OnChain {
     fn new(chain: &Chain, fractions: Vec<f64>, network: &Network, tolerance: &Tolerance) -> Self {
-        Self { chain: chain.clone(), links: network.links_of(chain, tolerance), fractions }
+        let mut links = network.links_of(chain, tolerance);
+        let over = links.as_mut().map_or((0.0, 0.0), |links| turned(links, chain, network, tolerance));
+        Self { chain: chain.clone(), links, over, fractions }
     }
+}
+
+/// Turns the links of a ring that begins between two nodes so that the first one holds its start; that one is there once more
+/// as the last. Gives how far they reach out at both ends.
+fn turned(links: &mut Vec<(LinkId, bool)>, chain: &Chain, network: &Network, tolerance: &Tolerance) -> (f64, f64) {
+    let ([run], Some((first, _))) = (chain.runs(), links.first()) else { return (0.0, 0.0) };
+    let length = |link: &(LinkId, bool)| {
+        let s = network.links[link.0.index()].s;
+        s.1 - s.0
+    };
+    // Only a whole ring may begin between nodes.
+    let total = run.curve.length();
+    if chain.length() < total - tolerance.point {
+        return (0.0, 0.0);
+    }
+    let s = network.links[first.index()].s;
+    let ahead = if run.is_backward() { run.s0 - s.1 } else { s.0 - run.s0 };
+    let ahead = ahead - total * (ahead / total).floor();
+    if ahead <= tolerance.point || ahead >= total - tolerance.point {
+        return (0.0, 0.0);
+    }
+    // The start of the chain is so far along the ring from its first link.
+    let (mut k, mut before) = (0, 0.0);
+    while k + 1 < links.len() && before + length(&links[k]) <= total - ahead {
+        before += length(&links[k]);
+        k += 1;
+    }
+    links.rotate_left(k);
+    links.push(links[0]);
+    let lead = total - ahead - before;
+    (lead, length(&links[0]) - lead)
 }
 
 /// Where a line runs: side number, or a line inside.
@@ -332,7 +367,7 @@ impl Cutter<'_> {
         if backwards {
             (a, b) = (length - a, length - b);
         }
-        let found = on.links.clone().and_then(|links| self.links_between(links, backwards, (a, b)));
+        let found = on.links.clone().and_then(|links| self.links_between((links, on.over), backwards, (a, b)));
         found.unwrap_or_else(|| {
             let chain = if backwards { on.chain.reversed() } else { on.chain.clone() };
             EdgeCurve::Run { chain, span: (a, b) }
@@ -340,12 +375,17 @@ impl Cutter<'_> {
     }
 
     /// The links of a chain (run backwards first if so) between two arc lengths.
-    fn links_between(&self, mut links: Vec<(LinkId, bool)>, backwards: bool, (a, b): (f64, f64)) -> Option<EdgeCurve> {
+    fn links_between(
+        &self,
+        (mut links, over): (Vec<(LinkId, bool)>, (f64, f64)),
+        backwards: bool,
+        (a, b): (f64, f64),
+    ) -> Option<EdgeCurve> {
         if backwards {
             links.reverse();
             links.iter_mut().for_each(|(_, against)| *against = !*against);
         }
-        let (mut used, mut before, mut start) = (Vec::new(), 0.0, 0.0);
+        let (mut used, mut before, mut start) = (Vec::new(), if backwards { -over.1 } else { -over.0 }, 0.0);
         let near = self.tolerance.point;
         for (link, against) in links {
             let s = self.network.links[link.index()].s;

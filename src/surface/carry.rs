@@ -114,9 +114,10 @@ pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
     let missed = |f: f64| off(chain.point(f), carrier.near.at(chain.point(f)).distance);
     let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
     let land = |f: f64, guess: Option<DVec2>, before: bool| carrier.at(f, guess, before).ok_or_else(|| Fault::from(missed(f)));
-    let pieces = cubics(&stops, SHARE * tolerance.point, land, |at| {
-        CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at }.into()
-    })?;
+    let lost = |at| CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at }.into();
+    let fitted = |stops: &[f64]| cubics(stops, SHARE * tolerance.point, land, lost);
+    // Long steps may land on another sheet of the surface, short ones follow their own.
+    let pieces = fitted(&stops).or_else(|_| fitted(&walked(&stops)))?;
     let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(&pieces))), Kind::Project, origin);
     let length = curve.length();
     if length <= tolerance.point {
@@ -125,10 +126,28 @@ pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
     Ok(curve)
 }
 
+/// Steps in which a stretch between stops is walked when nothing is known of the surface.
+const WALK: usize = 32;
+
+/// Stops with as many between each two.
+fn walked(stops: &[f64]) -> Vec<f64> {
+    let between = |w: &[f64]| -> Vec<f64> { (0..WALK).map(|k| w[0] + (w[1] - w[0]) * k as f64 / WALK as f64).collect() };
+    stops.windows(2).flat_map(between).chain(stops.last().copied()).collect()
+}
+
 impl Carrier<'_> {
     /// The carried point at a fraction of the chain, near a place when one is known; `before`: derivatives of the piece
-    /// that ends there. `None` where there is none.
+    /// that ends there. `None` where there is none. Over a seam (u, v) go on, so that what is between two places is near both.
     fn at(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
+        let found = self.landed(f, near, before)?;
+        let Some(near) = near else { return Some(found) };
+        let turns = |closed: bool, there: f64, here: f64| if closed { (there - here).round() } else { 0.0 };
+        let closed = self.surface.closed();
+        let uv = found.uv + DVec2::new(turns(closed.0, near.x, found.uv.x), turns(closed.1, near.y, found.uv.y));
+        Some(Spot { uv, ..found })
+    }
+
+    fn landed(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
         let jet = if before { self.chain.jet_before(f) } else { self.chain.jet(f) };
         match self.way {
             Way::Parameters => {

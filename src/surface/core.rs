@@ -254,9 +254,6 @@ impl Surface {
 
     /// Into 0…1 where a trimmed surface closes: its borders may run over the seam.
     pub(super) fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
-        if self.0.domain != Domain::Loop {
-            return (u, v);
-        }
         let wrap = |x: f64, closed: bool| if closed && !(0.0..=1.0).contains(&x) { x - x.floor() } else { x };
         (wrap(u, self.0.closed.0), wrap(v, self.0.closed.1))
     }

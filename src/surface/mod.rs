@@ -19,6 +19,7 @@ pub mod interpolate;
 mod iso;
 mod iso_fit;
 mod line;
+mod lone;
 pub mod meet;
 mod net_spread;
 pub mod nurbs;

@@ -187,7 +187,13 @@ fn of_part(
     };
     let p = (run.start(), run.point(MIDDLE), run.end());
     let off = |off: Off| outside(base, &run, off, tolerance);
-    let pull = Pull::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point).map_err(off)?;
+    // From a pole the other end tells on which side of a seam the border runs.
+    let pull = if is_pole(base, about(from)) {
+        Pull::follow(base, (&run, 1.0, 0.0), about(to), tolerance.point).map(|pull| pull.turned())
+    } else {
+        Pull::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point)
+    }
+    .map_err(off)?;
     if !drawn {
         let (uv, course) = (pull.ends(), Course::Pull(Arc::new(pull)));
         return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam });

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
+use super::lone::{Keep, lone};
 use super::plane;
 use super::pull::{Course, Pull, foot};
 use super::shape::Shape;
@@ -92,32 +93,49 @@ pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
 }
 
 /// The part of a surface inside `outer` (the whole of it when empty) and outside `holes`, each given by the curves of a loop
-/// in any order and direction.
+/// in any order and direction. Where a surface closes loops may run over seams and round poles.
 ///
-/// Fails with E502 when a loop does not close, E611 when it crosses itself, E612 when a hole is not inside the outer loop,
-/// E613 when a loop leaves the surface.
+/// Fails with E502 when a loop does not close, E611 when it crosses itself, E612 when a hole is not inside the outer loop or
+/// a loop goes round the surface and bounds nothing alone, E613 when a loop leaves the surface.
 pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
-    let base = &plane::unmapped(base, tolerance)?;
+    let mut base = plane::unmapped(base, tolerance)?;
+    let goes_round = |base: &Surface, chains: &[Chain]| -> Fault {
+        let of = chains.first().map_or(origin, Chain::origin);
+        let at = chains.first().map_or(DVec3::ZERO, Chain::start);
+        SurfaceFault::LoopGoesRound { of, surface: base.origin(), trimming: origin, at }.into()
+    };
     let mut walks = Vec::new();
-    if outer.is_empty() {
-        walks.extend(natural(base, tolerance)?);
-    } else {
-        walks.push(around(base, outer, tolerance)?);
+    if !outer.is_empty() {
+        let walk = around(&base, outer, tolerance)?;
+        if walk.winds(&base) {
+            base = lone(&base, outer, Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(&base, outer))?;
+        } else {
+            walks.push(walk);
+        }
     }
-    let mut holes = holes.iter().map(|chains| around(base, chains, tolerance)).collect::<Result<Vec<_>>>()?;
+    if walks.is_empty() {
+        walks.extend(natural(&base, tolerance)?);
+    }
     let bounds = walks.first().map(Walk::polygon).unwrap_or_default();
-    for (k, hole) in holes.iter_mut().enumerate() {
-        let place = std::mem::replace(hole, Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() });
-        let polygon = place.polygon();
+    let mut apart = Vec::new();
+    for (k, chains) in holes.iter().enumerate() {
+        let walk = around(&base, chains, tolerance)?;
+        let polygon = walk.polygon();
         let within = |by: DVec2| bounds.is_empty() || polygon.iter().all(|p| inside(&bounds, *p + by));
-        let Some(by) = shifts(base).into_iter().find(|by| within(*by)) else {
+        if let Some(by) = shifts(&base).into_iter().find(|by| within(*by)).filter(|_| !walk.winds(&base)) {
+            walks.push(walk.shifted(by));
+        } else if shifts(&base).len() > 1 && walk.lies_within(&base, &bounds) {
+            apart.push(chains);
+        } else {
             let at = base.point(polygon[0].x, polygon[0].y);
             return Err(SurfaceFault::LoopOutside { of: origin, hole: k + 1, at }.into());
-        };
-        *hole = place.shifted(by);
+        }
     }
-    walks.extend(holes);
-    assembled(base, walks, origin)
+    let mut made = assembled(&base, walks, origin)?;
+    for chains in apart {
+        made = lone(&made, chains, Keep::Outside, origin, tolerance)?.ok_or_else(|| goes_round(&base, chains))?;
+    }
+    Ok(made)
 }
 
 /// A surface with these loops, the outer one first.

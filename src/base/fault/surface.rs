@@ -235,6 +235,17 @@ pub enum SurfaceFault {
         /// A point of it.
         at: DVec3,
     },
+    /// E612: a loop of a closed surface with border on both sides of it.
+    LoopGoesRound {
+        /// The loop.
+        of: Origin,
+        /// The surface.
+        surface: Origin,
+        /// The trimming.
+        trimming: Origin,
+        /// A point of the loop.
+        at: DVec3,
+    },
     /// E613: a loop that is not on its surface.
     LoopOutsideSurface {
         /// The curve.
@@ -532,6 +543,16 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
                 .at(*of, "trimmed here")
                 .help("a hole lies wholly inside; where it cuts the border, make one outer loop of both")
         }
+        F::LoopGoesRound { of, surface, trimming, at } => {
+            let (which, whose) = (say.quoted(*of, "the loop"), say.quoted(*surface, "the surface"));
+            Report::new(
+                "E612",
+                format!("{which} goes round {whose} through {} and has border on both sides: it bounds nothing alone", say.point(*at)),
+            )
+            .at(*trimming, "trimmed here")
+            .at(*of, "this loop")
+            .help("`by:` this loop with `keep:` a point of the part that stays")
+        }
         F::LoopOutsideSurface { of, surface, off, at, tolerance } => Report::new(
             "E613",
             format!(
@@ -737,6 +758,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::EndTrimmed { .. }
         | F::LoopSelfIntersects { .. }
         | F::LoopOutside { .. }
+        | F::LoopGoesRound { .. }
         | F::LoopOutsideSurface { .. }
         | F::SliverPatch { .. }
         | F::AxisNotStraight { .. }
