@@ -4,6 +4,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+use std::fmt::Write as _;
+use std::path::Path;
+
 use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::base::math::{cos, sin, sin_cos};
@@ -13,6 +16,8 @@ use lofting::mesh::free::ground::{Even, Field, Ground, Spot};
 use lofting::mesh::free::improve::Care;
 use lofting::mesh::free::outline::Outline;
 use lofting::mesh::free::web::Web;
+use lofting::session::disk::{Disk, Outputs};
+use lofting::session::guard::guarded;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 
@@ -84,7 +89,13 @@ fn sound(web: &Web, outline: &Outline, holes: Option<usize>) -> TestCaseResult {
 }
 
 fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> TestCaseResult) {
-    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(cases);
+    check_one_in(1, cases, strategy, test);
+}
+
+/// The same for what takes longer: one in so many of the cases that are asked for.
+fn check_one_in<S: Strategy>(share: u32, cases: u32, strategy: &S, test: impl Fn(S::Value) -> TestCaseResult) {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse::<u32>().ok());
+    let cases = asked.map_or(cases, |n| n.div_ceil(share));
     let config = Config { cases, max_shrink_iters: 200, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]));
     runner.run(strategy, test).unwrap_or_else(|error| panic!("{error}"));
@@ -169,4 +180,75 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
     let all: Vec<f64> = (0..web.tri.len() as u32).map(|t| web.quality(t)).collect();
     let (mean, worst) = (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(1.0, f64::min));
     assert!(mean > 0.985 && worst > 0.85, "mean {mean}, worst {worst}");
+}
+
+/// Closed surfaces about the z axis, all of them near 100 mm across: the script, whether a mesh of all of it is closed, and the
+/// largest slope of places that loops are aimed at.
+const CLOSED: [(&str, bool, f64); 4] = [
+    (
+        "revolve(arc((0, 0, -100), (0, 0, 100), through: (100, 0, 0)), axis: line((0, 0, -100), (0, 0, 100)))",
+        true,
+        std::f64::consts::FRAC_PI_2,
+    ),
+    ("extrude(circle(center: (0, 0, -100), radius: 100), by: (0, 0, 200))", false, 0.3),
+    ("revolve(line((100, 0, -100), (0, 0, 100)), axis: line((0, 0, -100), (0, 0, 100)))", false, std::f64::consts::FRAC_PI_2),
+    ("revolve(circle(center: (80, 0, 0), radius: 40, normal: (0, 1, 0)), axis: line((0, 0, -100), (0, 0, 100)))", true, 0.0),
+];
+
+/// A loop in the plane across a direction: a circle for no corners, else a polygon.
+fn aimed(round: f64, up: f64, radius: f64, corners: &[f64]) -> String {
+    let ((sa, ca), (sb, cb)) = (sin_cos(round), sin_cos(up));
+    let d = DVec3::new(ca * cb, sa * cb, sb);
+    let (x, y) = (DVec3::new(-sa, ca, 0.0), DVec3::new(-ca * sb, -sa * sb, cb));
+    let at = |p: DVec3| format!("({:.9}, {:.9}, {:.9})", p.x, p.y, p.z);
+    let center = d * 130.0;
+    if corners.len() < 3 {
+        return format!("project(circle(center: {}, radius: {radius:.9}, normal: {}), onto: s, along: {})", at(center), at(d), at(d));
+    }
+    let flat = star(DVec2::ZERO, corners, 0.1);
+    let points: Vec<String> = flat.iter().map(|p| at(center + (x * p.x + y * p.y) * radius)).collect();
+    format!("project(polyline([{}], closed: true), onto: s, along: {})", points.join(", "), at(d))
+}
+
+/// Loops over seams, round poles and away from both, smooth and spiked, down to holes far smaller than a cell: what is cut out
+/// and what is left are the surface again, and so are their meshes; or a reason with its place.
+#[test]
+fn loops_on_closed_surfaces_part_them_or_say_why() {
+    let round = prop_oneof![Just(0.0), -0.3_f64..0.3, 0.0_f64..6.3];
+    let up = prop_oneof![Just(1.0), Just(-1.0), Just(0.0), -1.0_f64..1.0];
+    let radius = prop_oneof![0.3_f64..1.0, 1.0_f64..30.0];
+    let corners = prop_oneof![Just(Vec::new()), proptest::collection::vec(0.3_f64..1.0, 3..9)];
+    let shape = (0..CLOSED.len(), round, up, radius, corners, 0..3_usize);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("trims");
+    std::fs::create_dir_all(&folder).unwrap();
+    check_one_in(10, 8, &shape, |(kind, round, up, radius, corners, settings)| {
+        let (surface, closed, steep) = CLOSED[kind];
+        let settings = ["size: 40", "size: 30  chord_error: 3", "size: 60  method: quadtree"][settings];
+        let mut script = format!("units mm\nsurface s = {surface}\n");
+        writeln!(script, "curve e = {}", aimed(round, up * steep, radius, &corners)).unwrap();
+        script += "surface rest = trim(s, holes: [e])\nsurface lid = trim(s, outer: e)\n";
+        writeln!(script, "mesh m of rest, lid {{ {settings} }}").unwrap();
+        script += "check \"parts\": rest.area + lid.area == s.area within 1e-3%\ncheck \"mesh\": m.area == s.area within 15%\n";
+        if closed {
+            script += "check \"closed\": m.watertight\n";
+        }
+        let disk = Disk::new(None, Some(&folder), &[], Outputs::Written).unwrap();
+        let clock = || 0.0;
+        let task = lofting::session::run::Task {
+            name: "trim.loft",
+            text: script.as_bytes(),
+            sets: &[],
+            strict: false,
+            keep_going: false,
+            full: true,
+            picture: None,
+            clock: &clock,
+        };
+        let outcome = guarded(|| lofting::session::run::run(&task, &disk, &Job::default()))
+            .map_err(|bug| TestCaseError::fail(format!("{bug:?}\n{script}")))?;
+        let told = outcome.drawn(false, false);
+        let reason = !told.contains("E901") && !told.contains("E999") && told.contains("trim.loft:");
+        prop_assert!(outcome.report.ok || reason, "{}\n{}", told, script);
+        Ok(())
+    });
 }

@@ -36,7 +36,9 @@ pub struct Plot<'a> {
 pub fn nodes(task: &Plot) -> Option<Grown> {
     let outline = task.outline;
     let segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| outline.xy[n as usize])).collect();
-    let lengths: Vec<f64> = outline.edges().map(|e| outline.length(e)).collect();
+    // At a pole the chart has an edge that is a point in space: no cell can be as short as that.
+    let length = |e| Some(outline.length(e)).filter(|l| *l > 0.0).unwrap_or(f64::INFINITY);
+    let lengths: Vec<f64> = outline.edges().map(length).collect();
     let (low, high) = outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
     let side = SIDE * largest(task, low, high);
     let count = |x: f64| (x / side).ceil().clamp(1.0, ROOTS) as u32;
