@@ -58,7 +58,7 @@ pub struct Decision {
 pub struct Sizing {
     /// One a stretch.
     pub decisions: Vec<Decision>,
-    /// One a rule, then one a `near` or `in` clause: whether it was taken anywhere.
+    /// One a rule, then one a `near` or `in` clause, then one a setting of free faces: whether it was taken anywhere.
     pub taken: Vec<bool>,
     /// Why a rule cannot be taken at all, in words.
     pub homeless: Vec<Option<String>>,
@@ -97,11 +97,12 @@ impl Sizing {
     pub fn new(input: &Input, layout: &mut Layout, size: f64, known: Option<&Known>) -> Result<Self> {
         let n = layout.pieces.atoms.len();
         let rules = &input.plan.rules;
-        let clauses = rules.len() + input.plan.refines.len();
+        let clauses = rules.len() + input.plan.refines.len() + FREE_ONLY.len();
         let wanted = Wanted::new(input, size)?;
         let mut sizing = Self { taken: vec![false; clauses], homeless: vec![None; clauses], wanted, ..Self::default() };
         sizing.faces(input, layout, size);
         super::faces::choose(input, layout)?;
+        sizing.free_only(input, layout);
         let refined = sizing.refine_mapped(input, layout);
         let mut division: Vec<Option<Ruled<Division>>> = vec![None; n];
         let mut bias: Vec<Option<Ruled<f64>>> = vec![None; n];
@@ -172,6 +173,18 @@ impl Sizing {
         }
         sizing.bias_rule = bias.iter().map(|b| b.map(|b| b.rule)).collect();
         Ok(sizing)
+    }
+
+    /// Settings that only faces made freely know: taken where there are some, or where nobody wrote them.
+    fn free_only(&mut self, input: &Input, layout: &Layout) {
+        let plan = input.plan;
+        let free = layout.faces.iter().any(|face| face.free);
+        let first = plan.rules.len() + plan.refines.len();
+        for (k, key) in FREE_ONLY.into_iter().enumerate() {
+            let idle = free_only_origin(plan, key).is_some() && !free && (key == "smooth" || plan.refines.is_empty());
+            self.taken[first + k] = !idle;
+            self.homeless[first + k] = idle.then(|| format!("`{key}` is for faces made freely, and there is none here"));
+        }
     }
 
     /// The stretches as unknowns of the solver.
@@ -461,6 +474,14 @@ pub enum Remark {
     },
 }
 
+/// Settings of the whole mesh that only faces made freely know; they follow the clauses in [`Sizing::taken`].
+const FREE_ONLY: [&str; 2] = ["smooth", "growth"];
+
+/// Where one of them is written.
+fn free_only_origin(plan: &Plan, key: &str) -> Option<Origin> {
+    if key == "smooth" { plan.smooth.map(|n| n.1) } else { plan.growth.map(|g| g.1) }
+}
+
 /// Settings of which one rule may override another.
 const KEYS: [&str; 5] = ["count", "size", "bias", "elements", "method"];
 
@@ -468,7 +489,13 @@ impl Remark {
     /// The warning, at the places of the rules.
     pub fn fault(&self, plan: &Plan) -> Fault {
         let clause = |n: usize| plan.refines.get(n).map_or(Origin::NONE, |r| r.origin);
-        let origin = |rule: usize| plan.rules.get(rule).map_or_else(|| clause(rule - plan.rules.len()), |r| r.origin);
+        let first = plan.rules.len() + plan.refines.len();
+        let setting = |n: usize| FREE_ONLY.get(n).and_then(|key| free_only_origin(plan, key)).unwrap_or(Origin::NONE);
+        let origin = |rule: usize| match plan.rules.get(rule) {
+            Some(r) => r.origin,
+            None if rule >= first => setting(rule - first),
+            None => clause(rule - plan.rules.len()),
+        };
         match self {
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {
