@@ -25,6 +25,15 @@ pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop
     }
     let tolerance = cx.tolerance()?;
     match (&kinds[0], &kinds[1]) {
+        (Meeting::Mesh(mesh), Meeting::Plane(plane)) | (Meeting::Plane(plane), Meeting::Mesh(mesh)) => {
+            match super::std::mesh::sections(cx, mesh, plane)?.as_slice() {
+                [one] => Ok(Value::Curve(one.clone())),
+                other => {
+                    let curves = other.iter().map(|c| (c.point(0.5), c.length())).collect();
+                    Err(Fault::from(CutFault::NotOneSection { of: cx.origin(), curves }).into())
+                }
+            }
+        }
         (Meeting::Curve(a), Meeting::Curve(b)) => Ok(Value::Node(meet::meet_once(a, b, &tolerance)?.point)),
         (Meeting::Curve(curve), other) | (other, Meeting::Curve(curve)) => match faces(other)? {
             Some(faces) => Ok(Value::point(surfaces::with_curve_once(curve, &faces, &tolerance)?.point)),

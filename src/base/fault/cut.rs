@@ -28,6 +28,13 @@ pub enum CutFault {
         /// Middle and length of each curve.
         curves: Vec<(DVec3, f64)>,
     },
+    /// E507, E508: a mesh and a plane that meet in no curve, or in several, where one is wanted.
+    NotOneSection {
+        /// The expression.
+        of: Origin,
+        /// Middle and length of each curve.
+        curves: Vec<(DVec3, f64)>,
+    },
     /// E657 `surfaces-coincide`: two surfaces run along each other over an area or a line, so they have no curve that is sure.
     RunAlong {
         /// One surface.
@@ -81,15 +88,19 @@ impl Describe for CutFault {
                 report.note(format!("the model's tolerance is {}", say.length(*tolerance)))
             }
             Self::SeveralCurves { a, b, curves } => {
-                const SHOWN: usize = 6;
-                let one = |(p, length): &(DVec3, f64)| format!("through {}, {} long", say.point(*p), say.length(*length));
-                let list: Vec<String> = curves.iter().take(SHOWN).map(one).collect();
-                let more = if curves.len() > SHOWN { format!("; and {} more", curves.len() - SHOWN) } else { String::new() };
+                let list = listed(curves, say);
                 let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
-                Report::new("E508", format!("{x} and {y} meet in {} curves: {}{more}", curves.len(), list.join("; ")))
+                Report::new("E508", format!("{x} and {y} meet in {} curves: {list}", curves.len()))
                     .at(*a, "this surface")
                     .at(*b, "and this one")
                     .help("`meet(a, b)` is the list of all of them")
+            }
+            Self::NotOneSection { of, curves } if curves.is_empty() => {
+                Report::new("E507", "the mesh and the plane do not meet").at(*of, "asked for here")
+            }
+            Self::NotOneSection { of, curves } => {
+                let message = format!("the mesh and the plane meet in {} curves: {}", curves.len(), listed(curves, say));
+                Report::new("E508", message).at(*of, "asked for here").help("`section(a, b)` is the list of all of them")
             }
             Self::RunAlong { a, b, at, tolerance } => Report::new(
                 "E657",
@@ -132,4 +143,13 @@ impl Describe for CutFault {
                 .help("bound one of them: `plane(curves)` is the face inside curves"),
         }
     }
+}
+
+/// Curves by a point and their length, the first few of them.
+fn listed(curves: &[(DVec3, f64)], say: &dyn Say) -> String {
+    const SHOWN: usize = 6;
+    let one = |(p, length): &(DVec3, f64)| format!("through {}, {} long", say.point(*p), say.length(*length));
+    let list: Vec<String> = curves.iter().take(SHOWN).map(one).collect();
+    let more = if curves.len() > SHOWN { format!("; and {} more", curves.len() - SHOWN) } else { String::new() };
+    format!("{}{more}", list.join("; "))
 }
