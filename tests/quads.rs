@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::process::Command;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -78,12 +79,18 @@ fn all_quads(mesh: &Mesh, least: f64, euler: i64) {
     assert_eq!(sound(mesh, least), euler, "{}", mesh.name);
 }
 
+fn longest(mesh: &Mesh) -> f64 {
+    let side = |q: &[u32; 4], k: usize| mesh.nodes[q[k] as usize].distance(mesh.nodes[q[(k + 1) % 4] as usize]);
+    mesh.quads.iter().flat_map(|q| (0..4).map(move |k| side(q, k))).fold(0.0, f64::max)
+}
+
 #[test]
 fn a_plate_with_holes() {
     let fine = mesh(&format!("{PLATE}mesh fine of plate {{ size: 0.5mm  elements: quads }}"));
     all_quads(&fine, 0.6, -1);
     let quality = fine.quality().unwrap();
-    assert!(quality.mean_quality > 0.96, "{}", quality.mean_quality);
+    assert!(quality.mean_quality > 0.95, "{}", quality.mean_quality);
+    assert!(longest(&fine) <= 1.05 * 0.5 * (1.0 + 1e-9), "{}", longest(&fine));
     for (center, radius) in [(5.0, 2.0), (14.0, 2.0)] {
         let on = |p: &&DVec3| (p.distance(DVec3::new(center, 5.0, 0.0)) - radius).abs() < 1e-9;
         assert!(fine.nodes.iter().filter(on).count() >= 26);
@@ -106,6 +113,7 @@ surface torus = revolve(ring, axis: axis)
     for (mesh, euler) in made.iter().zip([1, 2, 0]) {
         all_quads(mesh, 0.4, euler);
         assert_eq!(mesh.is_watertight(), euler != 1, "{}", mesh.name);
+        assert!(longest(mesh) <= 1.05 * 0.3 * (1.0 + 1e-9), "{}: {}", mesh.name, longest(mesh));
     }
 }
 
@@ -214,4 +222,21 @@ fn what_cannot_be_is_said_with_its_place() {
     let shown = format!("{PLATE}mesh m of plate {{ size: 1mm  elements: quads  method: display }}");
     let said = refused(&shown);
     assert!(said.contains("E704") && said.contains("method: display"), "{said}");
+}
+
+#[test]
+fn the_same_bytes_on_any_number_of_threads() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("quads-threads");
+    std::fs::create_dir_all(&folder).unwrap();
+    let script = folder.join("m.loft");
+    let text = "mesh m of plate { size: 0.6mm  elements: quads }\nmesh b of plate { size: 0.7mm  elements: mixed }\nexport m to \"m.vtu\"\nexport b to \"b.vtu\"\n";
+    std::fs::write(&script, format!("{PLATE}{text}")).unwrap();
+    let mut known = None;
+    for threads in ["1", "2", "8"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_loft"));
+        let done = command.args(["run", "--threads", threads]).arg(&script).arg("-o").arg(&folder).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let found = ["m.vtu", "b.vtu"].map(|name| std::fs::read(folder.join(name)).unwrap());
+        assert!(*known.get_or_insert_with(|| found.clone()) == found, "{threads} threads make another file");
+    }
 }

@@ -17,6 +17,7 @@ use crate::mesh::free::loads::Loads;
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::quads::halves::Halves;
 use crate::mesh::free::quads::net::{NONE, Net, Raw};
+use crate::mesh::free::quads::open::open;
 use crate::mesh::free::quads::pair::{Alone, pair};
 use crate::mesh::free::quads::smooth::Smoother;
 use crate::mesh::free::quads::split::split;
@@ -29,7 +30,7 @@ use crate::mesh::plan::{Elements, Method};
 use crate::mesh::sources::Sources;
 
 /// Distance of the crystal's nodes over the size.
-const SPACING: f64 = 0.95;
+const SPACING: f64 = 0.85;
 /// Distance of nodes over the side of an equilateral triangle that keeps the limits: half a square has a longer side.
 const HALVED: f64 = 0.7;
 /// Quality of pairs that is better than two triangles: of `mixed`.
@@ -44,9 +45,12 @@ const MENDS: usize = 6;
 /// Rounds in which long sides are shared out to their neighbours.
 const SHARES: usize = 60;
 
-/// How much longer a side of a quad may be than one of a triangle: what rows of squares leave between them is shared out to
-/// their neighbours, and round a hole they get longer from row to row.
-const ROOM: f64 = 1.5;
+/// Rounds in which nodes at long sides are opened.
+const OPENINGS: usize = 8;
+/// How much longer than that a side may be that is left after so many tries: a row of squares met another one there.
+const ROOM: f64 = 1.2;
+/// Tries in which no side may be longer.
+const STRICT: usize = 8;
 /// What is made smaller where a limit is broken is made more so.
 const LOWER: f64 = 0.9;
 /// Times a face is made anew for its limits.
@@ -193,7 +197,8 @@ impl Maker<'_> {
                 Err(trouble) => return Ok(Err(trouble)),
             };
             worst = self.lower(field, &net)?;
-            if worst.over <= 1.0 {
+            let room = if worst.limit == "size" && round >= STRICT { ROOM } else { 1.0 };
+            if worst.over <= room {
                 return Ok(Ok(net));
             }
             if let Some(background) = &mut field.background {
@@ -247,13 +252,27 @@ impl Maker<'_> {
             net = split(&net, ground, wanted);
             self.smooth(&mut net, wanted, job)?;
         }
-        if self.fit.care.smooth > 0 {
-            let longest = &self.fit.longest;
-            let over =
-                |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(net, a as u32).max(longest.at(net, b as u32));
-            Smoother::new(&mut net, ground, wanted).even_out(&over, SHARES, job)?;
-        }
+        self.shorten(&mut net, wanted, job)?;
         Ok(Ok(net))
+    }
+
+    /// Shares long sides out, and crosses those that stay too long by more quads.
+    fn shorten(&self, net: &mut Net, wanted: &dyn Field, job: &Job) -> Result<()> {
+        if self.fit.care.smooth == 0 {
+            return Ok(());
+        }
+        let (longest, ground) = (&self.fit.longest, self.fit.sheet);
+        let over = |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(net, a as u32).max(longest.at(net, b as u32));
+        Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
+        let openings = if self.fit.face.elements == Elements::Quads { OPENINGS } else { 0 };
+        for _ in 0..openings {
+            if open(net, (ground, wanted), &over) == 0 {
+                break;
+            }
+            self.smooth(net, wanted, job)?;
+            Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
+        }
+        Ok(())
     }
 
     fn smooth(&self, net: &mut Net, field: &dyn Field, job: &Job) -> Result<()> {
@@ -326,6 +345,6 @@ impl Maker<'_> {
 impl Longest<'_> {
     /// How long a side at a node may be.
     fn at(&self, net: &Net, n: u32) -> f64 {
-        ROOM * self.at_border.get(n as usize).copied().unwrap_or_else(|| self.there(net.p[n as usize]))
+        self.at_border.get(n as usize).copied().unwrap_or_else(|| self.there(net.p[n as usize]))
     }
 }

@@ -1,7 +1,7 @@
 //! The first row of a crystal of squares: round the border, a node over each of its nodes, so that the cells beside it stand
 //! upright on it.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{Front, SIGHT, STRAIGHT, apart};
 use crate::base::math;
@@ -19,7 +19,7 @@ const BENT: f64 = 1.02;
 /// Nearest distance of a node to an edge of the border, as a share of the wanted length.
 const CLEAR: f64 = 0.6;
 /// Steps of the crystal over the wanted length where it follows those of the border.
-const FOLLOWED: std::ops::Range<f64> = 0.7..1.15;
+const FOLLOWED: std::ops::Range<f64> = 0.7..1.08;
 /// Angles that a cell may have at the border where it bends outwards, radians: 57° to 126°.
 const CORNER: std::ops::Range<f64> = 1.0..2.2;
 /// Edges of a straight run that a crystal follows.
@@ -67,7 +67,9 @@ impl Front<'_> {
 
     /// Whether a place is too near to a node, or between two of the first row.
     pub(super) fn near_square(&self, p: DVec3, size: f64) -> bool {
-        let (near, far) = (HALF * HALF * size * size, APART * size);
+        // The middle of a cell is as far from its corners as its steps are long.
+        let steps = DVec2::from(self.steps).length() * std::f64::consts::FRAC_1_SQRT_2;
+        let (near, far) = (HALF * HALF * size * size, APART * steps * size);
         let mut beside = 0;
         let over = |tag: u32, at: DVec3| (p - at).dot(self.arms[tag as usize]) < HALF * size;
         let row = |tag: u32| tag < self.row;

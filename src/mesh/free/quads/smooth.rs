@@ -65,7 +65,8 @@ impl<'a> Smoother<'a> {
         Self { net, ground, field, first, of, active }
     }
 
-    fn faces(&self, node: usize) -> &[u32] {
+    /// Faces round a node, in no order round it.
+    pub fn faces(&self, node: usize) -> &[u32] {
         &self.of[self.first[node] as usize..self.first[node + 1] as usize]
     }
 
