@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::core::Surface;
+use super::core::{Jet2, Surface};
+use super::foot::{Footing, step};
 use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
 use crate::network::Chain;
 
@@ -13,8 +14,6 @@ use crate::network::Chain;
 const LEAST: usize = 8;
 /// Halvings of a step before it counts as a leap.
 const DEEPEST: u32 = 12;
-/// Newton steps of a foot.
-const STEPS: usize = 16;
 /// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
 const BEND: f64 = 0.25;
 
@@ -210,7 +209,7 @@ fn walk(
         let (before, there) = at[at.len() - 2];
         (here - there) * ((to - from) / (from - before))
     } else {
-        step(&jet, d1 * (to - from)).unwrap_or(DVec2::ZERO)
+        step(jet.du, jet.dv, d1 * (to - from)).unwrap_or(DVec2::ZERO)
     };
     let next = land(to, here + ahead);
     let fine = match &next {
@@ -229,40 +228,20 @@ fn walk(
     walk(surface, chain, at, to, land, left - 1)
 }
 
-/// The step in (u, v) whose image is a vector's tangential part; `None` where the surface is singular.
-pub(super) fn step(jet: &super::Jet2, d: DVec3) -> Option<DVec2> {
-    let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
-    let (a, b) = (jet.du.dot(d), jet.dv.dot(d));
-    let det = e * g - f * f;
-    let found = DVec2::new((g * a - f * b) / det, (e * b - f * a) / det);
-    found.is_finite().then_some(found)
+/// Feet on a surface, held in the parts of (u, v) where it is.
+struct Whole<'a>(&'a Surface);
+
+impl Footing for Whole<'_> {
+    fn jet(&self, uv: DVec2) -> Jet2 {
+        self.0.jet(uv.x, uv.y)
+    }
+
+    fn hold(&self, uv: DVec2) -> DVec2 {
+        self.0.hold(uv)
+    }
 }
 
-/// The foot of a point near a guess, with its distance: Gauss–Newton, held in the parts of (u, v) where the surface is.
+/// The foot of a point near a guess, with its distance.
 pub(super) fn foot(surface: &Surface, p: DVec3, guess: DVec2) -> (DVec2, f64) {
-    let mut uv = surface.hold(guess);
-    let mut jet = surface.jet(uv.x, uv.y);
-    let mut best = jet.p.distance_squared(p);
-    for _ in 0..STEPS {
-        let Some(full) = step(&jet, p - jet.p) else { break };
-        let mut share = 1.0;
-        let mut better = None;
-        for _ in 0..6 {
-            let next = surface.hold(uv + full * share);
-            let there = surface.jet(next.x, next.y);
-            let distance = there.p.distance_squared(p);
-            if distance < best {
-                better = Some((next, there, distance));
-                break;
-            }
-            share *= 0.5;
-        }
-        let Some((next, there, distance)) = better else { break };
-        let still = (next - uv).length() <= EPSILON;
-        (uv, jet, best) = (next, there, distance);
-        if still {
-            break;
-        }
-    }
-    (uv, best.sqrt())
+    Whole(surface).foot(p, guess)
 }

@@ -2,6 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::surface::step;
+
 /// A point of the surface with its derivatives by the chart's x and y.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spot {
@@ -21,11 +23,7 @@ impl Spot {
 
     /// The step in the chart whose image is the tangential part of `d`, to first order; `None` where the surface is singular.
     pub fn step(&self, d: DVec3) -> Option<DVec2> {
-        let (e, f, g) = (self.dx.length_squared(), self.dx.dot(self.dy), self.dy.length_squared());
-        let (a, b) = (self.dx.dot(d), self.dy.dot(d));
-        let det = e * g - f * f;
-        let step = DVec2::new((g * a - f * b) / det, (e * b - f * a) / det);
-        step.is_finite().then_some(step)
+        step(self.dx, self.dy, d)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::base::solve;
 use crate::base::tolerance::{EPSILON, NEWTON_STEP};
 use crate::geometry::Curve;
 use crate::geometry::pieces::{Node, Rates, View, children};
+use crate::surface::foot::Footing;
 
 /// Pairs looked at before giving up.
 const MOST_PAIRS: usize = 1_000_000;

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use super::sheet::{Line, Patch, solved};
 use crate::base::tolerance::{EPSILON, SINGULAR};
 use crate::surface::core::Jet2;
+use crate::surface::foot::{self, Footing};
 
 /// A place on both patches.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +108,6 @@ impl Pair<'_> {
     /// Where a step along a direction leads in both domains, to first order; `None` where a patch is singular.
     pub fn ahead(&self, at: &Spot, step: DVec3) -> Option<(DVec2, DVec2)> {
         let (s, t) = self.jets(at.a, at.b);
-        Some((at.a + crate::surface::pull::step(&s, step)?, at.b + crate::surface::pull::step(&t, step)?))
+        Some((at.a + foot::step(s.du, s.dv, step)?, at.b + foot::step(t.du, t.dv, step)?))
     }
 }

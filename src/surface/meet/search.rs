@@ -11,6 +11,7 @@ use super::march::Branch;
 use super::pair::{Pair, Spot};
 use super::sheet::{Cell, Sheet};
 use crate::base::bbox::Box3;
+use crate::surface::foot::Footing;
 
 /// Pairs looked at before giving up; a solved place counts as many as it costs.
 const MOST_PAIRS: usize = 300_000;

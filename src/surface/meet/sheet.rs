@@ -6,6 +6,7 @@ use crate::base::bbox::Box3;
 use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::{EPSILON, SINGULAR};
 use crate::surface::core::{Domain, Jet2, Surface};
+use crate::surface::foot::{self, Footing};
 use crate::surface::plane;
 use crate::surface::rail::Lean;
 use crate::surface::spread::Spread;
@@ -19,19 +20,29 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Point and derivatives from inside the patch.
-    pub fn jet(&self, uv: DVec2) -> Jet2 {
-        let lean = |x: f64, high: f64| if x >= high { Lean::Before } else { Lean::After };
-        self.surface.jet_lean(uv.x, uv.y, (lean(uv.x, self.u.1), lean(uv.y, self.v.1)))
-    }
-
     /// Whether the domain is a triangle.
     pub fn is_triangle(&self) -> bool {
         self.surface.ground() == Domain::Triangle
     }
 
+    /// Its border lines: a fixed u or v, or the slant of a triangle.
+    pub fn lines(&self) -> Vec<Line> {
+        if self.is_triangle() {
+            return vec![Line::U(0.0), Line::V(0.0), Line::Slant];
+        }
+        vec![Line::U(self.u.0), Line::U(self.u.1), Line::V(self.v.0), Line::V(self.v.1)]
+    }
+}
+
+impl Footing for Patch {
+    /// Point and derivatives from inside the patch.
+    fn jet(&self, uv: DVec2) -> Jet2 {
+        let lean = |x: f64, high: f64| if x >= high { Lean::Before } else { Lean::After };
+        self.surface.jet_lean(uv.x, uv.y, (lean(uv.x, self.u.1), lean(uv.y, self.v.1)))
+    }
+
     /// The nearest place of the patch.
-    pub fn hold(&self, uv: DVec2) -> DVec2 {
+    fn hold(&self, uv: DVec2) -> DVec2 {
         let held = DVec2::new(uv.x.clamp(self.u.0, self.u.1), uv.y.clamp(self.v.0, self.v.1));
         if !self.is_triangle() || held.x + held.y <= 1.0 {
             return held;
@@ -42,39 +53,9 @@ impl Patch {
         DVec2::new(u.max(0.0) + v.min(0.0), v.max(0.0) + u.min(0.0)).clamp(DVec2::ZERO, DVec2::ONE)
     }
 
-    /// The foot of a point near a guess, with its distance: Gauss–Newton, held in the patch.
-    pub fn foot(&self, p: DVec3, guess: DVec2) -> (DVec2, f64) {
-        const STEPS: usize = 24;
-        let mut uv = self.hold(guess);
-        let mut jet = self.jet(uv);
-        let mut best = jet.p.distance_squared(p);
-        for _ in 0..STEPS {
-            let Some(full) = self.step(&jet, uv, p - jet.p) else { break };
-            let mut share = 1.0;
-            let mut better = None;
-            for _ in 0..6 {
-                let next = self.hold(uv + full * share);
-                let there = self.jet(next);
-                let distance = there.p.distance_squared(p);
-                if distance < best {
-                    better = Some((next, there, distance));
-                    break;
-                }
-                share *= 0.5;
-            }
-            let Some((next, there, distance)) = better else { break };
-            let still = (next - uv).length() <= EPSILON;
-            (uv, jet, best) = (next, there, distance);
-            if still {
-                break;
-            }
-        }
-        (uv, best.sqrt())
-    }
-
     /// The step in (u, v) whose image is a vector's tangential part, along a border where it would leave the patch there.
     fn step(&self, jet: &Jet2, uv: DVec2, d: DVec3) -> Option<DVec2> {
-        let full = crate::surface::pull::step(jet, d)?;
+        let full = foot::step(jet.du, jet.dv, d)?;
         let out = |x: f64, step: f64, (low, high): (f64, f64)| x <= low && step < 0.0 || x >= high && step > 0.0;
         let (out_u, out_v) = (out(uv.x, full.x, self.u), out(uv.y, full.y, self.v));
         let one = |direction: DVec3| d.dot(direction) / direction.length_squared();
@@ -88,14 +69,6 @@ impl Patch {
             _ => full,
         };
         step.is_finite().then_some(step)
-    }
-
-    /// Its border lines: a fixed u or v, or the slant of a triangle.
-    pub fn lines(&self) -> Vec<Line> {
-        if self.is_triangle() {
-            return vec![Line::U(0.0), Line::V(0.0), Line::Slant];
-        }
-        vec![Line::U(self.u.0), Line::U(self.u.1), Line::V(self.v.0), Line::V(self.v.1)]
     }
 }
 
