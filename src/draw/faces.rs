@@ -117,14 +117,7 @@ fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
 
 /// The principal curvature of larger size; not a number where the surface is singular.
 pub fn curvature(jet: &Jet2, normal: DVec3) -> f64 {
-    let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
-    let (l, m, n) = (jet.duu.dot(normal), jet.duv.dot(normal), jet.dvv.dot(normal));
-    let area = e * g - f * f;
-    if area <= crate::base::tolerance::PARALLEL * e * g {
-        return f64::NAN;
-    }
-    let (mean, gauss) = ((e * n - 2.0 * f * m + g * l) / (2.0 * area), (l * n - m * m) / area);
-    let spread = (mean * mean - gauss).max(0.0).sqrt();
+    let (mean, spread) = jet.curvatures(normal);
     // Bending towards the normal is a valley seen from its side.
     -(if mean >= 0.0 { mean + spread } else { mean - spread })
 }

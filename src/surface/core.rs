@@ -11,7 +11,7 @@ use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{POLE_STEP, SINGULAR, Tolerance};
+use crate::base::tolerance::{PARALLEL, POLE_STEP, SINGULAR, Tolerance};
 use crate::geometry::Motion;
 use crate::network::Chain;
 
@@ -30,6 +30,21 @@ pub struct Jet2 {
     pub duv: DVec3,
     /// ∂²/∂v².
     pub dvv: DVec3,
+}
+
+impl Jet2 {
+    /// Mean curvature seen from a unit normal, and how far the principal curvatures are to either side of it, 1/model units; not
+    /// numbers where the surface is singular.
+    pub fn curvatures(&self, normal: DVec3) -> (f64, f64) {
+        let (e, f, g) = (self.du.length_squared(), self.du.dot(self.dv), self.dv.length_squared());
+        let (l, m, n) = (self.duu.dot(normal), self.duv.dot(normal), self.dvv.dot(normal));
+        let area = e * g - f * f;
+        if area <= PARALLEL * e * g {
+            return (f64::NAN, f64::NAN);
+        }
+        let (mean, gauss) = ((e * n - 2.0 * f * m + g * l) / (2.0 * area), (l * n - m * m) / area);
+        (mean, (mean * mean - gauss).max(0.0).sqrt())
+    }
 }
 
 /// The word a surface was made with.

@@ -241,11 +241,7 @@ fn most(c: [f64; 3]) -> f64 {
 /// On the local quadric of principal curvatures k1 ≥ |k2| it is at most k1 h² (1/8 + max(k2/k1, 0)/24) away.
 pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
     let normal = jet.du.cross(jet.dv).normalize_or_zero();
-    let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
-    let (l, m, n) = (jet.duu.dot(normal), jet.duv.dot(normal), jet.dvv.dot(normal));
-    let area = e * g - f * f;
-    let (mean, gauss) = ((e * n - 2.0 * f * m + g * l) / (2.0 * area), (l * n - m * m) / area);
-    let spread = (mean * mean - gauss).max(0.0).sqrt();
+    let (mean, spread) = jet.curvatures(normal);
     let (k1, k2) = (mean.abs() + spread, mean.abs() - spread);
     if !(k1 > 0.0 && k1.is_finite()) {
         return f64::INFINITY;
