@@ -53,24 +53,43 @@ fn basis(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis {
     let inner = &knots[low + 1..=high];
     let reached = |k: &f64| if lean == Lean::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
     let span = low + inner.partition_point(reached);
-    let mut rows = [[0.0; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+    let mut values = [[0.0; 3]; MAX_DEGREE + 1];
+    let round = &knots[span + 1 - degree..=span + degree];
+    // Loops of known length are unrolled.
+    match degree {
+        1 => fill::<2>(round, t, &mut values),
+        2 => fill::<3>(round, t, &mut values),
+        3 => fill::<4>(round, t, &mut values),
+        4 => fill::<5>(round, t, &mut values),
+        5 => fill::<6>(round, t, &mut values),
+        6 => fill::<7>(round, t, &mut values),
+        7 => fill::<8>(round, t, &mut values),
+        8 => fill::<9>(round, t, &mut values),
+        _ => fill::<{ MAX_DEGREE + 1 }>(round, t, &mut values),
+    }
+    Basis { first: span - degree, n: degree + 1, values }
+}
+
+/// The N functions of degree N − 1 with two derivatives, by the 2 (N − 1) knots round the span.
+fn fill<const N: usize>(knots: &[f64], t: f64, values: &mut [[f64; 3]; MAX_DEGREE + 1]) {
+    let degree = N - 1;
+    let mut rows = [[0.0; N]; N];
     rows[0][0] = 1.0;
-    for p in 1..=degree {
+    for p in 1..N {
         let below = rows[p - 1];
         for (r, &value) in below.iter().enumerate().take(p) {
-            // N_{i,p-1} with i = span - p + 1 + r feeds N_{i-1,p} and N_{i,p}.
-            let i = span + 1 + r - p;
+            // N_{i,p-1} with i = r − p + degree (of these knots) feeds N_{i-1,p} and N_{i,p}.
+            let i = degree + r - p;
             let share = value / (knots[i + p] - knots[i]);
             rows[p][r] += (knots[i + p] - t) * share;
             rows[p][r + 1] += (t - knots[i]) * share;
         }
     }
-    let mut values = [[0.0; 3]; MAX_DEGREE + 1];
     // Derivatives of degree p from values of degree p − 1.
-    let lower = |p: usize, from: &[f64; MAX_DEGREE + 1]| {
-        let mut out = [0.0; MAX_DEGREE + 1];
+    let lower = |p: usize, from: &[f64; N]| {
+        let mut out = [0.0; N];
         for (r, &value) in from.iter().enumerate().take(p) {
-            let i = span + 1 + r - p;
+            let i = degree + r - p;
             let share = p as f64 * value / (knots[i + p] - knots[i]);
             out[r] -= share;
             out[r + 1] += share;
@@ -78,11 +97,21 @@ fn basis(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis {
         out
     };
     let first = lower(degree, &rows[degree - 1]);
-    let second = if degree >= 2 { lower(degree, &lower(degree - 1, &rows[degree - 2])) } else { [0.0; MAX_DEGREE + 1] };
-    for r in 0..=degree {
+    let second = if degree >= 2 { lower(degree, &lower(degree - 1, &rows[degree - 2])) } else { [0.0; N] };
+    for r in 0..N {
         values[r] = [rows[degree][r], first[r], second[r]];
     }
-    Basis { first: span - degree, n: degree + 1, values }
+}
+
+/// A row of poles by a basis: value, first and second derivative.
+fn along<const N: usize>(row: &[DVec4], values: &[[f64; 3]]) -> [DVec4; 3] {
+    let mut part = [DVec4::ZERO; 3];
+    for (q, x) in row[..N].iter().zip(&values[..N]) {
+        for k in 0..3 {
+            part[k] += *q * x[k];
+        }
+    }
+    part
 }
 
 /// Homogeneous sums: value, ∂u, ∂v, ∂uu, ∂uv, ∂vv.
@@ -117,12 +146,12 @@ impl NurbsSurface {
         let mut sums = [DVec4::ZERO; 6];
         for (j, y) in b.values().iter().enumerate() {
             let row = &self.poles[(b.first + j) * self.counts.0 + a.first..][..a.n];
-            let mut part = [DVec4::ZERO; 3];
-            for (q, x) in row.iter().zip(a.values()) {
-                for k in 0..3 {
-                    part[k] += *q * x[k];
-                }
-            }
+            let part = match a.n {
+                2 => along::<2>(row, a.values()),
+                3 => along::<3>(row, a.values()),
+                4 => along::<4>(row, a.values()),
+                _ => row.iter().zip(a.values()).fold([DVec4::ZERO; 3], |sum, (q, x)| [0, 1, 2].map(|k| sum[k] + *q * x[k])),
+            };
             add(&mut sums, &part, y);
         }
         quotient(&sums)
