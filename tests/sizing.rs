@@ -262,16 +262,21 @@ fn what_cannot_be_is_refused_and_what_decides_nothing_is_said() {
 #[test]
 fn growth_and_smoothing_are_followed() {
     let scene = scene(1);
-    let nodes = |growth: Option<f64>, smooth: Option<u32>| {
-        let mut plan = scene.plan(1.0, vec![near(p(5.0, 3.0, 0.0), 0.2, 0.05)]);
-        (plan.growth, plan.smooth) = (growth.map(|g| (g, Origin::NONE)), smooth.map(|n| (n, Origin::NONE)));
+    let nodes = |growth: Option<f64>| {
+        let mut plan = scene.plan(2.0, vec![near(p(5.0, 3.0, 0.0), 0.2, 0.05)]);
+        plan.growth = growth.map(|g| (g, Origin::NONE));
         let built = scene.build(&plan).unwrap();
-        (built.mesh.nodes.len(), built.mesh.quality().unwrap().mean_quality)
+        built.mesh.nodes.len()
     };
-    let (slow, plain, fast) = (nodes(Some(1.1), None), nodes(None, None), nodes(Some(1.8), None));
-    assert!(slow.0 > 2 * plain.0 && 5 * plain.0 > 6 * fast.0, "{} {} {}", slow.0, plain.0, fast.0);
-    let (raw, once) = (nodes(None, Some(0)), nodes(None, Some(1)));
-    assert!(raw.1 < once.1 && once.1 <= plain.1 + 0.01, "{} {} {}", raw.1, once.1, plain.1);
+    let (slow, plain, fast) = (nodes(Some(1.1)), nodes(None), nodes(Some(1.8)));
+    assert!(slow > 2 * plain && 5 * plain > 6 * fast, "{slow} {plain} {fast}");
+    let smoothed = |rounds: u32| {
+        let mut plan = scene.plan(0.5, vec![near(p(5.0, 3.0, 0.0), 0.2, 0.4)]);
+        plan.smooth = Some((rounds, Origin::NONE));
+        scene.build(&plan).unwrap().mesh.quality().unwrap().mean_quality
+    };
+    let (raw, once, more) = (smoothed(0), smoothed(1), smoothed(8));
+    assert!(raw < once && once != more, "{raw} {once} {more}");
 }
 
 #[test]
@@ -289,7 +294,7 @@ fn it_is_told_what_decided_where() {
     );
     told("strip of c1", &["by sizes along it", "steps 0.100 to", "% by size 0.1 near (10.000, 3.000, 0.000)"]);
     told("strip of c0", &["% by the size", "% by size 0.5 in the box"]);
-    told("strip of c5", &["6 steps, by the size"]);
+    told("strip of c5", &["8 steps, by the size"]);
     plan.method = Method::Mapped;
     let lines = scene.build(&plan).unwrap().explanation.lines;
     assert!(lines[0].contains("mapped") && lines[0].contains("; by size 0.1 near"), "{}", lines[0]);

@@ -44,7 +44,13 @@ const LENGTH: Ty = Ty::Quantity(Dim::LENGTH);
 
 /// `mesh m of … { … }`.
 pub const MESH: &[Setting] = &[
-    Setting { key: "size", docs: "Target edge length.", default: "a 20th of the diagonal of what is meshed", ty: LENGTH },
+    Setting {
+        key: "size",
+        docs: "Longest edge wanted: kept on borders and curves, by 5 % at most exceeded inside a free face. Nodes of free faces, and those \
+               of borders that only free faces share, are 0.8 of it apart.",
+        default: "a 20th of the diagonal of what is meshed",
+        ty: LENGTH,
+    },
     Setting { key: "chord_error", docs: "Largest distance between mesh and surface.", default: "", ty: LENGTH },
     Setting { key: "angle_error", docs: "Largest turn of the normal across an element.", default: "", ty: Ty::Quantity(Dim::ANGLE) },
     Setting {
@@ -63,8 +69,8 @@ pub const MESH: &[Setting] = &[
     },
     Setting {
         key: "smooth",
-        docs: "Rounds of smoothing on free faces; 0 leaves nodes where they grew.",
-        default: "until nothing moves",
+        docs: "Most rounds of smoothing on free faces; a node that lies still is left earlier. 0 leaves nodes where they grew.",
+        default: "8; 30 with `quadtree`",
         ty: Ty::Count,
     },
     Setting { key: "elements", docs: "Kind of elements.", default: "triangles", ty: Ty::Choice(ELEMENTS) },

@@ -69,6 +69,11 @@ impl Face {
         self.free && self.elements == Elements::Quads
     }
 
+    /// Whether it is made freely of triangles that are all alike.
+    pub fn is_grown(&self) -> bool {
+        self.free && self.elements == Elements::Triangles && !matches!(self.method, Method::Display | Method::Isoline)
+    }
+
     /// Stretches round it and inside it.
     pub fn stretches(&self) -> impl Iterator<Item = usize> + '_ {
         self.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).chain(self.lines.iter().copied())

@@ -5,7 +5,8 @@ use super::counts::{share, steps};
 use super::edges::{Limits, least_steps, wanted_steps};
 use super::explain::Why;
 use super::faces::Prepared;
-use super::layout::Layout;
+use super::free::face::SPACING;
+use super::layout::{Face, Layout};
 use super::pace::{self, Ask, Pace};
 use super::plan::{Elements, Plan, Rule, Target};
 use super::reuse::{Known, recalled_if_sound};
@@ -113,15 +114,7 @@ impl Sizing {
                 Target::Point(_) => {}
             }
         }
-        let mut own = vec![(size, None); n];
-        let mut seen = vec![false; n];
-        for face in &layout.faces {
-            for stretch in face.sides.iter().flat_map(|s| s.stretches()).chain(face.lines.iter().copied()) {
-                if !std::mem::replace(&mut seen[stretch], true) || face.size.0 < own[stretch].0 {
-                    own[stretch] = face.size;
-                }
-            }
-        }
+        let own = own_sizes(layout, size);
         let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
         super::gaps::refuse(input, layout, &limits)?;
         let shape = shapes(layout);
@@ -504,6 +497,23 @@ impl Remark {
             }
         }
     }
+}
+
+/// The size of each stretch by its faces: the least of theirs, `size` where it has none. Steps on borders of freely grown
+/// triangles alone are as long as distances of nodes inside: triangles between rows of one length are the best ones.
+fn own_sizes(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
+    let mut grown = vec![true; layout.pieces.atoms.len()];
+    layout.faces.iter().filter(|f| !f.is_grown()).flat_map(Face::stretches).for_each(|k| grown[k] = false);
+    let mut own: Vec<Option<(f64, Option<usize>)>> = vec![None; grown.len()];
+    for face in &layout.faces {
+        for k in face.stretches() {
+            let step = (if grown[k] { face.size.0 * SPACING } else { face.size.0 }, face.size.1);
+            if own[k].is_none_or(|least| step.0 < least.0) {
+                own[k] = Some(step);
+            }
+        }
+    }
+    own.into_iter().map(|own| own.unwrap_or((size, None))).collect()
 }
 
 /// Least counts that keep stretches from falling on each other: 3 for a ring; of several with the same ends the shortest may

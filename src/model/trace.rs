@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::topology::EdgeCurve;
 use crate::base::digest::{Content, Digester};
 use crate::base::quadrature::{self, RUNNING};
-use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
+use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
@@ -39,7 +39,10 @@ impl Trace {
     /// The line between two (u, v); the surface must be smooth along it but for jumps of higher derivatives.
     pub fn new(surface: &Surface, from: (f64, f64), to: (f64, f64)) -> Self {
         let mut trace = Self { surface: surface.clone(), from, to, panels: Vec::new(), length: 0.0 };
-        let scale = trace.surface.point(from.0, from.1).distance(trace.surface.point(to.0, to.1)).max(trace.speed(0.5));
+        let (start, end) = (trace.surface.point(from.0, from.1), trace.surface.point(to.0, to.1));
+        // Along a pole all is rounding.
+        let rounding = EPSILON * start.abs().max(end.abs()).max_element();
+        let scale = start.distance(end).max(trace.speed(0.5)).max(rounding / MEASURE_ACCURACY);
         let mut open = vec![(0.0, 1.0, DEPTH)];
         while let Some((a, b, left)) = open.pop() {
             let panel = quadrature::kronrod(a, b, |t| trace.speed(t));

@@ -11,7 +11,7 @@ use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{PARALLEL, POLE_STEP, SINGULAR, Tolerance};
+use crate::base::tolerance::{NUDGE, PARALLEL, POLE_STEP, SINGULAR, Tolerance};
 use crate::geometry::Motion;
 use crate::network::Chain;
 
@@ -267,9 +267,9 @@ impl Surface {
         self.outer(self.0.shape.jet(u, v, lean))
     }
 
-    /// Into 0…1 where a trimmed surface closes: its borders may run over the seam.
+    /// Into 0…1 where a surface closes: borders may run over the seam. What rounding put beside a seam stays on its side.
     pub(super) fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
-        let wrap = |x: f64, closed: bool| if closed && !(0.0..=1.0).contains(&x) { x - x.floor() } else { x };
+        let wrap = |x: f64, closed: bool| if closed && !(-NUDGE..=1.0 + NUDGE).contains(&x) { x - x.floor() } else { x };
         (wrap(u, self.0.closed.0), wrap(v, self.0.closed.1))
     }
 

@@ -34,8 +34,8 @@ fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), n
 /// How often a box is quartered when the bound over the whole of it does not do.
 const QUARTERS: u32 = 3;
 
-/// The same by the four quarters of the box: nearer to what is there, for four times the work.
-fn quartered(surface: &Surface, quick: &Quick, (low, high): (DVec2, DVec2), normal: DVec3, left: u32) -> Option<Bends> {
+/// The same by those quarters of the box that meet a triangle: nearer to what is there, for up to four times the work.
+fn quartered(surface: &Surface, quick: &Quick, (low, high): (DVec2, DVec2), (tri, normal): (&Apart, DVec3), left: u32) -> Option<Bends> {
     if left == 0 {
         return bent_over(surface, Some(quick), (low, high), normal);
     }
@@ -43,11 +43,38 @@ fn quartered(surface: &Surface, quick: &Quick, (low, high): (DVec2, DVec2), norm
     let (right, top) = (DVec2::new(middle.x, low.y), DVec2::new(low.x, middle.y));
     let quarters = [(low, middle), (right, DVec2::new(high.x, middle.y)), (top, DVec2::new(middle.x, high.y)), (middle, high)];
     let mut whole: Option<Bends> = None;
-    for quarter in quarters {
-        let own = quartered(surface, quick, quarter, normal, left - 1)?;
+    for quarter in quarters.into_iter().filter(|quarter| !tri.from(*quarter)) {
+        let own = quartered(surface, quick, quarter, (tri, normal), left - 1)?;
         whole = Some(whole.map_or(own, |w| w.union(&own)));
     }
     whole
+}
+
+/// A triangle in (u, v), a little widened, by the lines along its sides.
+struct Apart {
+    /// Outward normal and the most of it in the triangle.
+    sides: [(DVec2, f64); 3],
+}
+
+impl Apart {
+    /// Of a triangle that is widened by a share of its box.
+    fn new(uv: [DVec2; 3], width: DVec2) -> Self {
+        let side = |k: usize| {
+            let (a, b, tip) = (uv[(k + 1) % 3], uv[(k + 2) % 3], uv[k]);
+            let out = (b - a).perp();
+            let out = if out.dot(tip - a) > 0.0 { -out } else { out };
+            (out, out.dot(a).max(out.dot(b)) + (out.abs() * width).element_sum() * WIDER)
+        };
+        Self { sides: [side(0), side(1), side(2)] }
+    }
+
+    /// Whether a box lies beyond one of the lines.
+    fn from(&self, (low, high): (DVec2, DVec2)) -> bool {
+        self.sides.iter().any(|(out, most)| {
+            let nearest = DVec2::new(if out.x > 0.0 { low.x } else { high.x }, if out.y > 0.0 { low.y } else { high.y });
+            out.dot(nearest) > *most
+        })
+    }
 }
 
 /// The same over any box: where the surface closes, parameters go on over the seam.
@@ -103,8 +130,9 @@ fn chord_to(depth: u32, (surface, quick): (&Surface, Option<&Quick>), (uv, p): (
     let first = over_sides(&bends, uv, width);
     let Some(quick) = quick.filter(|_| first > wanted && first < FAR * wanted) else { return first };
     let mut best = first;
+    let tri = Apart::new(uv, width);
     for depth in 1..=depth {
-        let found = quartered(surface, quick, whole, normal, depth).map_or(first, |bends| over_sides(&bends, uv, width));
+        let found = quartered(surface, quick, whole, (&tri, normal), depth).map_or(first, |bends| over_sides(&bends, uv, width));
         best = best.min(found);
         if best <= wanted {
             break;

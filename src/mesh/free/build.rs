@@ -64,9 +64,14 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
         Err(trouble) => return Ok(Err(trouble)),
     };
     let mut gardener = Gardener::new(web, task.ground, task.field, task.care);
-    gardener.improve(job)?;
-    if let Some(broken) = task.broken {
-        gardener.divide(broken, job)?;
+    gardener.settle();
+    job.go_on()?;
+    // Where lengths were wrong, the rest of the work waits for better ones.
+    if task.broken.is_none_or(|broken| gardener.nearly_keeps(broken)) {
+        gardener.improve(job)?;
+        if let Some(broken) = task.broken {
+            gardener.divide(broken, job)?;
+        }
     }
     let mut web = gardener.web;
     web.compact();

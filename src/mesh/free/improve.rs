@@ -33,7 +33,11 @@ const GAIN: f64 = 0.001;
 /// Share of the quality that is there which a first guess must have to be searched on.
 const HOPE: f64 = 0.6;
 /// Divisions of triangles that break a limit.
-const DIVISIONS: usize = 24;
+const DIVISIONS: usize = 64;
+/// Divisions before lengths are squeezed where a limit is still broken: what is mended there would break it again and again.
+const PATIENCE: usize = 2;
+/// What lengths are squeezed by.
+const SQUEEZE: f64 = 0.93;
 /// One triangle in so many may be divided; where more break a limit, the lengths were wrong.
 const MANY: usize = 12;
 /// Rounds of work on bad triangles.
@@ -59,6 +63,8 @@ pub struct Gardener<'a> {
     /// The round of mending before which each node changed last: what is as it was when nothing helped is left alone.
     changed: Vec<u32>,
     round: u32,
+    /// What lengths at each node are squeezed by.
+    squeezed: Vec<f64>,
 }
 
 impl<'a> Gardener<'a> {
@@ -67,6 +73,7 @@ impl<'a> Gardener<'a> {
         let active = vec![true; web.p.len()];
         let moved = vec![true; web.p.len()];
         let changed = vec![1; web.p.len()];
+        let squeezed = vec![1.0; web.p.len()];
         Self {
             web,
             ground,
@@ -79,17 +86,31 @@ impl<'a> Gardener<'a> {
             moved,
             changed,
             round: 0,
+            squeezed,
         }
     }
 
-    /// All there is, in turn.
-    pub fn improve(&mut self, job: &Job) -> Result<()> {
+    /// The first flips and rounds of smoothing: from here on nodes hardly move.
+    pub fn settle(&mut self) {
         self.flip_all();
+        if self.care.smooth > 0 {
+            self.smooth(self.care.smooth);
+            self.flip_all();
+            // What still moves a little is left; what is mended wakes its neighbours.
+            self.active.fill(false);
+        }
+    }
+
+    /// Whether so few triangles break a limit that dividing them will do.
+    pub fn nearly_keeps(&self, broken: &dyn Fn(&Web) -> Vec<u32>) -> bool {
+        broken(&self.web).len() * MANY <= self.web.tri.len()
+    }
+
+    /// Works on bad triangles, after [`Gardener::settle`].
+    pub fn improve(&mut self, job: &Job) -> Result<()> {
         if self.care.smooth == 0 {
             return Ok(());
         }
-        self.smooth(self.care.smooth);
-        self.flip_all();
         for _ in 0..ROUNDS {
             job.go_on()?;
             if self.mend() == 0 {
@@ -104,15 +125,23 @@ impl<'a> Gardener<'a> {
 
     /// Puts nodes into triangles that break a limit until none does, or too many do.
     pub fn divide(&mut self, broken: &dyn Fn(&Web) -> Vec<u32>, job: &Job) -> Result<()> {
-        for _ in 0..DIVISIONS {
+        for round in 0..DIVISIONS {
             let bad = broken(&self.web);
             if bad.is_empty() || bad.len() * MANY > self.web.tri.len() {
                 return Ok(());
             }
+            let mut divided = false;
             for t in bad {
-                if self.web.alive(t) {
-                    self.split(t);
+                if !self.web.alive(t) {
+                    continue;
                 }
+                if round >= PATIENCE {
+                    self.squeeze(t);
+                }
+                divided |= self.split(t);
+            }
+            if !divided {
+                return Ok(());
             }
             self.flip_all();
             self.mend();
@@ -121,8 +150,29 @@ impl<'a> Gardener<'a> {
         Ok(())
     }
 
-    /// A node more in a triangle and its neighbour across the longest free side.
-    fn split(&mut self, t: u32) {
+    /// Lengths wanted at the corners of a triangle are a little shorter from now on.
+    fn squeeze(&mut self, t: u32) {
+        for n in self.web.tri[t as usize].map(|n| n as usize) {
+            self.squeezed[n] *= SQUEEZE;
+            self.web.size[n] *= SQUEEZE;
+        }
+    }
+
+    /// What lengths are squeezed by among some nodes.
+    fn squeezed(&self, among: &[u32]) -> f64 {
+        among.iter().map(|n| self.squeezed[*n as usize]).sum::<f64>() / among.len() as f64
+    }
+
+    /// A patch becomes the star of a node inside it, or of a new one.
+    fn restar(&mut self, patch: &Patch, node: Option<u32>, star: &Star) {
+        let squeezed = self.squeezed(&patch.rim);
+        let node = self.web.restar(patch, node, star, self.field.size(star.xy, star.p) * squeezed);
+        self.wake_patch(patch);
+        self.squeezed[node as usize] = squeezed;
+    }
+
+    /// A node more in a triangle and its neighbour across the longest free side; whether there is room for one.
+    fn split(&mut self, t: u32) -> bool {
         let c = self.web.tri[t as usize];
         let length = |k: usize| self.web.p[c[(k + 1) % 3] as usize].distance(self.web.p[c[(k + 2) % 3] as usize]);
         let free = |k: &usize| self.web.locked[t as usize] >> k & 1 == 0;
@@ -136,18 +186,17 @@ impl<'a> Gardener<'a> {
                 .and_then(|()| self.plan(&patch, Keep::New, f64::NEG_INFINITY));
             let made = match plan {
                 Some((worst, Plan::Star(star, node))) if worst > 0.0 => {
-                    let size = self.field.size(star.xy, star.p);
-                    self.web.restar(&patch, node, &star, size);
-                    self.wake_patch(&patch);
+                    self.restar(&patch, node, &star);
                     true
                 }
                 _ => false,
             };
             self.patch = patch;
             if made {
-                return;
+                return true;
             }
         }
+        false
     }
 
     /// The nodes of a patch made anew may have to move.
@@ -155,6 +204,7 @@ impl<'a> Gardener<'a> {
         self.active.resize(self.web.p.len(), true);
         self.moved.resize(self.web.p.len(), true);
         self.changed.resize(self.web.p.len(), self.round + 1);
+        self.squeezed.resize(self.web.p.len(), 1.0);
         patch.rim.iter().chain(&patch.inner).for_each(|n| self.touch(*n));
     }
 
@@ -260,24 +310,23 @@ impl<'a> Gardener<'a> {
     fn relax(&mut self, node: u32) -> bool {
         self.fill_rim(node);
         let here = self.web.p[node as usize];
+        let before = self.rim.worst(self.web.xy[node as usize], here);
+        if before > FINE {
+            return false;
+        }
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         let n = self.rim.p.len();
-        let mut worst = f64::INFINITY;
         for i in 0..n {
-            let (a, b) = (self.rim.p[i], self.rim.p[(i + 1) % n]);
-            worst = worst.min(quality(here, a, b));
+            let j = if i + 1 < n { i + 1 } else { 0 };
+            let (a, b) = (self.rim.p[i], self.rim.p[j]);
             let area = (a - here).cross(b - here).length();
-            let size = (self.web.size[self.ring.node[i] as usize] + self.web.size[self.ring.node[(i + 1) % n] as usize]) * 0.5;
+            let size = (self.web.size[self.ring.node[i] as usize] + self.web.size[self.ring.node[j] as usize]) * 0.5;
             let weight = area / (size * size * size * size);
             sum += (here + a + b) * weight;
             weights += weight;
         }
-        if worst > FINE {
-            return false;
-        }
         let size = self.web.size[node as usize];
         let wish = sum / (3.0 * weights) - here;
-        let before = self.rim.worst(self.web.xy[node as usize], here);
         let mut share = 1.0;
         for _ in 0..3 {
             let step = wish * share;
@@ -297,7 +346,7 @@ impl<'a> Gardener<'a> {
     fn place(&mut self, node: u32, xy: DVec2, p: DVec3) {
         self.web.xy[node as usize] = xy;
         self.web.p[node as usize] = p;
-        self.web.size[node as usize] = self.field.size(xy, p);
+        self.web.size[node as usize] = self.field.size(xy, p) * self.squeezed[node as usize];
         self.touch(node);
     }
 
@@ -408,13 +457,12 @@ impl<'a> Gardener<'a> {
         }
         let Some((_, patch, plan)) = best else { return false };
         match plan {
-            Plan::Star(star, node) => {
-                let size = self.field.size(star.xy, star.p);
-                self.web.restar(&patch, node, &star, size);
+            Plan::Star(star, node) => self.restar(&patch, node, &star),
+            Plan::Fan(k) => {
+                self.web.refan(&patch, k);
+                self.wake_patch(&patch);
             }
-            Plan::Fan(k) => self.web.refan(&patch, k),
         }
-        self.wake_patch(&patch);
         true
     }
 
@@ -469,7 +517,7 @@ impl<'a> Gardener<'a> {
         }
         let (xy, p) = self.rim.middle();
         let (xy, p) = foot(self.ground, self.ground.clamp(xy), p);
-        self.rim.longest = self.field.size(xy, p) * self.care.longest;
+        self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.care.longest;
         // A rim that is far too large or too small for one node is not searched for its best place.
         if self.rim.worst(xy, p) < least {
             return None;

@@ -3,10 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
+use crate::base::par;
 use crate::mesh::sources::Sources;
 
-/// Grid lines along the longer side of the chart.
-const LINES: usize = 96;
+/// Grid lines along the longer side of the chart by which its lines are chosen, and most of them.
+const LINES: (usize, usize) = (12, 384);
+/// Distance of grid lines over the mean length wanted.
+const APART: f64 = 2.0;
 
 /// Lengths at the nodes of a grid, read between them by the mean of the four round a place.
 #[derive(Clone, Debug)]
@@ -21,16 +24,29 @@ pub struct Background {
 
 impl Background {
     /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
-    pub fn new(ground: &dyn Ground, (low, high): (DVec2, DVec2), growth: f64, of: impl Fn(DVec2) -> f64) -> Self {
+    ///
+    /// The grid is as fine as the lengths it is for: a first, coarse one tells those.
+    pub fn new(ground: &dyn Ground, (low, high): (DVec2, DVec2), growth: f64, of: &(impl Fn(DVec2) -> f64 + Sync)) -> Self {
+        let first = Self::with_lines(LINES.0, ground, (low, high), growth, of);
+        let mean = first.size.iter().map(|h| 1.0 / (h * h)).sum::<f64>() / first.size.len() as f64;
+        let wished = (high - low).max_element() * mean.sqrt() / APART;
+        if wished <= LINES.0 as f64 {
+            return first;
+        }
+        Self::with_lines((wished as usize).min(LINES.1), ground, (low, high), growth, of)
+    }
+
+    fn with_lines(most: usize, ground: &dyn Ground, (low, high): (DVec2, DVec2), growth: f64, of: &(impl Fn(DVec2) -> f64 + Sync)) -> Self {
         let extent = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
         let longest = extent.max_element();
-        let lines = |x: f64| ((LINES as f64 * x / longest).ceil() as usize).clamp(4, LINES) + 1;
+        let lines = |x: f64| ((most as f64 * x / longest).ceil() as usize).clamp(4, most) + 1;
         let n = (lines(extent.x), lines(extent.y));
         let cell = DVec2::new(extent.x / (n.0 - 1) as f64, extent.y / (n.1 - 1) as f64);
         let place = |k: usize| ground.clamp(low + cell * DVec2::new((k % n.0) as f64, (k / n.0) as f64));
-        let places: Vec<DVec2> = (0..n.0 * n.1).map(place).collect();
-        let p = places.iter().map(|xy| ground.spot(*xy).p).collect();
-        let size = places.iter().map(|xy| of(*xy)).collect();
+        let row = |j: usize| -> Vec<(DVec3, f64)> { (0..n.0).map(|i| place(j * n.0 + i)).map(|xy| (ground.spot(xy).p, of(xy))).collect() };
+        let rows = par::map(n.1, row);
+        let p = rows.iter().flatten().map(|node| node.0).collect();
+        let size = rows.iter().flatten().map(|node| node.1).collect();
         let mut field = Self { low, cell, n, p, size, growth };
         field.level();
         field

@@ -156,7 +156,7 @@ impl Fit<'_> {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
         let wanted = |xy: DVec2| (HALVED * bound::wanted(&self.sheet.jet(xy), self.limits.chord, self.limits.angle)).min(size);
-        Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), wanted)
+        Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &wanted)
     }
 }
 
