@@ -264,8 +264,7 @@ impl Maker<'_> {
         let (longest, ground) = (&self.fit.longest, self.fit.sheet);
         let over = |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(net, a as u32).max(longest.at(net, b as u32));
         Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
-        let openings = if self.fit.face.elements == Elements::Quads { OPENINGS } else { 0 };
-        for _ in 0..openings {
+        for _ in 0..OPENINGS {
             if open(net, (ground, wanted), &over) == 0 {
                 break;
             }

@@ -29,11 +29,12 @@ pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Ov
     all.sort_by(|a, b| b.over.total_cmp(&a.over).then((a.node, a.towards).cmp(&(b.node, b.towards))));
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); if all.is_empty() { 0 } else { net.p.len() }];
     if !all.is_empty() {
-        net.face.iter().enumerate().for_each(|(f, c)| c.iter().for_each(|n| faces_of[*n as usize].push(f as u32)));
+        net.face.iter().enumerate().for_each(|(f, c)| c.iter().filter(|n| **n != NONE).for_each(|n| faces_of[*n as usize].push(f as u32)));
     }
     let (mut busy, mut made) = (vec![false; net.p.len()], 0);
     for Opening { node, towards, hinges, .. } in all {
-        let near: Vec<usize> = faces_of[node].iter().flat_map(|f| net.face[*f as usize]).map(|n| n as usize).collect();
+        let near: Vec<usize> =
+            faces_of[node].iter().flat_map(|f| net.face[*f as usize]).filter(|n| *n != NONE).map(|n| n as usize).collect();
         if near.iter().any(|n| busy.get(*n).is_none_or(|busy| *busy)) {
             continue;
         }

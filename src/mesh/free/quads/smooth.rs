@@ -21,6 +21,8 @@ const WATCH: usize = 1 << 14;
 
 /// Sides above this share of what is allowed are shared out.
 const TIGHT: f64 = 0.97;
+/// Sides below this share of the wanted length, or of those round a node, are not made shorter by such moves.
+const SHORT: f64 = 0.4;
 /// Elements that stay this good may get worse for the sake of shorter sides.
 const STRAINED: f64 = 0.75;
 
@@ -200,6 +202,11 @@ impl<'a> Smoother<'a> {
         })
     }
 
+    /// The shortest side at a node.
+    fn shortest(&self, node: usize) -> f64 {
+        self.neighbours(node).map(|other| self.net.p[node].distance(self.net.p[other])).fold(f64::INFINITY, f64::min)
+    }
+
     /// One move of a node with a long side.
     fn pull(&mut self, node: usize, over: &Over) -> bool {
         let tension = |net: &Net, other: usize| over(net, node, other);
@@ -217,11 +224,12 @@ impl<'a> Smoother<'a> {
         let strain =
             |this: &Self| this.neighbours(node).map(|other| tension(this.net, other)).map(|t| t * t * t * t * t * t * t * t).sum::<f64>();
         let (start, before, worst) = (self.place(node), strain(self), self.worst(node));
+        let short = self.shortest(node).min(SHORT * self.net.size[node]);
         let mut step = sum / weights - start.p;
         for _ in 0..3 {
             let place = self.foot(node, start.p + step);
             self.put(node, place);
-            if strain(self) < before * (1.0 - GAIN) && self.worst(node) >= worst.min(STRAINED) {
+            if strain(self) < before * (1.0 - GAIN) && self.worst(node) >= worst.min(STRAINED) && self.shortest(node) >= short {
                 return true;
             }
             step *= 0.5;
@@ -261,12 +269,12 @@ impl<'a> Smoother<'a> {
         let mut reach = STEPS.0;
         while reach > STEPS.1 {
             let (ahead, aside) = self.frame(node, place);
-            let mut found = false;
+            let (mut found, short) = (false, self.shortest(node).min(SHORT * size));
             for (x, y) in EIGHT {
                 let trial = self.foot(node, place.p + (ahead * x + aside * y) * (reach * size));
                 self.put(node, trial);
                 let worst = self.worst(node);
-                if worst > best + GAIN * reach {
+                if worst > best + GAIN * reach && self.shortest(node) >= short {
                     (best, place, found) = (worst, trial, true);
                     break;
                 }
