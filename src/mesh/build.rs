@@ -9,7 +9,7 @@ use super::data::Mesh;
 use super::explain::Explanation;
 use super::layout::Layout;
 use super::nodes::Nodes;
-use super::plan::{Method, Plan};
+use super::plan::Plan;
 use super::reuse::{Known, Reuse};
 use super::sizing::Remark;
 use super::{key, sets};
@@ -171,7 +171,6 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
     }
     let diagonal = around.diagonal();
     // What is to be sparing has its chord error for a size.
-    let sparing = input.plan.method.is_sparing() || input.plan.method == Method::Display;
-    let share = if sparing && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
+    let share = if input.plan.method.is_sparing() && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
     if diagonal > 0.0 { share * diagonal } else { 1.0 }
 }

@@ -40,7 +40,7 @@ pub enum Method {
 impl Method {
     /// Whether sides are only as short as limits and written sizes ask for, and triangles as long as they may be.
     pub fn is_sparing(self) -> bool {
-        self == Self::Isoline
+        matches!(self, Self::Isoline | Self::Display)
     }
 
     /// Its word, where it makes nothing but triangles.

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::bound;
 use super::build::{Broken, Lattice, Task, Trouble, triangulate};
-use super::ground::{Even, Field};
+use super::ground::{Even, Field, Ground};
 use super::improve::Care;
 use super::lay::{Ask, Failure, lay};
 use super::loads::{self, Loads};
@@ -199,17 +199,19 @@ fn fitting(made: &Made, face: &Face, sheet: &Sheet, outline: &Outline, job: &Job
     let longest = Longest::new(face.size.0, outline, &rules);
     let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
     if face.method.is_sparing() {
-        return fit.laid(&rules, job);
+        let mut laid = fit.laid(&rules, job)?;
+        if let (Method::Display, Ok((web, _, tally))) = (face.method, &mut laid) {
+            fit.thin(web, job)?;
+            *tally = None;
+        }
+        return Ok(laid);
     }
     let background = bent.then(|| fit.background());
     // Growth is that of distances of nodes.
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
-    let mut web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
-    if let (Method::Display, Ok(web)) = (face.method, &mut web) {
-        fit.thin(web, job)?;
-    }
+    let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
     Ok(web.map(|web| {
         let deciders = fit.deciders(&field, &web);
         (web, deciders, None)
@@ -268,9 +270,10 @@ impl Fit<'_> {
     /// Fewer triangles for the same limits.
     fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
-        let bound = |web: &Web, c: [u32; 3]| loads::load(self.sheet, web, c, limits).worst();
+        let bound = |web: &Web, c: [u32; 3]| loads::load_by_parts(self.sheet, web, c, limits).worst();
         let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b);
-        Thinner { bound: &bound, allowed: &allowed }.thin(web, job)?;
+        let point = |xy: DVec2| self.sheet.spot(xy).p;
+        Thinner { bound: &bound, allowed: &allowed, point: &point }.thin(web, job)?;
         web.compact();
         Ok(())
     }

@@ -40,11 +40,11 @@ impl Worth {
     }
 }
 
-/// The triangulation of a convex polygon, counter-clockwise, whose worst error `load` is least, and of those the one with the
-/// largest least angle [dynamic programming after Klincsek 1980]. `at` are places that lie exactly on the sides of the cell.
+/// The triangulation of a polygon, counter-clockwise, whose worst error `load` is least, and of those the one with the largest
+/// least angle [dynamic programming after Klincsek 1980]. Triangles with an error above `most` are left out.
 ///
-/// `None` where the nodes have no area.
-pub fn fill(at: &[DVec2], p: &[DVec3], load: &dyn Fn([usize; 3]) -> f64) -> Option<Filling> {
+/// `None` where there is none.
+pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f64) -> Option<Filling> {
     let n = at.len();
     if !(3..=MOST).contains(&n) {
         return None;
@@ -61,8 +61,11 @@ pub fn fill(at: &[DVec2], p: &[DVec3], load: &dyn Fn([usize; 3]) -> f64) -> Opti
                 if area2(at[i], at[j], at[k]) <= 0.0 {
                     continue;
                 }
-                let own = Worth { load: load([i, j, k]), sharpest: sharpest(p[i], p[j], p[k]) };
-                let all = own.and(a.0).and(b.0);
+                let error = load([i, j, k]);
+                if error > most {
+                    continue;
+                }
+                let all = Worth { load: error, sharpest: sharpest(p[i], p[j], p[k]) }.and(a.0).and(b.0);
                 if best[i * n + k].is_none_or(|(known, _)| all.beats(&known)) {
                     best[i * n + k] = Some((all, j));
                 }
@@ -96,7 +99,7 @@ mod tests {
     fn filled(at: &[(f64, f64)], load: impl Fn([usize; 3]) -> f64) -> Filling {
         let at: Vec<DVec2> = at.iter().map(|p| DVec2::from(*p)).collect();
         let p: Vec<DVec3> = at.iter().map(|p| p.extend(0.0)).collect();
-        fill(&at, &p, &load).unwrap()
+        fill(&at, &p, f64::INFINITY, &load).unwrap()
     }
 
     #[test]
@@ -116,6 +119,6 @@ mod tests {
         assert_eq!(found.triangles.len(), 3);
         assert!(!found.triangles.contains(&[0, 1, 2]));
         let line: Vec<DVec2> = (0..3).map(|k| DVec2::new(f64::from(k), 0.0)).collect();
-        assert_eq!(fill(&line, &[DVec3::ZERO; 3], &|_| 0.0), None);
+        assert_eq!(fill(&line, &[DVec3::ZERO; 3], f64::INFINITY, &|_| 0.0), None);
     }
 }

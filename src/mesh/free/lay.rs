@@ -204,7 +204,7 @@ impl Work<'_> {
         let at = corners((low, high));
         let p = at.map(|at| self.point(at));
         let xy = at.map(|at| self.place(at));
-        let one = |c: [usize; 3]| loads::load_of(self.ask.sheet, (c.map(|k| xy[k]), c.map(|k| p[k])), 0.0, self.ask.limits).worst();
+        let one = |c: [usize; 3]| loads::load_of(self.ask.sheet, (c.map(|k| xy[k]), c.map(|k| p[k])), self.ask.limits).worst();
         let first = one([0, 1, 2]).max(one([0, 2, 3]));
         if first <= 1.0 { first } else { first.min(one([0, 1, 3]).max(one([1, 2, 3]))) }
     }
@@ -455,8 +455,8 @@ impl Work<'_> {
             let p: Vec<DVec3> = nodes.iter().map(|n| web.p[*n as usize]).collect();
             if self.fillings.get(&k).is_none_or(|(known, _)| *known != p) {
                 let at: Vec<DVec2> = round.iter().map(|c| corners.all[*c].at).collect();
-                let load = |c: [usize; 3]| loads::load(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits).worst();
-                let filling = fill(&at, &p, &load);
+                let load = |c: [usize; 3]| loads::load_by_parts(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits).worst();
+                let filling = fill(&at, &p, f64::INFINITY, &load);
                 self.fillings.insert(k, (p, filling));
             }
             let Some((_, Some(filling))) = self.fillings.get(&k) else { continue };
@@ -494,7 +494,7 @@ impl Work<'_> {
             if sure.contains(&sorted(c)) {
                 continue;
             }
-            let load = loads::load(self.ask.sheet, web, c, self.ask.limits);
+            let load = loads::load_by_parts(self.ask.sheet, web, c, self.ask.limits);
             let long = self.too_long(web, (c, all.given[t]));
             if load.worst() <= 1.0 && !long {
                 continue;

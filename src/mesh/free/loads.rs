@@ -11,6 +11,8 @@ use crate::base::par;
 use crate::base::tolerance::SINGULAR;
 use crate::mesh::edges::Limits;
 use crate::mesh::gaps;
+use crate::surface::Surface;
+use crate::surface::quick::Quick;
 
 /// Triangles that one thread bounds at a time.
 const BATCH: usize = 1024;
@@ -60,19 +62,36 @@ impl Loads {
 
 /// The bounds of three nodes as a triangle against the limits.
 pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+    load_by(bound::chord, sheet, (web, corners), limits)
+}
+
+/// The same by parts, nearer to what is there.
+pub fn load_by_parts(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+    load_by(bound::chord_by_parts, sheet, (web, corners), limits)
+}
+
+/// How a chord error is bounded.
+type Chord = fn((&Surface, Option<&Quick>), [DVec2; 3], [DVec3; 3], f64) -> f64;
+
+fn load_by(chord: Chord, sheet: &Sheet, (web, corners): (&Web, [u32; 3]), limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
     let beside = match limits.chord {
         Some(limit) => c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max),
         None => 0.0,
     };
-    load_of(sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n])), beside, limits)
+    of_places(chord, sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n]), beside), limits)
 }
 
-/// The same of three places of the chart with their points, which are up to `beside` off the surface.
-pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), beside: f64, limits: &Limits) -> Load {
+/// The same of three places of the chart with their points, by parts.
+pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
+    of_places(bound::chord_by_parts, sheet, (xy, p, 0.0), limits)
+}
+
+/// Points are up to `beside` off the surface.
+fn of_places(chord: Chord, sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limits: &Limits) -> Load {
     let places = xy.map(|xy| DVec2::from(sheet.uv(xy)));
     let surface = (sheet.surface(), sheet.quick());
-    let chord = limits.chord.map_or(0.0, |limit| (bound::chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit);
+    let chord = limits.chord.map_or(0.0, |limit| (chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit);
     let angle = limits.angle.map_or(0.0, |limit| {
         let normals = xy.map(|xy| sheet.spot(xy).normal());
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);

@@ -1,12 +1,19 @@
 //! Fewer triangles for the same limits: nodes are taken out for as long as the triangles that close the gap keep them.
 //!
-//! A node goes when the fan from one node of its rim keeps the limits by their certified bounds; what costs least goes
-//! first, and between rounds edges are flipped to where the worse bound of their two triangles is smaller. Triangles
-//! come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound
-//! of `bound.rs` in place of a distance of points].
+//! A node goes when some triangulation of its rim keeps the limits by their certified bounds; what costs least goes first, by
+//! a heap of costs of which those near a change are found again when their turn comes. When none goes any more, two neighbours
+//! become one node where some place between them keeps the limits, edges are flipped to where the bounds of their two triangles
+//! are smaller, and nodes beside what changed get another try. Triangles come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound of `bound.rs`
+//! in place of a distance of points].
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::{DVec2, DVec3};
+
+use super::fill::{self, Filling, fill};
 use super::outline::area2;
-use super::shape::quality;
+use super::shape::{Star, quality};
 use super::web::{Patch, Ring, Web};
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -18,10 +25,18 @@ pub type Bound<'a> = dyn Fn(&Web, [u32; 3]) -> f64 + 'a;
 /// Whether an edge between two nodes may be as long as it is.
 pub type Allowed<'a> = dyn Fn(&Web, u32, u32) -> bool + 'a;
 
-/// Rounds at most; each takes out what it can.
-const ROUNDS: usize = 24;
+/// Rounds of taking out and flipping at most.
+const ROUNDS: usize = 8;
+/// A round that takes out a smaller share of the nodes is the last one.
+const WORTH: f64 = 0.002;
 /// Least quality of a triangle that is made: long ones are meant, needles are not.
-const LEAST: f64 = 0.1;
+const LEAST: f64 = 0.01;
+/// A flip must lower the sum of the squares of two bounds to this share: none goes to and fro.
+const GAIN: f64 = 0.98;
+/// Places between two nodes at which one in place of both is tried.
+const BETWEEN: [f64; 3] = [0.5, 0.25, 0.75];
+/// Nodes taken out between two questions whether to go on.
+const WATCH: usize = 1024;
 
 /// What thinning asks.
 pub struct Thinner<'a> {
@@ -29,105 +44,244 @@ pub struct Thinner<'a> {
     pub bound: &'a Bound<'a>,
     /// Lengths.
     pub allowed: &'a Allowed<'a>,
+    /// The point of a place of the chart.
+    pub point: &'a dyn Fn(DVec2) -> DVec3,
 }
 
-/// A fan that closes the gap of a node: its cost and the rim's node it starts from.
-type Fan = (f64, usize);
+/// What is known of a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Known {
+    /// Nothing, or something changed beside it.
+    Nothing,
+    /// The cost of taking it out, as things are.
+    Cost(f64),
+    /// It cannot go, as things were.
+    Stays,
+}
+
+/// A thinning under way.
+struct Thinning<'a> {
+    ask: &'a Thinner<'a>,
+    web: &'a mut Web,
+    /// By node.
+    known: Vec<Known>,
+    /// By triangle, with its corners: bounds that were found.
+    loads: Vec<([u32; 3], f64)>,
+    /// Costs as their bits, which are in order for what is not negative, and nodes.
+    heap: BinaryHeap<Reverse<(u64, u32)>>,
+    ring: Ring,
+    patch: Patch,
+}
 
 impl Thinner<'_> {
-    /// Takes out nodes until none can go.
+    /// Takes out nodes until hardly one can go.
     pub fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
-        let (mut ring, mut patch) = (Ring::default(), Patch::default());
+        let n = web.p.len();
+        let first = web.fixed;
+        let mut thinning = Thinning {
+            ask: self,
+            web,
+            known: vec![Known::Nothing; n],
+            loads: Vec::new(),
+            heap: (first..n as u32).map(|node| Reverse((0, node))).collect(),
+            ring: Ring::default(),
+            patch: Patch::default(),
+        };
         for _ in 0..ROUNDS {
-            let mut order: Vec<(f64, u32)> = Vec::new();
-            for node in web.fixed..web.p.len() as u32 {
-                if let Some((cost, _)) = self.fan(web, node, (&mut ring, &mut patch)) {
-                    order.push((cost, node));
-                }
-            }
-            order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            let mut gone = 0;
-            for (_, node) in order {
-                // Neighbours may have gone in between.
-                if let Some((_, k)) = self.fan(web, node, (&mut ring, &mut patch)) {
-                    web.refan(&patch, k);
-                    gone += 1;
-                }
-            }
-            self.flip(web);
-            job.go_on()?;
-            if gone == 0 {
+            let mut gone = thinning.take_out(job)?;
+            gone += thinning.join(job)?;
+            thinning.flip();
+            if gone as f64 <= WORTH * n as f64 {
                 break;
             }
         }
         Ok(())
     }
+}
 
-    /// The cheapest fan in place of a node; `patch` is then what it replaces.
-    fn fan(&self, web: &mut Web, node: u32, (ring, patch): (&mut Ring, &mut Patch)) -> Option<Fan> {
-        if web.at[node as usize] == NO_TRIANGLE {
-            return None;
-        }
-        web.ring(node, ring);
-        if !ring.closed {
-            return None;
-        }
-        let tri = std::mem::take(&mut ring.tri);
-        let fits = web.patch(&tri, patch);
-        ring.tri = tri;
-        fits?;
-        let n = patch.rim.len();
-        let mut best: Option<Fan> = None;
-        for k in 0..n {
-            let most = best.map_or(1.0, |b| b.0);
-            let cost = (1..n - 1).try_fold(0.0_f64, |cost, i| {
-                let c = [patch.rim[k], patch.rim[(k + i) % n], patch.rim[(k + i + 1) % n]];
-                let own = self.cost(web, c)?;
-                // The side from the fan's start is new but for the first and the last one.
-                (own < most && (i == 1 || (self.allowed)(web, c[0], c[1]))).then_some(cost.max(own))
-            });
-            if let Some(cost) = cost.filter(|cost| *cost < most) {
-                best = Some((cost, k));
+impl Thinning<'_> {
+    /// Takes out nodes, cheapest first; how many went.
+    fn take_out(&mut self, job: &Job) -> Result<usize> {
+        let mut gone = 0_usize;
+        while let Some(Reverse((_, node))) = self.heap.pop() {
+            let k = node as usize;
+            if self.web.at[k] == NO_TRIANGLE || self.known[k] == Known::Stays {
+                continue;
+            }
+            let Some(filling) = self.filling(node) else {
+                self.known[k] = Known::Stays;
+                continue;
+            };
+            // What got dearer since it was put there waits for its turn.
+            if self.known[k] != Known::Cost(filling.load) {
+                self.known[k] = Known::Cost(filling.load);
+                let next = self.heap.peek().map_or(u64::MAX, |Reverse((bits, _))| *bits);
+                if filling.load.to_bits() > next {
+                    self.heap.push(Reverse((filling.load.to_bits(), node)));
+                    continue;
+                }
+            }
+            self.web.refill(&self.patch, &filling.triangles);
+            for n in self.patch.rim.clone() {
+                // Those that stay do so for what is round them now as well, but for a flip.
+                if self.known[n as usize] != Known::Stays {
+                    self.known[n as usize] = Known::Nothing;
+                }
+            }
+            gone += 1;
+            if gone.is_multiple_of(WATCH) {
+                job.go_on()?;
             }
         }
-        best
+        Ok(gone)
     }
 
-    /// The bound of a triangle that may be made; `None` where it may not.
-    fn cost(&self, web: &Web, c: [u32; 3]) -> Option<f64> {
-        let [x, y, z] = c.map(|n| web.xy[n as usize]);
-        let [a, b, d] = c.map(|n| web.p[n as usize]);
+    /// The cheapest triangles in place of those at a node; `patch` is then what they replace.
+    fn filling(&mut self, node: u32) -> Option<Filling> {
+        self.web.ring(node, &mut self.ring);
+        if !self.ring.closed || self.ring.tri.len() > fill::MOST {
+            return None;
+        }
+        self.web.patch(&self.ring.tri, &mut self.patch)?;
+        let rim = &self.patch.rim;
+        let web = &*self.web;
+        let at: Vec<DVec2> = rim.iter().map(|n| web.xy[*n as usize]).collect();
+        let p: Vec<DVec3> = rim.iter().map(|n| web.p[*n as usize]).collect();
+        let n = rim.len();
+        let load = |c: [usize; 3]| {
+            let far = |i: usize, j: usize| j - i == 1 || j - i == n - 1 || (self.ask.allowed)(web, rim[i], rim[j]);
+            if quality(p[c[0]], p[c[1]], p[c[2]]) < LEAST || !(far(c[0], c[1]) && far(c[1], c[2]) && far(c[0], c[2])) {
+                return f64::INFINITY;
+            }
+            (self.ask.bound)(web, c.map(|i| rim[i]))
+        };
+        fill(&at, &p, 1.0, &load)
+    }
+
+    /// Makes one node of two neighbours where some place between them keeps the limits; how many went.
+    fn join(&mut self, job: &Job) -> Result<usize> {
+        let mut gone = 0_usize;
+        for t in 0..self.web.tri.len() as u32 {
+            for k in 0..3 {
+                let c = self.web.tri[t as usize];
+                let (a, b) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+                if self.web.alive(t) && self.web.fixed <= a && a < b && self.join_one(a, b) {
+                    gone += 1;
+                    break;
+                }
+            }
+            if (t as usize).is_multiple_of(WATCH) {
+                job.go_on()?;
+            }
+        }
+        Ok(gone)
+    }
+
+    /// Makes one node of two neighbours, or leaves them.
+    fn join_one(&mut self, a: u32, b: u32) -> bool {
+        self.web.ring(a, &mut self.ring);
+        let mut around = self.ring.tri.clone();
+        self.web.ring(b, &mut self.ring);
+        around.extend(self.ring.tri.iter().filter(|t| !self.web.tri[**t as usize].contains(&a)));
+        if self.web.patch(&around, &mut self.patch).is_none() {
+            return false;
+        }
+        let (k, other) = (a as usize, b as usize);
+        let old = (self.web.xy[k], self.web.p[k]);
+        let mut best: Option<(f64, Star)> = None;
+        for share in BETWEEN {
+            let xy = old.0.lerp(self.web.xy[other], share);
+            (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
+            let most = best.map_or(1.0, |b| b.0);
+            if let Some(load) = self.star(a, most) {
+                best = Some((load, Star { p: self.web.p[k], xy, worst: 0.0 }));
+            }
+        }
+        (self.web.xy[k], self.web.p[k]) = old;
+        let Some((_, star)) = best else { return false };
+        let size = self.web.size[k];
+        self.web.restar(&self.patch, Some(a), &star, size);
+        // Places count by themselves: what was found with this node at another one is void.
+        self.web.ring(a, &mut self.ring);
+        for t in &self.ring.tri {
+            if let Some(load) = self.loads.get_mut(*t as usize) {
+                load.0 = [0; 3];
+            }
+        }
+        for n in self.patch.rim.iter().copied().chain([a]).filter(|n| *n >= self.web.fixed) {
+            self.known[n as usize] = Known::Nothing;
+            self.heap.push(Reverse((0, n)));
+        }
+        true
+    }
+
+    /// The worst bound of the triangles from a node to the rim of the patch, where it is less than a limit.
+    fn star(&self, node: u32, most: f64) -> Option<f64> {
+        let rim = &self.patch.rim;
+        (0..rim.len()).try_fold(0.0_f64, |worst, i| {
+            let c = [node, rim[i], rim[(i + 1) % rim.len()]];
+            if !(self.ask.allowed)(self.web, c[0], c[1]) {
+                return None;
+            }
+            self.less(c, most).map(|load| worst.max(load))
+        })
+    }
+
+    /// The bound of a triangle of the web.
+    fn load(&mut self, t: u32) -> f64 {
+        let c = self.web.tri[t as usize];
+        self.loads.resize(self.web.tri.len(), ([0; 3], 0.0));
+        if self.loads[t as usize].0 != c {
+            self.loads[t as usize] = (c, (self.ask.bound)(self.web, c));
+        }
+        self.loads[t as usize].1
+    }
+
+    /// The bound of a triangle that may be made, less than a limit; `None` where it may not.
+    fn less(&self, c: [u32; 3], limit: f64) -> Option<f64> {
+        let [x, y, z] = c.map(|n| self.web.xy[n as usize]);
+        let [a, b, d] = c.map(|n| self.web.p[n as usize]);
         if area2(x, y, z) <= 0.0 || quality(a, b, d) < LEAST {
             return None;
         }
-        Some((self.bound)(web, c)).filter(|bound| *bound <= 1.0)
+        Some((self.ask.bound)(self.web, c)).filter(|bound| *bound < limit)
     }
 
-    /// Flips edges where the worse of the two bounds gets smaller.
-    fn flip(&self, web: &mut Web) {
-        let mut left = 4 * web.tri.len();
-        let mut open: Vec<u32> = (0..web.tri.len() as u32).filter(|t| web.alive(*t)).collect();
+    /// Flips edges where the bounds of the two triangles get smaller; nodes beside them get another try.
+    fn flip(&mut self) {
+        let mut left = 4 * self.web.tri.len();
+        let mut open: Vec<u32> = (0..self.web.tri.len() as u32).filter(|t| self.web.alive(*t)).collect();
         while let Some(t) = open.pop() {
             for k in 0..3 {
-                let other = web.across[t as usize][k];
-                if left == 0 || other == NO_TRIANGLE || web.locked[t as usize] >> k & 1 == 1 {
+                let other = self.web.across[t as usize][k];
+                if left == 0 || other == NO_TRIANGLE || self.web.locked[t as usize] >> k & 1 == 1 {
                     continue;
                 }
-                let c = web.tri[t as usize];
+                let c = self.web.tri[t as usize];
                 let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
-                let Some(tip) = web.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { continue };
-                let before = (self.bound)(web, [a, b, d]).max((self.bound)(web, [tip, d, b]));
-                let after = self.cost(web, [a, b, tip]).zip(self.cost(web, [a, tip, d])).map(|(x, y)| x.max(y));
-                if after.is_some_and(|after| after < GAIN * before) && (self.allowed)(web, a, tip) {
-                    left -= 1;
-                    web.flip(t, k);
-                    open.extend([t, other]);
-                    break;
+                let Some(tip) = self.web.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { continue };
+                if !(self.ask.allowed)(self.web, a, tip) {
+                    continue;
                 }
+                let (one, two) = (self.load(t), self.load(other));
+                let before = one * one + two * two;
+                let Some((first, second)) = self.less([a, b, tip], 1.0).zip(self.less([a, tip, d], 1.0)) else { continue };
+                if first * first + second * second > GAIN * before {
+                    continue;
+                }
+                left -= 1;
+                self.web.flip(t, k);
+                self.loads[t as usize] = (self.web.tri[t as usize], first);
+                self.loads[other as usize] = (self.web.tri[other as usize], second);
+                for n in [a, b, d, tip] {
+                    if n >= self.web.fixed && self.known[n as usize] == Known::Stays {
+                        self.known[n as usize] = Known::Nothing;
+                        self.heap.push(Reverse((0, n)));
+                    }
+                }
+                open.extend([t, other]);
+                break;
             }
         }
     }
 }
-
-/// A flip must lower the worse bound to this share: none goes to and fro.
-const GAIN: f64 = 0.98;

@@ -288,6 +288,43 @@ impl Web {
         node
     }
 
+    /// Replaces a patch by triangles over its rim, given by places in it and counter-clockwise; nodes inside go.
+    pub fn refill(&mut self, patch: &Patch, triangles: &[[usize; 3]]) {
+        for n in &patch.inner {
+            self.at[*n as usize] = NO_TRIANGLE;
+            self.free_node.push(*n);
+        }
+        let n = patch.rim.len();
+        let mut slots = patch.tri.clone();
+        while slots.len() < triangles.len() {
+            slots.push(self.new_tri());
+        }
+        for dead in slots.drain(triangles.len()..) {
+            self.tri[dead as usize] = [0; 3];
+            self.across[dead as usize] = [NO_TRIANGLE; 3];
+            self.free_tri.push(dead);
+        }
+        for (c, &t) in triangles.iter().zip(&slots) {
+            self.tri[t as usize] = c.map(|i| patch.rim[i]);
+            self.locked[t as usize] = 0;
+            for k in 0..3 {
+                let (from, to) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+                if to == (from + 1) % n {
+                    let (beyond, locked) = patch.beyond[from];
+                    self.across[t as usize][k] = beyond;
+                    self.locked[t as usize] |= u8::from(locked) << k;
+                    if beyond != NO_TRIANGLE {
+                        self.join(beyond, patch.rim[to], patch.rim[from], t);
+                    }
+                } else {
+                    let has = |other: &[usize; 3]| (0..3).any(|j| other[j] == to && other[(j + 1) % 3] == from);
+                    self.across[t as usize][k] = triangles.iter().position(has).map_or(NO_TRIANGLE, |j| slots[j]);
+                }
+                self.at[patch.rim[c[k]] as usize] = t;
+            }
+        }
+    }
+
     /// Replaces a patch without nodes inside by the fan of the node `k` of its rim.
     pub fn refan(&mut self, patch: &Patch, k: usize) {
         for n in &patch.inner {
