@@ -271,7 +271,8 @@ impl Fit<'_> {
     fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
         let bound = |web: &Web, c: [u32; 3]| loads::load_by_parts(self.sheet, web, c, limits).worst();
-        let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b);
+        let twins = self.outline.twins();
+        let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b) && !web.joined_elsewhere(&twins, a, b);
         let point = |xy: DVec2| self.sheet.spot(xy).p;
         Thinner { bound: &bound, allowed: &allowed, point: &point }.thin(web, job)?;
         web.compact();

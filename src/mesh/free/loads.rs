@@ -67,7 +67,27 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Loa
 
 /// The same by parts, nearer to what is there.
 pub fn load_by_parts(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
-    load_by(bound::chord_by_parts, sheet, (web, corners), limits)
+    let c = corners.map(|n| n as usize);
+    leaning(load_by(bound::chord_by_parts, sheet, (web, corners), limits), lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])))
+}
+
+/// Cosine of the largest angle that a triangle may stand at to its surface.
+const UPRIGHT: f64 = 0.5;
+
+/// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
+/// triangle that stands on edge: near to what is over it along its own normal, and its sides far from the surface all the same.
+fn lean(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
+    let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
+    let cosine = |xy: DVec2| {
+        let own = sheet.spot(xy).normal();
+        if own == DVec3::ZERO || normal == DVec3::ZERO { 1.0 } else { own.dot(normal) }
+    };
+    xy.into_iter().map(cosine).fold(1.0, f64::min)
+}
+
+/// What is a height over the triangle is further from its sides the more it leans.
+fn leaning(load: Load, lean: f64) -> Load {
+    Load { chord: if lean < UPRIGHT && load.chord > 0.0 { f64::INFINITY } else { load.chord / lean.max(UPRIGHT) }, ..load }
 }
 
 /// How a chord error is bounded.
@@ -84,7 +104,7 @@ fn load_by(chord: Chord, sheet: &Sheet, (web, corners): (&Web, [u32; 3]), limits
 
 /// The same of three places of the chart with their points, by parts.
 pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
-    of_places(bound::chord_by_parts, sheet, (xy, p, 0.0), limits)
+    leaning(of_places(bound::chord_by_parts, sheet, (xy, p, 0.0), limits), lean(sheet, xy, p))
 }
 
 /// Points are up to `beside` off the surface.

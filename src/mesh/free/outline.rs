@@ -27,6 +27,20 @@ impl Outline {
         if k < self.loops.len() { self.loops[k] } else { self.lines[k - self.loops.len()] }
     }
 
+    /// For each node the others that are the same point at another place of the chart: over a seam, at a pole.
+    pub fn twins(&self) -> Vec<Vec<u32>> {
+        let bits = |n: u32| self.p[n as usize].to_array().map(f64::to_bits);
+        let mut order: Vec<u32> = (0..self.p.len() as u32).collect();
+        order.sort_by_key(|n| (bits(*n), *n));
+        let mut twins = vec![Vec::new(); self.p.len()];
+        for same in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
+            for n in same {
+                twins[*n as usize] = same.iter().copied().filter(|m| m != n).collect();
+            }
+        }
+        twins
+    }
+
     /// Length of an edge in space.
     pub fn length(&self, [a, b]: [u32; 2]) -> f64 {
         self.p[a as usize].distance(self.p[b as usize])

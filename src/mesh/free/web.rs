@@ -173,6 +173,20 @@ impl Web {
         }
     }
 
+    /// Whether two nodes, or what is the same point at another place of the chart, already have an edge other than between
+    /// these places: one more would be the same edge in space.
+    pub fn joined_elsewhere(&self, twins: &[Vec<u32>], a: u32, b: u32) -> bool {
+        let places = |n: u32| std::iter::once(n).chain(twins.get(n as usize).into_iter().flatten().copied());
+        if places(a).count() + places(b).count() == 2 {
+            return false;
+        }
+        let mut ring = Ring::default();
+        places(a).any(|x| {
+            self.ring(x, &mut ring);
+            places(b).any(|y| (x, y) != (a, b) && ring.node.contains(&y))
+        })
+    }
+
     /// The diagonal of the two triangles at side `k` of `t` becomes the other one. Both must be there and unlocked.
     pub fn flip(&mut self, t: u32, k: usize) {
         let u = self.across[t as usize][k];
