@@ -106,6 +106,20 @@ pub fn bracketed(mut low: f64, mut high: f64, accuracy: f64, mut f: impl FnMut(f
     x
 }
 
+/// Where an answer changes between `low`, where it is `first`, and `high`, by 60 halvings; `None` where there is no answer.
+pub fn turn(mut low: f64, mut high: f64, first: bool, mut f: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
+    const HALVINGS: usize = 60;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if f(middle)? == first {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(0.5 * (low + high))
+}
+
 /// Where a function with one minimum between `low` and `high` is least, by golden sections, to `accuracy` of the interval.
 pub fn lowest(mut low: f64, mut high: f64, accuracy: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;

@@ -3,8 +3,9 @@
 use glam::DVec2;
 
 use super::build::Input;
-use super::inside::surrounds;
+use super::inside::surround;
 use crate::base::math::angle_between;
+use crate::base::solve::turn;
 use crate::model::atoms::Part;
 use crate::model::{PatchId, Trace, Track};
 use crate::surface::{Domain, Lean, Side, Surface};
@@ -15,8 +16,6 @@ const CREASE: f64 = 0.052;
 const LOOKS: usize = 16;
 /// Samples of a border between which it crosses a kink line once at most.
 const SAMPLES: usize = 128;
-/// Halvings until a crossing is found.
-const HALVINGS: usize = 60;
 /// Tracks of lower rank give the geometry of what several share: all others come first.
 const RANK: u8 = u8::MAX;
 
@@ -40,7 +39,7 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
             for w in ends.windows(2) {
                 let place = |other: f64| if axis == 0 { DVec2::new(at, other) } else { DVec2::new(other, at) };
                 let middle = place(0.5 * (w[0] + w[1]));
-                if !outlines.iter().fold(false, |kept, polygon| kept != surrounds(polygon, middle)) {
+                if !surround(&outlines, middle) {
                     continue;
                 }
                 // Nets of other programs have knots at which directions jump by a hair: held only for a limit on bends.
@@ -88,16 +87,8 @@ fn crossings(border: &dyn Fn(f64) -> DVec2, axis: usize, at: f64) -> Vec<f64> {
     for k in 1..=SAMPLES {
         let now = below(fraction(k));
         if now != before {
-            let (mut low, mut high) = (fraction(k - 1), fraction(k));
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if below(middle) == before {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            found.push(border(0.5 * (low + high))[1 - axis]);
+            let at = turn(fraction(k - 1), fraction(k), before, |t| Some(below(t)));
+            found.extend(at.map(|t| border(t)[1 - axis]));
         }
         before = now;
     }

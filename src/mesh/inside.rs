@@ -9,6 +9,8 @@ use super::build::Input;
 use super::foot;
 use super::layout::Layout;
 use crate::base::bbox::Box3;
+use crate::base::predicates::{Side, point_in_polygon};
+use crate::base::solve::turn;
 use crate::base::tolerance::Tolerance;
 use crate::model::{Patch, PatchId, SurfaceId, Track};
 use crate::surface::{Domain, Nearest, Surface};
@@ -83,26 +85,17 @@ fn unwrapped(surface: &Surface, (u, v): (f64, f64)) -> (f64, f64) {
     let turns = |closed: bool| if closed { vec![0.0, 1.0, -1.0] } else { vec![0.0] };
     let (closed_u, closed_v) = surface.closed();
     let mut all = turns(closed_u).into_iter().flat_map(|x| turns(closed_v).into_iter().map(move |y| (u + x, v + y)));
-    let kept = |at: &(f64, f64)| outlines.iter().fold(false, |kept, polygon| kept != surrounds(polygon, DVec2::new(at.0, at.1)));
+    let kept = |at: &(f64, f64)| surround(&outlines, DVec2::new(at.0, at.1));
     all.find(kept).unwrap_or((u, v))
 }
 
-/// Whether a polygon winds round a point.
-pub fn surrounds(polygon: &[DVec2], p: DVec2) -> bool {
-    let mut inside = false;
-    for (k, b) in polygon.iter().enumerate() {
-        let a = polygon[(k + polygon.len() - 1) % polygon.len()];
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            inside = !inside;
-        }
-    }
-    inside
+/// Whether polygons, the holes of others among them, have a point inside.
+pub fn surround(polygons: &[Vec<DVec2>], p: DVec2) -> bool {
+    polygons.iter().filter(|polygon| point_in_polygon(p, polygon) == Side::Inside).count() % 2 == 1
 }
 
 /// Samples of a curve between which it crosses a line of a surface once at most.
 const SAMPLES: usize = 128;
-/// Halvings until a crossing is found.
-const HALVINGS: usize = 60;
 
 /// Arc lengths at which tracks cross from one patch of a surface to the next, or over the seam of a closed one: there the
 /// border is in the way, which no curve of the network is.
@@ -209,15 +202,6 @@ impl Wall {
 
     /// Where a parameter that starts at `a` passes the line.
     fn crossed(&self, (s0, s1): (f64, f64), a: f64, parameter: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
-        let (mut low, mut high) = (s0, s1);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if self.below(parameter(middle)?) == self.below(a) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(0.5 * (low + high))
+        turn(s0, s1, self.below(a), |s| parameter(s).map(|x| self.below(x)))
     }
 }

@@ -11,6 +11,7 @@ use super::pull::{Course, Pull, foot};
 use super::shape::Shape;
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
+use crate::base::predicates::{Side as Within, point_in_polygon};
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
 
@@ -82,14 +83,9 @@ fn area2(polygon: &[DVec2]) -> f64 {
     (0..polygon.len()).map(|k| polygon[k].perp_dot(polygon[(k + 1) % polygon.len()])).sum()
 }
 
-/// Whether a place is inside a polygon, by crossings of the ray to the right.
+/// Whether a place is inside a polygon or on it.
 pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
-    let n = polygon.len();
-    (0..n).fold(false, |inside, k| {
-        let (a, b) = (polygon[k], polygon[(k + 1) % n]);
-        let spans = (a.y > p.y) != (b.y > p.y);
-        if spans && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) { !inside } else { inside }
-    })
+    point_in_polygon(p, polygon) != Within::Outside
 }
 
 /// The part of a surface inside `outer` (the whole of it when empty) and outside `holes`, each given by the curves of a loop
