@@ -131,7 +131,12 @@ impl Book {
             (Ok(curve), in_uv) => {
                 let pieces = pieces(&curve);
                 self.copy(pieces.len())?;
-                let in_uv = in_uv.ok().filter(|uv| uv.len() == pieces.len()).unwrap_or_default();
+                let mut in_uv = in_uv.unwrap_or_default();
+                if in_uv.len() > pieces.len() {
+                    // A curve along a pole is one point in space.
+                    in_uv.retain(|uv| !matches!(composed(base, uv, &self.tolerance, self.origin), Ok(None)));
+                }
+                let in_uv = if in_uv.len() == pieces.len() { in_uv } else { Vec::new() };
                 let uv = in_uv.into_iter().map(Some).chain(std::iter::repeat(None));
                 Ok(pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect())
             }
