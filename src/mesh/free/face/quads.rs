@@ -49,8 +49,8 @@ const SHARES: usize = 60;
 const OPENINGS: usize = 8;
 /// How much longer than that a side may be that is left after so many tries: a row of squares met another one there.
 const ROOM: f64 = 1.2;
-/// Tries in which no side may be longer.
-const STRICT: usize = 8;
+/// Tries in which no side may be longer: lengths are lowered everywhere for one that is, and the next try leaves another one.
+const STRICT: usize = 1;
 /// What is made smaller where a limit is broken is made more so.
 const LOWER: f64 = 0.9;
 /// Times a face is made anew for its limits.
@@ -265,11 +265,14 @@ impl Maker<'_> {
         let over = |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(net, a as u32).max(longest.at(net, b as u32));
         Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
         for _ in 0..OPENINGS {
-            if open(net, (ground, wanted), &over) == 0 {
+            let opened = open(net, (ground, wanted), &over);
+            if opened.is_empty() {
                 break;
             }
-            self.smooth(net, wanted, job)?;
-            Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
+            let mut smoother = Smoother::new(net, ground, wanted).only(&opened);
+            smoother.smooth(self.fit.care.smooth, job)?;
+            smoother.mend(WANTED, MENDS, job)?;
+            smoother.even_out(&over, SHARES, job)?;
         }
         Ok(())
     }

@@ -23,15 +23,15 @@ struct Opening {
     hinges: [usize; 2],
 }
 
-/// Opens nodes at sides that are longer than allowed, no two of them beside each other; how many.
-pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Over) -> usize {
+/// Opens nodes at sides that are longer than allowed, no two of them beside each other; gives the nodes of the new quads.
+pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Over) -> Vec<u32> {
     let mut all = openings(net, (ground, field), over);
     all.sort_by(|a, b| b.over.total_cmp(&a.over).then((a.node, a.towards).cmp(&(b.node, b.towards))));
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); if all.is_empty() { 0 } else { net.p.len() }];
     if !all.is_empty() {
         net.face.iter().enumerate().for_each(|(f, c)| c.iter().filter(|n| **n != NONE).for_each(|n| faces_of[*n as usize].push(f as u32)));
     }
-    let (mut busy, mut made) = (vec![false; net.p.len()], 0);
+    let (mut busy, mut made) = (vec![false; net.p.len()], Vec::new());
     for Opening { node, towards, hinges, .. } in all {
         let near: Vec<usize> =
             faces_of[node].iter().flat_map(|f| net.face[*f as usize]).filter(|n| *n != NONE).map(|n| n as usize).collect();
@@ -39,7 +39,6 @@ pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Ov
             continue;
         }
         near.iter().for_each(|n| busy[*n] = true);
-        made += 1;
         let new = net.p.len() as u32;
         let step = (net.p[towards] - net.p[node]) * APART;
         let place = |by: DVec3| foot_spot(ground, net.xy[node], net.p[node] + by);
@@ -56,7 +55,9 @@ pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Ov
                 face.iter_mut().filter(|n| **n as usize == node).for_each(|n| *n = new);
             }
         }
-        net.face.push([hinges[0] as u32, new, hinges[1] as u32, node as u32]);
+        let quad = [hinges[0] as u32, new, hinges[1] as u32, node as u32];
+        net.face.push(quad);
+        made.extend(quad);
     }
     made
 }

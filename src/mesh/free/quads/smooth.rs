@@ -46,7 +46,10 @@ pub struct Smoother<'a> {
     /// Faces round each node: from `first[n]` to the next one.
     first: Vec<u32>,
     of: Vec<u32>,
+    /// Nodes that may have to move.
     active: Vec<bool>,
+    /// Nodes that moved: elements round others are as good as they were.
+    fresh: Vec<bool>,
 }
 
 impl<'a> Smoother<'a> {
@@ -63,8 +66,16 @@ impl<'a> Smoother<'a> {
             of[next[node] as usize] = f;
             next[node] += 1;
         }
-        let active = vec![true; n];
-        Self { net, ground, field, first, of, active }
+        let (active, fresh) = (vec![true; n], vec![true; n]);
+        Self { net, ground, field, first, of, active, fresh }
+    }
+
+    /// Only these nodes and those round them may have to move.
+    pub fn only(mut self, nodes: &[u32]) -> Self {
+        self.active.fill(false);
+        self.fresh.fill(false);
+        nodes.iter().for_each(|n| self.wake(*n as usize));
+        self
     }
 
     /// Faces round a node, in no order round it.
@@ -99,6 +110,12 @@ impl<'a> Smoother<'a> {
     /// A node moved for good.
     fn settle(&mut self, node: usize) {
         self.net.size[node] = self.field.size(self.net.xy[node], self.net.p[node]);
+        self.wake(node);
+    }
+
+    /// A node changed: those round it may have to move.
+    fn wake(&mut self, node: usize) {
+        self.fresh[node] = true;
         for k in self.first[node]..self.first[node + 1] {
             for n in self.net.face[self.of[k as usize] as usize] {
                 if n != NONE {
@@ -175,7 +192,7 @@ impl<'a> Smoother<'a> {
     /// Shares long sides out to their neighbours: nodes move towards those they are too far from, while elements stay good
     /// enough. `over` is the length of a side over what is allowed, of two places.
     pub fn even_out(&mut self, over: &Over, rounds: usize, job: &Job) -> Result<()> {
-        self.active.fill(true);
+        self.active.copy_from_slice(&self.fresh);
         for _ in 0..rounds {
             let mut moved = false;
             for node in self.net.fixed as usize..self.net.p.len() {
@@ -242,7 +259,8 @@ impl<'a> Smoother<'a> {
     /// many rounds at most.
     pub fn mend(&mut self, wanted: f64, rounds: usize, job: &Job) -> Result<()> {
         for _ in 0..rounds {
-            let quality = (0..self.net.face.len()).map(|f| (self.net.quality(f), f));
+            let changed = |f: &usize| self.net.corners(*f).iter().any(|n| self.fresh[*n as usize]);
+            let quality = (0..self.net.face.len()).filter(changed).map(|f| (self.net.quality(f), f));
             let mut bad: Vec<(f64, usize)> = quality.filter(|(q, _)| *q < wanted).collect();
             bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let mut gained = false;
