@@ -426,6 +426,7 @@ impl Work<'_> {
         let deciders = self.deciders(&corners, &web);
         let mut web = Web::new(web.p, web.xy, web.size, web.fixed, &all, &kept);
         lock(&mut web, outline);
+        web.lift_flat();
         Ok(Some(Laid { web, tally, deciders }))
     }
 

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::outline::area2;
 use super::shape::{Star, quality};
+use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::{NO_TRIANGLE, Triangles};
 
 /// A triangulation on a surface: border nodes first, which never move, then inner ones.
@@ -218,6 +219,41 @@ impl Web {
         self.at[b as usize] = t;
         self.at[c as usize] = u;
         self.at[d as usize] = t;
+    }
+
+    /// Flips triangles whose corners lie on a straight line of the surface across their longest side, where the chart allows it.
+    pub fn lift_flat(&mut self) {
+        const PASSES: usize = 8;
+        for _ in 0..PASSES {
+            let mut any = false;
+            for t in 0..self.tri.len() as u32 {
+                any |= self.alive(t) && self.quality(t) < PARALLEL && self.lift(t);
+            }
+            if !any {
+                return;
+            }
+        }
+    }
+
+    fn lift(&mut self, t: u32) -> bool {
+        let c = self.tri[t as usize];
+        let p = |n: u32| self.p[n as usize];
+        let length = |k: &usize| p(c[(k + 1) % 3]).distance_squared(p(c[(k + 2) % 3]));
+        let Some(k) = (0..3).max_by(|i, j| length(i).total_cmp(&length(j))) else { return false };
+        let other = self.across[t as usize][k];
+        if other == NO_TRIANGLE || self.locked[t as usize] >> k & 1 == 1 {
+            return false;
+        }
+        let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
+        let tip = self.tri[other as usize][self.side_to(other, t)];
+        let xy = |n: u32| self.xy[n as usize];
+        let convex = area2(xy(a), xy(b), xy(tip)) > 0.0 && area2(xy(a), xy(tip), xy(d)) > 0.0;
+        let worst = |x: [u32; 3], y: [u32; 3]| quality(p(x[0]), p(x[1]), p(x[2])).min(quality(p(y[0]), p(y[1]), p(y[2])));
+        if !convex || worst([a, b, tip], [a, tip, d]) <= worst(c, [tip, d, b]) {
+            return false;
+        }
+        self.flip(t, k);
+        true
     }
 
     /// What is round a set of triangles that hang together; `None` when that is not one simple loop, or a locked side or a
