@@ -77,6 +77,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
                 free(&made, &mut prepared, job)?;
                 // Keys are of faces before their insides were made.
                 mesh = fill(input, &border, &prepared, None, job)?;
+                shape_check::refuse_concave(input, &prepared, &mesh)?;
             }
             sizing.take(&counts);
             sizing.take_refined(input, &prepared);

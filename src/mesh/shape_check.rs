@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::Shape;
+use super::chart::{Free, Shape};
 use super::data::Mesh;
 use super::faces::{Frame, Prepared};
 use super::reuse::{Known, recalled};
@@ -25,6 +25,19 @@ pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh, keyed: O
         let key = |_: &Known| keyed.map_or_else(Digest::default, |keyed| keyed.1[k]);
         recalled(keyed.map(|keyed| keyed.0), |reuse| &reuse.turned, key, || turned(surface, &prepared[k], mesh))
     });
+    first_fault(input, prepared, found)
+}
+
+/// Fails when a face that is made freely has concave quads, with their number and the first place.
+pub fn refuse_concave(input: &Input, prepared: &[Prepared], mesh: &Mesh) -> Result<()> {
+    let found = prepared.iter().map(|ready| match (&ready.chart.shape, &ready.chart.frame) {
+        (Shape::Free(free), Frame::Free(places)) => concave_quads(free, places, mesh),
+        _ => None,
+    });
+    first_fault(input, prepared, found.collect())
+}
+
+fn first_fault(input: &Input, prepared: &[Prepared], found: Vec<Option<Turned>>) -> Result<()> {
     for (ready, bad) in prepared.iter().zip(found) {
         if let Some((count, uv)) = bad {
             let surface = &input.model.surfaces[ready.surface.index()].surface;
@@ -33,6 +46,20 @@ pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh, keyed: O
         }
     }
     Ok(())
+}
+
+/// Free quads with a corner of a half turn or more, or without area.
+fn concave_quads(free: &Free, places: &[u32], mesh: &Mesh) -> Option<Turned> {
+    let point = |n: u32| mesh.nodes[places[n as usize] as usize];
+    let concave = |quad: &&[u32; 4]| {
+        let p = quad.map(point);
+        let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+        (0..4).any(|k| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0)
+    };
+    let first = free.quads.iter().find(concave)?;
+    let (a, b) = (free.uv[first[0] as usize], free.uv[first[2] as usize]);
+    let count = free.quads.iter().filter(concave).count() as u64;
+    Some((count, (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1))))
 }
 
 /// Cells on a coarse selection of rows and columns whose normal stands against the surface's.
