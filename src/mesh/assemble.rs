@@ -11,6 +11,7 @@ use super::faces::{self, Prepared};
 use super::free::face::{self as free_face, Made};
 use super::layout::Layout;
 use super::limits::{self, Finished, Verdict};
+use super::narrow::{self, Narrow};
 use super::nodes::Nodes;
 use super::plan::Elements;
 use super::relations::Relations;
@@ -26,6 +27,8 @@ use crate::base::par;
 
 /// Refinements of whole faces before a limit counts as out of reach.
 const ROUNDS: usize = 40;
+/// Times borders are divided anew where they come too near to each other.
+const LOOKS: usize = 24;
 
 /// The mesh of some faces, with what is needed to name its parts.
 pub struct Part {
@@ -47,12 +50,14 @@ pub struct Part {
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
     inside::place(input, &mut layout);
-    let mut sizing = Sizing::new(input, &mut layout, size, known)?;
+    let mut narrow: Vec<Narrow> = Vec::new();
+    let mut sizing = Sizing::new(input, &mut layout, size, (known, &narrow))?;
     let limits = faces::limits_of(input);
     let wishes = wishes(input, &layout, &sizing, &limits, known);
     let mut relations = Relations::new(&layout, &wishes);
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
-    for _ in 0..ROUNDS {
+    let (mut looks, mut before) = (LOOKS, Vec::new());
+    for _ in 0..ROUNDS + LOOKS {
         job.go_on()?;
         let mut unknown = sizing.stretches(&layout);
         unknown.extend(relations.rows());
@@ -63,6 +68,17 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
         let border = nodes.points(&layout, &input.plan.points);
         let made = Made { input, layout: &layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
+        // Shorter steps that leave all counts as they are help no more.
+        if looks > 0 && counts != before {
+            looks -= 1;
+            let found = narrow::look(&made);
+            if !found.is_empty() {
+                narrow.extend(found);
+                sizing = Sizing::new(input, &mut layout, size, (known, &narrow))?;
+                before = counts;
+                continue;
+            }
+        }
         let mut prepared = prepare(&made, &relations, &counts)?;
         let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
         let keys: Vec<Digest> = known.map(key).unwrap_or_default();

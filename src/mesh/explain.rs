@@ -35,6 +35,8 @@ pub enum Why {
     Bends,
     /// Short edges of the border, from which lengths grow.
     Border,
+    /// A border that faces this one, or that its steps would cross.
+    Gap,
     /// The floor of all sizes.
     Floor,
 }

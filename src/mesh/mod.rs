@@ -24,6 +24,7 @@ mod limits;
 mod lines;
 pub mod mapped;
 mod moved;
+mod narrow;
 mod nodes;
 mod pace;
 mod parity;
@@ -51,4 +52,4 @@ pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
 pub use quality::Quality;
 
 /// Version of the mesher: one more whenever the same plan gives another mesh, so that golden files can name it as the cause.
-pub const VERSION: u32 = 11;
+pub const VERSION: u32 = 12;

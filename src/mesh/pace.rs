@@ -13,6 +13,7 @@ use super::free::{bound, face};
 use super::gaps::{self, Beside, PLACES};
 use super::inside::trace;
 use super::layout::Layout;
+use super::narrow::Narrow;
 use super::sources::{Body, Source, Sources};
 use super::wanted::Wanted;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
@@ -47,6 +48,34 @@ pub struct Pace {
 impl Pace {
     fn even(length: f64) -> Self {
         Self { at: vec![0.0, 1.0], lengths: vec![length; 2], why: Vec::new() }
+    }
+
+    /// The largest lengths up to `most` that grow by no more than `slope` over the whole from what is said of places.
+    fn about(places: &[(f64, f64)], most: f64, slope: f64) -> Self {
+        let mut places = places.to_vec();
+        places.extend([(0.0, most), (1.0, most)]);
+        places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        places.dedup_by_key(|p| p.0);
+        for k in 1..places.len() {
+            places[k].1 = places[k].1.min(places[k - 1].1 + slope * (places[k].0 - places[k - 1].0));
+        }
+        for k in (1..places.len()).rev() {
+            places[k - 1].1 = places[k - 1].1.min(places[k].1 + slope * (places[k].0 - places[k - 1].0));
+        }
+        let mut made = Self { at: vec![places[0].0], lengths: vec![places[0].1], why: Vec::new() };
+        for w in places.windows(2) {
+            let [(f, a), (g, b)] = [w[0], w[1]];
+            // Both slopes meet between the places, or reach the most before.
+            let peak = 0.5 * (a + b + slope * (g - f)).min(2.0 * most);
+            let ways = [(f + (peak - a) / slope, peak), (g - (peak - b) / slope, peak)];
+            for (at, length) in ways.into_iter().chain([(g, b)]) {
+                if at > made.at[made.at.len() - 1] && at <= g {
+                    made.at.push(at);
+                    made.lengths.push(length);
+                }
+            }
+        }
+        made
     }
 
     /// Steps that grow geometrically, the last `bias` times the first: their size is linear in the length.
@@ -134,6 +163,8 @@ pub struct Ask<'a> {
     pub size: &'a [f64],
     /// Steps that are written out.
     pub written: &'a [Option<Pace>],
+    /// Places where borders face each other.
+    pub narrow: &'a [Narrow],
 }
 
 /// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
@@ -146,6 +177,10 @@ pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
     let mut even = vec![false; n];
     layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|k| even[k] = true);
     let walker = Walker { layout, ask, even: &even };
+    let gaps = walker.narrowed(input.plan.slope());
+    for (pace, gap) in paces.iter_mut().zip(&gaps) {
+        *pace = gap.as_ref().map_or_else(|| pace.clone(), |gap| lower_of(pace, gap));
+    }
     if !ask.wanted.sources.is_empty() {
         let found = par::map(n, |k| walker.open(k).then(|| walker.lowered(k, &paces[k], &ask.wanted.sources)));
         for (pace, found) in paces.iter_mut().zip(found) {
@@ -158,7 +193,7 @@ pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
         let pace = &paces[k];
         let taken = ask.written[k].is_none() && pace.least() < ask.size[k] * (1.0 - EPSILON);
         taken.then(|| {
-            let why = pace.at.iter().zip(&pace.lengths).map(|(f, l)| walker.why(k, (*f, *l), bent.get(k))).collect();
+            let why = pace.at.iter().zip(&pace.lengths).map(|(f, l)| walker.why(k, (*f, *l), (bent.get(k), gaps[k].as_ref()))).collect();
             Pace { why, ..pace.clone() }
         })
     })
@@ -208,8 +243,8 @@ struct Walker<'a> {
 }
 
 impl Walker<'_> {
-    /// What decides the length at a place of a stretch; `bent` is its pace by bends alone.
-    fn why(&self, k: usize, (f, length): (f64, f64), bent: Option<&Pace>) -> Why {
+    /// What decides the length at a place of a stretch; `bent` is its pace by bends alone, `gap` by borders that face it.
+    fn why(&self, k: usize, (f, length): (f64, f64), (bent, gap): (Option<&Pace>, Option<&Pace>)) -> Why {
         let size = self.ask.size[k];
         let sources = &self.ask.wanted.sources;
         let about = |x: f64| x * WORTH <= length;
@@ -218,8 +253,21 @@ impl Walker<'_> {
             Some(least) if about(least.size) => Why::Refined(sources.items()[least.item as usize].tag as usize),
             _ if length <= self.ask.wanted.written => Why::Floor,
             _ if bent.is_some_and(|pace| about(pace.length_at(f))) => Why::Bends,
+            _ if gap.is_some_and(|pace| about(pace.length_at(f))) => Why::Gap,
             _ => Why::Border,
         }
+    }
+
+    /// Paces of stretches by the borders that face them alone; longer by `slope` away from there.
+    fn narrowed(&self, slope: f64) -> Vec<Option<Pace>> {
+        let mut places: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.even.len()];
+        for narrow in self.ask.narrow {
+            if self.ask.written[narrow.stretch].is_none() && (narrow.must || !self.even[narrow.stretch]) {
+                places[narrow.stretch].push((narrow.f, narrow.size));
+            }
+        }
+        let pace = |k: usize| (!places[k].is_empty()).then(|| Pace::about(&places[k], self.ask.size[k], slope * self.layout.length(k)));
+        places.iter().enumerate().map(|(k, _)| pace(k)).collect()
     }
 
     /// Whether the steps of a stretch may vary.

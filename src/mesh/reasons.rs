@@ -74,6 +74,7 @@ fn cause(input: &Input, why: Why) -> String {
             _ => "chord_error".to_owned(),
         },
         Why::Border => "growth from shorter edges".to_owned(),
+        Why::Gap => "the border facing it".to_owned(),
         Why::Floor => "min_size".to_owned(),
     }
 }

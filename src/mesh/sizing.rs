@@ -7,6 +7,7 @@ use super::explain::Why;
 use super::faces::Prepared;
 use super::free::face::SPACING;
 use super::layout::{Face, Layout};
+use super::narrow::Narrow;
 use super::pace::{self, Ask, Pace};
 use super::plan::{Elements, Plan, Rule, Target};
 use super::reuse::{Known, recalled_if_sound};
@@ -94,8 +95,9 @@ fn settle<T>(slot: &mut Option<Ruled<T>>, new: Ruled<T>, key: &'static str, over
 }
 
 impl Sizing {
-    /// Decides every stretch of a layout; faces get their size, elements and method.
-    pub fn new(input: &Input, layout: &mut Layout, size: f64, known: Option<&Known>) -> Result<Self> {
+    /// Decides every stretch of a layout; faces get their size, elements and method. `narrow` are places where the borders of
+    /// free faces, divided before, were found too near to each other.
+    pub fn new(input: &Input, layout: &mut Layout, size: f64, (known, narrow): (Option<&Known>, &[Narrow])) -> Result<Self> {
         let n = layout.pieces.atoms.len();
         let rules = &input.plan.rules;
         let clauses = rules.len() + input.plan.refines.len() + FREE_ONLY.len();
@@ -137,7 +139,8 @@ impl Sizing {
         let written_steps = |k: usize| Some(Pace::of_count(layout.length(k), count_of(k).map(|c| c.0).or(biased[k])?, bias_of(k)));
         let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
         let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
-        sizing.paces = pace::along(input, layout, &Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written });
+        let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow };
+        sizing.paces = pace::along(input, layout, &ask);
         sizing.mark_refined(input, layout, &sizes);
         let least = par::try_map(n, |k| {
             let bias = bias_of(k);

@@ -158,7 +158,7 @@ const FEW: f64 = 8.0;
 const ALIKE: f64 = 1.25;
 
 /// Triangles left of an odd number of loop edges: flooded from outside, each loop edge turning in and out.
-pub(super) fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {
+pub(in crate::mesh) fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {
     let mut loops: Vec<(u32, u32)> = outline.loops.iter().map(|e| (e[0].min(e[1]), e[0].max(e[1]))).collect();
     loops.sort_unstable();
     // An edge that is run twice (a slit) bounds nothing.

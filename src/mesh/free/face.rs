@@ -2,6 +2,8 @@
 
 mod quads;
 
+pub(in crate::mesh) use quads::halved;
+
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -76,9 +78,9 @@ pub struct Made<'a> {
 
 /// Nodes of a border with their places, in order of first use.
 #[derive(Default)]
-pub(super) struct Border {
+pub(in crate::mesh) struct Border {
     pub(super) uv: Vec<(f64, f64)>,
-    pub(super) ids: Vec<u32>,
+    pub(in crate::mesh) ids: Vec<u32>,
     pub(super) edges: Vec<[u32; 2]>,
     /// Edges of lines inside.
     pub(super) lines: Vec<[u32; 2]>,
@@ -124,11 +126,11 @@ pub fn empty(made: &Made, face: &Face) -> Prepared {
     prepared(made, face, Free::default(), Vec::new(), Vec::new())
 }
 
-/// Makes the face.
-pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
+/// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
+pub(in crate::mesh) fn outlined(made: &Made, face: &Face) -> Option<(Border, Sheet, Outline)> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let mut border = border(made, face);
-    let sheet = Sheet::new(surface, border.uv.iter().copied()).ok_or_else(|| no_area(made, face))?;
+    let sheet = Sheet::new(surface, border.uv.iter().copied())?;
     if face.near > made.input.tolerance.point {
         border.close(&sheet, face.near);
     }
@@ -138,6 +140,12 @@ pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
         loops: border.edges.clone(),
         lines: border.lines.clone(),
     };
+    Some((border, sheet, outline))
+}
+
+/// Makes the face.
+pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
+    let (border, sheet, outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
     if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
         return quads::prepare(made, face, border, (&sheet, &outline), job);
     }

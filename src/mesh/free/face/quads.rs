@@ -86,7 +86,7 @@ pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline)
 }
 
 /// The border of the cells: every second node of each stretch.
-fn halved(made: &Made, face: &Face, border: &Border, outline: &Outline) -> Option<Halves> {
+pub(in crate::mesh) fn halved(made: &Made, face: &Face, border: &Border, outline: &Outline) -> Option<Halves> {
     let odd = |stretch| {
         let ids = made.nodes.of_stretch(made.layout, stretch, false);
         ids.into_iter().skip(1).step_by(2)

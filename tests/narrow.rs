@@ -1,0 +1,95 @@
+//! Borders that face each other over less than the size: no angle is small that the geometry does not make so, no divided
+//! border crosses another one, and few elements more are taken for it.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+
+use lofting::base::job::Job;
+use lofting::mesh::Mesh;
+use lofting::session::disk::{Disk, Outputs};
+use lofting::session::run::{Outcome, Task, run};
+
+fn outcome(text: &str) -> Outcome {
+    let clock = || 0.0;
+    let task = Task {
+        name: "m.loft",
+        text: text.as_bytes(),
+        sets: &[],
+        strict: false,
+        keep_going: false,
+        full: true,
+        picture: None,
+        clock: &clock,
+    };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    run(&task, &Disk::new(None, Some(folder), &[], Outputs::Written).unwrap(), &Job::default())
+}
+
+fn mesh(text: &str) -> Arc<Mesh> {
+    let outcome = outcome(text);
+    assert!(outcome.report.ok, "{}\n{text}", outcome.drawn(false, false));
+    outcome.meshes.into_iter().next().unwrap().1
+}
+
+const CRESCENT: &str = "curve rim = circle(center: (0, 0, 0), radius: 10)
+curve eye = circle(center: (5.9, 0, 0), radius: 4)
+surface face = trim(plane(rim), holes: [eye])";
+const RING: &str = "curve rim = circle(center: (0, 0, 0), radius: 100)
+curve eye = circle(center: (0, 0, 0), radius: 98)
+surface face = trim(plane(rim), holes: [eye])";
+const NEAR_SIDE: &str = "curve rim = polyline([(0, 0), (100, 0), (100, 50), (0, 50)], closed: true)
+curve eye = circle(center: (30, 15.2, 0), radius: 15)
+surface face = trim(plane(rim), holes: [eye])";
+const ON_A_CYLINDER: &str = "surface tube = extrude(circle(center: (0, 0, 0), radius: 20), by: (0, 0, 30))
+curve eye = project(circle(center: (40, 0, 7.3), radius: 7, normal: (1, 0, 0)), onto: tube, along: (1, 0, 0))
+surface face = trim(tube, holes: [eye])";
+
+/// Script, settings, least angle (degrees), most elements.
+const CASES: [(&str, &str, f64, usize); 10] = [
+    (CRESCENT, "size: 1mm", 20.0, 1000),
+    (CRESCENT, "size: 4mm", 20.0, 150),
+    (CRESCENT, "size: 1mm  elements: quads", 45.0, 500),
+    (CRESCENT, "size: 4mm  elements: quads", 40.0, 130),
+    // Steps of the size cross here.
+    (RING, "size: 50mm", 20.0, 400),
+    (RING, "size: 50mm  elements: quads", 25.0, 500),
+    (RING, "size: 20mm  elements: mixed", 20.0, 500),
+    (NEAR_SIDE, "size: 5mm", 20.0, 800),
+    (NEAR_SIDE, "size: 5mm  method: quadtree", 20.0, 1200),
+    (ON_A_CYLINDER, "size: 4mm  chord_error: 0.1mm", 18.0, 2000),
+];
+
+#[test]
+fn gaps_are_filled_well() {
+    for (script, settings, angle, most) in CASES {
+        let mesh = mesh(&format!("units mm\n{script}\nmesh m of face {{ {settings} }}\n"));
+        let least = mesh.quality().unwrap().min_angle.to_degrees();
+        let elements = mesh.triangles.len() + mesh.quads.len();
+        assert!(least >= angle && elements <= most, "{settings}: {least} degrees, {elements} elements\n{script}");
+    }
+}
+
+/// What `min_size` leaves of it, and what is written, holds.
+#[test]
+fn floors_and_counts_are_kept() {
+    let coarse = mesh(&format!("units mm\n{NEAR_SIDE}\nmesh m of face {{ size: 5mm  min_size: 2mm }}\n"));
+    let fine = mesh(&format!("units mm\n{NEAR_SIDE}\nmesh m of face {{ size: 5mm }}\n"));
+    assert!(coarse.triangles.len() < fine.triangles.len());
+    let counted = format!("units mm\n{RING}\nmesh m of face {{ size: 50mm  on rim {{ count: 60 }} }}\n");
+    let mesh = mesh(&counted);
+    let on = |radius: f64| mesh.nodes.iter().filter(|p| (p.length() - radius).abs() < 1e-9).count();
+    assert!(on(100.0) == 60 && on(98.0) > 6, "{} and {}", on(100.0), on(98.0));
+    let told = outcome(&format!("units mm\n{RING}\nmesh m of face {{ on rim {{ count: 5 }}  on eye {{ count: 60 }} }}\n"));
+    assert!(!told.report.ok && told.drawn(false, false).contains("E713"));
+}
+
+#[test]
+fn what_decides_is_told() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("narrow.loft");
+    std::fs::write(&file, format!("units mm\n{NEAR_SIDE}\nmesh m of face {{ size: 5mm }}\n")).unwrap();
+    let told = Command::new(env!("CARGO_BIN_EXE_loft")).arg("explain").arg(&file).arg("m").output().unwrap();
+    let lines = String::from_utf8(told.stdout).unwrap();
+    assert!(lines.contains("by the border facing it"), "{lines}");
+}
