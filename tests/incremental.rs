@@ -33,6 +33,7 @@ impl Folder {
             let path = entry.unwrap().path();
             fs::copy(&path, folder.join("data").join(path.file_name().unwrap())).unwrap();
         }
+        fs::write(folder.join("post.loft"), POST).unwrap();
         Self(folder)
     }
 
@@ -91,10 +92,55 @@ fn example(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name)).unwrap()
 }
 
+/// A measured sheet whose borders miss each other a little, beside a module with measured borders of its own.
+const MEASURED: &str = r#"units m
+use "post.loft" as post
+snap 1mm
+param rise = 2m
+point A = (0, 0, 0)
+point top = (2, 1.5, rise)
+curve south = line(A, (4, 0, 0))
+curve east = spline([(4, 0.0004, 0), (4.1, 1.5, 0.2), (4, 3, 0)])
+curve north = line((4, 3.0002, 0), (0, 3, 0.0003))
+curve west = line((0, 3, 0), (0, 0, 0.0002))
+curve tie for i in 0..3 = line((6 + i, 0, 0), (7 + 1.0002 * i, 0.0001 * i, 0))
+curve apart = line((9, 9, 9), top)
+let before = south.length + apart.length + post.foot.length
+surface slab = coons(south, east, north, west)
+let cut = east.at(50%)
+curve rib = line(cut, west.at(50%))
+let corner = east & north
+curve stay = post.foot
+shell skin of slab
+group edges of east, tie[0], tie[2]
+mesh fine of slab { size: 0.5 }
+check "closed": (south & east).z == 0m within 1mm
+check "rise": rise > 1m
+check "area": area(slab) > 11m2
+report "lengths": [{east: east.length, before: before, stay: post.foot.length + corner.x}]
+export fine to "fine.obj"
+"#;
+
+/// The module of [`MEASURED`].
+const POST: &str = "units mm\nsnap 2mm\ncurve foot = line((0, 0, 0), (0, 0, 500))\ncurve rest = line((0, 1, 500), (0, 400, 500))\n";
+
 /// Starts of declarations, as lines.
 fn starts(lines: &[String]) -> Vec<usize> {
-    const WORDS: &[&str] =
-        &["param ", "let ", "point ", "curve ", "modeling ", "surface ", "shell ", "group ", "mesh ", "check ", "report ", "export "];
+    const WORDS: &[&str] = &[
+        "snap ",
+        "param ",
+        "let ",
+        "point ",
+        "curve ",
+        "modeling ",
+        "surface ",
+        "shell ",
+        "group ",
+        "mesh ",
+        "check ",
+        "report ",
+        "export ",
+    ];
     (0..lines.len()).filter(|i| WORDS.iter().any(|w| lines[*i].starts_with(w))).collect()
 }
 
@@ -143,13 +189,13 @@ fn edited(text: &str, kind: u8, place: usize, amount: u32) -> String {
 #[test]
 fn random_edits_of_the_examples_give_what_a_fresh_run_gives() {
     let folder = Folder::new("edits");
-    const EXAMPLES: &[&str] = &["porch.loft", "barrel_vault.loft", "tank.loft", "canopy.loft", "wing.loft", "greenhouse.loft"];
+    const EXAMPLES: &[&str] = &["porch.loft", "barrel_vault.loft", "tank.loft", "canopy.loft", "wing.loft", "greenhouse.loft", ""];
     // Sequences of edits in all; `.ci/run` asks for 200.
     let wanted: u32 = std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
     let cases = wanted.div_ceil(EXAMPLES.len() as u32);
     let sequences = std::cell::Cell::new(0);
     for name in EXAMPLES {
-        let base = example(name);
+        let base = if name.is_empty() { MEASURED.to_owned() } else { example(name) };
         let config = Config { cases, max_shrink_iters: 40, failure_persistence: None, ..Config::default() };
         let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
         let mut runner = TestRunner::new_with_rng(config, rng);
@@ -185,6 +231,32 @@ fn what_did_not_change_is_taken_over() {
     assert!(all >= 20, "{all} results were taken over");
     let commented = base.replace("surface ", "// a comment\nsurface ");
     assert_eq!(folder.check(&commented, &mut kept), all);
+}
+
+#[test]
+fn what_snap_moved_is_taken_over() {
+    let folder = Folder::new("snap");
+    let mut kept = Kept::default();
+    let cold = folder.run(MEASURED, "cold", None).0;
+    assert!(cold.contains("\"ok\": true"), "{cold}");
+    assert!(cold.contains("N513"), "{cold}");
+    folder.check(MEASURED, &mut kept);
+    let all = folder.check(MEASURED, &mut kept);
+    // All but the loaded script and the export, what stands on curves before and after; stages and the mesh.
+    assert!(all >= 30, "{all} results were taken over");
+    // An end that goes elsewhere changes what stands on it, and nothing else.
+    let nudged = MEASURED.replace("(7 + 1.0002 * i,", "(7 + 1.0003 * i,");
+    assert_ne!(nudged, MEASURED);
+    let some = folder.check(&nudged, &mut kept);
+    assert!(some < all && some >= 20, "{some} of {all} results were taken over");
+    // Another distance, at which one corner stays open; then ends that cannot move.
+    folder.check(&MEASURED.replace("snap 1mm", "snap 0.3mm"), &mut kept);
+    folder.check(&MEASURED.replace("snap 1mm\n", ""), &mut kept);
+    let stuck = "curve a = arc(center: (0, 0, 5), start: (1, 0, 5), angle: 90deg, normal: Z)\ncurve b = arc(center: (0, 0.0005, 5), start: (1, 0.0005, 5), angle: -90deg, normal: Z)\n";
+    folder.check(&format!("{MEASURED}{stuck}"), &mut kept);
+    // Of the stages only the last ones are kept.
+    assert!(folder.check(MEASURED, &mut kept) + 2 >= all);
+    assert_eq!(folder.check(MEASURED, &mut kept), all);
 }
 
 /// A sheet of 5 × 10 faces whose borders stay; inside one of them a curve is lifted by `lift`. A second mesh has chord and

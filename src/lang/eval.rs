@@ -358,7 +358,6 @@ impl Cx<'_> {
     /// Ends what was counted for a declaration, keeps it for the next run, and goes on counting for the one around it.
     fn put_back(&mut self, module: ModuleId, index: u32, start: Start, (around, seen, said): (Asked, Box3, &[Diagnostic])) {
         let mut asked = std::mem::replace(&mut self.machine.asked, around);
-        asked.fleeting |= self.machine.at(module).snaps;
         let own_seen = std::mem::replace(&mut self.seen, seen);
         self.seen = self.seen.union(own_seen);
         self.remember(module, index, start, asked, (own_seen, said));

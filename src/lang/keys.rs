@@ -87,10 +87,20 @@ impl Cx<'_> {
         if let Some(keys) = &self.machine.at(module).keys {
             return keys.clone();
         }
+        let n = self.machine.at(module).script.declarations.len();
+        let own: Vec<Option<Digest>> = (0..n as u32).map(|i| self.own_key(module, i)).collect();
+        let keys = self.joined_keys(module, &own, &vec![false; n]);
+        self.machine.at_mut(module).keys = Some(keys.clone());
+        keys
+    }
+
+    /// Keys of declarations from what each one is by itself and the keys of what it names; of `fixed` ones what they
+    /// are by themselves is all.
+    pub(super) fn joined_keys(&self, module: ModuleId, own: &[Option<Digest>], fixed: &[bool]) -> Keys {
         let script = self.machine.at(module).script.clone();
         let n = script.declarations.len();
-        let own: Vec<Option<Digest>> = (0..n as u32).map(|i| self.own_key(module, i)).collect();
-        let leads: Vec<Vec<Lead>> = script.declarations.iter().map(|d| self.leads(module, d)).collect();
+        let names = |i: usize| if fixed[i] { Vec::new() } else { self.leads(module, &script.declarations[i]) };
+        let leads: Vec<Vec<Lead>> = (0..n).map(names).collect();
         let mut of: Vec<Option<Digest>> = vec![None; n];
         // 0: not met yet, 1: below on the stack, 2: done.
         let mut met = vec![0u8; n];
@@ -119,9 +129,7 @@ impl Cx<'_> {
         let world = script.declarations.iter().zip(&of).filter(|(d, _)| WORLD.contains(&d.keyword));
         let start = Some(Digester::new("world").number(script.broken.len() as u64));
         let world = world.fold(start, |all, (_, key)| Some(all?.digest((*key)?))).map(|d| d.finish());
-        let keys = Keys { of: of.into(), world };
-        self.machine.at_mut(module).keys = Some(keys.clone());
-        keys
+        Keys { of: of.into(), world }
     }
 
     /// The digest of a declaration's text.

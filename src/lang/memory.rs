@@ -69,6 +69,25 @@ pub(super) struct Kept {
     pub steps: u64,
 }
 
+impl Kept {
+    /// A value alone.
+    pub(super) fn of(value: Value) -> Self {
+        Self {
+            value,
+            seen: Box3::EMPTY,
+            tolerance: None,
+            world: None,
+            said: Vec::new(),
+            text: None,
+            checks: Vec::new(),
+            reports: Vec::new(),
+            meshes: Vec::new(),
+            members: 0,
+            steps: 0,
+        }
+    }
+}
+
 impl Memory {
     /// Begins a run: nothing stands anywhere yet.
     pub(super) fn begin(&mut self) {
@@ -126,6 +145,16 @@ impl Memory {
         let entry = self.entries.entry(key).or_default();
         entry.used = self.run;
         entry.kept = Some(kept);
+    }
+
+    /// The value kept under a key.
+    pub(super) fn value_of(&mut self, key: Digest) -> Option<Value> {
+        Some(self.find(key)?.kept.as_ref()?.value.clone())
+    }
+
+    /// Keeps a value that came about without an evaluation.
+    pub(super) fn keep_value(&mut self, key: Digest, value: Value) {
+        self.keep(key, Kept::of(value));
     }
 
     /// Keeps that a declaration waits for the tolerance.

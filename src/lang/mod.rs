@@ -37,6 +37,7 @@ pub mod scene;
 pub mod scopes;
 pub mod settings;
 mod show;
+mod snapping;
 mod stages;
 pub mod std;
 pub mod symbols;

@@ -7,7 +7,7 @@ use super::diag::FileId;
 use super::memory::{Asked, Keys};
 use super::names::Name;
 use super::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
-use super::syntax::ast::{Bound, Declaration, DeclarationKind, Keyword, Script};
+use super::syntax::ast::{Bound, Declaration, DeclarationKind, Script};
 use super::units::LengthUnit;
 use super::value::{ModuleId, Value};
 use crate::base::digest::Digest;
@@ -89,8 +89,6 @@ pub(super) struct Module {
     pub keys: Option<Keys>,
     /// What each declaration asked for beside values.
     pub asked: Vec<Asked>,
-    /// It has a `snap`: what is evaluated may be replaced, so nothing of it is kept.
-    pub snaps: bool,
     pub parts: Stage<Arc<Parts>>,
     pub network: Stage<Arc<Network>>,
     pub model: Stage<Arc<Model>>,
@@ -120,7 +118,6 @@ impl Module {
         }
         let mut broken: Vec<Name> = script.broken.iter().map(|b| b.name).collect();
         broken.sort_unstable();
-        let snaps = script.declarations.iter().any(|d| d.keyword == Keyword::Snap);
         let module = Self {
             file,
             path,
@@ -136,7 +133,6 @@ impl Module {
             given: Vec::new(),
             tokens: Vec::new(),
             keys: None,
-            snaps,
             parts: Stage::Waiting,
             network: Stage::Waiting,
             model: Stage::Waiting,

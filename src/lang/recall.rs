@@ -41,7 +41,7 @@ impl Cx<'_> {
 
     /// Brings a declaration to the state in which the run before left it; `false` when it must be evaluated.
     pub(super) fn recall(&mut self, module: ModuleId, index: u32) -> bool {
-        if self.memory.is_none() || self.machine.at(module).snaps {
+        if self.memory.is_none() {
             return false;
         }
         let keys = self.keys(module);
@@ -157,10 +157,7 @@ impl Cx<'_> {
         let reports: Vec<_> = m.reports[start.reports..].iter().filter(|r| own(&r.0)).map(|r| r.1.clone()).collect();
         let text: Option<Digest> = (!said.is_empty() || !checks.is_empty() || !reports.is_empty()).then(|| self.text_key(module, index));
         Some(Kept {
-            value: Value::None,
-            seen: Box3::EMPTY,
             tolerance: self.tolerance,
-            world: None,
             said: detached(said, m.file, span)?,
             text,
             checks,
@@ -168,6 +165,7 @@ impl Cx<'_> {
             meshes: if declaration.keyword == Keyword::Mesh { m.meshes[start.meshes..].to_vec() } else { Vec::new() },
             members: self.machine.room.held().saturating_sub(start.members).saturating_sub(asked.members),
             steps: (self.machine.steps - start.steps).saturating_sub(asked.steps),
+            ..Kept::of(Value::None)
         })
     }
 }

@@ -8,7 +8,7 @@ use super::eval::Code;
 use super::module::{State, bound};
 use super::plans::{CheckResult, ExportSpec, PictureSpec, ReportTable};
 use super::stages;
-use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword, Node};
+use super::syntax::ast::{DeclarationKind, ExprId, Keyword};
 use super::types::Ty;
 use super::units;
 use super::value::{Dim, ModuleId, Value};
@@ -80,7 +80,7 @@ impl Cx<'_> {
     }
 
     /// The only declaration of a head keyword; further ones are reported.
-    fn single(&mut self, module: ModuleId, keyword: Keyword) -> Option<u32> {
+    pub(super) fn single(&mut self, module: ModuleId, keyword: Keyword) -> Option<u32> {
         let found = self.heads(module, keyword);
         let script = self.machine.at(module).script.clone();
         let file = self.machine.at(module).file;
@@ -95,7 +95,7 @@ impl Cx<'_> {
     }
 
     /// Evaluates expressions of a head line outside any other declaration.
-    fn head(&mut self, module: ModuleId, index: u32, values: &[(ExprId, Ty, &str)]) -> Option<Vec<Value>> {
+    pub(super) fn head(&mut self, module: ModuleId, index: u32, values: &[(ExprId, Ty, &str)]) -> Option<Vec<Value>> {
         let script = self.machine.at(module).script.clone();
         let declaration = &script.declarations[index as usize];
         let code = Code { nodes: &declaration.nodes, module, declaration: index };
@@ -150,91 +150,6 @@ impl Cx<'_> {
             Some((point, Some(angle))) => Tolerance::new(point, diagonal).with_angle(angle),
             None => Tolerance::from_diagonal(diagonal, units::convert(FALLBACK_MM, units::MILLIMETRE, self.unit, 1)),
         });
-    }
-
-    /// `snap 4mm` of each script: moves curve ends, then forgets what was made from the curves before.
-    fn snap(&mut self) {
-        for m in 0..self.machine.modules.len() {
-            let module = ModuleId::at(m);
-            let Some(index) = self.single(module, Keyword::Snap) else { continue };
-            let script = self.machine.at(module).script.clone();
-            let DeclarationKind::Snap(expr) = script.declarations[index as usize].kind else { continue };
-            let Some(values) = self.head(module, index, &[(expr, Ty::Quantity(Dim::LENGTH), "the distance")]) else { continue };
-            let [Value::Number(distance)] = values.as_slice() else { continue };
-            self.snap_module(module, index, expr, distance.value);
-        }
-    }
-
-    fn snap_module(&mut self, module: ModuleId, index: u32, expr: ExprId, distance: f64) {
-        let mut parts = stages::gather(self, module);
-        self.machine.site.module = module;
-        self.machine.site.declaration = index;
-        let origin = self.origin_at(expr);
-        let pipeline = self.pipeline;
-        let result = pipeline.snap(self, &mut parts, distance, origin);
-        if let Err(stop) = result {
-            let script = self.machine.at(module).script.clone();
-            let declaration = &script.declarations[index as usize];
-            let code = Code { nodes: &declaration.nodes, module, declaration: index };
-            self.settle(code, stop, declaration.span);
-        }
-        let said = std::mem::take(&mut self.sink);
-        self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
-        let mut curves = parts.curves.into_iter();
-        self.replace_curves(module, &mut || curves.next().map(|c| Value::Curve(c.value)));
-        self.forget_dependents(module);
-    }
-
-    /// Puts snapped curves in the place of those evaluated before, in the order in which they were gathered.
-    fn replace_curves(&mut self, module: ModuleId, next: &mut dyn FnMut() -> Option<Value>) {
-        fn walk(value: Value, next: &mut dyn FnMut() -> Option<Value>) -> Value {
-            match value {
-                Value::List(items) => Value::list(items.iter().map(|v| walk(v.clone(), next)).collect()),
-                curve => next().unwrap_or(curve),
-            }
-        }
-        let script = self.machine.at(module).script.clone();
-        for (i, declaration) in script.declarations.iter().enumerate() {
-            if declaration.keyword == Keyword::Curve
-                && let State::Done(value) = &self.machine.at(module).states[i]
-            {
-                let value = walk(value.clone(), next);
-                self.machine.at_mut(module).states[i] = State::Done(value);
-            }
-        }
-    }
-
-    /// Declarations other than curves that name a snapped curve, at first or second hand, are evaluated again.
-    fn forget_dependents(&mut self, module: ModuleId) {
-        let script = self.machine.at(module).script.clone();
-        let n = script.declarations.len();
-        let mut stale: Vec<bool> = script.declarations.iter().map(|d| d.keyword == Keyword::Curve).collect();
-        loop {
-            let names_stale = |node: &Node| match node.expr {
-                Expr::Name(name) | Expr::Call { name, .. } => self.machine.at(module).find(name).is_some_and(|d| stale[d as usize]),
-                _ => false,
-            };
-            let next: Vec<bool> = (0..n).map(|i| stale[i] || script.declarations[i].nodes.iter().any(names_stale)).collect();
-            if next == stale {
-                break;
-            }
-            stale = next;
-        }
-        for (i, named) in stale.into_iter().enumerate() {
-            // A second declaration of one name stays refused.
-            let first = bound(&script.declarations[i]).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
-            let again = named && first && script.declarations[i].keyword != Keyword::Curve;
-            if again && !matches!(self.machine.at(module).states[i], State::Waiting | State::Running | State::Suspended) {
-                self.machine.at_mut(module).states[i] = State::Waiting;
-                let owner = Some((module, i as u32));
-                self.machine.filed.retain(|f| f.0 != owner);
-                let m = self.machine.at_mut(module);
-                m.checks.retain(|c| c.0 != i as u32);
-                m.reports.retain(|c| c.0 != i as u32);
-                m.exports.retain(|c| c.0 != i as u32);
-                m.pictures.retain(|c| c.0 != i as u32);
-            }
-        }
     }
 
     /// Everything said, in order of place: what was skipped is noted at its cause, equal reports are counted.
