@@ -83,7 +83,7 @@ pub fn ids(shape: &Shape, frame: &Frame) -> Vec<u32> {
 }
 
 /// First triangle of each row of cells of a grid meshed with triangles; empty for quads.
-fn triangle_rows(frame: &super::mapped::Frame, triangles: bool) -> Vec<usize> {
+pub fn triangle_rows(frame: &super::mapped::Frame, triangles: bool) -> Vec<usize> {
     let (nu, nv) = frame.size();
     if !triangles {
         return Vec::new();

@@ -9,6 +9,7 @@ use super::data::Mesh;
 use super::edges::Limits;
 use super::faces::{Frame, Prepared};
 use super::layout::Face;
+use super::proof::{self, Proof};
 use super::reuse::{Known, recalled};
 use super::rows::{SIZE_ROOM, Wish};
 use crate::base::digest::{Digest, Digester};
@@ -86,19 +87,30 @@ fn verdict_on(input: &Input, limits: &Limits, mesh: &Mesh, finished: &Finished) 
     let mut verdict = Verdict::FINE;
     sizes(finished, mesh, &mut verdict);
     if let Some(limit) = limits.chord {
-        let measured =
-            chord::of_face(surface, &finished.ready.chart, &mesh.triangles[finished.triangles.clone()], &mesh.nodes, input.tolerance);
-        let over = measured * SEEN / limit;
-        if over > 1.0 {
-            let share = directions(finished);
-            verdict.limit = share.map(|dominates| if dominates { over.sqrt().min(2.0) } else { 1.0 });
-            (verdict.broken, verdict.reached) = ("chord_error", measured);
-        }
+        chords(input, (surface, limit), mesh, finished, &mut verdict);
     }
     if let Some(limit) = limits.angle {
         turns(surface, finished, limit, &mut verdict);
     }
     verdict
+}
+
+/// The chord error: proved by bounds. Where there is no proof it is measured, and where no place breaks the limit the bound is
+/// what has to fall.
+fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finished: &Finished, verdict: &mut Verdict) {
+    let (chart, triangles) = (&finished.ready.chart, &mesh.triangles[finished.triangles.clone()]);
+    let proof = proof::of_face((surface, limit), chart, triangles, &mesh.nodes);
+    if proof == Proof::Kept {
+        return;
+    }
+    let measured = chord::of_face(surface, chart, triangles, &mesh.nodes, input.tolerance);
+    let over = measured * SEEN / limit;
+    let (over, share) = match proof {
+        Proof::Open(bound, [a, b]) | Proof::Broken(bound, [a, b]) if over <= 1.0 => (bound, [2.0 * a >= b, 2.0 * b >= a]),
+        _ => (over, directions(finished)),
+    };
+    verdict.limit = share.map(|dominates| if dominates { over.sqrt().min(2.0) } else { 1.0 });
+    (verdict.broken, verdict.reached) = ("chord_error", over * limit / SEEN);
 }
 
 /// Which directions bend enough to be worth refining: the larger one, and the other when it adds half as much.

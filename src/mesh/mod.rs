@@ -29,6 +29,7 @@ mod nodes;
 mod pace;
 mod parity;
 pub mod plan;
+mod proof;
 pub mod quality;
 mod reasons;
 pub mod record;

@@ -196,8 +196,8 @@ const TOO_FAR: f64 = 8.0;
 /// A bound farther off than this is not looked at more closely.
 const FAR: f64 = 4.0;
 
-/// The bound of a triangle by second derivatives over its box.
-fn over_sides(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> f64 {
+/// The bound of a triangle by second derivatives over its box, `width` wide.
+pub fn over_sides(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> f64 {
     // 2 |x y| ≤ a x² + y² / a, with a that makes both alike over the box.
     let a = if width.x > 0.0 && width.y > 0.0 { width.y / width.x } else { 1.0 };
     let (ru, rv) = (slack[0] + slack[1] * a, slack[2] + slack[1] / a);
