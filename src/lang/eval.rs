@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::cx::{Cx, Stop};
-use super::diag::{Diagnostic, Label};
+use super::diag::Diagnostic;
 use super::memory::Asked;
-use super::module::{Module, State, bound};
+use super::module::{Module, State};
 use super::names::Name;
 use super::origins::{NO_MEMBER, Origins, Place};
 use super::plans::MeshSpec;
@@ -381,49 +381,6 @@ impl Cx<'_> {
             Stop::Bug(what) => self.error(code, "E999", format!("a bug in loft: {what}"), span, "while evaluating this").stop(),
             other => other,
         }
-    }
-
-    /// Reports a cycle once, with all its members.
-    pub(super) fn cycle(&mut self, module: ModuleId, index: u32) -> Stop {
-        let from = self.machine.running.iter().position(|r| *r == (module, index)).unwrap_or(0);
-        let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
-        self.machine.in_cycle.extend(&members);
-        let least = (0..members.len()).min_by_key(|k| members[*k]).unwrap_or(0);
-        let members: Vec<(ModuleId, u32)> = members[least..].iter().chain(&members[..least]).copied().collect();
-        let mut names: Vec<String> = members.iter().map(|&(m, d)| self.declaration_name(m, d)).collect();
-        names.push(names[0].clone());
-        let shown = if names.len() > 9 {
-            format!("{} → … → {}", names[..4].join(" → "), names[names.len() - 1])
-        } else {
-            names.join(" → ")
-        };
-        let labels: Vec<Label> = members
-            .iter()
-            .take(4)
-            .filter_map(|&(m, d)| {
-                let module = self.machine.at(m);
-                let b = bound(&module.script.declarations[d as usize])?;
-                Some(Label { file: module.file, span: b.span, text: format!("`{}` is declared here", self.names.text(b.name)) })
-            })
-            .collect();
-        // The report stands where the last member names the first one again.
-        let closing = members.last().copied().unwrap_or((module, index));
-        let script = self.machine.at(closing.0).script.clone();
-        let nodes = &script.declarations[closing.1 as usize].nodes;
-        let code = Code { nodes, module: closing.0, declaration: closing.1 };
-        let first = members.first().and_then(|f| bound(&self.machine.at(f.0).script.declarations[f.1 as usize])).map(|b| b.name);
-        let names_first = |node: &&Node| match node.expr {
-            Expr::Name(name) | Expr::Call { name, .. } | Expr::Field { name, .. } => Some(name) == first,
-            _ => false,
-        };
-        let span = nodes.iter().find(names_first).map_or(script.declarations[closing.1 as usize].span, |n| n.span);
-        let through_all = self.machine.stages > 0;
-        let draft =
-            self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here").labels(labels);
-        if through_all {
-            return draft.note("links, nodes, `network` and meshes depend on all curves and surfaces").stop();
-        }
-        draft.stop()
     }
 
     /// The narrowest expression being evaluated.

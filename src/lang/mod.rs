@@ -2,6 +2,7 @@
 
 mod bind;
 mod call;
+mod circles;
 pub mod codes;
 mod coerce;
 mod collections;

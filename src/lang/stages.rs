@@ -113,6 +113,9 @@ pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
         return Ok(parts.clone());
     }
     cx.tolerance()?;
+    if let Some(part) = cx.own_part(module, GEOMETRY) {
+        return Err(cx.circle_through_all(part));
+    }
     all(cx, module, GEOMETRY)?;
     let parts = Arc::new(gather(cx, module));
     cx.machine.at_mut(module).parts = Stage::Done(parts.clone());
