@@ -49,12 +49,12 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// each other, and `lang` the grammar over tokens and its tree, the evaluator, its memory between runs, all words with
 /// their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 5_600),
+    ("base", 5_700),
     ("geometry", 5_500),
     ("network", 3_500),
     ("surface", 9_600),
     ("model", 3_200),
-    ("mesh", 15_900),
+    ("mesh", 16_400),
     ("io", 8_500),
     ("draw", 3_000),
     ("lang", 20_200),

@@ -28,7 +28,7 @@ fn given(value: &Value) -> (Vec<[DVec2; 2]>, (DVec2, DVec2)) {
 
 /// What is outside a loop that runs counter-clockwise is kept.
 fn kept(segments: &[[DVec2; 2]], at: DVec2) -> bool {
-    !Tree::new(segments, (DVec2::splat(-1.0), DVec2::splat(2.0)), (1, 1)).holds(at)
+    !Tree::new(segments, segments.len(), (DVec2::splat(-1.0), DVec2::splat(2.0)), (1, 1)).holds(at)
 }
 
 #[test]

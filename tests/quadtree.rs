@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use lofting::mesh::free::tree::{Cell, Class, Tree};
+use lofting::mesh::free::tree::{Cell, Class, DEEPEST, Halt, Tree};
 use serde_json::Value;
 
 fn reference() -> Value {
@@ -72,12 +72,12 @@ fn a_square_with_a_round_hole() {
     let lengths: Vec<f64> = segments.iter().map(|[a, b]| a.distance(*b)).collect();
     let given = all["square_with_hole"]["hole_segment_length"].as_f64().unwrap();
     assert!((lengths[4] - given).abs() < 1e-15);
-    let mut tree = Tree::new(&segments, (DVec2::ZERO, DVec2::ONE), (4, 4));
+    let mut tree = Tree::new(&segments, segments.len(), (DVec2::ZERO, DVec2::ONE), (4, 4));
     let wants = |tree: &Tree, cell: &Cell| {
         let shortest = cell.segments.iter().map(|s| lengths[*s as usize]).fold(f64::INFINITY, f64::min);
         tree.side(cell.level).max_element() > shortest
     };
-    assert!(tree.refine(&wants, 10_000));
+    assert_eq!(tree.refine(&wants, 10_000), Ok(()));
     check(&tree, &all["square_with_hole"]["plain"]);
     tree.balance();
     check(&tree, &all["square_with_hole"]["balanced_2_to_1_edge"]);
@@ -92,8 +92,8 @@ fn a_quadrilateral_to_given_depths() {
     let segments = closed(&given["polygon"].as_array().unwrap().iter().map(point).collect::<Vec<_>>());
     for (depth, results) in given["results"].as_object().unwrap() {
         let depth: u8 = depth.parse().unwrap();
-        let mut tree = Tree::new(&segments, (DVec2::ZERO, DVec2::ONE), (1, 1));
-        assert!(tree.refine(&|_, cell| cell.class == Class::Partial && cell.level < depth, 100_000));
+        let mut tree = Tree::new(&segments, segments.len(), (DVec2::ZERO, DVec2::ONE), (1, 1));
+        assert_eq!(tree.refine(&|_, cell| cell.class == Class::Partial && cell.level < depth, 100_000), Ok(()));
         check(&tree, &results["plain"]);
         let area = |class: Class| {
             let own = tree.cells().iter().filter(|c| c.is_leaf() && c.class == class);
@@ -180,7 +180,7 @@ mod plate {
         let outline = outline(4.0);
         let all = points(&outline.xy, &outline.loops).unwrap();
         let segments: Vec<[DVec2; 2]> = outline.loops.iter().map(|e| e.map(|n| outline.xy[n as usize])).collect();
-        let tree = Tree::new(&segments, (DVec2::ZERO, DVec2::new(200.0, 120.0)), (1, 1));
+        let tree = Tree::new(&segments, segments.len(), (DVec2::ZERO, DVec2::new(200.0, 120.0)), (1, 1));
         let inside = |t: &[u32; 3]| tree.holds(t.map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0);
         let bare = figures(&outline.p, all.corners.iter().copied().filter(inside));
         let mesh = |smooth: usize| {
@@ -198,4 +198,32 @@ mod plate {
         assert!(((smoothed.2 - exact) / exact).abs() < 0.005 && (plain.2 - smoothed.2).abs() < 1e-9 * exact, "{smoothed:?}");
         assert!(smoothed.0 > 30.0, "{smoothed:?}");
     }
+}
+
+/// Lines inside part nothing: cells beside them are inside, wherever the line ends.
+#[test]
+fn lines_inside_are_no_borders() {
+    let corners = [DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::ONE, DVec2::new(0.0, 1.0)];
+    let mut segments = closed(&corners);
+    segments.extend([[DVec2::new(0.61, 0.13), DVec2::new(0.67, 0.83)], [DVec2::new(0.2, 0.9), DVec2::new(0.9, 0.35)]]);
+    let mut tree = Tree::new(&segments, 4, (DVec2::ZERO, DVec2::ONE), (2, 2));
+    assert_eq!(tree.refine(&|_, cell| cell.class == Class::Partial && cell.level < 5, 100_000), Ok(()));
+    tree.balance();
+    assert!(tree.cells().iter().all(|c| c.class != Class::Exterior));
+    for (x, y) in [(0.1, 0.5), (0.64, 0.05), (0.3, 0.55), (0.99, 0.4)] {
+        assert!(tree.holds(DVec2::new(x, y)), "({x}, {y})");
+    }
+}
+
+#[test]
+fn the_deepest_level_is_told() {
+    let segments = closed(&[DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)]);
+    let mut tree = Tree::new(&segments, 3, (DVec2::ZERO, DVec2::ONE), (1, 1));
+    let at = DVec2::new(1e-9, 1e-9);
+    let holds = |tree: &Tree, cell: &Cell| {
+        let low = tree.corner(cell.level, cell.at);
+        low.cmple(at).all() && (low + tree.side(cell.level)).cmpgt(at).all()
+    };
+    let Err(Halt::Deep(cell)) = tree.refine(&holds, 10_000) else { panic!("a tree without end") };
+    assert_eq!((tree.cells()[cell as usize].level, tree.cells()[cell as usize].at), (DEEPEST, (0, 0)));
 }

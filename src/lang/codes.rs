@@ -161,7 +161,7 @@ codes! {
     now "E713", "cdt-constraint-crosses", "borders of a face cross";
     now "E714", "face-empty", "a face has nothing inside";
     now "E715", "element-inverted", "an element is turned inside out";
-    later "E716", "quadtree-too-deep", "a quadtree grows too deep";
+    now "E716", "quadtree-too-deep", "a quadtree grows too deep";
     later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
     later "E718", "trim-folded", "a trimmed face folds over";
     now "E801", "cannot-read", "a file cannot be read";

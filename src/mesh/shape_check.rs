@@ -42,7 +42,8 @@ fn first_fault(input: &Input, prepared: &[Prepared], found: Vec<Option<Turned>>)
         if let Some((count, uv)) = bad {
             let surface = &input.model.surfaces[ready.surface.index()].surface;
             let at = surface.point(uv.0, uv.1);
-            return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at }.into());
+            let free = matches!(ready.chart.shape, Shape::Free(_));
+            return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at, free }.into());
         }
     }
     Ok(())

@@ -172,6 +172,8 @@ pub enum MeshFault {
         uv: (f64, f64),
         /// Where in space.
         at: DVec3,
+        /// The face is made freely, of quads.
+        free: bool,
     },
     /// E713: borders of a face that cross or touch once they are divided.
     BordersCross {
@@ -181,6 +183,15 @@ pub enum MeshFault {
         at: DVec3,
         /// The size of the face, model units.
         size: f64,
+    },
+    /// E716: a quadtree over a face would need more levels than it may have.
+    TreeTooDeep {
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        at: DVec3,
+        /// The levels it may have.
+        levels: u8,
     },
     /// E714: a face with nothing inside its border.
     FaceEmpty {
@@ -388,7 +399,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             ),
         )
         .at(*surface, "has no inside left"),
-        F::Inverted { surface, count, uv, at } => Report::new(
+        F::Inverted { surface, count, uv, at, free } => Report::new(
             "E715",
             format!(
                 "{count} element{} of {} turned over or without area, the first at {} (u {:.3}, v {:.3})",
@@ -399,8 +410,12 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 uv.1
             ),
         )
-        .at(*surface, "folds there")
-        .help("add a curve across the fold, or divide the surface in two"),
+        .at(*surface, if *free { "has no room for convex quads there" } else { "folds there" })
+        .help(if *free {
+            "a smaller `size` or a larger `count` on the borders there, or `elements: mixed`"
+        } else {
+            "add a curve across the fold, or divide the surface in two"
+        }),
         F::BordersCross { surface, at, size } => Report::new(
             "E713",
             format!(
@@ -412,6 +427,12 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "this face")
         .help("keep the borders further apart, or divide them more finely there"),
+        F::TreeTooDeep { surface, at, levels } => Report::new(
+            "E716",
+            format!("the quadtree of {} needs more than {levels} levels at {}", say.quoted(*surface, "a face"), say.point(*at)),
+        )
+        .at(*surface, "has a piece of border there that is less than a millionth of the size")
+        .help("method: delaunay"),
         F::FaceEmpty { surface, at } => {
             Report::new("E714", format!("{} has nothing inside its border at {}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*surface, "this face")

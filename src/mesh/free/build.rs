@@ -47,7 +47,7 @@ pub struct Task<'a> {
 }
 
 /// Why there is no mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
     /// The border cannot be triangulated in the chart.
     Border(PointsFault),
@@ -55,6 +55,8 @@ pub enum Trouble {
     Empty,
     /// More nodes than allowed.
     Full,
+    /// A quadtree has to be deeper than it may be here.
+    Deep(DVec3),
 }
 
 /// Triangulates a face; the outer result is an interruption.
@@ -100,8 +102,8 @@ pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>
             grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
         }
         Lattice::Tree => match quadtree::nodes(&Plot { ground: task.ground, field: task.field, outline, most: task.most }) {
-            Some(grown) => grown,
-            None => return Ok(Err(Trouble::Full)),
+            Ok(grown) => grown,
+            Err(trouble) => return Ok(Err(trouble)),
         },
     };
     if grown.full {

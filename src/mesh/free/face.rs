@@ -19,6 +19,7 @@ use super::outline::Outline;
 use super::sheet::Sheet;
 use super::size::{Background, Blend};
 use super::thin::Thinner;
+use super::tree::DEEPEST;
 use super::web::Web;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, MeshFault, Result};
@@ -624,6 +625,7 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
         }
         Trouble::Border(PointsFault::Same(a, _)) => MeshFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
         Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(made, face),
+        Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: DEEPEST }.into(),
         Trouble::Full => crate::mesh::faces::too_many(&made.input.plan.name, 2 * MESH_ELEMENTS),
     }
 }

@@ -79,6 +79,8 @@ struct Front<'a> {
     open: VecDeque<u32>,
     /// Steps of squares along and across the crystal, over the wanted length.
     steps: [f64; 2],
+    /// The box of the border in the chart: what got through between two steps of it grows no further.
+    within: (DVec2, DVec2),
     /// Nodes of the first row of squares.
     row: u32,
     /// Their directions from the border.
@@ -99,6 +101,7 @@ pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
         along: Vec::new(),
         open: VecDeque::new(),
         steps: [1.0; 2],
+        within: outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy))),
         row: 0,
         arms: Vec::new(),
     };
@@ -277,7 +280,8 @@ impl Front<'_> {
             return;
         }
         let step = step * (length / size);
-        if self.near_border(xy, xy + step, p + way * length, there) {
+        let outside = (xy + step).cmplt(self.within.0).any() || (xy + step).cmpgt(self.within.1).any();
+        if outside || self.near_border(xy, xy + step, p + way * length, there) {
             return;
         }
         let mut to = self.soil.ground.clamp(xy + step);

@@ -102,7 +102,7 @@ impl<'a> Cells<'a> {
             };
             facing(&side(low[1 - axis]), &side(high[1 - axis]))
         });
-        let tree = Tree::new(&segments[..loops], (low, high), (1, 1));
+        let tree = Tree::new(&segments[..loops], loops, (low, high), (1, 1));
         let all = (0..segments.len() as u32).collect();
         let ends = [0, 1].map(|axis| {
             let borders = [low[1 - axis], high[1 - axis]];

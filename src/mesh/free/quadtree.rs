@@ -6,10 +6,11 @@
 
 use glam::{DVec2, DVec3};
 
+use super::build::Trouble;
 use super::ground::{Field, Ground};
 use super::grow::{Grown, SIGHT, apart, samples};
 use super::outline::Outline;
-use super::tree::{Cell, Class, Tree};
+use super::tree::{Cell, Class, Halt, Tree};
 
 /// Side of a cell over the wanted length: its diagonal is then hardly longer than a side may be.
 const SIDE: f64 = 0.74;
@@ -32,8 +33,10 @@ pub struct Plot<'a> {
     pub most: usize,
 }
 
-/// The nodes of a balanced tree; `None` when there are more cells than four for each node allowed.
-pub fn nodes(task: &Plot) -> Option<Grown> {
+/// The nodes of a balanced tree.
+///
+/// Fails where there are more cells than four for each node allowed, or cells had to be smaller than the deepest ones.
+pub fn nodes(task: &Plot) -> Result<Grown, Trouble> {
     let outline = task.outline;
     let segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| outline.xy[n as usize])).collect();
     // At a pole the chart has an edge that is a point in space: no cell can be as short as that.
@@ -42,7 +45,7 @@ pub fn nodes(task: &Plot) -> Option<Grown> {
     let (low, high) = outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
     let side = SIDE * largest(task, low, high);
     let count = |x: f64| (x / side).ceil().clamp(1.0, ROOTS) as u32;
-    let mut tree = Tree::new(&segments, (low, high), (count(high.x - low.x), count(high.y - low.y)));
+    let mut tree = Tree::new(&segments, outline.loops.len(), (low, high), (count(high.x - low.x), count(high.y - low.y)));
     let wants = |tree: &Tree, cell: &Cell| {
         if cell.class == Class::Exterior {
             return false;
@@ -51,11 +54,15 @@ pub fn nodes(task: &Plot) -> Option<Grown> {
         let (long, middle, p) = span(task.ground, tree, cell);
         long > (SIDE * task.field.size(middle, p)).min(shortest)
     };
-    if !tree.refine(&wants, 4 * task.most) {
-        return None;
+    if let Err(halt) = tree.refine(&wants, 4 * task.most) {
+        let cell = |k: u32| &tree.cells()[k as usize];
+        return Err(match halt {
+            Halt::Full => Trouble::Full,
+            Halt::Deep(k) => Trouble::Deep(span(task.ground, &tree, cell(k)).2),
+        });
     }
     tree.balance();
-    Some(corners(task, &tree))
+    Ok(corners(task, &tree))
 }
 
 /// The largest wanted length over a box of the chart, by looking.

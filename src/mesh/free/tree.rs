@@ -7,8 +7,17 @@ use glam::DVec2;
 
 use crate::base::predicates::orient;
 
-/// Deepest level under a root: segments a millionth as long as a root are below the tolerance of any model.
-const DEEPEST: u8 = 20;
+/// Deepest level under a root: its squares are a millionth of a root.
+pub const DEEPEST: u8 = 20;
+
+/// Why a tree cannot be refined as far as is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halt {
+    /// There are too many cells.
+    Full,
+    /// This cell, of the deepest level, wants to be divided.
+    Deep(u32),
+}
 
 /// Where a cell lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +60,7 @@ pub struct Tree<'a> {
     side: DVec2,
     roots: (u32, u32),
     cells: Vec<Cell>,
-    /// Segments by horizontal bands, for the middle of cells.
+    /// Segments of loops by horizontal bands, for the middle of cells.
     bands: Vec<Vec<u32>>,
     high: f64,
 }
@@ -60,11 +69,12 @@ pub struct Tree<'a> {
 const BANDS: usize = 256;
 
 impl<'a> Tree<'a> {
-    /// A grid of roots over a box (low, high) and the closed loops of segments in it, classified.
-    pub fn new(segments: &'a [[DVec2; 2]], (low, high): (DVec2, DVec2), roots: (u32, u32)) -> Self {
+    /// A grid of roots over a box (low, high), and the segments in it, classified: the first `bounding` of them are closed
+    /// loops, the others lines that part nothing.
+    pub fn new(segments: &'a [[DVec2; 2]], bounding: usize, (low, high): (DVec2, DVec2), roots: (u32, u32)) -> Self {
         let side = (high - low) / DVec2::new(f64::from(roots.0), f64::from(roots.1));
         let mut tree = Self { segments, low, side, roots, cells: Vec::new(), bands: vec![Vec::new(); BANDS], high: high.y };
-        for (k, [a, b]) in segments.iter().enumerate() {
+        for (k, [a, b]) in segments.iter().enumerate().take(bounding) {
             for band in tree.band(a.y.min(b.y))..=tree.band(a.y.max(b.y)) {
                 tree.bands[band].push(k as u32);
             }
@@ -152,20 +162,25 @@ impl<'a> Tree<'a> {
         self.cells[cell as usize].child = first;
     }
 
-    /// Splits leaves for as long as they want it, down to level 20: `false` when there are then more than `most` cells.
-    pub fn refine(&mut self, wants: &dyn Fn(&Self, &Cell) -> bool, most: usize) -> bool {
+    /// Splits leaves for as long as they want it.
+    ///
+    /// Fails when there are then more than `most` cells, or one of level 20 wants it.
+    pub fn refine(&mut self, wants: &dyn Fn(&Self, &Cell) -> bool, most: usize) -> Result<(), Halt> {
         let mut k = 0;
         while k < self.cells.len() {
             let cell = &self.cells[k];
-            if cell.is_leaf() && cell.level < DEEPEST && wants(self, cell) {
+            if cell.is_leaf() && wants(self, cell) {
+                if cell.level == DEEPEST {
+                    return Err(Halt::Deep(k as u32));
+                }
                 if self.cells.len() > most {
-                    return false;
+                    return Err(Halt::Full);
                 }
                 self.split(k as u32);
             }
             k += 1;
         }
-        true
+        Ok(())
     }
 
     /// Splits leaves until none has a neighbour over an edge that is less than half its size [Yerry & Shephard 1983].
