@@ -268,3 +268,31 @@ fn two_processes_share_a_folder() {
         assert!((1..4).all(|n| fs::read(folder.join(n.to_string()).join(name)).unwrap() == fs::read(&file).unwrap()));
     }
 }
+
+/// A fine free face beside one that is edited.
+const LOOSE: &str = "units m
+curve rim = circle((0, 0, 0), 2, normal: (0, 0, 1))
+surface lid = plane(rim)
+surface wall = extrude(rim, (0, 0, 1.5))
+mesh m of lid, wall { size: 60mm }
+";
+
+#[test]
+fn free_faces_are_kept_on_disk_by_themselves() {
+    let folder = folder("free");
+    let (script, out, cache) = (folder.join("model.loft"), folder.join("out"), folder.join("kept"));
+    let first = process(&script, LOOSE, &out, Some(&cache));
+    assert_eq!(first.from_cache, 0);
+    let faces = || files_of(&cache).iter().filter(|f| f.file_name().unwrap().to_string_lossy().starts_with("face-")).count();
+    assert_eq!(faces(), 1, "{:?}", files_of(&cache));
+    // Another process, another wall: the lid comes from the folder.
+    let taller = LOOSE.replace("1.5", "1.7");
+    let warm = process(&script, &taller, &out, Some(&cache));
+    same(&process(&script, &taller, &out, None), &warm, "a taller wall");
+    assert_eq!((warm.from_cache, faces()), (1, 1));
+    let mut dice = Dice(5);
+    for _ in 0..10 {
+        damage(&cache, &mut dice);
+        same(&process(&script, &taller, &out, None), &process(&script, &taller, &out, Some(&cache)), "damaged");
+    }
+}

@@ -308,3 +308,58 @@ fn faces_that_did_not_change_are_taken_over() {
     // What was taken back is there as a whole.
     assert_eq!(folder.reused(&sheet(0.0), &mut kept).faces, 0);
 }
+
+/// A sheet of 3 × 3 faces that are made freely, in every way there is; inside one of them a curve is lifted by `lift`, and
+/// `more` stands at the end of each mesh.
+fn loose(lift: f64, more: &str) -> String {
+    let mut text = format!("units m\nparam lift = {lift}m\ncurve mast = line((9, 9, 0), (9, 9, 5))\n");
+    for j in 0..=3 {
+        for i in 0..=3 {
+            let at = |i: usize, j: usize| format!("({i}, {j}, 0)");
+            if i < 3 {
+                text += &format!("curve u{i}_{j} = arc({}, {}, through: ({i}.5, {j}, 0.2))\n", at(i, j), at(i + 1, j));
+            }
+            if j < 3 {
+                text += &format!("curve v{i}_{j} = arc({}, {}, through: ({i}, {j}.5, 0.2))\n", at(i, j), at(i, j + 1));
+            }
+        }
+    }
+    text += "curve inner = arc(v1_1.at(0.5), v2_1.at(0.5), through: (1.5, 1.5, 400mm + lift))\npoint peg = (0.5, 0.5, 0)\n";
+    let mut names = Vec::new();
+    for (i, j) in (0..9).map(|k| (k % 3, k / 3)) {
+        let rib = if (i, j) == (1, 1) { ", inner" } else { "" };
+        text += &format!("surface s{i}_{j} = coons(u{i}_{j}, v{}_{j}, u{i}_{}, v{i}_{j}{rib})\n", i + 1, j + 1);
+        names.push(format!("s{i}_{j}"));
+    }
+    let all = names.join(", ");
+    for (k, says) in [
+        "method: delaunay  near peg { size: 0.2 }",
+        "method: delaunay  chord_error: 40mm",
+        "method: quadtree  order: 2",
+        "method: isoline  chord_error: 40mm",
+        "method: delaunay  elements: quads",
+        "method: delaunay  on s0_0 { method: mapped }  on s1_1 { method: mapped }",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        text += &format!("mesh m{k} of {all} {{ size: 0.5  {says}  {more} }}\n");
+    }
+    text + "export m0 to \"m0.vtu\"\n"
+}
+
+#[test]
+fn free_faces_that_did_not_change_are_taken_over() {
+    let folder = Folder::new("free-faces");
+    let mut kept = Kept::default();
+    let first = folder.reused(&loose(0.0, ""), &mut kept);
+    let changed = folder.reused(&loose(0.01, ""), &mut kept);
+    // All but the face in the middle; under a chord error its bends pace the borders of its neighbours too.
+    assert!(changed.faces >= 4 * 8 && first.faces < 8, "{first:?} {changed:?}");
+    assert_eq!(folder.reused(&loose(0.0, ""), &mut kept).faces, 0, "what was taken back is there as a whole");
+    // What a free face depends on, and what it does not.
+    let other = folder.reused(&loose(0.0, "smooth: 2"), &mut kept);
+    assert!(other.faces < 14, "mapped ones alone: {other:?}");
+    let named = folder.reused(&loose(0.0, "").replace("s2_2", "corner"), &mut kept);
+    assert!(named.faces >= 4 * 8, "{named:?}");
+}

@@ -7,7 +7,7 @@ use super::chart::Charts;
 use super::data::{FaceRange, Mesh};
 use super::edges::Limits;
 use super::explain::Explanation;
-use super::faces::{self, Prepared};
+use super::faces::{self, Frame, Prepared};
 use super::free::face::{self as free_face, Made};
 use super::layout::Layout;
 use super::limits::{self, Finished, Verdict};
@@ -83,16 +83,15 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
         let keys: Vec<Digest> = known.map(key).unwrap_or_default();
         let keyed = known.map(|known| (known, keys.as_slice()));
-        let mut mesh = fill(input, &border, &prepared, keyed, job)?;
+        let mut mesh = fill(input, &border, &prepared, (keyed, false), job)?;
         if !settled {
             verdicts = limits::check(input, &limits, &mesh, &finished(&layout, &sizing, &prepared, &wishes), keyed);
         }
         if settled || verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
             shape_check::refuse_turned(input, &prepared, &mesh, keyed)?;
             if layout.faces.iter().any(|f| f.free) {
-                free(&made, &mut prepared, job)?;
-                // Keys are of faces before their insides were made.
-                mesh = fill(input, &border, &prepared, None, job)?;
+                free(&made, &mut prepared, (known, job))?;
+                mesh = fill(input, &border, &prepared, (keyed, true), job)?;
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
             }
             sizing.take(&counts);
@@ -178,13 +177,13 @@ fn prepare(made: &Made, relations: &Relations, counts: &[u32]) -> Result<Vec<Pre
 }
 
 /// Makes the free faces.
-fn free(made: &Made, prepared: &mut [Prepared], job: &Job) -> Result<()> {
+fn free(made: &Made, prepared: &mut [Prepared], (known, job): (Option<&Known>, &Job)) -> Result<()> {
     let faces = &made.layout.faces;
     let which: Vec<usize> = (0..faces.len()).filter(|f| faces[*f].free).collect();
     job.expect(which.len() as u64);
     let ready = par::try_map(which.len(), |k| {
         job.go_on()?;
-        let ready = free_face::prepare(made, &faces[which[k]], job);
+        let ready = free_face::prepare(made, &faces[which[k]], (known, job));
         job.advance(1);
         ready
     })?;
@@ -213,6 +212,7 @@ fn number(made: &Made, prepared: &mut [Prepared]) -> Result<()> {
 struct Fill<'a> {
     ready: &'a Prepared,
     key: Option<(&'a Known<'a>, Digest)>,
+    again: bool,
     nodes: &'a mut [DVec3],
     triangles: &'a mut [[u32; 3]],
     quads: &'a mut [[u32; 4]],
@@ -221,7 +221,8 @@ struct Fill<'a> {
 
 impl Fill<'_> {
     fn fill(&mut self, input: &Input, border: &[DVec3]) {
-        if let Some(inside) = self.key.and_then(|(known, key)| known.inside(key))
+        let found = |(known, key): (&Known, Digest)| if self.again { known.inside_again(key) } else { known.inside(key) };
+        if let Some(inside) = self.key.and_then(found)
             && inside.nodes.len() == self.nodes.len()
         {
             self.nodes.copy_from_slice(&inside.nodes);
@@ -239,8 +240,11 @@ impl Fill<'_> {
     }
 }
 
+/// Keys of the faces before free ones have their insides, and whether the mapped ones were filled under them just now.
+type Keyed<'a> = (Option<(&'a Known<'a>, &'a [Digest])>, bool);
+
 /// All nodes and elements; faces and rows of large faces on several threads.
-fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], keyed: Option<(&Known, &[Digest])>, job: &Job) -> Result<Mesh> {
+fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], (keyed, again): Keyed, job: &Job) -> Result<Mesh> {
     let sum = |f: &dyn Fn(&Prepared) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
     let on_border = border.len();
     let mut all = Vec::with_capacity(on_border + sum(&|p| p.inner));
@@ -258,7 +262,9 @@ fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], keyed: Option<(&
         let (t, q);
         (t, triangles) = triangles.split_at_mut(ready.triangles as usize);
         (q, quads) = quads.split_at_mut(ready.quads as usize);
-        work.push(Fill { ready, key: keyed.map(|(known, keys)| (known, keys[k])), nodes: own, triangles: t, quads: q, result: Ok(()) });
+        let free = matches!(ready.chart.frame, Frame::Free(_));
+        let key = keyed.filter(|_| !free).map(|(known, keys)| (known, keys[k]));
+        work.push(Fill { ready, key, again, nodes: own, triangles: t, quads: q, result: Ok(()) });
     }
     job.expect(work.len() as u64);
     par::chunks_mut(&mut work, 1, |_, faces| {

@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::chart::{Free, Grid, Lattice, Shape};
 use super::edges::Limits;
 use super::faces::{Frame, Prepared};
+use super::free::taken::Taken;
 use super::limits::Verdict;
 use super::rows::Wish;
 use super::shape_check::Turned;
@@ -59,6 +60,14 @@ pub struct Inside {
     pub diagonals: Vec<bool>,
 }
 
+/// Where large parts are kept longer than a session, by their keys.
+pub trait Shelf: std::fmt::Debug + Send + Sync {
+    /// The bytes of a face, as they were put.
+    fn face(&self, key: Digest) -> Option<Vec<u8>>;
+    /// Keeps the bytes of a face.
+    fn put_face(&self, key: Digest, bytes: &[u8]);
+}
+
 /// Parts of the last meshes.
 #[derive(Debug, Default)]
 pub struct Reuse {
@@ -67,15 +76,22 @@ pub struct Reuse {
     pub(super) insides: Store<Arc<Inside>>,
     pub(super) verdicts: Store<Verdict>,
     pub(super) turned: Store<Option<Turned>>,
+    free: Store<Arc<Taken>>,
+    shelf: Option<Arc<dyn Shelf>>,
     run: u64,
     worked: AtomicBool,
     faces: AtomicUsize,
 }
 
 impl Reuse {
+    /// Looks for large parts on a shelf as well, and leaves them there.
+    pub fn beside(&mut self, shelf: Option<Arc<dyn Shelf>>) {
+        self.shelf = shelf;
+    }
+
     /// Ends a run; when it made meshes, what was not used for long is forgotten.
     pub fn end_run(&mut self) {
-        let Self { steps, wishes, insides, verdicts, turned, run, worked, faces: _ } = self;
+        let Self { steps, wishes, insides, verdicts, turned, free, shelf: _, run, worked, faces: _ } = self;
         if !std::mem::take(worked.get_mut()) {
             return;
         }
@@ -85,6 +101,7 @@ impl Reuse {
         insides.tidy(*run);
         verdicts.tidy(*run);
         turned.tidy(*run);
+        free.tidy(*run);
     }
 
     /// Faces whose inside was taken over so far.
@@ -110,16 +127,43 @@ impl Known<'_> {
 
     /// The inside of a face, when it was made before.
     pub fn inside(&self, key: Digest) -> Option<Arc<Inside>> {
-        let found = self.reuse.insides.find(key, self.reuse.run)?;
+        let found = self.inside_again(key)?;
         self.reuse.faces.fetch_add(1, Ordering::Relaxed);
         self.reuse.worked.store(true, Ordering::Relaxed);
         Some(found)
+    }
+
+    /// The same within one mesh, which does not count.
+    pub fn inside_again(&self, key: Digest) -> Option<Arc<Inside>> {
+        self.reuse.insides.find(key, self.reuse.run)
     }
 
     /// Keeps the inside of a face.
     pub fn keep_inside(&self, key: Digest, inside: Inside) {
         self.reuse.worked.store(true, Ordering::Relaxed);
         self.reuse.insides.keep(key, Arc::new(inside), self.reuse.run);
+    }
+
+    /// The inside of a free face, when it was made before.
+    pub fn free(&self, key: Digest) -> Option<Arc<Taken>> {
+        let Reuse { free, shelf, run, .. } = self.reuse;
+        let found = free.find(key, *run).or_else(|| {
+            let taken = Arc::new(Taken::read(&shelf.as_ref()?.face(key)?)?);
+            free.keep(key, taken.clone(), *run);
+            Some(taken)
+        })?;
+        self.reuse.faces.fetch_add(1, Ordering::Relaxed);
+        self.reuse.worked.store(true, Ordering::Relaxed);
+        Some(found)
+    }
+
+    /// Keeps the inside of a free face.
+    pub fn keep_free(&self, key: Digest, taken: Taken) {
+        self.reuse.worked.store(true, Ordering::Relaxed);
+        if let Some(shelf) = self.reuse.shelf.as_ref().filter(|_| taken.is_large()) {
+            shelf.put_face(key, &taken.bytes());
+        }
+        self.reuse.free.keep(key, Arc::new(taken), self.reuse.run);
     }
 
     /// The key of a face: its surface, where its nodes lie, and the points of its border. `border` are the points of all

@@ -18,6 +18,7 @@ use super::staging::Staging;
 use crate::base::bytes::{self, bytes_of};
 use crate::base::digest::{Digest, Digester};
 use crate::base::limits::CACHE_BYTES;
+use crate::mesh::reuse::Shelf;
 
 const MAGIC: [u8; 8] = *b"loftkept";
 /// One more whenever the bytes of a result change their meaning; older files are never read.
@@ -164,6 +165,16 @@ impl Cache {
             let _ = fs::remove_file(path);
             bytes -= length;
         }
+    }
+}
+
+impl Shelf for Cache {
+    fn face(&self, key: Digest) -> Option<Vec<u8>> {
+        self.get("face", key, |bytes| Some(bytes.to_vec()))
+    }
+
+    fn put_face(&self, key: Digest, bytes: &[u8]) {
+        self.put("face", key, bytes);
     }
 }
 

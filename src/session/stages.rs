@@ -14,6 +14,7 @@ use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
 use crate::lang::plans::MeshSpec;
 use crate::lang::scene::Scene;
 use crate::lang::value::ModuleId;
+use crate::mesh::reuse::Shelf;
 use crate::mesh::sizing::Remark;
 use crate::mesh::{self, Mesh};
 use crate::model::topology::Named;
@@ -232,7 +233,8 @@ impl Stages<'_> {
             self.count_reused();
             return Ok(of(before));
         }
-        let reuse = std::mem::take(&mut kept().reuse);
+        let mut reuse = std::mem::take(&mut kept().reuse);
+        reuse.beside(kept().cache.clone().map(|cache| cache as Arc<dyn Shelf>));
         let faces = reuse.faces();
         let built = outline.build(input, Some(&reuse), job);
         self.found().reused_faces += reuse.faces() - faces;

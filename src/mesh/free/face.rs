@@ -18,6 +18,7 @@ use super::loads::{self, Loads};
 use super::outline::Outline;
 use super::sheet::Sheet;
 use super::size::{Background, Blend};
+use super::taken::{self, Taken};
 use super::thin::Thinner;
 use super::tree::DEEPEST;
 use super::web::Web;
@@ -36,6 +37,7 @@ use crate::mesh::faces::{Frame, Prepared, limits_of, middle};
 use crate::mesh::layout::{Face, Layout, side_parameters};
 use crate::mesh::nodes::Nodes;
 use crate::mesh::plan::{Elements, Method};
+use crate::mesh::reuse::Known;
 use crate::mesh::sources::{Body, Source, Sources};
 use crate::mesh::wanted::{Wanted, floor_keeps};
 use crate::model::Trace;
@@ -144,9 +146,26 @@ pub(in crate::mesh) fn outlined(made: &Made, face: &Face) -> Option<(Border, She
     Some((border, sheet, outline))
 }
 
-/// Makes the face.
-pub fn prepare(made: &Made, face: &Face, job: &Job) -> Result<Prepared> {
+/// Makes the face, or takes it over from an earlier run.
+pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -> Result<Prepared> {
     let (border, sheet, outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
+    let key = known.map(|known| {
+        let odd = if face.takes_quads() { quads::odd(made, face) } else { Vec::new() };
+        (known, taken::key(known, made, face, (&border, &outline), (&odd, &near(made, face, &outline))))
+    });
+    if let Some((known, key)) = key
+        && let Some((free, inner, deciders, tally)) = known.free(key).and_then(|taken| taken.parts(border.uv.len()))
+    {
+        return Ok(Prepared { deciders, tally, ..prepared(made, face, free, border.ids, inner) });
+    }
+    let ready = grown(made, face, (border, sheet, outline), job)?;
+    if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
+        known.keep_free(key, Taken::of(&ready, free));
+    }
+    Ok(ready)
+}
+
+fn grown(made: &Made, face: &Face, (border, sheet, outline): (Border, Sheet, Outline), job: &Job) -> Result<Prepared> {
     if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
         return quads::prepare(made, face, border, (&sheet, &outline), job);
     }

@@ -19,6 +19,7 @@ pub mod quadtree;
 pub mod shape;
 pub mod sheet;
 pub mod size;
+pub mod taken;
 pub mod thin;
 pub mod tree;
 pub mod web;

@@ -85,14 +85,20 @@ pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline)
     Ok(Prepared { deciders, ..prepared(made, face, free, border.ids, inner) })
 }
 
-/// The border of the cells: every second node of each stretch.
-pub(in crate::mesh) fn halved(made: &Made, face: &Face, border: &Border, outline: &Outline) -> Option<Halves> {
+/// Every second node of each stretch, ascending.
+pub(super) fn odd(made: &Made, face: &Face) -> Vec<u32> {
     let odd = |stretch| {
         let ids = made.nodes.of_stretch(made.layout, stretch, false);
         ids.into_iter().skip(1).step_by(2)
     };
     let mut middles: Vec<u32> = face.stretches().flat_map(odd).collect();
     middles.sort_unstable();
+    middles
+}
+
+/// The border of the cells: every second node of each stretch.
+pub(in crate::mesh) fn halved(made: &Made, face: &Face, border: &Border, outline: &Outline) -> Option<Halves> {
+    let middles = odd(made, face);
     Halves::new(outline, &border.ids, |id| middles.binary_search(&id).is_ok())
 }
 
