@@ -93,3 +93,23 @@ fn what_decides_is_told() {
     let lines = String::from_utf8(told.stdout).unwrap();
     assert!(lines.contains("by the border facing it"), "{lines}");
 }
+
+/// Where the geometry makes an angle small, it is told what does.
+#[test]
+fn small_angles_have_their_reasons() {
+    let sliver = "curve rim = polyline([(0, 0), (10, 0), (10, 5), (5, 5), (4.99, 5.002), (0, 5)], closed: true)
+surface face = trim(plane(rim), holes: [])";
+    let wedge = "curve rim = polyline([(0, 0), (10, 0), (9, 0.5)], closed: true)\nsurface face = trim(plane(rim), holes: [])";
+    for (script, settings, reason) in [
+        (wedge, "size: 1mm", "in a corner of the border of 3.18°"),
+        (sliver, "size: 1mm  on face { count: 6 }", "a piece of the border of 0.0102"),
+        (NEAR_SIDE, "size: 5mm  on rim { count: 60 }", "by a written count"),
+        (NEAR_SIDE, "size: 5mm  min_size: 4mm", "that is not made less than 4"),
+    ] {
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("blamed.loft");
+        std::fs::write(&file, format!("units mm\n{script}\nmesh m of face {{ {settings} }}\n")).unwrap();
+        let told = Command::new(env!("CARGO_BIN_EXE_loft")).arg("explain").arg(&file).arg("m").output().unwrap();
+        let lines = String::from_utf8(told.stdout).unwrap();
+        assert!(lines.contains("; least angle ") && lines.contains(reason), "{settings}: {lines}");
+    }
+}

@@ -18,7 +18,7 @@ use super::relations::Relations;
 use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Sizing};
-use super::{inside, lines, second_order, shape_check, strips};
+use super::{blame, inside, lines, second_order, shape_check, strips};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -94,9 +94,11 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
                 mesh = fill(input, &border, &prepared, (keyed, true), job)?;
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
             }
+            let blames = blame::of_faces(&made, &sizing, &prepared, &mesh);
             sizing.take(&counts);
             sizing.take_refined(input, &prepared);
-            let explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
+            let mut explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
+            explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame));
             return Ok(finish(input, Whole { layout, nodes, prepared, sizing }, mesh, explanation));
         }
         relations.raise(&verdicts, &counts);

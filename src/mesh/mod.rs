@@ -4,6 +4,7 @@
 //! mapped between their divided sides. `docs/notes/mapped-mesh.md` tells the phases.
 
 mod assemble;
+mod blame;
 pub mod build;
 pub mod chart;
 mod chord;

@@ -71,6 +71,11 @@ fn of_face(made: &Made, face: &Face) -> Vec<Narrow> {
     found
 }
 
+/// The least step that facing borders ask for on a face, model units.
+pub fn floor(made: &Made, face: &Face) -> f64 {
+    made.input.plan.min_size.map_or(LEAST * face.size.0, |s| s.0).max(made.input.tolerance.point)
+}
+
 /// The piece of a stretch between two nodes.
 #[derive(Clone, Copy)]
 struct Bit {
@@ -158,7 +163,7 @@ impl Gaze<'_> {
     fn facing(&self, all: &Triangles) -> Vec<Narrow> {
         let p = &self.outline.p;
         let kept = inside(all, self.outline);
-        let floor = self.made.input.plan.min_size.map_or(LEAST * self.face.size.0, |s| s.0).max(self.made.input.tolerance.point);
+        let floor = floor(self.made, self.face);
         let across = if self.face.elements == Elements::Triangles { ACROSS } else { ACROSS_QUADS };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
