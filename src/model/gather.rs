@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::glue::root;
 use crate::base::bbox::Box3;
+use crate::base::boxtree::BoxTree;
 use crate::base::math::compare_points;
 
 /// A cluster wider than this many reaches of its points is a chain of near ones, not one place.
@@ -58,18 +59,22 @@ pub fn gather(points: &[Station], least: f64) -> Vec<usize> {
 /// Groups of points linked by a share of their reaches, each in the order of the list, which is by coordinates.
 fn linked(points: &[Station], ids: &[usize], share: f64, least: f64) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..ids.len()).collect();
+    let boxes: Vec<Box3> = ids.iter().map(|a| Box3::of([points[*a].point])).collect();
+    let tree = BoxTree::build(&boxes);
     for (n, &a) in ids.iter().enumerate() {
         let reach = (share * points[a].reach).max(least);
-        for (m, &b) in ids.iter().enumerate().skip(n + 1) {
-            if points[b].point.x - points[a].point.x > reach {
-                break;
+        tree.query(&boxes[n], reach, |m| {
+            // Each pair once, and what is one already is not looked at again.
+            if m <= n || root(&mut parent, n) == root(&mut parent, m) {
+                return;
             }
+            let b = ids[m];
             let both = reach.min((share * points[b].reach).max(least));
             if points[a].point.distance_squared(points[b].point) <= both * both {
                 let (ra, rb) = (root(&mut parent, n), root(&mut parent, m));
                 parent[ra.max(rb)] = ra.min(rb);
             }
-        }
+        });
     }
     let mut groups: Vec<Vec<usize>> = vec![Vec::new(); ids.len()];
     for n in 0..ids.len() {
@@ -103,6 +108,50 @@ mod tests {
         let found = gather(&points, 1e-3);
         assert!((0..corners as usize).all(|k| found[2 * k] == found[2 * k + 1]));
         assert_eq!(found.iter().max(), Some(&(corners as usize - 1)));
+    }
+
+    #[test]
+    fn groups_are_those_of_all_pairs() {
+        // Against every pair, with reaches that differ and points in bands of one x.
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..40 {
+            let points: Vec<Station> = (0..60)
+                .map(|k| Station { point: DVec3::new(f64::from(k % 3), 6.0 * random(), 6.0 * random()), reach: 0.1 + random() })
+                .collect();
+            let mut ids: Vec<usize> = (0..points.len()).collect();
+            ids.sort_by(|a, b| compare_points(points[*a].point, points[*b].point));
+            let mut group: Vec<usize> = (0..ids.len()).collect();
+            for (n, m) in (0..ids.len()).flat_map(|n| (0..ids.len()).map(move |m| (n, m))) {
+                let (a, b) = (points[ids[n]], points[ids[m]]);
+                if a.point.distance(b.point) <= a.reach.min(b.reach) {
+                    let (x, y) = (group[n].min(group[m]), group[n].max(group[m]));
+                    group.iter_mut().filter(|g| **g == y).for_each(|g| *g = x);
+                }
+            }
+            for found in linked(&points, &ids, 1.0, 1e-3) {
+                let place = |id: &usize| group[ids.iter().position(|i| i == id).unwrap()];
+                assert!(found.iter().all(|id| place(id) == place(&found[0])));
+                assert_eq!(found.len(), group.iter().filter(|g| **g == place(&found[0])).count());
+            }
+        }
+    }
+
+    #[test]
+    fn a_wall_of_points_in_one_plane_takes_no_time() {
+        // 40 000 pairs that all lie in one band of x: 1.6e9 pairs if each met each.
+        let points: Vec<Station> = (0..80_000)
+            .map(|k| {
+                let (i, j) = (k / 2 % 200, k / 400);
+                Station { point: DVec3::new(0.0, f64::from(i), f64::from(j) + 0.001 * f64::from(k % 2)), reach: 0.01 }
+            })
+            .collect();
+        let found = gather(&points, 1e-3);
+        assert!((0..40_000).all(|k| found[2 * k] == found[2 * k + 1]));
+        assert_eq!(found.iter().max(), Some(&39_999));
     }
 
     #[test]
