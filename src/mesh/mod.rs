@@ -24,6 +24,7 @@ mod layout;
 mod limits;
 mod lines;
 pub mod mapped;
+mod measured;
 mod moved;
 mod narrow;
 mod nodes;

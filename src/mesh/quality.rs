@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::chord;
 use super::data::Mesh;
 use crate::base::math;
 use crate::base::par;
@@ -154,16 +153,7 @@ impl Mesh {
     /// Largest distance mesh–surface at 25 points a triangle (a quad as its two triangles), model units; `None` where
     /// the surfaces are not known (a mesh that was read) or there is no face.
     pub fn chord_error(&self, tolerance: &Tolerance) -> Option<f64> {
-        let faces: Vec<_> = self.faces.iter().filter(|f| !f.triangles.is_empty() || !f.quads.is_empty()).collect();
-        if faces.is_empty() || faces.len() != self.charts.0.len() {
-            return None;
-        }
-        let errors = par::map(faces.len(), |k| {
-            let range = faces[k].triangles.start as usize..faces[k].triangles.end as usize;
-            let chart = &self.charts.0[k];
-            chord::of_face(&chart.surface, chart, &self.triangles[range], &self.nodes, tolerance)
-        });
-        Some(errors.into_iter().fold(0.0, f64::max))
+        self.chord_error_again(tolerance, None)
     }
 
     /// Every edge of triangles and quads with how often it is used forwards and backwards, sorted by its nodes.

@@ -77,6 +77,7 @@ pub struct Reuse {
     pub(super) verdicts: Store<Verdict>,
     pub(super) turned: Store<Option<Turned>>,
     free: Store<Arc<Taken>>,
+    chords: Store<f64>,
     shelf: Option<Arc<dyn Shelf>>,
     run: u64,
     worked: AtomicBool,
@@ -89,9 +90,18 @@ impl Reuse {
         self.shelf = shelf;
     }
 
+    /// The chord error of a face as it was measured before, or as it is now.
+    pub fn chord(&self, key: Digest, measure: impl FnOnce() -> f64) -> f64 {
+        self.chords.find(key, self.run).unwrap_or_else(|| {
+            let measured = measure();
+            self.chords.keep(key, measured, self.run);
+            measured
+        })
+    }
+
     /// Ends a run; when it made meshes, what was not used for long is forgotten.
     pub fn end_run(&mut self) {
-        let Self { steps, wishes, insides, verdicts, turned, free, shelf: _, run, worked, faces: _ } = self;
+        let Self { steps, wishes, insides, verdicts, turned, free, chords, shelf: _, run, worked, faces: _ } = self;
         if !std::mem::take(worked.get_mut()) {
             return;
         }
@@ -102,6 +112,7 @@ impl Reuse {
         verdicts.tidy(*run);
         turned.tidy(*run);
         free.tidy(*run);
+        chords.tidy(*run);
     }
 
     /// Faces whose inside was taken over so far.

@@ -11,6 +11,7 @@ use crate::lang::plans::{CheckResult, ReportTable};
 use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
+use crate::mesh::reuse::Reuse;
 use crate::model::{Model, SurfaceId, measure};
 use crate::network::{Chain, LinkId, Network};
 use crate::surface::{Domain, Surface};
@@ -134,8 +135,8 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool)
 /// Elements up to which a mesh is measured in all ways for the summary table.
 pub const QUICK_ELEMENTS: usize = 200_000;
 
-/// A mesh: counts, quality and groups; chord error and hash only when `full` or quick.
-pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, full: bool) -> MeshRow {
+/// A mesh: counts, quality and groups; chord error (of its faces in `reuse` as it was) and hash only when `full` or quick.
+pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, (full, reuse): (bool, Option<&Reuse>)) -> MeshRow {
     let full = full || mesh.triangles.len() + mesh.quads.len() <= QUICK_ELEMENTS;
     let quality = mesh.quality();
     let degrees = crate::lang::units::degrees;
@@ -156,7 +157,7 @@ pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, full: bool) -> MeshR
         min_quality: quality.map(|q| q.min_quality),
         max_aspect: quality.map(|q| q.max_aspect),
         area: quality.map(|q| q.area),
-        chord_error: if full { mesh.chord_error(tolerance) } else { None },
+        chord_error: if full { mesh.chord_error_again(tolerance, reuse) } else { None },
         watertight: quality.map(|_| mesh.is_watertight()),
         hash: full.then(|| format!("{:016x}", mesh.hash())),
         groups: mesh.groups.iter().map(group).collect(),

@@ -86,7 +86,7 @@ impl KeptStages {
     }
 
     /// The row of a mesh in the report, measured once.
-    pub fn row(&mut self, name: &str, mesh: &Arc<Mesh>, full: bool, measure: impl FnOnce() -> MeshRow) -> MeshRow {
+    pub fn row(&mut self, name: &str, mesh: &Arc<Mesh>, full: bool, measure: impl FnOnce(&Reuse) -> MeshRow) -> MeshRow {
         if let Some((.., row)) = self.rows.iter().find(|(m, f, row)| Arc::ptr_eq(m, mesh) && *f == full && row.name == name) {
             return row.clone();
         }
@@ -94,7 +94,7 @@ impl KeptStages {
         let key = key.map(|key| Digester::new("row").digest(key).text(name).number(u64::from(full)).finish());
         let cache = self.cache.clone().zip(key);
         let row = cache.as_ref().and_then(|(cache, key)| cache.get("row", *key, bytes::read)).unwrap_or_else(|| {
-            let row = measure();
+            let row = measure(&self.reuse);
             if let Some((cache, key)) = &cache {
                 cache.put("row", *key, &bytes::bytes_of(&row));
             }

@@ -111,10 +111,10 @@ impl Stages<'_> {
 
     /// The row of a mesh in the report.
     pub(super) fn row(&self, name: &str, mesh: &Arc<Mesh>, tolerance: &Tolerance, full: bool) -> MeshRow {
-        let measured = || collect::mesh(name, mesh, tolerance, full);
+        let measured = |reuse: Option<&_>| collect::mesh(name, mesh, tolerance, (full, reuse));
         match self.kept() {
-            Some(mut kept) => kept.row(name, mesh, full, measured),
-            None => measured(),
+            Some(mut kept) => kept.row(name, mesh, full, |reuse| measured(Some(reuse))),
+            None => measured(None),
         }
     }
 }
