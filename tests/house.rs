@@ -49,7 +49,7 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// each other, and `lang` the grammar over tokens and its tree, the evaluator, its memory between runs, all words with
 /// their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 5_700),
+    ("base", 5_800),
     ("geometry", 5_500),
     ("network", 3_500),
     ("surface", 9_600),

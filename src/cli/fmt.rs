@@ -168,7 +168,8 @@ fn first_difference(old: &str, new: &str, colours: bool) -> String {
             text += &if colours { format!("\x1b[{colour}m{line}\x1b[0m\n") } else { format!("{line}\n") };
         }
         if lines.len() > SHOWN {
-            text += &format!("{sign} … {} more lines\n", lines.len() - SHOWN);
+            let more = lines.len() - SHOWN;
+            text += &format!("{sign} … {more} more line{}\n", if more == 1 { "" } else { "s" });
         }
         text
     };

@@ -80,7 +80,7 @@ impl Cx<'_> {
             let message = format!("`{text}` is a {word}, not a function");
             return self.error(code, "E201", message, span, "cannot be called").stop();
         }
-        let mut names: Vec<String> = std::builtins().map(|b| b.name.to_owned()).collect();
+        let mut names: Vec<String> = std::builtins().chain(std::fields()).map(|b| b.name.to_owned()).collect();
         let module = self.machine.at(code.module);
         names.extend(
             module

@@ -60,7 +60,8 @@ impl Cx<'_> {
                 Some(unit) => self.machine.at_mut(id).unit = unit,
                 None => {
                     let known: Vec<&str> = units::LENGTHS.iter().map(|u| u.name).collect();
-                    let near = super::names::nearest(&text, known.iter().copied());
+                    let meant = super::syntax::number::meant(&text).and_then(|meant| units::length_unit(&meant)).map(|unit| unit.name);
+                    let near = meant.or_else(|| super::names::nearest(&text, known.iter().copied()));
                     let label = near.map_or_else(|| "no such unit".to_owned(), |n| format!("did you mean `{n}`?"));
                     let message = format!("`{text}` is not a unit of length");
                     let diagnostic = Diagnostic::new("E213", message, file, bound.span, label).help(format!("one of {}", known.join(", ")));

@@ -158,7 +158,7 @@ fn refuse_too_many(input: &Input, layout: &Layout, relations: &Relations, counts
         total = uses.iter().fold(total, |t, u| t.saturating_add(u64::from(counts[u.atom])));
     }
     if total > MESH_ELEMENTS {
-        return Err(faces::too_many(&input.plan.name, total));
+        return Err(faces::too_many(input.plan, total));
     }
     Ok(())
 }
@@ -202,7 +202,7 @@ fn number(made: &Made, prepared: &mut [Prepared]) -> Result<()> {
     for ready in prepared.iter_mut() {
         total += ready.triangles + ready.quads;
         if total > MESH_ELEMENTS {
-            return Err(faces::too_many(&made.input.plan.name, total));
+            return Err(faces::too_many(made.input.plan, total));
         }
         ready.number(first);
         first += ready.inner as u32;

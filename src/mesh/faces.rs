@@ -9,7 +9,7 @@ use super::explain::{Decider, Tally};
 use super::layout::{Face, Layout, side_parameters};
 use super::mapped;
 use super::nodes::Nodes;
-use super::plan::{Elements, Method};
+use super::plan::{Elements, Method, Plan};
 use super::trilateral::{Blocks, LatticeFrame};
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
@@ -350,7 +350,7 @@ pub fn limits_of(input: &Input) -> Limits {
 }
 
 /// Too many elements, before anything is allocated.
-pub fn too_many(name: &str, total: u64) -> Fault {
-    let what = format!("the mesh `{name}` of {total} elements");
-    crate::base::fault::ValueFault::Limit { what, limit: format!("{MESH_ELEMENTS} elements") }.into()
+pub fn too_many(plan: &Plan, elements: u64) -> Fault {
+    let of = plan.size.map_or(plan.origin, |size| size.1);
+    MeshFault::TooMany { of, name: plan.name.clone(), elements, limit: MESH_ELEMENTS }.into()
 }

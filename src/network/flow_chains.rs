@@ -6,6 +6,7 @@ use super::chain::Chain;
 use super::detect::{Grid, Ring, detect_grid, shared};
 use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
 use super::meet::{closest_points, meet};
+use super::snap::may_snap;
 use crate::base::fault::{CurveEnd, Fault, NetworkFault, NoFlow, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::par;
@@ -214,7 +215,8 @@ fn ends_that_miss(chains: &[Chain], lists: &[NodeList], hints: &FlowOptions, tol
         }
         let grid = Grid { lists: &lists, same_way: &|_, _| true };
         if detect_grid(&grid, hints).is_ok() {
-            return Some(NetworkFault::EndsMiss { a: end(a, x), b: end(b, y), tolerance: tolerance.point }.into());
+            let near = may_snap(end(a, x).at.distance(end(b, y).at), chains[a].length().min(chains[b].length()));
+            return Some(NetworkFault::EndsMiss { a: end(a, x), b: end(b, y), near, tolerance: tolerance.point }.into());
         }
     }
     None

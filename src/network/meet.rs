@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::chain::{Chain, Run, same_curve};
+use super::snap::may_snap;
 use crate::base::fault::{NetworkFault, Result};
 use crate::base::tolerance::Tolerance;
 use crate::geometry::{Hit, closest_pair, intersect};
@@ -53,7 +54,8 @@ pub fn meet_once(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Meeting>
         [one] => Ok(*one),
         [] => {
             let (pa, pb) = closest_points(a, b);
-            Err(NetworkFault::NoMeeting { a: (a.origin(), pa), b: (b.origin(), pb), tolerance: tolerance.point }.into())
+            let near = may_snap(pa.distance(pb), a.length().min(b.length()));
+            Err(NetworkFault::NoMeeting { a: (a.origin(), pa), b: (b.origin(), pb), near, tolerance: tolerance.point }.into())
         }
         several => {
             let candidates = several.iter().map(|m| (m.point, m.fa)).collect();

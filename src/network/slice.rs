@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::chain::{Chain, Run, same_curve};
+use super::snap::may_snap;
 use crate::base::fault::{CurveEnd, NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -86,13 +87,12 @@ pub fn join(parts: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Ch
     for pair in parts.windows(2) {
         let (end, start) = (pair[0].end(), pair[1].start());
         if !tolerance.same_point(end, start) {
-            // What `snap` is offered with is up to 2.5 times the gap.
             let shorter = pair.iter().map(Chain::length).fold(f64::INFINITY, f64::min);
             return Err(NetworkFault::ChainBroken {
                 a: CurveEnd { of: pair[0].origin(), last: true, at: end },
                 b: CurveEnd { of: pair[1].origin(), last: false, at: start },
                 reversed_fits: tolerance.same_point(end, pair[1].end()),
-                snaps: end.distance(start) * 2.5 < shorter,
+                snaps: may_snap(end.distance(start), shorter),
                 tolerance: tolerance.point,
             }
             .into());

@@ -26,6 +26,12 @@ pub struct Move {
     pub to: DVec3,
 }
 
+/// Whether `snap` may be offered for a gap between ends of curves, the `shorter` of which has this length: it is offered
+/// with up to 2.5 times the gap, and must not draw both ends of one curve together.
+pub fn may_snap(gap: f64, shorter: f64) -> bool {
+    gap * 2.5 < shorter
+}
+
 /// Moves that bring ends closer than `distance` together: to the end among them that cannot move, else to the declared
 /// point, else to their mean. Each move is noted in `sink` (N513); two ends that cannot move are E511.
 ///

@@ -31,6 +31,7 @@ pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Output
         Some((Value::Mesh(_), _)) => mesh(cx, spec, files)?,
         Some((Value::Curve(_), _)) => curves(cx, spec, files)?,
         Some((Value::Record(_), _)) => records(cx, spec, files)?,
+        Some((Value::Surface(_) | Value::Shell(_), origin)) => return Err(surface(spec, *origin)),
         Some((other, origin)) => return Err(unsupported(*origin, format!("{} cannot be exported", other.ty().words()))),
         None => return Err(unsupported(spec.origin, "there is nothing to export".to_owned())),
     };
@@ -45,6 +46,18 @@ type Written = (u64, Vec<Loss>);
 fn unsupported(of: Origin, what: String) -> Stop {
     let help = Some("export meshes, curves, or a list of records".to_owned());
     FileFault::Unsupported { of, what, help, edits: Vec::new() }.into()
+}
+
+/// A surface in a format for meshes.
+fn surface(spec: &ExportSpec, of: Origin) -> Stop {
+    match format_for(spec.path_origin, &spec.path) {
+        Ok(format) => {
+            let what = format!("{} holds meshes, not surfaces", format.name);
+            let help = "export a mesh of it (`mesh fine of …`), or write the surface itself as IGES: \"….igs\"".to_owned();
+            FileFault::Unsupported { of, what, help: Some(help), edits: Vec::new() }.into()
+        }
+        Err(fault) => fault.into(),
+    }
 }
 
 /// Writes through `fill`; a failure names the path.

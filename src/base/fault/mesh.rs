@@ -15,6 +15,17 @@ pub enum MeshFault {
         /// Why, in words: "`south` is on no face of this mesh".
         why: String,
     },
+    /// E217: more elements than a mesh may have.
+    TooMany {
+        /// What asks for so many, the size where it is written.
+        of: Origin,
+        /// The mesh.
+        name: String,
+        /// How many.
+        elements: u64,
+        /// How many may be.
+        limit: u64,
+    },
     /// E702: two written counts on opposite sides differ, or no counts make the sides equal.
     CountsDiffer {
         /// Elements along one side and what says so.
@@ -244,6 +255,9 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
             .at(*rule, "has no effect")
             .help("remove it")
             .edit(Subject::Entity(*rule), Edit::DropRule(None)),
+        F::TooMany { of, name, elements, limit } => Report::new("E217", format!("the mesh `{name}` of {elements} elements is too much"))
+            .at(*of, "asked for here")
+            .help(format!("a larger size; the limit is {limit} elements")),
         F::CountsDiffer { a, b, surface, at } => {
             let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
             for (count, origin) in [a, b] {
@@ -439,6 +453,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         }
         // Answered by the table above; listed so that a new fault cannot be forgotten.
         F::RuleUnused { .. }
+        | F::TooMany { .. }
         | F::CountsDiffer { .. }
         | F::SidesDoNotClose { .. }
         | F::CountTooCoarse { .. }

@@ -15,6 +15,8 @@ pub enum NetworkFault {
         a: CurveEnd,
         /// Second curve and its end.
         b: CurveEnd,
+        /// The gap is small beside both curves, so that they may be meant to meet.
+        near: bool,
         /// The tolerance applied.
         tolerance: f64,
     },
@@ -77,6 +79,8 @@ pub enum NetworkFault {
         a: (Origin, DVec3),
         /// Second curve and its nearest point.
         b: (Origin, DVec3),
+        /// The gap is small beside both curves, so that they may be meant to meet.
+        near: bool,
         /// The tolerance applied.
         tolerance: f64,
     },
@@ -223,7 +227,7 @@ fn typed(say: &dyn Say, length: f64) -> String {
 impl Describe for NetworkFault {
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::EndsMiss { a, b, tolerance } => ends_miss(a, b, *tolerance, say),
+            Self::EndsMiss { a, b, near, tolerance } => ends_miss(a, b, (*near, *tolerance), say),
             Self::BoundaryOpen { a, b, tolerance } => boundary_open(a, b, *tolerance, say),
             Self::ChainBroken { a, b, reversed_fits, snaps, tolerance } => chain_broken(a, b, (*reversed_fits, *snaps), *tolerance, say),
             Self::ChainRepeats { a, b, stretch } => chain_repeats(*a, *b, *stretch, say),
@@ -244,7 +248,7 @@ impl Describe for NetworkFault {
                 let smaller = typed(say, *smaller);
                 report.help(format!("`tolerance {smaller}` keeps them apart")).edit(Subject::Call, Edit::Declare("tolerance", smaller))
             }
-            Self::NoMeeting { a, b, tolerance } => no_meeting(*a, *b, *tolerance, say),
+            Self::NoMeeting { a, b, near, tolerance } => no_meeting(*a, *b, (*near, *tolerance), say),
             Self::PointOff { of, point, nearest, tolerance } => Report::new(
                 "E507",
                 format!(
@@ -324,10 +328,10 @@ fn tolerance_note(tolerance: f64, say: &dyn Say) -> String {
     format!("the model's tolerance is {}", say.length(tolerance))
 }
 
-fn ends_miss(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
+fn ends_miss(a: &CurveEnd, b: &CurveEnd, (near, tolerance): (bool, f64), say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
     let wanted = typed(say, round_above(gap));
-    Report::new(
+    let report = Report::new(
         "E501",
         format!(
             "{} and {} miss each other by {} at {}",
@@ -340,10 +344,18 @@ fn ends_miss(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Repor
     .at(a.of, a.verb())
     .at(b.of, b.verb())
     .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
-    .help(format!("end both at one point, or declare `snap {wanted}`"))
-    .edit(Subject::Entity(a.of), Edit::Declare("snap", wanted.clone()))
-    .note(format!("the other curve {} at {}", if b.last { "ends" } else { "starts" }, say.point(b.at)))
-    .note(format!("a tolerance of {wanted} would take them as one point"))
+    .note(format!("the other curve {} at {}", if b.last { "ends" } else { "starts" }, say.point(b.at)));
+    if !near {
+        return report.help(format!(
+            "a curve is missing from {} to {}, or one that is here ends elsewhere",
+            say.point(a.at),
+            say.point(b.at)
+        ));
+    }
+    report
+        .help(format!("end both at one point, or declare `snap {wanted}`"))
+        .edit(Subject::Entity(a.of), Edit::Declare("snap", wanted.clone()))
+        .note(format!("a tolerance of {wanted} would take them as one point"))
 }
 
 fn boundary_open(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
@@ -420,8 +432,9 @@ fn chain_ambiguous(of: Origin, at: DVec3, candidates: &[Origin], say: &dyn Say) 
     report.help("write the boundary as one modeling curve, for example `a + b + c`")
 }
 
-fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), tolerance: f64, say: &dyn Say) -> Report {
+fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), (near, tolerance): (bool, f64), say: &dyn Say) -> Report {
     let gap = a.1.distance(b.1);
+    let wider = if near { format!("; {} would let them meet", typed(say, round_up(gap))) } else { String::new() };
     Report::new(
         "E507",
         format!(
@@ -435,7 +448,7 @@ fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), tolerance: f64, say: &dyn 
     )
     .at(a.0, "this curve")
     .at(b.0, "and this one")
-    .note(format!("the model's tolerance is {}; {} would let them meet", say.length(tolerance), typed(say, round_up(gap))))
+    .note(format!("{}{wider}", tolerance_note(tolerance, say)))
 }
 
 fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn Say) -> Report {
@@ -535,7 +548,7 @@ mod tests {
     #[test]
     fn a_miss_names_gap_place_tolerance_and_a_snap_that_passes() {
         let end = |last, x| CurveEnd { of: Origin::NONE, last, at: DVec3::new(x, 0.0, 0.0) };
-        let report = NetworkFault::EndsMiss { a: end(true, 0.0), b: end(false, 0.3), tolerance: 0.001 }.describe(&Plain);
+        let report = NetworkFault::EndsMiss { a: end(true, 0.0), b: end(false, 0.3), near: true, tolerance: 0.001 }.describe(&Plain);
         assert_eq!(report.code.0, "E501");
         assert_eq!(report.message, "one curve and another miss each other by 0.300000 at (0.000000, 0.000000, 0.000000)");
         assert_eq!(report.help.as_deref(), Some("end both at one point, or declare `snap 0.5`"));

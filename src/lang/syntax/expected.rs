@@ -7,6 +7,7 @@ use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::Rule;
 use super::ast::Span;
+use super::number::{is_unit, split_unit};
 use super::scan::Tokens;
 use super::token::Kind;
 use crate::lang::diag::{Diagnostic, FileId};
@@ -53,7 +54,8 @@ impl Failure<'_> {
         let at = self.base + self.tokens.starts[self.base..self.end].partition_point(|&start| start < byte);
         let stop = Stop { at, wanted: positives };
         let special = self.let_without_in(&stop).or_else(|| self.bracket_on_its_line(&stop)).or_else(|| self.reserved_word(&stop));
-        special.or_else(|| self.equals(&stop)).unwrap_or_else(|| self.general(&stop))
+        let special = special.or_else(|| self.equals(&stop)).or_else(|| self.colon(&stop)).or_else(|| self.unit_apart(&stop));
+        special.unwrap_or_else(|| self.general(&stop))
     }
 
     fn text(&self, token: usize) -> &str {
@@ -216,12 +218,45 @@ impl Failure<'_> {
         Some(self.repaired(report, &[colon, equal, loop_in])).filter(|r| r.help.is_some())
     }
 
+    /// `:` or `==` where the `=` of a declaration is meant.
+    fn colon(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
+        if !matches!(self.kind(stop.at)?, Kind::Colon | Kind::EqualEqual) || !stop.wants(Rule::eq) {
+            return None;
+        }
+        let report = self.as_found(stop);
+        let equals = (self.tokens.span(stop.at), "=", format!("a name gets its value by `=`: `{} = …`", self.text(stop.at - 1)));
+        Some(self.repaired(report, &[equals])).filter(|r| r.help.is_some())
+    }
+
+    /// `8 m` where `8m` is meant.
+    fn unit_apart(&self, stop: &Stop<'_>) -> Option<Diagnostic> {
+        if self.kind(stop.at) != Some(Kind::Name) || self.before(stop.at) != Some(Kind::Number) {
+            return None;
+        }
+        let (number, unit) = (stop.at - 1, self.text(stop.at));
+        if !is_unit(unit) || !split_unit(self.text(number)).1.is_empty() {
+            return None;
+        }
+        let gap = Span { start: self.tokens.ends[number], end: self.tokens.starts[stop.at] };
+        if !self.slice(gap).chars().all(|c| c == ' ' || c == '\t') {
+            return None;
+        }
+        let help = format!("a unit stands right behind its number: `{}{unit}`", self.text(number));
+        let report = self.as_found(stop).help(help);
+        Some(if self.parses_with(gap, "") { report.put(gap, "") } else { report })
+    }
+
+    /// What was expected and what stands there.
+    fn as_found(&self, stop: &Stop<'_>) -> Diagnostic {
+        let (wanted, found) = (words(stop.wanted), shortened(self.text(stop.at)));
+        self.e102(format!("expected {wanted}, found `{found}`"), stop.at, &format!("expected {wanted}"))
+    }
+
     fn general(&self, stop: &Stop<'_>) -> Diagnostic {
         let wanted = words(stop.wanted);
         let place = self.place(stop.at);
         let report = if stop.at < self.end {
-            let found = shortened(self.text(stop.at));
-            self.e102(format!("expected {wanted}, found `{found}`"), stop.at, &format!("expected {wanted}"))
+            self.as_found(stop)
         } else {
             self.e102(format!("expected {wanted}, but the declaration ends here"), stop.at, &format!("{wanted} is missing"))
         };
@@ -283,6 +318,9 @@ impl Failure<'_> {
             (Kind::Point, Some(Kind::Comma)) if stop.wants(Rule::EOI) => Some("a point has brackets around it: (x, y, z)".to_owned()),
             (_, Some(Kind::For)) if stop.wants(Rule::EOI) => {
                 Some("the `for` of a family stands behind its name: curve ribs for i in 0..5 = …".to_owned())
+            }
+            (_, Some(Kind::If)) if stop.wants(Rule::EOI) => {
+                Some("a choice is a value that starts with `if`: let height = if wide then 3m else 2m".to_owned())
             }
             (_, Some(Kind::In)) if keyword == Kind::Let && stop.wants(Rule::EOI) => {
                 Some("only a `let` inside an expression has an `in`; this one holds for the whole script".to_owned())

@@ -645,6 +645,6 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
         Trouble::Border(PointsFault::Same(a, _)) => MeshFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
         Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(made, face),
         Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: DEEPEST }.into(),
-        Trouble::Full => crate::mesh::faces::too_many(&made.input.plan.name, 2 * MESH_ELEMENTS),
+        Trouble::Full => crate::mesh::faces::too_many(made.input.plan, 2 * MESH_ELEMENTS),
     }
 }

@@ -16,6 +16,7 @@ use crate::base::fault::{CurveFault, NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
 use crate::geometry::Curve;
+use crate::network::snap::may_snap;
 use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::Nearest;
 use crate::surface::core::{Domain, Surface};
@@ -204,7 +205,8 @@ pub fn with_curve_once(chain: &Chain, surfaces: &[Surface], tolerance: &Toleranc
             let pairs = surfaces.iter().map(|surface| (closest_points(chain, surface), surface.origin()));
             let nearest = pairs.min_by(|x, y| x.0.0.distance(x.0.1).total_cmp(&y.0.0.distance(y.0.1)));
             let ((pa, pb), b) = nearest.unwrap_or(((chain.start(), chain.start()), b));
-            Err(NetworkFault::NoMeeting { a: (a, pa), b: (b, pb), tolerance: tolerance.point }.into())
+            let near = may_snap(pa.distance(pb), chain.length());
+            Err(NetworkFault::NoMeeting { a: (a, pa), b: (b, pb), near, tolerance: tolerance.point }.into())
         }
         several => {
             let candidates = several.iter().map(|m| (m.point, m.f)).collect();
