@@ -240,3 +240,29 @@ fn the_same_bytes_on_any_number_of_threads() {
         assert!(*known.get_or_insert_with(|| found.clone()) == found, "{threads} threads make another file");
     }
 }
+
+const BOX: &str = "units mm
+curve s = line((0, 0), (20, 0))
+curve e = line((20, 0), (20, 10))
+curve n = line((20, 10), (0, 10))
+curve w = line((0, 10), (0, 0))
+curve eye = circle(center: (10, 5, 0), radius: 2mm)
+surface p = trim(plane([s, e, n, w]), holes: [eye])
+";
+
+/// Counts that are odd are kept where the loop is even in all.
+#[test]
+fn odd_counts_of_one_loop() {
+    for (counts, steps) in [
+        ("on s { count: 15 }  on n { count: 17 }", [(0.0, 15), (10.0, 17)]),
+        ("on s { count: 15 }  on e { count: 9 }  on n { count: 13 }  on w { count: 7 }", [(0.0, 15), (10.0, 13)]),
+    ] {
+        let mesh = mesh(&format!("{BOX}mesh a of p {{ size: 1mm  elements: quads  {counts} }}"));
+        all_quads(&mesh, 0.5, 0);
+        for (y, n) in steps {
+            assert_eq!(mesh.nodes.iter().filter(|p| p.y == y).count(), n + 1, "{counts}");
+        }
+    }
+    let told = refused(&format!("{BOX}mesh a of p {{ size: 1mm  elements: quads  on s {{ count: 15 }}  on eye {{ count: 17 }} }}"));
+    assert!(told.contains("E704") && told.contains("count: 16"), "{told}");
+}

@@ -63,7 +63,7 @@ fn of_face(made: &Made, face: &Face) -> Vec<Narrow> {
     let gaze = Gaze { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
     let mut found = gaze.polygon();
     if face.takes_quads()
-        && let Some(halves) = super::free::face::halved(made, face, &border, &outline)
+        && let Some(halves) = super::free::face::halved(made, face, &border, &outline, false)
     {
         let ids: Vec<u32> = halves.of.iter().map(|n| border.ids[*n as usize]).collect();
         found.extend(Gaze { outline: &halves.outline, ids: &ids, ..gaze }.crossings());

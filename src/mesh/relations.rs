@@ -7,9 +7,10 @@ use super::plan::Elements;
 use super::rows::Wish;
 use super::sizing::{MOST, Sizing};
 use super::strips::{Conflict, Relation, Stretch};
-use crate::base::fault::{Fault, MeshFault};
+use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
+use crate::surface::Domain;
 
 /// A direction of a face as an unknown: what its rows want.
 #[derive(Clone, Debug)]
@@ -111,6 +112,25 @@ impl Relations {
                 }
             }
         }
+    }
+
+    /// E704 where free quads have a loop with an odd number of steps.
+    pub fn refuse_odd_loops(&self, input: &Input, layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Result<()> {
+        for face in layout.faces.iter().filter(|f| f.takes_quads()) {
+            let surface = &input.model.surfaces[face.surface.index()].surface;
+            let loops = if surface.domain() == Domain::Loop { surface.loops() } else { vec![face.sides.len()] };
+            let mut sides = face.sides.as_slice();
+            for n in loops {
+                let (own, others) = sides.split_at(n.min(sides.len()));
+                sides = others;
+                let odd: Vec<usize> = own.iter().flat_map(|s| &s.uses).map(|u| u.atom).filter(|k| counts[*k] % 2 == 1).collect();
+                if odd.len() % 2 == 1 {
+                    let needs = odd[odd.len() - 1];
+                    return Err(self.fault(input, layout, sizing, &Conflict::Odd { written: Some(needs), needs }));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// A contradiction in the user's words.

@@ -187,6 +187,9 @@ impl Sizing {
     pub fn stretches(&self, layout: &Layout) -> Vec<Stretch> {
         let mut even = vec![false; self.decisions.len()];
         layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| even[s] = true);
+        // A written count may be odd where another one of the loop is.
+        let sides = layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| &s.uses);
+        sides.filter(|u| self.decisions[u.atom].count.is_some()).for_each(|u| even[u.atom] = false);
         let one = |(k, d): (usize, &Decision)| Stretch {
             least: d.least,
             wish: d.wish,

@@ -362,7 +362,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 let even = (count.0 + 1).to_string();
                 report = report.at(count.1, steps(count.0)).help(format!("count: {even}")).edit(Subject::Entity(count.1), Edit::Put(even));
             }
-            report.at(*surface, "has no map, so that each part of its border takes an even number of steps")
+            report.at(*surface, "has no map, so that each loop of its border takes an even number of steps in all")
         }
         F::TrianglesOnly { of, method, surface, at } => {
             Report::new("E704", format!("only quads is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))

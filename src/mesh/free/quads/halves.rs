@@ -38,11 +38,11 @@ impl Halves {
         }
     }
 
-    /// Two edges at a time; `middle` tells the nodes that are in the middle of two, `ids` are numbers in the mesh.
+    /// Two edges at a time; `middle` tells the places of nodes that are in the middle of two, `ids` are numbers in the mesh.
     ///
     /// `None` where edges at a middle node do not follow each other.
     pub fn new(outline: &Outline, ids: &[u32], middle: impl Fn(u32) -> bool) -> Option<Self> {
-        let of: Vec<u32> = (0..outline.p.len() as u32).filter(|n| !middle(ids[*n as usize])).collect();
+        let of: Vec<u32> = (0..outline.p.len() as u32).filter(|n| !middle(*n)).collect();
         let mut place = vec![NONE; outline.p.len()];
         of.iter().enumerate().for_each(|(k, n)| place[*n as usize] = k as u32);
         let (loops, mut mids) = halved(&outline.loops, &place)?;
@@ -76,20 +76,42 @@ impl Halves {
     }
 }
 
-/// Every two edges that meet in a node without a place as one.
+/// Every two edges that meet in a node without a place as one, where the first of them is.
 fn halved(edges: &[[u32; 2]], place: &[u32]) -> Option<Halved> {
+    // Edges into and out of each middle node; one that is run twice has two of each.
+    let mut at: Vec<(Vec<usize>, Vec<usize>)> = vec![Default::default(); place.len()];
+    for (k, [a, b]) in edges.iter().enumerate() {
+        at[*b as usize].0.push(k);
+        at[*a as usize].1.push(k);
+    }
+    let mut done = vec![false; edges.len()];
     let (mut found, mut mids) = (Vec::new(), Vec::new());
-    let mut rest = edges.iter();
-    while let Some(&[a, b]) = rest.next() {
-        let (from, to) = (place[a as usize], place[b as usize]);
-        if from != NONE && to != NONE {
-            found.push([from, to]);
+    for (k, [a, b]) in edges.iter().enumerate() {
+        if done[k] {
             continue;
         }
-        let &[c, d] = rest.next()?;
-        let (mid, edge) = if b == c && to == NONE { (b, [from, place[d as usize]]) } else { (a, [place[c as usize], to]) };
-        let fits = (b == c && to == NONE || a == d && from == NONE) && !edge.contains(&NONE) && edge[0] != edge[1];
-        fits.then_some(())?;
+        let mid = match [*a, *b].map(|n| place[n as usize] == NONE) {
+            [false, false] => {
+                found.push([place[*a as usize], place[*b as usize]]);
+                continue;
+            }
+            [true, true] => return None,
+            [true, false] => *a,
+            [false, true] => *b,
+        };
+        let (into, out) = &at[mid as usize];
+        // The way back along the same edge comes last.
+        let other = if mid == *b {
+            let open = out.iter().filter(|o| !done[**o]);
+            open.min_by_key(|o| edges[**o][1] == *a)
+        } else {
+            let open = into.iter().filter(|o| !done[**o]);
+            open.min_by_key(|o| edges[**o][0] == *b)
+        };
+        let other = *other?;
+        let edge = if mid == *b { [*a, edges[other][1]] } else { [edges[other][0], *b] }.map(|n| place[n as usize]);
+        (!edge.contains(&NONE) && edge[0] != edge[1]).then_some(())?;
+        (done[k], done[other]) = (true, true);
         mids.push(([edge[0].min(edge[1]), edge[0].max(edge[1])], mid));
         found.push(edge);
     }
