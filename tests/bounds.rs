@@ -471,3 +471,45 @@ fn a_ridge_that_samples_miss_is_found() {
         assert!(mesh.triangles.len() + 2 * mesh.quads.len() < 20_000, "{} elements", mesh.triangles.len());
     }
 }
+
+/// A net along u with one knot more: the same surface [Boehm 1980].
+fn inserted(rows: &[Vec<DVec3>], knots: &[f64], degree: usize, x: f64) -> (Vec<Vec<DVec3>>, Vec<f64>) {
+    let span = knots.iter().rposition(|k| *k <= x).unwrap();
+    let row = |p: &Vec<DVec3>| {
+        let point = |i: usize| {
+            if i + degree <= span {
+                return p[i];
+            }
+            if i > span {
+                return p[i - 1];
+            }
+            let share = (x - knots[i]) / (knots[i + degree] - knots[i]);
+            p[i - 1].lerp(p[i], share)
+        };
+        (0..=p.len()).map(point).collect()
+    };
+    (rows.iter().map(row).collect(), [&knots[..=span], &[x], &knots[span + 1..]].concat())
+}
+
+#[test]
+fn forty_sliver_patches_leave_the_grid_unchanged() {
+    let mut rows: Vec<Vec<DVec3>> =
+        (0..4).map(|j| (0..4).map(|i| p(f64::from(i), f64::from(j), 0.8 * (f64::from(i * i + 2 * j) * 0.9).sin())).collect()).collect();
+    let mut us = [[0.0; 4], [1.0; 4]].concat();
+    let plain = nurbs(&Net { rows: &rows, weights: None }, (3, 3), (None, None), Origin::NONE, &tolerance()).unwrap();
+    for k in 1..40 {
+        (rows, us) = inserted(&rows, &us, 3, 0.3 + 0.0005 * f64::from(k));
+    }
+    let slivers = nurbs(&Net { rows: &rows, weights: None }, (3, 3), (Some(&us), None), Origin::NONE, &tolerance()).unwrap();
+    assert!((0..=50).all(|k| slivers.point(f64::from(k) / 50.0, 0.37).distance(plain.point(f64::from(k) / 50.0, 0.37)) < 1e-12));
+    let mut counts = Vec::new();
+    for chord in [0.1, 0.03, 0.005] {
+        for elements in [Elements::Triangles, Elements::Quads] {
+            let (a, b) = (meshed(&plain, chord, elements), meshed(&slivers, chord, elements));
+            assert_eq!((&a.triangles, &a.quads), (&b.triangles, &b.quads), "{chord}");
+            assert!(a.nodes.iter().zip(&b.nodes).all(|(p, q)| p.distance(*q) < 1e-9), "{chord}");
+            counts.push(a.nodes.len());
+        }
+    }
+    assert!(counts[0] < counts[2] && counts[2] < counts[4], "node counts fall as the limit is relaxed: {counts:?}");
+}
