@@ -19,6 +19,7 @@ pub mod nurbs_edit;
 pub mod offset;
 mod offset_build;
 pub(crate) mod pieces;
+pub mod polynomial;
 mod rebuilt;
 pub mod spline;
 mod spread;

@@ -6,7 +6,7 @@ use crate::base::fault::ValueFault;
 use crate::base::math;
 use crate::base::tolerance::PARALLEL;
 use crate::builtins;
-use crate::geometry::{Curve, Ends, Kind, Spline, build};
+use crate::geometry::{Curve, Ends, Kind, Spline, build, polynomial};
 use crate::lang::cx::Stop;
 use crate::lang::types::{Angle, Direction, Length, Point};
 use crate::lang::value::Value;
@@ -253,6 +253,34 @@ builtins! {
         /// A weight for each point, above 0.
         weights: Option<Vec<f64>>,
     ) -> Chain = |cx, list, weights| Ok(whole(build::bezier(&places(list), weights.as_deref(), cx.origin())?));
+
+    /// Polynomial segment: coordinates are sums of coefficients times powers of t.
+    ///
+    /// The coefficient in place i belongs to t^i; the segment runs from t = `from` to `to` and is kept as a Bézier curve, exactly
+    /// but for rounding. Segments in u and v bound trimmed polynomial patches, `trim(patch, outer: segments, uv: true)`; of
+    /// records: `[for s in part.outer: polynomial_curve(x: s.u, y: s.v, from: s.t[0], to: s.t[1])]`.
+    /// ```loft
+    /// curve half = polynomial_curve(x: [0, 2m], y: [0, 0, 4m], to: 0.5)
+    /// let p = half.end // => (1000mm, 1000mm, 0mm)
+    /// ```
+    fn polynomial_curve(
+        /// Coefficients of x, of ascending powers.
+        x: Vec<Length>,
+        /// Those of y.
+        y: Vec<Length>,
+        /// Those of z.
+        z: Option<Vec<Length>>,
+        /// Where it starts, 0 to 1.
+        from: f64 = "0",
+        /// Where it ends, 0 to 1.
+        to: f64 = "1",
+    ) -> Chain = |cx, x, y, z, from, to| {
+        let z = z.unwrap_or_default();
+        let most = x.len().max(y.len()).max(z.len());
+        let at = |list: &[Length], i: usize| list.get(i).map_or(0.0, |c| c.0);
+        let coefficients: Vec<DVec3> = (0..most).map(|i| DVec3::new(at(&x, i), at(&y, i), at(&z, i))).collect();
+        Ok(whole(polynomial::segment(&coefficients, (from, to), cx.origin())?))
+    };
 
     /// B-spline of its control points.
     ///
