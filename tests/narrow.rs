@@ -46,8 +46,12 @@ const ON_A_CYLINDER: &str = "surface tube = extrude(circle(center: (0, 0, 0), ra
 curve eye = project(circle(center: (40, 0, 7.3), radius: 7, normal: (1, 0, 0)), onto: tube, along: (1, 0, 0))
 surface face = trim(tube, holes: [eye])";
 
+const ALMOST: &str = "curve rim = polyline([(0, 0), (100, 0), (100, 60), (0, 60)], closed: true)
+curve eye = polyline([(26.6, 0.006), (33.4, 6.8), (23.2, 13.7)], closed: true)
+surface face = trim(plane(rim), holes: [eye])";
+
 /// Script, settings, least angle (degrees), most elements.
-const CASES: [(&str, &str, f64, usize); 10] = [
+const CASES: [(&str, &str, f64, usize); 12] = [
     (CRESCENT, "size: 1mm", 20.0, 1000),
     (CRESCENT, "size: 4mm", 20.0, 150),
     (CRESCENT, "size: 1mm  elements: quads", 45.0, 500),
@@ -58,6 +62,8 @@ const CASES: [(&str, &str, f64, usize); 10] = [
     (RING, "size: 20mm  elements: mixed", 20.0, 500),
     (NEAR_SIDE, "size: 5mm", 20.0, 800),
     (NEAR_SIDE, "size: 5mm  method: quadtree", 20.0, 1200),
+    (ALMOST, "size: 60mm", 20.0, 500),
+    (ALMOST, "size: 5mm  method: quadtree", 20.0, 3000),
     (ON_A_CYLINDER, "size: 4mm  chord_error: 0.1mm", 18.0, 2000),
 ];
 

@@ -40,6 +40,13 @@ const ACROSS_QUADS: f64 = 1.0;
 /// The least step that facing borders ask for, over the size, where no `min_size` is written: a long gap is not filled with
 /// steps as short as it is wide.
 const LEAST: f64 = 1.0 / 16.0;
+/// Steps that face each other over less than that, up to which they are a narrow place of its own and no gap along a border:
+/// there steps get as short as it is narrow, for lengths grow from it at once.
+const FEW: usize = 24;
+/// How much shorter such steps get at a time: what is long shows as more of them.
+const DEEPER: f64 = 0.3;
+/// The shortest of them, in tolerances.
+const SHORTEST: f64 = 16.0;
 /// Steps that are longer than allowed by less stay.
 const SLACK: f64 = 1.15;
 /// What is halved becomes a little shorter than half.
@@ -164,6 +171,8 @@ impl Gaze<'_> {
         let p = &self.outline.p;
         let kept = inside(all, self.outline);
         let floor = floor(self.made, self.face);
+        let point = SHORTEST * self.made.input.tolerance.point;
+        let deepest = if self.made.input.plan.min_size.is_some() { floor } else { point.min(floor) };
         let across = if self.face.elements == Elements::Triangles { ACROSS } else { ACROSS_QUADS };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
@@ -176,7 +185,7 @@ impl Gaze<'_> {
                 let (over, edge) = (c[k], [c[(k + 1) % 3], c[(k + 2) % 3]]);
                 let [a, b] = edge.map(|n| p[n as usize]);
                 let gap = distance_to_segment(p[over as usize], a, b);
-                if gap > 0.0 && self.outline.length(edge) > SLACK * (across * gap).max(floor) {
+                if gap > 0.0 && self.outline.length(edge) > SLACK * (across * gap).max(deepest) {
                     close.push((over, edge, gap));
                 }
             }
@@ -190,7 +199,7 @@ impl Gaze<'_> {
             let (a, b) = (root(&mut joined, a as usize), root(&mut joined, b as usize));
             joined[a.max(b)] = a.min(b);
         }
-        let mut found = Vec::new();
+        let mut narrow = Vec::new();
         for (over, [a, b], gap) in close {
             let (q, ends) = (p[over as usize], [p[a as usize], p[b as usize]]);
             let along = ends[1] - ends[0];
@@ -200,7 +209,15 @@ impl Gaze<'_> {
             if same && corners.iter().any(|c| c.p != q && gap >= c.opens * (q.distance(c.p) + foot.distance(c.p))) {
                 continue;
             }
-            let size = (across * gap).max(floor);
+            narrow.push((over, [a, b], t, gap));
+        }
+        let mut found = Vec::new();
+        // Each step is seen from both sides of the gap.
+        let deep = narrow.iter().filter(|n| across * n.3 < floor).count() <= 2 * FEW;
+        for (over, [a, b], t, gap) in narrow {
+            let length = self.outline.length([a, b]);
+            let least = if deep { deepest.max(floor.min(DEEPER * length)) } else { floor };
+            let size = (across * gap).max(least);
             let mut ask = |edge: [u32; 2], t: f64| {
                 if self.outline.length(edge) > SLACK * size
                     && let Some(bit) = self.bit(edge)

@@ -69,9 +69,16 @@ impl Pace {
             let peak = 0.5 * (a + b + slope * (g - f)).min(2.0 * most);
             let ways = [(f + (peak - a) / slope, peak), (g - (peak - b) / slope, peak)];
             for (at, length) in ways.into_iter().chain([(g, b)]) {
-                if at > made.at[made.at.len() - 1] && at <= g {
-                    made.at.push(at);
-                    made.lengths.push(length);
+                let (before, from) = (made.at[made.at.len() - 1], made.lengths[made.lengths.len() - 1]);
+                if at > before && at <= g {
+                    // Shares are added up from place to place: near enough to each other for lengths that grow.
+                    let parts = (math::log(length / from).abs() / math::log(ALIKE)).ceil().clamp(1.0, MOST_PARTS) as usize;
+                    for k in 1..=parts {
+                        let now = if k == parts { length } else { from * math::exp(math::log(length / from) * k as f64 / parts as f64) };
+                        let share = if k == parts { 1.0 } else { (now - from) / (length - from) };
+                        made.at.push(before + (at - before) * share);
+                        made.lengths.push(now);
+                    }
                 }
             }
         }
@@ -370,6 +377,8 @@ impl Walker<'_> {
     }
 }
 
+/// Places put between two of a pace at most.
+const MOST_PARTS: f64 = 256.0;
 /// Ratio of lengths that count as one.
 const ALIKE: f64 = 1.15;
 
