@@ -120,7 +120,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
         let field: &dyn Field = if graded { &by_place } else { &even };
         let task = Task { ground: &ground, field, outline: &outline, lattice: Lattice::Crystal, care: CARE, most: 100_000, broken: None };
         match triangulate(&task, &Job::new()).unwrap() {
-            Ok(web) => sound(&web, &outline, None),
+            Ok(made) => sound(&made.web, &outline, None),
             Err(_) => Ok(()),
         }
     });
@@ -152,7 +152,7 @@ fn holes_of_any_size_are_kept() {
             most: 100_000,
             broken: None,
         };
-        let web = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?;
+        let web = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?.web;
         sound(&web, &outline, Some(holes.len()))
     });
 }
@@ -175,7 +175,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
     let care = Care { smooth: 30, wanted: 0.92, longest: 1.4 };
     let task =
         Task { ground: &ground, field: &Even(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, broken: None };
-    let web = triangulate(&task, &Job::new()).unwrap().unwrap();
+    let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;
     sound(&web, &outline, Some(20)).unwrap();
     let all: Vec<f64> = (0..web.tri.len() as u32).map(|t| web.quality(t)).collect();
     let (mean, worst) = (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(1.0, f64::min));

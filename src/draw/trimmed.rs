@@ -76,7 +76,8 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let care = Care { smooth: 0, wanted: 0.0, longest: f64::INFINITY };
     let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, broken: None };
     match triangulate(&task, &Job::new()) {
-        Ok(Ok(web)) => {
+        Ok(Ok(made)) => {
+            let web = made.web;
             let uv = web.xy.iter().map(|xy| chart.uv(*xy)).collect();
             (web.p, uv, web.tri)
         }

@@ -4,11 +4,12 @@
 //! linear interpolation of (u, v). What is off along the normal there is nearly the distance (the error falls with the
 //! square of the size); of each row the triangles that seem farthest are followed to their feet.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::chart::{Chart, Grid, Shape};
 use super::faces::Frame;
 use super::foot;
+use super::free::loads::from_pole;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
@@ -16,9 +17,11 @@ use crate::surface::{Domain, Surface};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
-/// Share of what the farthest triangle of a row seems to be off from which on others are followed too.
+/// Share of what a triangle seems to be off that it is at least, where it does not only seem so.
 const WORTH: f64 = 0.5;
-/// Triangles of a row that are followed at most.
+/// Triangles that one thread measures at a time.
+const BATCH: usize = 1024;
+/// Triangles of a row that are followed at most, but for those that only seem far.
 const FOLLOWED: usize = 64;
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
@@ -34,6 +37,7 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
             });
             rows.into_iter().fold(0.0, f64::max)
         }
+        (shape, frame) if surface.is_flat() => from_plane(surface, &ids(shape, frame), nodes, tolerance),
         (shape, frame) => {
             let uv = match shape {
                 Shape::Lattice(lattice) => lattice_points(lattice),
@@ -42,17 +46,35 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
                 Shape::Grid(_) => Vec::new(),
             };
             let ids = ids(shape, frame);
-            let mut farthest = Vec::new();
-            each_cell(shape, |corners| {
-                let halves: &[[usize; 3]] = if corners.len() == 4 { &[[0, 1, 2], [0, 2, 3]] } else { &[[0, 1, 2]] };
-                for half in halves {
-                    let c = half.map(|k| corners[k]);
-                    farthest.push(of_triangle(surface, c.map(|n| uv[n]), c.map(|n| nodes[ids[n] as usize])));
+            let mut halves: Vec<[usize; 3]> = Vec::new();
+            each_cell(shape, |c| {
+                halves.push([c[0], c[1], c[2]]);
+                if let [a, _, b, d] = *c {
+                    halves.push([a, b, d]);
                 }
             });
+            let quick = surface.quick();
+            let point = |(u, v)| quick.as_ref().map_or_else(|| surface.point(u, v), |quick| quick.point(u, v));
+            let of_half = |k: usize| {
+                let at = beside_pole(surface, halves[k].map(|n| uv[n]));
+                of_triangle(&point, at, halves[k].map(|n| nodes[ids[n] as usize]))
+            };
+            let batches = par::map(halves.len().div_ceil(BATCH), |batch| {
+                (batch * BATCH..halves.len().min((batch + 1) * BATCH)).map(of_half).collect::<Vec<_>>()
+            });
+            let farthest = batches.into_iter().flatten().collect();
             follow(surface, farthest, tolerance)
         }
     }
+}
+
+/// Elements on a plane are as far from it as their farthest node.
+fn from_plane(surface: &Surface, ids: &[u32], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
+    const ANYWHERE: (f64, f64) = (0.5, 0.5);
+    let jet = surface.jet(ANYWHERE.0, ANYWHERE.1);
+    let normal = jet.du.cross(jet.dv).normalize_or_zero();
+    let farthest = ids.iter().map(|n| (nodes[*n as usize] - jet.p).dot(normal).abs()).fold(0.0, f64::max);
+    if farthest > tolerance.rounding { farthest } else { 0.0 }
 }
 
 /// Cells of a lattice, of blocks or of a free face by places in their lists of (u, v).
@@ -135,7 +157,10 @@ impl GridRow<'_> {
                 let cell = Cell { places, points, half: *half };
                 farthest.push(match &fine {
                     Some(fine) if degenerate.is_none() => cell.farthest(fine, i, nu),
-                    _ => of_triangle(self.surface, half.map(|k| places[k]), half.map(|k| points[k])),
+                    _ => {
+                        let at = beside_pole(self.surface, half.map(|k| places[k]));
+                        of_triangle(&|(u, v)| self.surface.point(u, v), at, half.map(|k| points[k]))
+                    }
                 });
             }
         }
@@ -216,15 +241,24 @@ fn weights() -> impl Iterator<Item = (usize, usize, usize)> {
     (0..=SIX).flat_map(|b| (0..=SIX - b).map(move |c| (SIX - b - c, b, c))).filter(|(a, b, c)| *a != SIX && *b != SIX && *c != SIX)
 }
 
+/// Places of a triangle's corners, with one at a pole between the others.
+fn beside_pole(surface: &Surface, at: [(f64, f64); 3]) -> [(f64, f64); 3] {
+    let tangents = |at: DVec2| {
+        let jet = surface.jet(at.x, at.y);
+        [jet.p, jet.du, jet.dv]
+    };
+    from_pole(&tangents, at.map(DVec2::from)).map(Into::into)
+}
+
 /// The farthest of the 25 points of a triangle.
-fn of_triangle(surface: &Surface, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Seen {
+fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Seen {
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or_zero();
     let mut seen = Seen { seems: -1.0, p: points[0], uv: uv[0] };
     for (a, b, c) in weights() {
         let w = [a, b, c].map(|n| n as f64 / SIX as f64);
         let at = (uv[0].0 * w[0] + uv[1].0 * w[1] + uv[2].0 * w[2], uv[0].1 * w[0] + uv[1].1 * w[1] + uv[2].1 * w[2]);
         let p = points[0] * w[0] + points[1] * w[1] + points[2] * w[2];
-        let seems = off(p, surface.point(at.0, at.1), normal);
+        let seems = off(p, point(at), normal);
         if seems > seen.seems {
             seen = Seen { seems, p, uv: at };
         }
@@ -236,8 +270,6 @@ fn of_triangle(surface: &Surface, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Se
 fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
     farthest.retain(|s| s.seems > tolerance.rounding);
     farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
-    let least = farthest.first().map_or(0.0, |s| s.seems * WORTH);
-    let worth = farthest.iter().enumerate().take_while(|(k, s)| *k < FOLLOWED && s.seems >= least);
     // A trimmed face may run over the seam of the surface below.
     let whole = |closed: bool| {
         let over = closed && surface.domain() == Domain::Loop;
@@ -245,5 +277,15 @@ fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> 
     };
     let (u, v) = surface.closed();
     let (u, v) = (whole(u), whole(v));
-    worth.fold(0.0, |best, (_, s)| f64::max(best, foot::nearest(surface, s.p, s.uv, u, v).0))
+    let (mut most, mut followed) = (0.0, 0);
+    for seen in farthest {
+        if seen.seems < most || followed == FOLLOWED {
+            break;
+        }
+        let distance = foot::nearest(surface, seen.p, seen.uv, u, v).0;
+        // What only seems far, as beside a pole, is passed by.
+        followed += usize::from(distance >= WORTH * seen.seems);
+        most = f64::max(most, distance);
+    }
+    most
 }

@@ -22,7 +22,7 @@ use crate::surface::Surface;
 use crate::surface::quick::Quick;
 
 /// Borders cannot be divided any more when their triangles are made: a little shorter than inside.
-const ROOM: f64 = 0.96;
+const ROOM: f64 = 0.9;
 /// Distance of places along a stretch over the length wanted there.
 const APART: f64 = 0.5;
 /// Halvings of a stretch.

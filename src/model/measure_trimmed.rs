@@ -49,6 +49,8 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         .collect();
     let (rules, across) = (ALONG.map(gauss_legendre), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
+    let quick = surface.quick();
+    let jet = |u, v| quick.as_ref().map_or_else(|| surface.jet(u, v), |quick| quick.jet(u, v));
     let inner = |base: f64, at: DVec2| -> Sums<N> {
         let mut sum = [0.0; N];
         let (first, last) = (base.min(at.x), base.max(at.x));
@@ -65,7 +67,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         for high in stops {
             for (x, w) in &across {
                 let u = 0.5 * (low + high) + 0.5 * (high - low) * x;
-                let value = f(&surface.jet(u, at.y));
+                let value = f(&jet(u, at.y));
                 for i in 0..N {
                     sum[i] += sign * 0.5 * (high - low) * w * value[i];
                 }

@@ -4,6 +4,8 @@
 //! With |∂³| known over a box, second derivatives in it are those in its middle and a little more: a bound for the price
 //! of one evaluation. `docs/notes/bounds.md` has the formulas.
 
+use std::sync::OnceLock;
+
 use glam::{DVec2, DVec3, DVec4};
 
 use super::Jet2;
@@ -28,8 +30,8 @@ pub struct Quick {
     stops: (Vec<f64>, Vec<f64>),
     /// Coefficients of each span (u fastest): those of s^i t^j with i fastest.
     powers: Vec<DVec4>,
-    /// Over [`BOXES`]² boxes a span.
-    thirds: Vec<Third>,
+    /// Over [`BOXES`]² boxes a span; found when they are asked for.
+    thirds: OnceLock<Vec<Third>>,
     /// Knots at which second derivatives may jump, not first ones.
     rough: (Vec<f64>, Vec<f64>),
     /// Knots at which first derivatives may jump.
@@ -83,15 +85,6 @@ impl Quick {
         let stops = (stops(us), stops(vs));
         let (u_spans, v_spans) = (spans(net, true, &stops.0), spans(net, false, &stops.1));
         let powers = v_spans.iter().flat_map(|v| u_spans.iter().map(move |u| (u, v))).flat_map(|(u, v)| powers(&net.piece(u, v)));
-        let (us, vs) = (divided(&stops.0), divided(&stops.1));
-        let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
-        let mut thirds = Vec::with_capacity(u_boxes.len() * v_boxes.len());
-        for (j, v) in v_boxes.iter().enumerate() {
-            for (i, u) in u_boxes.iter().enumerate() {
-                let jet = net.jet(0.5 * (us[i] + us[i + 1]), 0.5 * (vs[j] + vs[j + 1]), (Lean::After, Lean::After));
-                thirds.push(net.third(u, v, jet.du.cross(jet.dv).normalize_or_zero()));
-            }
-        }
         let repeated = |stops: &[f64], knots: &[f64], wanted: &dyn Fn(usize) -> bool| -> Vec<f64> {
             let often = |x: &f64| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count();
             stops[1..stops.len() - 1].iter().copied().filter(|x| wanted(often(x))).collect()
@@ -105,11 +98,41 @@ impl Quick {
             surface: surface.clone(),
             degree: net.degree,
             powers: powers.collect(),
-            thirds,
+            thirds: OnceLock::new(),
             rough: both(&|often, degree| often + 1 == degree),
             corners: both(&|often, degree| often >= degree),
             stops,
         }
+    }
+
+    fn thirds(&self) -> &[Third] {
+        self.thirds.get_or_init(|| match &self.surface.parts().shape {
+            Shape::Nurbs(net) => {
+                let (us, vs) = (divided(&self.stops.0), divided(&self.stops.1));
+                let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
+                let row = |j: usize| -> Vec<Third> {
+                    let middle = |x: &[f64], k: usize| 0.5 * (x[k] + x[k + 1]);
+                    let jet = |i: usize| self.own_jet(middle(&us, i), middle(&vs, j));
+                    let normal = |i: usize| jet(i).du.cross(jet(i).dv).normalize_or_zero();
+                    (0..u_boxes.len()).map(|i| net.third(&u_boxes[i], &v_boxes[j], normal(i))).collect()
+                };
+                (0..v_boxes.len()).flat_map(row).collect()
+            }
+            _ => Vec::new(),
+        })
+    }
+
+    /// The point alone.
+    pub fn point(&self, u: f64, v: f64) -> DVec3 {
+        let (u, v) = self.surface.wrapped(u, v);
+        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let ((i, s, _), (j, t, _)) = (place(&self.stops.0, u), place(&self.stops.1, v));
+        let mut sum = DVec4::ZERO;
+        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+            let value = row.iter().rev().fold(DVec4::ZERO, |value, c| value * s + *c);
+            sum = sum * t + value;
+        }
+        sum.truncate() * (1.0 / sum.w)
     }
 
     /// Point, ∂/∂u and ∂/∂v.
@@ -208,7 +231,7 @@ impl Quick {
         let n = (self.stops.0.len() - 1) * BOXES;
         let mut most = [0.0_f64; 4];
         for j in j0..=j1 {
-            for third in &self.thirds[j * n + i0..=j * n + i1] {
+            for third in &self.thirds()[j * n + i0..=j * n + i1] {
                 let (up, aside) = (along.dot(third.normal).abs(), along.cross(third.normal).length());
                 for (k, m) in most.iter_mut().enumerate() {
                     *m = m.max((up * third.upright[k] + aside * third.whole[k]).min(third.whole[k]));

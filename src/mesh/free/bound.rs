@@ -31,53 +31,7 @@ fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), n
     Some(Bends { mid: along.map(|r| 0.5 * (r.low + r.high)), slack: along.map(|r| 0.5 * (r.high - r.low)) })
 }
 
-/// How often a box is quartered when the bound over the whole of it does not do.
-const QUARTERS: u32 = 3;
-
-/// The same by those quarters of the box that meet a triangle: nearer to what is there, for up to four times the work.
-fn quartered(surface: &Surface, quick: &Quick, (low, high): (DVec2, DVec2), (tri, normal): (&Apart, DVec3), left: u32) -> Option<Bends> {
-    if left == 0 {
-        return bent_over(surface, Some(quick), (low, high), normal);
-    }
-    let middle = 0.5 * (low + high);
-    let (right, top) = (DVec2::new(middle.x, low.y), DVec2::new(low.x, middle.y));
-    let quarters = [(low, middle), (right, DVec2::new(high.x, middle.y)), (top, DVec2::new(middle.x, high.y)), (middle, high)];
-    let mut whole: Option<Bends> = None;
-    for quarter in quarters.into_iter().filter(|quarter| !tri.from(*quarter)) {
-        let own = quartered(surface, quick, quarter, (tri, normal), left - 1)?;
-        whole = Some(whole.map_or(own, |w| w.union(&own)));
-    }
-    whole
-}
-
-/// A triangle in (u, v), a little widened, by the lines along its sides.
-struct Apart {
-    /// Outward normal and the most of it in the triangle.
-    sides: [(DVec2, f64); 3],
-}
-
-impl Apart {
-    /// Of a triangle that is widened by a share of its box.
-    fn new(uv: [DVec2; 3], width: DVec2) -> Self {
-        let side = |k: usize| {
-            let (a, b, tip) = (uv[(k + 1) % 3], uv[(k + 2) % 3], uv[k]);
-            let out = (b - a).perp();
-            let out = if out.dot(tip - a) > 0.0 { -out } else { out };
-            (out, out.dot(a).max(out.dot(b)) + (out.abs() * width).element_sum() * WIDER)
-        };
-        Self { sides: [side(0), side(1), side(2)] }
-    }
-
-    /// Whether a box lies beyond one of the lines.
-    fn from(&self, (low, high): (DVec2, DVec2)) -> bool {
-        self.sides.iter().any(|(out, most)| {
-            let nearest = DVec2::new(if out.x > 0.0 { low.x } else { high.x }, if out.y > 0.0 { low.y } else { high.y });
-            out.dot(nearest) > *most
-        })
-    }
-}
-
-/// The same over any box: where the surface closes, parameters go on over the seam.
+/// Bounds over any box: where the surface closes, parameters go on over the seam.
 fn bent_over(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
     let closed = turning(surface);
     if surface.is_flat() || low.cmpge(DVec2::ZERO).all() && high.cmple(DVec2::ONE).all() {
@@ -110,43 +64,15 @@ fn turns(low: f64, high: f64, closed: bool) -> [Option<(f64, f64)>; 2] {
     if high <= 1.0 { [Some((low, high)), None] } else { [Some((low, 1.0)), Some((0.0, high - 1.0))] }
 }
 
-/// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
-/// has no bounded second derivative. `quick` is the surface made ready, where it can be; a bound above `wanted` is then
-/// found more closely.
-pub fn chord(surface: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
-    chord_to(QUARTERS, surface, (uv, p), wanted)
-}
-
-/// The same with so many quarterings at most.
-fn chord_to(depth: u32, (surface, quick): (&Surface, Option<&Quick>), (uv, p): ([DVec2; 3], [DVec3; 3]), wanted: f64) -> f64 {
-    let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
-    if normal == DVec3::ZERO {
-        return 0.0;
-    }
-    let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
-    let width = high - low;
-    let whole = beside_kinks(surface, (low, high), (low - width * WIDER, high + width * WIDER));
-    let Some(bends) = bent_over(surface, quick, whole, normal) else { return f64::INFINITY };
-    let first = over_sides(&bends, uv, width);
-    let Some(quick) = quick.filter(|_| first > wanted && first < FAR * wanted) else { return first };
-    let mut best = first;
-    let tri = Apart::new(uv, width);
-    for depth in 1..=depth {
-        let found = quartered(surface, quick, whole, (&tri, normal), depth).map_or(first, |bends| over_sides(&bends, uv, width));
-        best = best.min(found);
-        if best <= wanted {
-            break;
-        }
-    }
-    best
-}
-
 /// How often a triangle is quartered when the bound over the whole of it does not do.
 const PARTS: u32 = 3;
 
-/// The same, with what does not do found by parts: over a part the surface is as far from the triangle's plane as at one of the
+/// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
+/// has no bounded second derivative. `quick` is the surface made ready, where it can be.
+///
+/// A bound above `wanted` is found by parts: over a part the surface is as far from the triangle's plane as at one of the
 /// part's corners, where that is known, and the bend of the part. Nearly what there is, for some tens of times the work.
-pub fn chord_by_parts(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+pub fn chord(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
         return 0.0;
@@ -193,8 +119,6 @@ fn part((surface, quick): (&Surface, Option<&Quick>), uv: [DVec2; 3], normal: DV
 
 /// A bound farther off than this is not looked at by parts.
 const TOO_FAR: f64 = 8.0;
-/// A bound farther off than this is not looked at more closely.
-const FAR: f64 = 4.0;
 
 /// The bound of a triangle by second derivatives over its box, `width` wide.
 pub fn over_sides(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> f64 {
@@ -258,7 +182,7 @@ fn surely_tall(
             }
             let c = if held { kept } else { c };
             let uv = [hold(a), hold(b), c].map(|corner| on_side(surface, (at, c), corner));
-            let load = chord_to(1, (surface, quick), (uv, uv.map(point)), limit) / limit;
+            let load = chord((surface, quick), uv, uv.map(point), limit) / limit;
             if load <= 1.0 {
                 break;
             }

@@ -6,16 +6,13 @@ use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
 use super::grow::{Cell, STRAIGHT, Soil, TALL, grow};
-use super::improve::{Care, Gardener};
+use super::improve::{Broken, Care, Gardener};
 use super::outline::Outline;
 use super::quadtree::{self, Plot};
 use super::web::Web;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::{NO_TRIANGLE, PointsFault, Triangles, points};
-
-/// Triangles of a web that break a limit.
-pub type Broken<'a> = dyn Fn(&Web) -> Vec<u32> + 'a;
 
 /// Where inner nodes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +56,16 @@ pub enum Trouble {
     Deep(DVec3),
 }
 
+/// The triangles of a face.
+pub struct Triangulated {
+    /// They and their nodes.
+    pub web: Web,
+    /// Whether none of them breaks a limit, as far as is known.
+    pub keeps: bool,
+}
+
 /// Triangulates a face; the outer result is an interruption.
-pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>> {
+pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangulated, Trouble>> {
     let web = match plant(task, job)? {
         Ok(web) => web,
         Err(trouble) => return Ok(Err(trouble)),
@@ -69,15 +74,18 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Web, Tr
     gardener.settle();
     job.go_on()?;
     // Where lengths were wrong, the rest of the work waits for better ones.
-    if task.broken.is_none_or(|broken| gardener.nearly_keeps(broken)) {
-        gardener.improve(job)?;
+    let mut bad = task.broken.map_or(Vec::new(), |broken| gardener.broken(broken, &[]));
+    if gardener.are_few(&bad) {
+        if bad.len() * FEW_BAD <= gardener.web.tri.len() {
+            gardener.improve(job)?;
+        }
         if let Some(broken) = task.broken {
-            gardener.divide(broken, job)?;
+            bad = gardener.divide(broken, bad, job)?;
         }
     }
     let mut web = gardener.web;
     web.compact();
-    Ok(Ok(web))
+    Ok(Ok(Triangulated { web, keeps: bad.is_empty() }))
 }
 
 /// The Delaunay triangles of a face in its chart, over its border and the nodes of its lattice; nothing is improved yet.
@@ -125,6 +133,9 @@ pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>
     drop(grown);
     Ok(Ok(Web::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
 }
+
+/// Where more than one triangle in so many breaks a limit, dividing them mends most of the face as well.
+const FEW_BAD: usize = 100;
 
 /// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
 fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {

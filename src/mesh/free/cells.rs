@@ -83,7 +83,7 @@ impl Cells {
     pub fn any(&self, p: DVec3, reach: f64, size: f64, mut visit: impl FnMut(&Entry, f64) -> bool) -> bool {
         let middle = self.level(size);
         let square = reach * reach;
-        for level in (middle - 2).max(-LEVELS / 2)..=(middle + 2).min(LEVELS / 2 - 1) {
+        for level in (middle - 1).max(-LEVELS / 2)..=(middle + 1).min(LEVELS / 2 - 1) {
             if self.used >> (level + LEVELS / 2) & 1 == 0 {
                 continue;
             }

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::bound;
-use super::build::{Broken, Lattice, Task, Trouble, triangulate};
+use super::build::{Lattice, Task, Trouble, triangulate};
 use super::ground::{Even, Field, Ground};
-use super::improve::Care;
+use super::improve::{Broken, Care};
 use super::lay::{Ask, Failure, lay};
 use super::loads::{self, Loads};
 use super::outline::Outline;
@@ -298,7 +298,7 @@ impl Fit<'_> {
     /// Fewer triangles for the same limits.
     fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
-        let bound = |web: &Web, c: [u32; 3]| loads::load_by_parts(self.sheet, web, c, limits).worst();
+        let bound = |web: &Web, c: [u32; 3]| loads::load_of_long(self.sheet, web, c, limits).worst();
         let twins = self.outline.twins();
         let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b) && !web.joined_elsewhere(&twins, a, b);
         let point = |xy: DVec2| self.sheet.spot(xy).p;
@@ -331,13 +331,13 @@ impl Fit<'_> {
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
     fn even(&self, field: &mut Blend, job: &Job) -> Fitted {
-        let broken = |web: &Web| self.longest.broken(web);
+        let broken = |web: &Web, some: &[u32]| self.longest.broken(web, some);
         for _ in 0..ROUNDS {
             let same = Even(field.spacing * self.face.size.0);
             let field_now: &dyn Field = if field.sources.is_empty() { &same } else { &*field };
             match triangulate(&self.task(field_now, &broken), job)? {
-                Ok(web) if !broken(&web).is_empty() => field.spacing *= LESS,
-                other => return Ok(other),
+                Ok(made) if !made.keeps => field.spacing *= LESS,
+                other => return Ok(other.map(|made| made.web)),
             }
         }
         let plan = self.made.input.plan;
@@ -352,18 +352,20 @@ impl Fit<'_> {
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
         let loads = RefCell::new(Loads::default());
         for _ in 0..ROUNDS {
-            let broken = |web: &Web| {
+            let broken = |web: &Web, some: &[u32]| {
                 let mut loads = loads.borrow_mut();
-                loads.update(self.sheet, web, &self.limits);
-                let mut found = self.longest.broken(web);
-                let over = |t: &u32| web.alive(*t) && loads.of(*t).worst() > 1.0 && longest_side(web, *t) > floor;
-                found.extend((0..web.tri.len() as u32).filter(over));
+                loads.update(self.sheet, web, some, &self.limits);
+                let mut found = self.longest.broken(web, some);
+                let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(web, *t) > floor;
+                found.extend(some.iter().copied().filter(over));
                 found.sort_unstable();
                 found.dedup();
                 found
             };
             let web = match triangulate(&self.task(&*field, &broken), job)? {
-                Ok(web) => web,
+                // Below a floor limits may be broken all the same; that is told.
+                Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.web)),
+                Ok(made) => made.web,
                 Err(trouble) => return Ok(Err(trouble)),
             };
             worst = self.lower(field, &web, &mut loads.borrow_mut())?;
@@ -385,9 +387,10 @@ impl Fit<'_> {
 
     /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
     fn lower(&self, field: &mut Blend, web: &Web, loads: &mut Loads) -> Result<(f64, DVec3, &'static str)> {
-        loads.update(self.sheet, web, &self.limits);
+        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
+        loads.update(self.sheet, web, &all, &self.limits);
         let mut stretched = vec![false; web.tri.len()];
-        self.longest.broken(web).into_iter().for_each(|t| stretched[t as usize] = true);
+        self.longest.broken(web, &all).into_iter().for_each(|t| stretched[t as usize] = true);
         let least = self.made.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
         for (t, stretched) in stretched.into_iter().enumerate() {
@@ -490,23 +493,25 @@ impl<'a> Longest<'a> {
         web.p[a as usize].distance(web.p[b as usize]) <= self.most_at(web, a).max(self.most_at(web, b))
     }
 
-    /// Triangles with a side inside the face that is too long; those between two border nodes are what they are.
-    fn broken(&self, web: &Web) -> Vec<u32> {
-        // `allows` for all, each node asked once.
-        let most: Vec<f64> = par::map(web.p.len(), |n| self.most_at(web, n as u32));
+    /// Those of some triangles with a side inside the face that is too long; those between two border nodes are what they are.
+    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
+        // Where most are looked at, each node is asked once.
+        let all = if 2 * some.len() > web.tri.len() { web.p.len() } else { 0 };
+        let known: Vec<f64> = par::map(all, |n| self.most_at(web, n as u32));
+        let most = |n: usize| known.get(n).copied().unwrap_or_else(|| self.most_at(web, n as u32));
         let too_long = |t: &u32| {
             let c = web.tri[*t as usize].map(|n| n as usize);
             (0..3).filter(|k| web.locked[*t as usize] >> k & 1 == 0).any(|k| {
                 let [a, b] = [c[(k + 1) % 3], c[(k + 2) % 3]];
-                a.max(b) >= web.fixed as usize && web.p[a].distance(web.p[b]) > most[a].max(most[b])
+                a.max(b) >= web.fixed as usize && web.p[a].distance(web.p[b]) > most(a).max(most(b))
             })
         };
-        (0..web.tri.len() as u32).filter(too_long).collect()
+        some.iter().copied().filter(too_long).collect()
     }
 }
 
 /// First lengths over those that bends ask for: triangles are not all equilateral.
-pub const FILLED: f64 = 0.9;
+pub const FILLED: f64 = 0.85;
 /// What is made smaller is made a little more so.
 const LESS: f64 = 0.96;
 /// Times a face is made anew for its limits.

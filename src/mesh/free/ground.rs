@@ -31,6 +31,10 @@ impl Spot {
 pub trait Ground: Sync {
     /// Point and derivatives.
     fn spot(&self, xy: DVec2) -> Spot;
+    /// The point alone.
+    fn point(&self, xy: DVec2) -> DVec3 {
+        self.spot(xy).p
+    }
     /// The nearest place where the surface is defined.
     fn clamp(&self, xy: DVec2) -> DVec2;
 }
@@ -83,5 +87,14 @@ pub fn foot_spot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, Spo
     (xy, spot)
 }
 
+/// The same by a guess that a mean of places in the chart gave, for a step so long: near a pole it is no foot.
+pub fn foot_near(ground: &dyn Ground, guess: DVec2, wanted: DVec3, step: f64) -> (DVec2, Spot) {
+    let spot = ground.spot(guess);
+    let off = spot.step(wanted - spot.p).map_or(0.0, |d| (spot.dx * d.x + spot.dy * d.y).length_squared());
+    if off > AMISS * AMISS * step * step { foot_spot(ground, guess, wanted) } else { (guess, spot) }
+}
+
+/// Share of a step by which a guess of its end may be amiss.
+const AMISS: f64 = 0.1;
 /// Share of a step that may be missing at its end.
 const FOOT: f64 = 0.02;

@@ -5,7 +5,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Field, Ground, foot};
+use super::ground::{Field, Ground, foot_near};
+use super::pending::Pending;
 use super::shape::{Rim, Star, quality};
 use super::web::{Patch, Ring, Web};
 use crate::base::fault::Result;
@@ -43,6 +44,9 @@ const MANY: usize = 12;
 /// Rounds of work on bad triangles.
 const ROUNDS: usize = 6;
 
+/// Those of some triangles of a web that break a limit; all others are as they were when it was asked last.
+pub type Broken<'a> = dyn Fn(&Web, &[u32]) -> Vec<u32> + 'a;
+
 /// A web being improved.
 pub struct Gardener<'a> {
     /// The triangles.
@@ -57,12 +61,13 @@ pub struct Gardener<'a> {
     rim: Rim,
     patch: Patch,
     /// Nodes that may have to move.
-    active: Vec<bool>,
+    active: Pending,
     /// Nodes that moved since the last flips.
-    moved: Vec<bool>,
-    /// The round of mending before which each node changed last: what is as it was when nothing helped is left alone.
-    changed: Vec<u32>,
-    round: u32,
+    moved: Pending,
+    /// Nodes that changed since the last mending: what is as it was when nothing helped is left alone.
+    changed: Pending,
+    /// Nodes that changed since limits were looked at.
+    unseen: Pending,
     /// What lengths at each node are squeezed by.
     squeezed: Vec<f64>,
 }
@@ -70,9 +75,7 @@ pub struct Gardener<'a> {
 impl<'a> Gardener<'a> {
     /// Takes a web.
     pub fn new(web: Web, ground: &'a dyn Ground, field: &'a dyn Field, care: Care) -> Self {
-        let active = vec![true; web.p.len()];
-        let moved = vec![true; web.p.len()];
-        let changed = vec![1; web.p.len()];
+        let all = Pending::all(web.p.len());
         let squeezed = vec![1.0; web.p.len()];
         Self {
             web,
@@ -82,10 +85,10 @@ impl<'a> Gardener<'a> {
             ring: Ring::default(),
             rim: Rim::default(),
             patch: Patch::default(),
-            active,
-            moved,
-            changed,
-            round: 0,
+            active: all.clone(),
+            moved: all.clone(),
+            changed: all.clone(),
+            unseen: all,
             squeezed,
         }
     }
@@ -97,13 +100,39 @@ impl<'a> Gardener<'a> {
             self.smooth(self.care.smooth);
             self.flip_all();
             // What still moves a little is left; what is mended wakes its neighbours.
-            self.active.fill(false);
+            self.active.clear();
         }
     }
 
+    /// Triangles that break a limit, given those that did when it was looked at last.
+    pub fn broken(&mut self, broken: &Broken, before: &[u32]) -> Vec<u32> {
+        let nodes = self.unseen.take();
+        let mut some = self.triangles_at(&nodes);
+        some.extend(before.iter().filter(|t| self.web.alive(**t)));
+        some.sort_unstable();
+        some.dedup();
+        broken(&self.web, &some)
+    }
+
     /// Whether so few triangles break a limit that dividing them will do.
-    pub fn nearly_keeps(&self, broken: &dyn Fn(&Web) -> Vec<u32>) -> bool {
-        broken(&self.web).len() * MANY <= self.web.tri.len()
+    pub fn are_few(&self, broken: &[u32]) -> bool {
+        broken.len() * MANY <= self.web.tri.len()
+    }
+
+    /// Triangles at some nodes, ascending.
+    fn triangles_at(&mut self, nodes: &[u32]) -> Vec<u32> {
+        let n = self.web.tri.len() as u32;
+        if 2 * nodes.len() > self.web.p.len() {
+            return (0..n).filter(|t| self.web.alive(*t)).collect();
+        }
+        let mut found = Vec::with_capacity(6 * nodes.len());
+        for node in nodes {
+            self.web.ring(*node, &mut self.ring);
+            found.extend_from_slice(&self.ring.tri);
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
     }
 
     /// Works on bad triangles, after [`Gardener::settle`].
@@ -123,15 +152,15 @@ impl<'a> Gardener<'a> {
         Ok(())
     }
 
-    /// Puts nodes into triangles that break a limit until none does, or too many do.
-    pub fn divide(&mut self, broken: &dyn Fn(&Web) -> Vec<u32>, job: &Job) -> Result<()> {
+    /// Puts nodes into triangles that break a limit until none does, or too many do; what is left of `bad`.
+    pub fn divide(&mut self, broken: &Broken, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
         for round in 0..DIVISIONS {
-            let bad = broken(&self.web);
-            if bad.is_empty() || bad.len() * MANY > self.web.tri.len() {
-                return Ok(());
+            bad = self.broken(broken, &bad);
+            if bad.is_empty() || !self.are_few(&bad) {
+                break;
             }
             let mut divided = false;
-            for t in bad {
+            for &t in &bad {
                 if !self.web.alive(t) {
                     continue;
                 }
@@ -141,13 +170,13 @@ impl<'a> Gardener<'a> {
                 divided |= self.split(t);
             }
             if !divided {
-                return Ok(());
+                break;
             }
             self.flip_all();
             self.mend();
             job.go_on()?;
         }
-        Ok(())
+        Ok(bad)
     }
 
     /// Lengths wanted at the corners of a triangle are a little shorter from now on.
@@ -201,18 +230,15 @@ impl<'a> Gardener<'a> {
 
     /// The nodes of a patch made anew may have to move.
     fn wake_patch(&mut self, patch: &Patch) {
-        self.active.resize(self.web.p.len(), true);
-        self.moved.resize(self.web.p.len(), true);
-        self.changed.resize(self.web.p.len(), self.round + 1);
         self.squeezed.resize(self.web.p.len(), 1.0);
         patch.rim.iter().chain(&patch.inner).for_each(|n| self.touch(*n));
     }
 
     /// Flips every free side whose opposite angles in space exceed a half turn together.
     pub fn flip_all(&mut self) {
-        let touched = |t: &u32| self.web.tri[*t as usize].iter().any(|n| self.moved[*n as usize]);
-        let mut open: Vec<u32> = (0..self.web.tri.len() as u32).rev().filter(touched).collect();
-        self.moved.fill(false);
+        let moved = self.moved.take();
+        let mut open = self.triangles_at(&moved);
+        open.reverse();
         let mut left = 4 * self.web.tri.len() + 64;
         while let Some(t) = open.pop() {
             if !self.web.alive(t) {
@@ -236,8 +262,9 @@ impl<'a> Gardener<'a> {
     /// The nodes of a triangle may have to move.
     fn wake(&mut self, t: u32) {
         for n in self.web.tri[t as usize] {
-            self.active[n as usize] = true;
-            self.changed[n as usize] = self.round + 1;
+            self.active.add(n);
+            self.changed.add(n);
+            self.unseen.add(n);
         }
     }
 
@@ -273,21 +300,18 @@ impl<'a> Gardener<'a> {
         cot(a, b, d) + cot(c, b, d) < -PARALLEL && self.convex(quad)
     }
 
-    /// Moves free nodes towards the area-weighted mean of their triangles' centroids, rounds without end until all are still.
+    /// Moves free nodes that wait towards the area-weighted mean of their triangles' centroids, and in the next round their
+    /// neighbours too.
     pub fn smooth(&mut self, rounds: usize) {
-        let n = self.web.p.len();
         for _ in 0..rounds {
             let mut moved = false;
-            for node in self.web.fixed..n as u32 {
-                if !std::mem::take(&mut self.active[node as usize]) || self.web.at[node as usize] == NO_TRIANGLE {
+            for node in self.active.take() {
+                if !self.web.is_free(node) || self.web.at[node as usize] == NO_TRIANGLE {
                     continue;
                 }
                 if self.relax(node) {
                     moved = true;
-                    self.active[node as usize] = true;
-                    for k in 0..self.ring.node.len() {
-                        self.active[self.ring.node[k] as usize] = true;
-                    }
+                    self.ring.node.iter().for_each(|n| self.active.add(*n));
                 }
             }
             if !moved {
@@ -299,10 +323,7 @@ impl<'a> Gardener<'a> {
     fn fill_rim(&mut self, node: u32) {
         let web = &self.web;
         web.ring(node, &mut self.ring);
-        self.rim.p.clear();
-        self.rim.xy.clear();
-        self.rim.p.extend(self.ring.node.iter().map(|n| web.p[*n as usize]));
-        self.rim.xy.extend(self.ring.node.iter().map(|n| web.xy[*n as usize]));
+        self.rim.fill(self.ring.node.iter().map(|n| (web.p[*n as usize], web.xy[*n as usize])));
         self.rim.longest = web.size[node as usize] * self.care.longest;
     }
 
@@ -314,26 +335,32 @@ impl<'a> Gardener<'a> {
         if before > FINE {
             return false;
         }
-        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        let n = self.rim.p.len();
+        let xy = self.web.xy[node as usize];
+        let (mut sum, mut place, mut weights) = (DVec3::ZERO, DVec2::ZERO, 0.0);
+        let (points, places) = (self.rim.points(), self.rim.places());
+        let n = points.len();
         for i in 0..n {
             let j = if i + 1 < n { i + 1 } else { 0 };
-            let (a, b) = (self.rim.p[i], self.rim.p[j]);
+            let (a, b) = (points[i], points[j]);
             let area = (a - here).cross(b - here).length();
             let size = (self.web.size[self.ring.node[i] as usize] + self.web.size[self.ring.node[j] as usize]) * 0.5;
             let weight = area / (size * size * size * size);
             sum += (here + a + b) * weight;
+            place += (xy + places[i] + places[j]) * weight;
             weights += weight;
         }
         let size = self.web.size[node as usize];
         let wish = sum / (3.0 * weights) - here;
+        // The same mean in the chart is nearly the foot of the one in space.
+        let way = place / (3.0 * weights) - xy;
         let mut share = 1.0;
         for _ in 0..3 {
             let step = wish * share;
             if step.length() < STILL * size {
                 return false;
             }
-            let (xy, p) = foot(self.ground, self.web.xy[node as usize], here + step);
+            let (xy, spot) = foot_near(self.ground, self.ground.clamp(xy + way * share), here + step, step.length());
+            let p = spot.p;
             if self.rim.worst(xy, p) >= before.min(FINE) {
                 self.place(node, xy, p);
                 return true;
@@ -352,8 +379,10 @@ impl<'a> Gardener<'a> {
 
     /// A node or its triangles changed.
     fn touch(&mut self, node: u32) {
-        let n = node as usize;
-        (self.moved[n], self.active[n], self.changed[n]) = (true, true, self.round + 1);
+        self.active.add(node);
+        self.moved.add(node);
+        self.changed.add(node);
+        self.unseen.add(node);
     }
 
     /// What a triangle is worth: its quality less what its longest side takes.
@@ -374,14 +403,9 @@ impl<'a> Gardener<'a> {
 
     /// Works on triangles below the wanted quality, the worst first; how many changes were made.
     pub fn mend(&mut self) -> usize {
-        let last = self.round;
-        self.round += 1;
-        let fresh = |t: &u32| self.web.tri[*t as usize].iter().any(|n| self.changed[*n as usize] > last);
-        let mut bad: Vec<(f64, u32)> = (0..self.web.tri.len() as u32)
-            .filter(|t| self.web.alive(*t) && fresh(t))
-            .map(|t| (self.worth(t), t))
-            .filter(|(q, _)| *q < self.care.wanted)
-            .collect();
+        let changed = self.changed.take();
+        let mut bad: Vec<(f64, u32)> =
+            self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut changes = 0;
         for (_, t) in bad {
@@ -508,17 +532,15 @@ impl<'a> Gardener<'a> {
 
     /// The best that can be made of a patch.
     fn plan(&mut self, patch: &Patch, keep: Keep, least: f64) -> Option<(f64, Plan)> {
-        self.rim.p.clear();
-        self.rim.xy.clear();
-        self.rim.p.extend(patch.rim.iter().map(|n| self.web.p[*n as usize]));
-        self.rim.xy.extend(patch.rim.iter().map(|n| self.web.xy[*n as usize]));
+        self.rim.fill(patch.rim.iter().map(|n| (self.web.p[*n as usize], self.web.xy[*n as usize])));
         if let Keep::None = keep {
             return self.best_fan(patch);
         }
         let (xy, p) = self.rim.middle();
-        let (xy, p) = foot(self.ground, self.ground.clamp(xy), p);
+        let xy = self.ground.clamp(xy);
         self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.care.longest;
         // A rim that is far too large or too small for one node is not searched for its best place.
+        let p = self.ground.point(xy);
         if self.rim.worst(xy, p) < least {
             return None;
         }
@@ -530,19 +552,20 @@ impl<'a> Gardener<'a> {
     /// The fan of the rim's node that gives the best worst triangle.
     fn best_fan(&self, patch: &Patch) -> Option<(f64, Plan)> {
         let n = patch.rim.len();
+        let (p, xy) = (self.rim.points(), self.rim.places());
         let mut best: Option<(f64, usize)> = None;
         for k in 0..n {
             let mut worst = f64::INFINITY;
             for i in 1..n - 1 {
                 let (a, b) = ((k + i) % n, (k + i + 1) % n);
-                if super::outline::area2(self.rim.xy[k], self.rim.xy[a], self.rim.xy[b]) <= 0.0 {
+                if super::outline::area2(xy[k], xy[a], xy[b]) <= 0.0 {
                     worst = -1.0;
                     break;
                 }
-                let far = self.rim.p[k].distance(self.rim.p[a]);
+                let far = p[k].distance(p[a]);
                 let longest = self.web.size[patch.rim[a] as usize] * self.care.longest;
                 let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
-                worst = worst.min(quality(self.rim.p[k], self.rim.p[a], self.rim.p[b]) * share);
+                worst = worst.min(quality(p[k], p[a], p[b]) * share);
             }
             if worst > 0.0 && best.is_none_or(|b| worst > b.0) {
                 best = Some((worst, k));

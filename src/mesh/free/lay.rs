@@ -456,7 +456,7 @@ impl Work<'_> {
             let p: Vec<DVec3> = nodes.iter().map(|n| web.p[*n as usize]).collect();
             if self.fillings.get(&k).is_none_or(|(known, _)| *known != p) {
                 let at: Vec<DVec2> = round.iter().map(|c| corners.all[*c].at).collect();
-                let load = |c: [usize; 3]| loads::load_by_parts(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits).worst();
+                let load = |c: [usize; 3]| loads::load_of_long(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits).worst();
                 let filling = fill(&at, &p, f64::INFINITY, &load);
                 self.fillings.insert(k, (p, filling));
             }
@@ -495,7 +495,7 @@ impl Work<'_> {
             if sure.contains(&sorted(c)) {
                 continue;
             }
-            let load = loads::load_by_parts(self.ask.sheet, web, c, self.ask.limits);
+            let load = loads::load_of_long(self.ask.sheet, web, c, self.ask.limits);
             let long = self.too_long(web, (c, all.given[t]));
             if load.worst() <= 1.0 && !long {
                 continue;

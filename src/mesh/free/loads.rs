@@ -11,8 +11,6 @@ use crate::base::par;
 use crate::base::tolerance::SINGULAR;
 use crate::mesh::edges::Limits;
 use crate::mesh::gaps;
-use crate::surface::Surface;
-use crate::surface::quick::Quick;
 
 /// Triangles that one thread bounds at a time.
 const BATCH: usize = 1024;
@@ -45,11 +43,11 @@ impl Loads {
         self.seen[t as usize].1
     }
 
-    /// Finds those of triangles that are new or have changed.
-    pub fn update(&mut self, sheet: &Sheet, web: &Web, limits: &Limits) {
+    /// Finds those of some triangles that are new or have changed.
+    pub fn update(&mut self, sheet: &Sheet, web: &Web, some: &[u32], limits: &Limits) {
         self.seen.resize(web.tri.len(), ([DVec2::INFINITY; 3], Load::default()));
         let corners = |t: u32| web.tri[t as usize].map(|n| web.xy[n as usize]);
-        let stale: Vec<u32> = (0..web.tri.len() as u32).filter(|t| web.alive(*t) && corners(*t) != self.seen[*t as usize].0).collect();
+        let stale: Vec<u32> = some.iter().copied().filter(|t| corners(*t) != self.seen[*t as usize].0).collect();
         let batches = par::map(stale.len().div_ceil(BATCH), |batch| {
             let some = &stale[batch * BATCH..stale.len().min((batch + 1) * BATCH)];
             some.iter().map(|t| load(sheet, web, web.tri[*t as usize], limits)).collect::<Vec<_>>()
@@ -60,15 +58,10 @@ impl Loads {
     }
 }
 
-/// The bounds of three nodes as a triangle against the limits.
-pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
-    load_by(bound::chord, sheet, (web, corners), limits)
-}
-
-/// The same by parts, nearer to what is there.
-pub fn load_by_parts(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+/// The bounds of three nodes as a triangle that may be long against the limits.
+pub fn load_of_long(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
-    leaning(load_by(bound::chord_by_parts, sheet, (web, corners), limits), lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])))
+    leaning(load(sheet, web, corners, limits), lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])))
 }
 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
@@ -90,28 +83,28 @@ fn leaning(load: Load, lean: f64) -> Load {
     Load { chord: if lean < UPRIGHT && load.chord > 0.0 { f64::INFINITY } else { load.chord / lean.max(UPRIGHT) }, ..load }
 }
 
-/// How a chord error is bounded.
-type Chord = fn((&Surface, Option<&Quick>), [DVec2; 3], [DVec3; 3], f64) -> f64;
-
-fn load_by(chord: Chord, sheet: &Sheet, (web, corners): (&Web, [u32; 3]), limits: &Limits) -> Load {
+/// The bounds of three nodes as a triangle against the limits.
+pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
     let beside = match limits.chord {
         Some(limit) => c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max),
         None => 0.0,
     };
-    of_places(chord, sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n]), beside), limits)
+    of_places(sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n]), beside), limits)
 }
 
 /// The same of three places of the chart with their points, by parts.
 pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
-    leaning(of_places(bound::chord_by_parts, sheet, (xy, p, 0.0), limits), lean(sheet, xy, p))
+    leaning(of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p))
 }
 
 /// Points are up to `beside` off the surface.
-fn of_places(chord: Chord, sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limits: &Limits) -> Load {
+fn of_places(sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limits: &Limits) -> Load {
     let places = xy.map(|xy| DVec2::from(sheet.uv(xy)));
     let surface = (sheet.surface(), sheet.quick());
-    let chord = limits.chord.map_or(0.0, |limit| (chord(surface, from_pole(sheet, places), p, limit - beside) + beside) / limit);
+    let chord = limits.chord.map_or(0.0, |limit| {
+        (bound::chord(surface, from_pole(&|at| sheet.tangents(at.into()), places), p, limit - beside) + beside) / limit
+    });
     let angle = limits.angle.map_or(0.0, |limit| {
         let normals = xy.map(|xy| sheet.spot(xy).normal());
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
@@ -127,14 +120,14 @@ fn off_surface(sheet: &Sheet, web: &Web, n: usize, limit: f64) -> f64 {
 
 /// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two
 /// corners spans the least.
-fn from_pole(sheet: &Sheet, at: [DVec2; 3]) -> [DVec2; 3] {
+pub fn from_pole(tangents: &impl Fn(DVec2) -> [DVec3; 3], at: [DVec2; 3]) -> [DVec2; 3] {
     let mut best = at;
     for k in 0..3 {
         // Poles lie on the border of (u, v).
         if at[k].cmpgt(DVec2::ZERO).all() && at[k].cmplt(DVec2::ONE).all() {
             continue;
         }
-        let [_, du, dv] = sheet.tangents((at[k].x, at[k].y)).map(DVec3::length);
+        let [_, du, dv] = tangents(at[k]).map(DVec3::length);
         let middle = 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]);
         if du <= SINGULAR * dv {
             best[k].x = middle.x;

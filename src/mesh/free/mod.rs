@@ -14,6 +14,7 @@ mod lay;
 pub mod loads;
 pub mod marks;
 pub mod outline;
+mod pending;
 pub mod quads;
 pub mod quadtree;
 pub mod shape;

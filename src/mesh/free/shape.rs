@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Ground, foot};
+use super::ground::Ground;
 use super::grow::TALL;
 use super::outline::area2;
 
@@ -10,19 +10,23 @@ use super::outline::area2;
 pub fn quality(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let (x, y, z) = (bc.length(), ca.length(), ab.length());
-    let area2 = ab.cross(ca).length();
+    let square = ab.cross(ca).length_squared();
     // r = 2 A / (x + y + z), R = x y z / (4 A).
     let below = x * y * z * (x + y + z);
-    if below > 0.0 { 4.0 * area2 * area2 / below } else { 0.0 }
+    if below > 0.0 { 4.0 * square / below } else { 0.0 }
 }
 
 /// A rim of nodes round a place to be found.
 #[derive(Clone, Debug, Default)]
 pub struct Rim {
     /// Points.
-    pub p: Vec<DVec3>,
+    p: Vec<DVec3>,
     /// Places in the chart.
-    pub xy: Vec<DVec2>,
+    xy: Vec<DVec2>,
+    /// Length of the side from each point to the next.
+    sides: Vec<f64>,
+    /// What the triangle over each side was worth when it was looked at last.
+    weighed: Vec<f64>,
     /// Longest wanted edge to the place; longer ones count as worse.
     pub longest: f64,
 }
@@ -48,18 +52,56 @@ const LEAST: f64 = 0.001;
 const GAIN: f64 = 0.0001;
 
 impl Rim {
-    /// Least quality of the star of a place.
-    pub fn worst(&self, xy: DVec2, p: DVec3) -> f64 {
-        let n = self.p.len();
-        let mut worst = f64::INFINITY;
-        for i in 0..n {
-            let j = if i + 1 < n { i + 1 } else { 0 };
-            if area2(xy, self.xy[i], self.xy[j]) <= 0.0 {
-                return -1.0;
+    /// Other nodes round it, with their places in the chart.
+    pub fn fill(&mut self, nodes: impl Iterator<Item = (DVec3, DVec2)>) {
+        self.p.clear();
+        self.xy.clear();
+        self.sides.clear();
+        for (p, xy) in nodes {
+            if let Some(last) = self.p.last() {
+                self.sides.push(last.distance(p));
             }
-            worst = worst.min(self.weigh(quality(p, self.p[i], self.p[j]), p.distance(self.p[i])));
+            self.p.push(p);
+            self.xy.push(xy);
         }
-        worst
+        if let (Some(first), Some(last)) = (self.p.first(), self.p.last()) {
+            self.sides.push(last.distance(*first));
+        }
+        self.weighed.clear();
+        self.weighed.resize(self.p.len(), 0.0);
+    }
+
+    /// Points round it.
+    pub fn points(&self) -> &[DVec3] {
+        &self.p
+    }
+
+    /// Their places in the chart.
+    pub fn places(&self) -> &[DVec2] {
+        &self.xy
+    }
+
+    /// Least quality of the star of a place; −1 where a triangle is turned over in the chart.
+    pub fn worst(&mut self, xy: DVec2, p: DVec3) -> f64 {
+        let n = self.p.len();
+        let (mut worst, mut turned) = (f64::INFINITY, false);
+        let (mut before, mut far) = match self.p.last() {
+            Some(last) => (n - 1, p.distance(*last)),
+            None => return worst,
+        };
+        for i in 0..n {
+            turned |= area2(xy, self.xy[before], self.xy[i]) <= 0.0;
+            let (near, side) = (p.distance(self.p[i]), self.sides[before]);
+            // As `quality`, of known lengths.
+            let square = (self.p[before] - p).cross(self.p[i] - p).length_squared();
+            let below = near * far * side * (near + far + side);
+            let quality = if below > 0.0 { 4.0 * square / below } else { 0.0 };
+            let weighed = self.weigh(quality, far);
+            self.weighed[before] = weighed;
+            worst = worst.min(weighed);
+            (before, far) = (i, near);
+        }
+        if turned { -1.0 } else { worst }
     }
 
     /// A quality with what an edge too long takes from it.
@@ -75,39 +117,48 @@ impl Rim {
 
     /// Climbs from a place to one where the worst triangle is as good as it can be: towards the mean of the tips that the
     /// sides wish for, the worst ones first.
-    pub fn best(&self, ground: &dyn Ground, from: DVec2, p: DVec3) -> Star {
+    pub fn best(&mut self, ground: &dyn Ground, from: DVec2, p: DVec3) -> Star {
         let mut star = Star { p, xy: from, worst: self.worst(from, p) };
-        let n = self.p.len();
+        let mut spot = ground.spot(from);
+        let mut wish = self.wish(p);
         let mut share = 1.0;
         for _ in 0..ROUNDS {
-            let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-            for i in 0..n {
-                let (a, b) = (self.p[i], self.p[(i + 1) % n]);
-                let q = self.weigh(quality(star.p, a, b), star.p.distance(a));
-                // The side's wished tip: over its middle, on the node's side.
-                let side = b - a;
-                let middle = 0.5 * (a + b);
-                let up = (star.p - middle).reject_from(side).normalize_or_zero();
-                let tip = middle + up * (TALL * side.length());
-                let short = (1.0 - q).max(0.0) + LEAST;
-                let weight = short * short * short * short;
-                sum += tip * weight;
-                weights += weight;
-            }
-            let wish = sum / weights - star.p;
             let step = wish * share;
             if step.length() < STILL * self.longest {
                 break;
             }
-            let (xy, p) = foot(ground, star.xy, star.p + step);
-            let worst = self.worst(xy, p);
+            let Some(way) = spot.step(step) else { break };
+            let xy = ground.clamp(star.xy + way);
+            let new = ground.spot(xy);
+            let worst = self.worst(xy, new.p);
             if worst > star.worst + GAIN {
-                star = Star { p, xy, worst };
+                star = Star { p: new.p, xy, worst };
+                (spot, wish) = (new, self.wish(new.p));
                 share = f64::min(1.0, share * 1.5);
             } else {
                 share *= 0.4;
             }
         }
         star
+    }
+
+    /// Where the sides want a place to go that was weighed just now: to the tips of their equilateral triangles, the worst
+    /// sides more than others.
+    fn wish(&self, p: DVec3) -> DVec3 {
+        let n = self.p.len();
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        for i in 0..n {
+            let j = if i + 1 < n { i + 1 } else { 0 };
+            let (a, b, length) = (self.p[i], self.p[j], self.sides[i]);
+            // Over the middle of the side, where the place is.
+            let (side, middle) = (b - a, 0.5 * (a + b));
+            let off = p - middle;
+            let up = (off - side * (off.dot(side) / (length * length))).normalize_or_zero();
+            let short = (1.0 - self.weighed[i]).max(0.0) + LEAST;
+            let weight = short * short * short * short;
+            sum += (middle + up * (TALL * length)) * weight;
+            weights += weight;
+        }
+        sum / weights - p
     }
 }

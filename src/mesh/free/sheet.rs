@@ -98,6 +98,14 @@ impl Ground for Sheet {
         Spot { p, dx, dy: (dv - dx * self.b) / self.c }
     }
 
+    fn point(&self, xy: DVec2) -> DVec3 {
+        let (u, v) = self.uv(xy);
+        match &self.quick {
+            Some(quick) => quick.point(u, v),
+            None => self.surface.point(u, v),
+        }
+    }
+
     fn clamp(&self, xy: DVec2) -> DVec2 {
         let (u, v) = self.uv(xy);
         let inside = |x: f64| (0.0..=1.0).contains(&x);

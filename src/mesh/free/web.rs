@@ -141,7 +141,11 @@ impl Web {
         if start == NO_TRIANGLE {
             return;
         }
-        // Clockwise to the first triangle of an open fan.
+        if self.turn_round(node, start, ring) {
+            ring.closed = true;
+            return;
+        }
+        // An open fan: again from its first triangle.
         let mut first = start;
         loop {
             let k = self.corner(first, node);
@@ -150,13 +154,15 @@ impl Web {
             if before == NO_TRIANGLE {
                 break;
             }
-            if before == start {
-                ring.closed = true;
-                first = start;
-                break;
-            }
             first = before;
         }
+        ring.tri.clear();
+        ring.node.clear();
+        self.turn_round(node, first, ring);
+    }
+
+    /// Counter-clockwise from a triangle on; whether that comes back to it.
+    fn turn_round(&self, node: u32, first: u32, ring: &mut Ring) -> bool {
         let mut t = first;
         loop {
             let k = self.corner(t, node);
@@ -165,10 +171,10 @@ impl Web {
             let next = self.across[t as usize][(k + 1) % 3];
             if next == NO_TRIANGLE {
                 ring.node.push(self.tri[t as usize][(k + 2) % 3]);
-                return;
+                return false;
             }
             if next == first {
-                return;
+                return true;
             }
             t = next;
         }

@@ -384,7 +384,8 @@ impl Maker<'_> {
         }
         let web = nodes(net);
         let mut loads = Loads::default();
-        loads.update(self.fit.sheet, &web, &self.fit.limits);
+        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
+        loads.update(self.fit.sheet, &web, &all, &self.fit.limits);
         let least = self.fit.made.wanted.written;
         for t in 0..web.tri.len() as u32 {
             let load = loads.of(t);

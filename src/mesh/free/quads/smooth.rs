@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::net::{NONE, Net};
 use crate::base::fault::Result;
 use crate::base::job::Job;
-use crate::mesh::free::ground::{Field, Ground, foot_spot};
+use crate::mesh::free::ground::{Field, Ground, foot_near, foot_spot};
 
 /// Moves below this share of the wanted length end the smoothing of a node.
 const STILL: f64 = 0.005;
@@ -145,47 +145,58 @@ impl<'a> Smoother<'a> {
         Ok(())
     }
 
-    /// The area-weighted mean of the centroids round a node; elements where lengths are short weigh more.
-    fn centre(&self, node: usize) -> Option<DVec3> {
-        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        let here = self.net.p[node];
+    /// The area-weighted mean of the centroids round a node, with the same mean in the chart; elements where lengths are short
+    /// weigh more.
+    fn centre(&self, node: usize) -> Option<(DVec3, DVec2)> {
+        let (mut sum, mut place, mut weights) = (DVec3::ZERO, DVec2::ZERO, 0.0);
+        let (here, xy) = (self.net.p[node], self.net.xy[node]);
         for f in self.faces(node) {
             let c = self.net.corners(*f as usize);
             let n = c.len();
             let k = c.iter().position(|c| *c as usize == node)?;
-            let at = |i: usize| self.net.p[c[(k + i) % n] as usize];
+            let at = |i: usize| c[(k + i) % n] as usize;
+            let (p, of) = (&self.net.p, &self.net.xy);
             let size = c.iter().map(|c| self.net.size[*c as usize]).sum::<f64>() / n as f64;
             let share = 1.0 / (size * size * size * size);
             for i in 1..n - 1 {
                 let (a, b) = (at(i), at(i + 1));
-                let weight = (a - here).cross(b - here).length() * share;
-                sum += (here + a + b) * weight;
+                let weight = (p[a] - here).cross(p[b] - here).length() * share;
+                sum += (here + p[a] + p[b]) * weight;
+                place += (xy + of[a] + of[b]) * weight;
                 weights += weight;
             }
         }
-        (weights > 0.0).then(|| sum / (3.0 * weights))
+        (weights > 0.0).then(|| (sum / (3.0 * weights), place / (3.0 * weights)))
     }
 
     /// One step of one node; whether it moved worth mentioning.
     fn relax(&mut self, node: usize) -> bool {
-        let Some(wish) = self.centre(node) else { return false };
+        let Some((wish, to)) = self.centre(node) else { return false };
         let start = self.place(node);
         let step = wish - start.p;
         let still = STILL * self.net.size[node];
         if step.length_squared() < still * still {
             return false;
         }
-        let before = self.worst(node);
+        let mut before = None;
         let mut share = 1.0;
         for _ in 0..3 {
-            let place = self.foot(node, start.p + step * share);
-            self.put(node, place);
-            if self.worst(node) >= before.min(ENOUGH) {
+            // The mean in the chart is nearly the foot of the one in space.
+            let guess = self.ground.clamp(start.xy + (to - start.xy) * share);
+            let (xy, spot) = foot_near(self.ground, guess, start.p + step * share, step.length() * share);
+            self.put(node, Place { xy, p: spot.p, normal: spot.normal() });
+            let after = self.worst(node);
+            if after >= ENOUGH {
+                return true;
+            }
+            let place = self.place(node);
+            self.put(node, start);
+            if after >= *before.get_or_insert_with(|| self.worst(node)) {
+                self.put(node, place);
                 return true;
             }
             share *= 0.4;
         }
-        self.put(node, start);
         false
     }
 
