@@ -1,0 +1,275 @@
+//! Triangles of a face that keep its limits: made for wanted lengths, bounded, and made again with shorter ones where a bound
+//! is broken.
+
+use std::cell::RefCell;
+
+use glam::{DVec2, DVec3};
+
+use super::longest::{LONGEST, Longest, longest_side};
+use super::{Made, SPACING};
+use crate::base::bbox::Box3;
+use crate::base::fault::{MeshFault, Result};
+use crate::base::job::Job;
+use crate::base::limits::MESH_ELEMENTS;
+use crate::mesh::edges::Limits;
+use crate::mesh::explain::{Decider, Tally, Why};
+use crate::mesh::faces::limits_of;
+use crate::mesh::free::bound;
+use crate::mesh::free::build::{Lattice, Task, Trouble, triangulate};
+use crate::mesh::free::ground::{Even, Field};
+use crate::mesh::free::improve::{Broken, Care};
+use crate::mesh::free::loads::Loads;
+use crate::mesh::free::outline::Outline;
+use crate::mesh::free::sheet::Sheet;
+use crate::mesh::free::size::{Background, Blend};
+use crate::mesh::free::web::Web;
+use crate::mesh::layout::Face;
+use crate::mesh::plan::Method;
+use crate::mesh::sources::{Body, Source, Sources};
+use crate::mesh::wanted::floor_keeps;
+use crate::surface::Surface;
+
+/// Quality below which triangles are worked on.
+const WANTED: f64 = 0.92;
+/// The same where lengths vary with the bends: neighbouring triangles cannot all be equilateral there.
+const WANTED_BENT: f64 = 0.85;
+/// The same for halves of squares, which have 0.83.
+pub(super) const WANTED_TREE: f64 = 0.8;
+/// Rounds of smoothing: more move nodes on, but make no triangle better (mean quality differs in the third digit).
+pub(super) const SMOOTH: usize = 8;
+/// The same for corners of cells, which start far from where they end.
+const SMOOTH_TREE: usize = 30;
+/// Most inner nodes of a face.
+pub(super) const MOST: usize = MESH_ELEMENTS as usize / 2;
+/// What stands for the edges of a border among sources.
+const BORDER: u32 = u32::MAX;
+/// First lengths over those that bends ask for: triangles are not all equilateral.
+pub const FILLED: f64 = 0.85;
+/// What is made smaller is made a little more so.
+pub(super) const LESS: f64 = 0.96;
+/// Times a face is made anew for its limits.
+const ROUNDS: usize = 12;
+
+/// A face being fitted: what its triangles are made from and measured by.
+pub(super) struct Fit<'a> {
+    pub(super) made: &'a Made<'a>,
+    pub(super) face: &'a Face,
+    pub(super) surface: &'a Surface,
+    pub(super) sheet: &'a Sheet,
+    pub(super) outline: &'a Outline,
+    pub(super) limits: Limits,
+    pub(super) longest: Longest<'a>,
+    pub(super) care: Care,
+}
+
+/// Triangles, what decided their sizes, and the cells they were made of.
+pub(super) type Shown = (Web, Vec<Decider>, Option<Tally>);
+
+type Fitted = Result<std::result::Result<Web, Trouble>>;
+
+/// Triangles that keep the limits, and what decided their sizes.
+pub(super) fn fitting(
+    made: &Made,
+    face: &Face,
+    sheet: &Sheet,
+    outline: &Outline,
+    job: &Job,
+) -> Result<std::result::Result<Shown, Trouble>> {
+    let surface = &made.input.model.surfaces[face.surface.index()].surface;
+    let limits = limits_of(made.input);
+    let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
+    let tree = face.method == Method::Quadtree;
+    let smooth = if tree { SMOOTH_TREE } else { SMOOTH };
+    let care = Care {
+        smooth: made.input.plan.smooth.map_or(smooth, |n| n.0 as usize),
+        wanted: if tree {
+            WANTED_TREE
+        } else if bent {
+            WANTED_BENT
+        } else {
+            WANTED
+        },
+        longest: LONGEST / SPACING,
+    };
+    let rules = near(made, face, outline);
+    let longest = Longest::new(face.size.0, outline, &rules);
+    let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
+    if face.method.is_sparing() {
+        let mut laid = fit.laid(&rules, job)?;
+        if let (Method::Display, Ok((web, _, tally))) = (face.method, &mut laid) {
+            fit.thin(web, job)?;
+            *tally = None;
+        }
+        return Ok(laid);
+    }
+    let background = bent.then(|| fit.background());
+    // Growth is that of distances of nodes.
+    let slope = rules.slope() / SPACING;
+    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
+    let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
+    Ok(web.map(|web| {
+        let deciders = fit.deciders(&field, &web);
+        (web, deciders, None)
+    }))
+}
+
+/// The sources of a plan that reach a face.
+pub(super) fn near(made: &Made, face: &Face, outline: &Outline) -> Sources {
+    let all = &made.wanted.sources;
+    let hull = made.input.model.surfaces[face.surface.index()].surface.hull().union(Box3::of(outline.p.iter().copied()));
+    let items = all.items().iter().filter(|source| source.reaches(&hull, all.slope(), face.size.0));
+    Sources::new(items.copied().collect(), all.slope())
+}
+
+impl Fit<'_> {
+    /// Distances of nodes by the bends of the surface.
+    fn background(&self) -> Background {
+        let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
+        let size = self.face.size.0 * SPACING;
+        let surface = (self.surface, self.sheet.quick());
+        let wanted = |xy: DVec2| {
+            let jet = self.sheet.jet(xy);
+            let plain = bound::wanted(&jet, self.limits.chord, self.limits.angle).min(size / FILLED);
+            let at = (DVec2::from(self.sheet.uv(xy)), &jet);
+            FILLED * self.limits.chord.map_or(plain, |limit| bound::surely(surface, at, jet.du, (limit, plain)))
+        };
+        let of = |xy: DVec2| wanted(xy).min(size);
+        Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &of)
+    }
+
+    /// Edges of the border that are so short that lengths have to grow from them; nodes are `spacing` times as far apart as
+    /// sides are long.
+    pub(super) fn short_edges(&self, background: Option<&Background>, spacing: f64) -> Vec<Source> {
+        let growth = 1.0 + self.made.input.plan.slope();
+        let source = |edge: [u32; 2]| {
+            let [a, b] = edge.map(|n| n as usize);
+            let size = self.outline.length(edge);
+            let (xy, p) = (0.5 * (self.outline.xy[a] + self.outline.xy[b]), 0.5 * (self.outline.p[a] + self.outline.p[b]));
+            let there = background.map_or(f64::INFINITY, |field| field.size(xy, p)).min(self.face.size.0 * SPACING);
+            let body = Body::Segment(self.outline.p[a], self.outline.p[b]);
+            let from = size.max(self.made.wanted.floor);
+            // Nodes are as far from it as it is long.
+            (size > 0.0 && from * growth < there).then_some(Source { body, radius: 0.0, size: from / spacing, tag: BORDER })
+        };
+        self.outline.edges().filter_map(source).collect()
+    }
+
+    fn task<'t>(&'t self, field: &'t dyn Field, broken: &'t Broken<'t>) -> Task<'t> {
+        let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
+        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, broken: Some(broken) }
+    }
+
+    /// Without limits on bends: nodes nearer to each other until no side is too long.
+    fn even(&self, field: &mut Blend, job: &Job) -> Fitted {
+        let broken = |web: &Web, some: &[u32]| self.longest.broken(web, some);
+        for _ in 0..ROUNDS {
+            let same = Even(field.spacing * self.face.size.0);
+            let field_now: &dyn Field = if field.sources.is_empty() { &same } else { &*field };
+            match triangulate(&self.task(field_now, &broken), job)? {
+                Ok(made) if !made.keeps => field.spacing *= LESS,
+                other => return Ok(other.map(|made| made.web)),
+            }
+        }
+        let plan = self.made.input.plan;
+        let (says, at) = (plan.size.map_or(plan.origin, |s| s.1), self.outline.p[0]);
+        let reached = self.longest.inside;
+        Err(MeshFault::NotReached { limit: "size", says, surface: self.surface.origin(), reached, at }.into())
+    }
+
+    /// Lengths by the bends at first, smaller where a triangle's bound says so.
+    fn bent(&self, field: &mut Blend, job: &Job) -> Fitted {
+        let floor = self.made.wanted.written;
+        let mut worst = (0.0, DVec3::ZERO, "chord_error");
+        let loads = RefCell::new(Loads::default());
+        for _ in 0..ROUNDS {
+            let broken = |web: &Web, some: &[u32]| {
+                let mut loads = loads.borrow_mut();
+                loads.update(self.sheet, web, some, &self.limits);
+                let mut found = self.longest.broken(web, some);
+                let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(web, *t) > floor;
+                found.extend(some.iter().copied().filter(over));
+                found.sort_unstable();
+                found.dedup();
+                found
+            };
+            let web = match triangulate(&self.task(&*field, &broken), job)? {
+                // Below a floor limits may be broken all the same; that is told.
+                Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.web)),
+                Ok(made) => made.web,
+                Err(trouble) => return Ok(Err(trouble)),
+            };
+            worst = self.lower(field, &web, &mut loads.borrow_mut())?;
+            if worst.0 == 0.0 {
+                return Ok(Ok(web));
+            }
+            if let Some(background) = &mut field.background {
+                background.level();
+            }
+            job.go_on()?;
+        }
+        let (limit, at) = (worst.2, worst.1);
+        let plan = self.made.input.plan;
+        let says = if limit == "chord_error" { plan.chord_error } else { plan.angle_error };
+        let reached = worst.0 * says.map_or(0.0, |s| s.0);
+        let says = says.map_or(plan.origin, |s| s.1);
+        Err(MeshFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
+    }
+
+    /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
+    fn lower(&self, field: &mut Blend, web: &Web, loads: &mut Loads) -> Result<(f64, DVec3, &'static str)> {
+        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
+        loads.update(self.sheet, web, &all, &self.limits);
+        let mut stretched = vec![false; web.tri.len()];
+        self.longest.broken(web, &all).into_iter().for_each(|t| stretched[t as usize] = true);
+        let least = self.made.wanted.written;
+        let mut worst = (0.0, DVec3::ZERO, "chord_error");
+        for (t, stretched) in stretched.into_iter().enumerate() {
+            let load = loads.of(t as u32);
+            let over = load.worst().max(if stretched { 1.0 / LESS } else { 0.0 });
+            if over <= 1.0 {
+                continue;
+            }
+            let c = web.tri[t].map(|n| n as usize);
+            let middle = (web.p[c[0]] + web.p[c[1]] + web.p[c[2]]) / 3.0;
+            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle };
+            if load.worst() > 1.0 && longest_side(web, t as u32) <= least {
+                return Err(floor_keeps(self.made.input, least / factor, middle));
+            }
+            if over > worst.0 {
+                worst = (over, middle, if load.chord >= load.angle { "chord_error" } else { "angle_error" });
+            }
+            let smaller = (LESS / factor).max(0.5);
+            if let Some(background) = &mut field.background {
+                c.iter().for_each(|n| background.lower(web.xy[*n], web.size[*n] * smaller));
+            }
+        }
+        Ok(worst)
+    }
+
+    /// What decided the sizes, with the number of inner nodes and one of them.
+    pub(super) fn deciders(&self, field: &Blend, web: &Web) -> Vec<Decider> {
+        let mut found: Vec<Decider> = Vec::new();
+        let (most, least) = field.range;
+        for n in 0..web.p.len() {
+            let (xy, p) = (web.xy[n], web.p[n]);
+            let source = field.sources.who(p, most);
+            let by_sources = source.map_or(most, |s| s.size) * field.spacing;
+            let why = match source {
+                _ if by_sources.min(field.by_bends(xy, p)) < least * field.spacing => Why::Floor,
+                _ if field.by_bends(xy, p) < by_sources => Why::Bends,
+                Some(source) if field.sources.items()[source.item as usize].tag == BORDER => Why::Border,
+                Some(source) => Why::Refined(field.sources.items()[source.item as usize].tag as usize),
+                None => Why::Size,
+            };
+            let inner = usize::from(n >= web.fixed as usize);
+            match found.iter_mut().find(|d| d.why == why) {
+                Some(decider) if decider.nodes == 0 && inner == 1 => (decider.nodes, decider.at) = (1, p),
+                Some(decider) => decider.nodes += inner,
+                None => found.push(Decider { why, nodes: inner, at: p }),
+            }
+        }
+        found.sort_by_key(|d| d.why);
+        found
+    }
+}

@@ -1,0 +1,79 @@
+//! How long sides inside a face may be: by its size, by what is refined, and by what the border itself has longer.
+
+use glam::DVec3;
+
+use crate::base::par;
+use crate::base::tolerance::WHOLE_NUMBER;
+use crate::mesh::free::outline::Outline;
+use crate::mesh::free::web::Web;
+use crate::mesh::sources::Sources;
+
+/// Longest edge inside over the size (language reference, mesh settings).
+pub(super) const LONGEST: f64 = 1.05;
+
+/// How long sides inside a face may be.
+pub(super) struct Longest<'a> {
+    /// Between inner nodes where nothing is refined.
+    pub(super) inside: f64,
+    /// At each border node: where the border itself has longer steps (a written count), what leans on them is as long.
+    at_border: Vec<f64>,
+    /// Places where they have to be shorter.
+    rules: &'a Sources,
+}
+
+impl<'a> Longest<'a> {
+    pub(super) fn new(size: f64, outline: &Outline, rules: &'a Sources) -> Self {
+        let inside = LONGEST * size * (1.0 + WHOLE_NUMBER);
+        let mut longest = Self { inside, at_border: Vec::new(), rules };
+        longest.at_border = outline.p.iter().map(|p| longest.there(*p)).collect();
+        // Where something is refined a border may step out of it: the shorter edge at a node counts.
+        let (start, pick): (f64, fn(f64, f64) -> f64) = if rules.is_empty() { (0.0, f64::max) } else { (f64::INFINITY, f64::min) };
+        let mut steps = vec![start; outline.p.len()];
+        for edge in outline.edges() {
+            let most = LONGEST * outline.length(edge);
+            edge.iter().for_each(|n| steps[*n as usize] = pick(steps[*n as usize], most));
+        }
+        longest.at_border.iter_mut().zip(steps).filter(|(_, step)| step.is_finite()).for_each(|(most, step)| *most = most.max(step));
+        longest
+    }
+
+    fn there(&self, p: DVec3) -> f64 {
+        if self.rules.is_empty() {
+            return self.inside;
+        }
+        let share = LONGEST * (1.0 + WHOLE_NUMBER);
+        share * self.rules.plateau(p, self.inside / share)
+    }
+
+    /// How long sides at a node may be, given the points of all nodes.
+    pub(super) fn at(&self, p: &[DVec3], n: u32) -> f64 {
+        self.at_border.get(n as usize).copied().unwrap_or_else(|| self.there(p[n as usize]))
+    }
+
+    /// Whether a side inside the face between two nodes may be as long as it is.
+    pub(super) fn allows(&self, web: &Web, a: u32, b: u32) -> bool {
+        web.p[a as usize].distance(web.p[b as usize]) <= self.at(&web.p, a).max(self.at(&web.p, b))
+    }
+
+    /// Those of some triangles with a side inside the face that is too long; those between two border nodes are what they are.
+    pub(super) fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
+        // Where most are looked at, each node is asked once.
+        let all = if 2 * some.len() > web.tri.len() { web.p.len() } else { 0 };
+        let known: Vec<f64> = par::map(all, |n| self.at(&web.p, n as u32));
+        let most = |n: usize| known.get(n).copied().unwrap_or_else(|| self.at(&web.p, n as u32));
+        let too_long = |t: &u32| {
+            let c = web.tri[*t as usize].map(|n| n as usize);
+            (0..3).filter(|k| web.locked[*t as usize] >> k & 1 == 0).any(|k| {
+                let [a, b] = [c[(k + 1) % 3], c[(k + 2) % 3]];
+                a.max(b) >= web.fixed as usize && web.p[a].distance(web.p[b]) > most(a).max(most(b))
+            })
+        };
+        some.iter().copied().filter(too_long).collect()
+    }
+}
+
+/// The longest side of a triangle.
+pub(super) fn longest_side(web: &Web, t: u32) -> f64 {
+    let [a, b, c] = web.tri[t as usize].map(|n| web.p[n as usize]);
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}

@@ -1,0 +1,52 @@
+//! A face with as few triangles as its limits allow: laid out between lines of constant u and v, and thinned.
+
+use glam::DVec2;
+
+use super::fit::{Fit, MOST, Shown};
+use crate::base::fault::{MeshFault, Result};
+use crate::base::job::Job;
+use crate::mesh::edges::Limits;
+use crate::mesh::free::build::Trouble;
+use crate::mesh::free::ground::Ground;
+use crate::mesh::free::lay::{Ask, Failure, lay};
+use crate::mesh::free::loads;
+use crate::mesh::free::thin::Thinner;
+use crate::mesh::free::web::Web;
+use crate::mesh::sources::Sources;
+use crate::mesh::wanted::floor_keeps;
+
+impl Fit<'_> {
+    /// Between lines of constant u and v.
+    pub(super) fn laid(&self, rules: &Sources, job: &Job) -> Result<std::result::Result<Shown, Trouble>> {
+        let plan = self.made.input.plan;
+        let floor = self.made.wanted.written;
+        let flat = Limits::default();
+        let limits = if self.surface.is_flat() { &flat } else { &self.limits };
+        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: MOST };
+        match lay(&ask, job)? {
+            Ok(laid) => Ok(Ok((laid.web, laid.deciders, Some(laid.tally)))),
+            Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
+            Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
+            Err(Failure::Missed(load, at)) => {
+                let (limit, says, over) = match (plan.chord_error, plan.angle_error) {
+                    (Some(says), _) if load.chord >= load.angle => ("chord_error", says, load.chord),
+                    (_, Some(says)) => ("angle_error", says, load.angle),
+                    _ => ("size", plan.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
+                };
+                Err(MeshFault::NotReached { limit, says: says.1, surface: self.surface.origin(), reached: over * says.0, at }.into())
+            }
+        }
+    }
+
+    /// Fewer triangles for the same limits.
+    pub(super) fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
+        let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
+        let bound = |web: &Web, c: [u32; 3]| loads::load_of_long(self.sheet, web, c, limits).worst();
+        let twins = self.outline.twins();
+        let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b) && !web.joined_elsewhere(&twins, a, b);
+        let point = |xy: DVec2| self.sheet.spot(xy).p;
+        Thinner { bound: &bound, allowed: &allowed, point: &point }.thin(web, job)?;
+        web.compact();
+        Ok(())
+    }
+}

@@ -1,0 +1,95 @@
+//! Triangles that break a limit divided, and lengths squeezed where that does not do.
+
+use super::mend::{Keep, Plan};
+use super::{Broken, Gardener};
+use crate::base::fault::Result;
+use crate::base::job::Job;
+
+/// Divisions of triangles that break a limit.
+const DIVISIONS: usize = 64;
+/// Divisions before lengths are squeezed where a limit is still broken: what is mended there would break it again and again.
+const PATIENCE: usize = 2;
+/// What lengths are squeezed by.
+const SQUEEZE: f64 = 0.93;
+/// One triangle in so many may be divided; where more break a limit, the lengths were wrong.
+const MANY: usize = 12;
+
+impl Gardener<'_> {
+    /// Triangles that break a limit, given those that did when it was looked at last.
+    pub fn broken(&mut self, broken: &Broken, before: &[u32]) -> Vec<u32> {
+        let nodes = self.unseen.take();
+        let mut some = self.triangles_at(&nodes);
+        some.extend(before.iter().filter(|t| self.web.alive(**t)));
+        some.sort_unstable();
+        some.dedup();
+        broken(&self.web, &some)
+    }
+
+    /// Whether so few triangles break a limit that dividing them will do.
+    pub fn are_few(&self, broken: &[u32]) -> bool {
+        broken.len() * MANY <= self.web.tri.len()
+    }
+
+    /// Puts nodes into triangles that break a limit until none does, or too many do; what is left of `bad`.
+    pub fn divide(&mut self, broken: &Broken, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
+        for round in 0..DIVISIONS {
+            bad = self.broken(broken, &bad);
+            if bad.is_empty() || !self.are_few(&bad) {
+                break;
+            }
+            let mut divided = false;
+            for &t in &bad {
+                if !self.web.alive(t) {
+                    continue;
+                }
+                if round >= PATIENCE {
+                    self.squeeze(t);
+                }
+                divided |= self.split(t);
+            }
+            if !divided {
+                break;
+            }
+            self.flip_all();
+            self.mend();
+            job.go_on()?;
+        }
+        Ok(bad)
+    }
+
+    /// Lengths wanted at the corners of a triangle are a little shorter from now on.
+    fn squeeze(&mut self, t: u32) {
+        for n in self.web.tri[t as usize].map(|n| n as usize) {
+            self.squeezed[n] *= SQUEEZE;
+            self.web.size[n] *= SQUEEZE;
+        }
+    }
+
+    /// A node more in a triangle and its neighbour across the longest free side; whether there is room for one.
+    fn split(&mut self, t: u32) -> bool {
+        let c = self.web.tri[t as usize];
+        let length = |k: usize| self.web.p[c[(k + 1) % 3] as usize].distance(self.web.p[c[(k + 2) % 3] as usize]);
+        let free = |k: &usize| self.web.locked[t as usize] >> k & 1 == 0;
+        let mut sides: Vec<usize> = (0..3).filter(free).collect();
+        sides.sort_by(|a, b| length(*b).total_cmp(&length(*a)).then(a.cmp(b)));
+        for k in sides {
+            let mut patch = std::mem::take(&mut self.patch);
+            let plan = self
+                .web
+                .patch(&[t, self.web.across[t as usize][k]], &mut patch)
+                .and_then(|()| self.plan(&patch, Keep::New, f64::NEG_INFINITY));
+            let made = match plan {
+                Some((worst, Plan::Star(star, node))) if worst > 0.0 => {
+                    self.restar(&patch, node, &star);
+                    true
+                }
+                _ => false,
+            };
+            self.patch = patch;
+            if made {
+                return true;
+            }
+        }
+        false
+    }
+}

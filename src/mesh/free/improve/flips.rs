@@ -1,0 +1,92 @@
+//! Sides flipped for better triangles.
+
+use glam::DVec3;
+
+use super::Gardener;
+use crate::base::tolerance::PARALLEL;
+use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::mesh::free::outline::area2;
+use crate::mesh::free::shape::quality;
+
+/// What a change must gain.
+pub(super) const GAIN: f64 = 0.001;
+
+impl Gardener<'_> {
+    /// Flips every free side whose opposite angles in space exceed a half turn together.
+    pub fn flip_all(&mut self) {
+        let moved = self.moved.take();
+        let mut open = self.triangles_at(&moved);
+        open.reverse();
+        let mut left = 4 * self.web.tri.len() + 64;
+        while let Some(t) = open.pop() {
+            if !self.web.alive(t) {
+                continue;
+            }
+            for k in 0..3 {
+                let other = self.web.across[t as usize][k];
+                if left > 0 && self.wants_flip(t, k) {
+                    left -= 1;
+                    self.web.flip(t, k);
+                    open.push(other);
+                    open.push(t);
+                    self.wake(t);
+                    self.wake(other);
+                    break;
+                }
+            }
+        }
+    }
+
+    fn wants_flip(&self, t: u32, k: usize) -> bool {
+        let Some(quad) = self.quad(t, k) else { return false };
+        let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
+        let cot = |tip: DVec3, x: DVec3, y: DVec3| {
+            let (x, y) = (x - tip, y - tip);
+            x.dot(y) / x.cross(y).length().max(f64::MIN_POSITIVE)
+        };
+        cot(a, b, d) + cot(c, b, d) < -PARALLEL && self.convex(quad)
+    }
+
+    /// Flips a side if the worse of the two triangles gets better.
+    pub(super) fn flip_worse(&mut self, t: u32) -> bool {
+        for k in 0..3 {
+            let Some(quad) = self.quad(t, k) else { continue };
+            if !self.convex(quad) {
+                continue;
+            }
+            let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
+            let before = quality(a, b, d).min(quality(c, d, b));
+            let after = quality(a, b, c).min(quality(a, c, d));
+            if after > before + GAIN {
+                let other = self.web.across[t as usize][k];
+                self.web.flip(t, k);
+                self.wake(t);
+                self.wake(other);
+                return true;
+            }
+        }
+        false
+    }
+
+    pub(super) fn quad(&self, t: u32, k: usize) -> Option<[u32; 4]> {
+        let web = &self.web;
+        if web.locked[t as usize] >> k & 1 == 1 {
+            return None;
+        }
+        let other = web.across[t as usize][k];
+        if other == NO_TRIANGLE {
+            return None;
+        }
+        let c = web.tri[t as usize];
+        let o = web.tri[other as usize];
+        let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
+        let tip = o.iter().copied().find(|n| *n != b && *n != d)?;
+        Some([a, b, tip, d])
+    }
+
+    /// Whether the chart allows the flip.
+    fn convex(&self, [a, b, c, d]: [u32; 4]) -> bool {
+        let xy = |n: u32| self.web.xy[n as usize];
+        area2(xy(a), xy(b), xy(c)) > 0.0 && area2(xy(a), xy(c), xy(d)) > 0.0
+    }
+}

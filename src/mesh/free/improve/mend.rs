@@ -1,0 +1,197 @@
+//! Bad triangles mended, worst first: a corner moved, a side flipped, or a patch made anew with a node more or less.
+
+use super::Gardener;
+use super::flips::GAIN;
+use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::mesh::free::outline::area2;
+use crate::mesh::free::shape::{Star, quality};
+use crate::mesh::free::web::Patch;
+
+/// Share of the quality that is there which a first guess must have to be searched on.
+const HOPE: f64 = 0.6;
+
+impl Gardener<'_> {
+    /// Works on triangles below the wanted quality, the worst first; how many changes were made.
+    pub fn mend(&mut self) -> usize {
+        let changed = self.changed.take();
+        let mut bad: Vec<(f64, u32)> =
+            self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
+        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut changes = 0;
+        for (_, t) in bad {
+            for _ in 0..3 {
+                if !self.web.alive(t) || self.worth(t) >= self.care.wanted || !self.mend_one(t) {
+                    break;
+                }
+                changes += 1;
+            }
+        }
+        changes
+    }
+
+    fn mend_one(&mut self, t: u32) -> bool {
+        self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
+    }
+
+    /// What a triangle is worth: its quality less what its longest side takes.
+    fn worth(&self, t: u32) -> f64 {
+        let c = self.web.tri[t as usize];
+        let [a, b, d] = c.map(|n| self.web.p[n as usize]);
+        let mut worth = quality(a, b, d);
+        for k in 0..3 {
+            let (i, j) = (c[k], c[(k + 1) % 3]);
+            if self.web.is_free(i) || self.web.is_free(j) {
+                let size = if self.web.is_free(i) { self.web.size[i as usize] } else { self.web.size[j as usize] };
+                let length = self.web.p[i as usize].distance(self.web.p[j as usize]);
+                worth = worth.min(quality(a, b, d) * (size * self.care.longest / length).min(1.0));
+            }
+        }
+        worth
+    }
+
+    /// Moves a corner to where its worst triangle is best.
+    fn shift_corners(&mut self, t: u32) -> bool {
+        let mut any = false;
+        for node in self.web.tri[t as usize] {
+            if !self.web.is_free(node) {
+                continue;
+            }
+            self.fill_rim(node);
+            let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
+            let before = self.rim.worst(xy, p);
+            let star = self.rim.best(self.ground, xy, p);
+            if star.worst > before + GAIN {
+                self.place(node, star.xy, star.p);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Tries patches round a triangle with a node more or less; takes the best.
+    fn rebuild(&mut self, t: u32) -> bool {
+        let mut best: Option<(f64, Patch, Plan)> = None;
+        for (tri, keep) in self.candidates(t) {
+            let before = tri.iter().map(|t| self.worth(*t)).fold(f64::INFINITY, f64::min);
+            let mut patch = std::mem::take(&mut self.patch);
+            let fits = self.web.patch(&tri, &mut patch);
+            if fits.is_some()
+                && let Some((after, plan)) = self.plan(&patch, keep, before * HOPE)
+                && after > before + GAIN
+                && best.as_ref().is_none_or(|b| after - before > b.0)
+            {
+                best = Some((after - before, patch.clone(), plan));
+            }
+            self.patch = patch;
+        }
+        let Some((_, patch, plan)) = best else { return false };
+        match plan {
+            Plan::Star(star, node) => self.restar(&patch, node, &star),
+            Plan::Fan(k) => {
+                self.web.refan(&patch, k);
+                self.wake_patch(&patch);
+            }
+        }
+        true
+    }
+
+    /// Sets of triangles round a triangle: two at each side for a new node, stars of corners without it, stars of two
+    /// neighbouring corners as one.
+    fn candidates(&mut self, t: u32) -> Vec<(Vec<u32>, Keep)> {
+        let mut sets = Vec::new();
+        let c = self.web.tri[t as usize];
+        let across = self.web.across[t as usize];
+        for (k, next) in across.into_iter().enumerate() {
+            if self.web.locked[t as usize] >> k & 1 == 0 && next != NO_TRIANGLE {
+                sets.push((vec![t, next], Keep::New));
+            }
+        }
+        let open: Vec<u32> = (0..3).filter(|k| self.web.locked[t as usize] >> k & 1 == 0).map(|k| across[k]).collect();
+        if open.len() >= 2 {
+            sets.push((std::iter::once(t).chain(open).collect(), Keep::New));
+        }
+        for k in 0..3 {
+            if let Some([_, _, tip, _]) = self.quad(t, k)
+                && self.web.is_free(tip)
+            {
+                self.web.ring(tip, &mut self.ring);
+                sets.push((self.ring.tri.iter().copied().chain([t]).collect(), Keep::One(tip)));
+            }
+        }
+        for k in 0..3 {
+            let (a, b) = (c[k], c[(k + 1) % 3]);
+            if self.web.is_free(a) {
+                self.web.ring(a, &mut self.ring);
+                sets.push((self.ring.tri.clone(), Keep::None));
+            }
+            if self.web.is_free(a) && self.web.is_free(b) {
+                self.web.ring(a, &mut self.ring);
+                let mut tri = self.ring.tri.clone();
+                self.web.ring(b, &mut self.ring);
+                tri.extend(self.ring.tri.iter().filter(|t| !tri.contains(t)).copied().collect::<Vec<_>>());
+                sets.push((tri, Keep::One(a.min(b))));
+            }
+        }
+        sets
+    }
+
+    /// The best that can be made of a patch.
+    pub(super) fn plan(&mut self, patch: &Patch, keep: Keep, least: f64) -> Option<(f64, Plan)> {
+        self.rim.fill(patch.rim.iter().map(|n| (self.web.p[*n as usize], self.web.xy[*n as usize])));
+        if let Keep::None = keep {
+            return self.best_fan(patch);
+        }
+        let (xy, p) = self.rim.middle();
+        let xy = self.ground.clamp(xy);
+        self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.care.longest;
+        // A rim that is far too large or too small for one node is not searched for its best place.
+        let p = self.ground.point(xy);
+        if self.rim.worst(xy, p) < least {
+            return None;
+        }
+        let star = self.rim.best(self.ground, xy, p);
+        let node = if let Keep::One(node) = keep { Some(node) } else { None };
+        (star.worst > 0.0).then_some((star.worst, Plan::Star(star, node)))
+    }
+
+    /// The fan of the rim's node that gives the best worst triangle.
+    fn best_fan(&self, patch: &Patch) -> Option<(f64, Plan)> {
+        let n = patch.rim.len();
+        let (p, xy) = (self.rim.points(), self.rim.places());
+        let mut best: Option<(f64, usize)> = None;
+        for k in 0..n {
+            let mut worst = f64::INFINITY;
+            for i in 1..n - 1 {
+                let (a, b) = ((k + i) % n, (k + i + 1) % n);
+                if area2(xy[k], xy[a], xy[b]) <= 0.0 {
+                    worst = -1.0;
+                    break;
+                }
+                let far = p[k].distance(p[a]);
+                let longest = self.web.size[patch.rim[a] as usize] * self.care.longest;
+                let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
+                worst = worst.min(quality(p[k], p[a], p[b]) * share);
+            }
+            if worst > 0.0 && best.is_none_or(|b| worst > b.0) {
+                best = Some((worst, k));
+            }
+        }
+        best.map(|(worst, k)| (worst, Plan::Fan(k)))
+    }
+}
+
+/// Which node a patch keeps.
+#[derive(Clone, Copy)]
+pub(super) enum Keep {
+    /// A new one in its middle.
+    New,
+    /// One of those inside.
+    One(u32),
+    /// None: a fan from its rim.
+    None,
+}
+
+pub(super) enum Plan {
+    Star(Star, Option<u32>),
+    Fan(usize),
+}

@@ -1,0 +1,91 @@
+//! Nodes moved over the surface to the middle of what is round them.
+
+use glam::{DVec2, DVec3};
+
+use super::Gardener;
+use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::mesh::free::ground::foot_near;
+
+/// A move below this share of the wanted length ends the smoothing of a node.
+const STILL: f64 = 0.005;
+/// A node whose triangles are all at least this good is left where it is.
+const FINE: f64 = 0.9999;
+
+impl Gardener<'_> {
+    /// Moves free nodes that wait towards the area-weighted mean of their triangles' centroids, and in the next round their
+    /// neighbours too.
+    pub fn smooth(&mut self, rounds: usize) {
+        for _ in 0..rounds {
+            let mut moved = false;
+            for node in self.active.take() {
+                if !self.web.is_free(node) || self.web.at[node as usize] == NO_TRIANGLE {
+                    continue;
+                }
+                if self.relax(node) {
+                    moved = true;
+                    self.ring.node.iter().for_each(|n| self.active.add(*n));
+                }
+            }
+            if !moved {
+                return;
+            }
+        }
+    }
+
+    /// One step of one node; whether it moved worth mentioning.
+    fn relax(&mut self, node: u32) -> bool {
+        self.fill_rim(node);
+        let here = self.web.p[node as usize];
+        let before = self.rim.worst(self.web.xy[node as usize], here);
+        if before > FINE {
+            return false;
+        }
+        let xy = self.web.xy[node as usize];
+        let (mut sum, mut place, mut weights) = (DVec3::ZERO, DVec2::ZERO, 0.0);
+        let (points, places) = (self.rim.points(), self.rim.places());
+        let n = points.len();
+        for i in 0..n {
+            let j = if i + 1 < n { i + 1 } else { 0 };
+            let (a, b) = (points[i], points[j]);
+            let area = (a - here).cross(b - here).length();
+            let size = (self.web.size[self.ring.node[i] as usize] + self.web.size[self.ring.node[j] as usize]) * 0.5;
+            let weight = area / (size * size * size * size);
+            sum += (here + a + b) * weight;
+            place += (xy + places[i] + places[j]) * weight;
+            weights += weight;
+        }
+        let size = self.web.size[node as usize];
+        let wish = sum / (3.0 * weights) - here;
+        // The same mean in the chart is nearly the foot of the one in space.
+        let way = place / (3.0 * weights) - xy;
+        let mut share = 1.0;
+        for _ in 0..3 {
+            let step = wish * share;
+            if step.length() < STILL * size {
+                return false;
+            }
+            let (xy, spot) = foot_near(self.ground, self.ground.clamp(xy + way * share), here + step, step.length());
+            let p = spot.p;
+            if self.rim.worst(xy, p) >= before.min(FINE) {
+                self.place(node, xy, p);
+                return true;
+            }
+            share *= 0.4;
+        }
+        false
+    }
+
+    pub(super) fn fill_rim(&mut self, node: u32) {
+        let web = &self.web;
+        web.ring(node, &mut self.ring);
+        self.rim.fill(self.ring.node.iter().map(|n| (web.p[*n as usize], web.xy[*n as usize])));
+        self.rim.longest = web.size[node as usize] * self.care.longest;
+    }
+
+    pub(super) fn place(&mut self, node: u32, xy: DVec2, p: DVec3) {
+        self.web.xy[node as usize] = xy;
+        self.web.p[node as usize] = p;
+        self.web.size[node as usize] = self.field.size(xy, p) * self.squeezed[node as usize];
+        self.touch(node);
+    }
+}

@@ -1,0 +1,80 @@
+//! What cells leave: one constrained triangulation between them and the borders, and the cells to cut where it breaks a limit.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::{DVec2, DVec3};
+
+use super::cut::Cut;
+use super::{Failure, Tried, Work};
+use crate::base::triangulate_points::{Triangles, points};
+use crate::mesh::free::build::{Trouble, inside};
+use crate::mesh::free::loads;
+use crate::mesh::free::tree::Class;
+use crate::mesh::free::web::Web;
+
+/// Longest side of a triangle beside a border over the longest side of a cell: its diagonal, and a little.
+const STRETCH: f64 = 1.5;
+
+impl Work<'_> {
+    /// The triangulation of all nodes with the edges of borders and of the triangles that are sure, and which are inside.
+    pub(super) fn triangulated(&self, web: &Web, sure: &[[u32; 3]]) -> Tried<(Triangles, Vec<bool>)> {
+        let outline = self.ask.outline;
+        let mut edges: Vec<[u32; 2]> =
+            sure.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let given: BTreeSet<[u32; 2]> = outline.edges().map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.retain(|e| !given.contains(e));
+        let mut all: Vec<[u32; 2]> = outline.edges().collect();
+        all.extend(edges);
+        let all = points(&web.xy, &all).map_err(|fault| Failure::Trouble(Trouble::Border(fault)))?;
+        let kept = inside(&all, outline);
+        if kept.contains(&true) { Ok((all, kept)) } else { Err(Failure::Trouble(Trouble::Empty)) }
+    }
+
+    /// Cells to cut for triangles beside borders that do not keep the limits.
+    pub(super) fn beside(&mut self, web: &Web, (all, kept): (&Triangles, &[bool]), sure: &BTreeSet<[u32; 3]>) -> Vec<(u32, Cut)> {
+        self.worst = None;
+        let mut bad: BTreeMap<u32, Cut> = BTreeMap::new();
+        for t in (0..kept.len()).filter(|t| kept[*t]) {
+            let c = all.corners[t];
+            if sure.contains(&sorted(c)) {
+                continue;
+            }
+            let load = loads::load_of_long(self.ask.sheet, web, c, self.ask.limits);
+            let long = self.too_long(web, (c, all.given[t]));
+            if load.worst() <= 1.0 && !long {
+                continue;
+            }
+            let uv = c.map(|n| DVec2::from(self.ask.sheet.uv(web.xy[n as usize])));
+            let middle = (uv[0] + uv[1] + uv[2]) / 3.0;
+            if self.worst.is_none_or(|(worst, _)| load.worst() > worst.worst()) {
+                self.worst = Some((load, c.iter().map(|n| web.p[*n as usize]).sum::<DVec3>() / 3.0));
+            }
+            let leaf = self.cells.find(middle, [true; 2]);
+            if self.cells.all()[leaf as usize].class == Class::Exterior {
+                continue;
+            }
+            let bounds = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
+            if let Some(axis) = self.towards(leaf, bounds) {
+                bad.entry(leaf).or_insert((axis, 2));
+            }
+        }
+        bad.into_iter().collect()
+    }
+
+    /// Whether a side of a triangle that is no edge of the border is longer than cells may be.
+    fn too_long(&self, web: &Web, (c, given): ([u32; 3], u8)) -> bool {
+        let p = c.map(|n| web.p[n as usize]);
+        let most = |p: DVec3| self.ask.rules.at(p, self.ask.size);
+        (0..3).filter(|k| given >> k & 1 == 0).any(|k| {
+            let (a, b) = (p[(k + 1) % 3], p[(k + 2) % 3]);
+            a.distance(b) > STRETCH * most(a).max(most(b))
+        })
+    }
+}
+
+pub(super) fn sorted(mut t: [u32; 3]) -> [u32; 3] {
+    t.sort_unstable();
+    t
+}
