@@ -8,17 +8,22 @@
     reason = "a test fails by panicking and checks with the platform's functions"
 )]
 
+#[path = "support/reference.rs"]
+mod reference;
+#[path = "support/script.rs"]
+mod script;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use glam::{DVec2, DVec3};
-use lofting::base::job::Job;
 use lofting::mesh::Mesh;
 use lofting::mesh::chart::Shape;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
-use lofting::session::run::{Outcome, Task, run};
+use lofting::session::run::Outcome;
+use reference::reference;
 use serde_json::Value as Json;
 
 fn root() -> &'static Path {
@@ -41,9 +46,7 @@ fn outcome_with(script: &Path, sets: &[(String, String)]) -> Outcome {
     let text = std::fs::read(script).unwrap();
     let disk = Disk::new(Some(script), Some(&folder("out")), &[], Outputs::Written).unwrap();
     let name = script.file_name().unwrap().to_str().unwrap();
-    let clock = || 0.0;
-    let task = Task { name, text: &text, sets, strict: false, keep_going: false, full: true, picture: None, clock: &clock };
-    let outcome = guarded(|| run(&task, &disk, &Job::default())).unwrap_or_else(|bug| panic!("{bug:?}"));
+    let outcome = guarded(|| script::outcome(name, &text, sets, &disk)).unwrap_or_else(|bug| panic!("{bug:?}"));
     assert!(outcome.report.ok, "{name}:\n{}", outcome.drawn(false, false));
     assert!(!outcome.report.checks.is_empty(), "{name} checks nothing");
     outcome
@@ -123,8 +126,7 @@ fn long_models_of_the_papers_hold() {
 }
 
 fn facts(model: &str) -> Json {
-    let text = std::fs::read(root().join("tests/data/reference/acceptance_models.json")).unwrap();
-    serde_json::from_slice::<Json>(&text).unwrap()[model].clone()
+    reference("acceptance_models")[model].clone()
 }
 
 /// P1 figure 16, with points that were measured once for all faces and with errors of each: no node of an edge belongs to one

@@ -12,25 +12,23 @@
     reason = "a test fails by panicking and checks with the platform's functions"
 )]
 
+#[path = "support/script.rs"]
+mod script;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use lofting::base::fault::Severity;
-use lofting::base::job::Job;
 use lofting::lang::diag::{Diagnostic, Sources};
 use lofting::lang::diag_render::{render, render_all};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
-use lofting::session::run::{Task, run};
 
 /// What a script reports when it is checked; a panic is a report as well, E999.
 fn reports(path: &Path, text: &str) -> (Vec<Diagnostic>, Sources) {
     let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
     let disk = Disk::new(Some(path), None, &[], Outputs::Counted).expect("the folder of the script exists");
-    let clock = || 0.0;
-    let task =
-        Task { name: &name, text: text.as_bytes(), sets: &[], strict: false, keep_going: false, full: true, picture: None, clock: &clock };
-    match guarded(|| run(&task, &disk, &Job::new())) {
+    match guarded(|| script::outcome(&name, text.as_bytes(), &[], &disk)) {
         Ok(outcome) => (outcome.diagnostics, outcome.sources),
         Err(bug) => (vec![Diagnostic::without_place("E999", bug.what)], Sources::default()),
     }

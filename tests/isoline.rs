@@ -1,22 +1,20 @@
 //! Cells between lines of constant u and v: the marks of the paper against its reference, and against the winding.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
+#[path = "support/borders.rs"]
+mod borders;
+#[path = "support/reference.rs"]
+mod reference;
+
 use std::f64::consts::PI;
 
+use borders::closed;
 use glam::DVec2;
 use lofting::mesh::free::isoline::Cells;
 use lofting::mesh::free::marks::{corners, marks};
 use lofting::mesh::free::tree::{Class, Tree};
+use reference::reference;
 use serde_json::Value;
-
-fn reference() -> Value {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference/trim_marking.json");
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
-
-fn closed(points: &[DVec2]) -> Vec<[DVec2; 2]> {
-    (0..points.len()).map(|k| [points[k], points[(k + 1) % points.len()]]).collect()
-}
 
 fn given(value: &Value) -> (Vec<[DVec2; 2]>, (DVec2, DVec2)) {
     let number = |v: &Value| v.as_f64().unwrap();
@@ -34,14 +32,14 @@ fn kept(segments: &[[DVec2; 2]], at: DVec2) -> bool {
 #[test]
 fn marks_at_the_corners_of_a_cell() {
     for name in ["corner_cut", "same_edge_in_and_out"] {
-        let value = &reference()[name];
+        let value = &reference("trim_marking")[name];
         let (segments, cell) = given(value);
         let wanted: Vec<u64> = value["values"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
         assert_eq!(marks(cell, segments.iter().copied()).map(u64::from).to_vec(), wanted, "{name}");
         let truth: Vec<bool> = value["true_kept"].as_array().unwrap().iter().map(|v| v.as_bool().unwrap()).collect();
         assert_eq!(corners(cell).map(|at| kept(&segments, at)).to_vec(), truth, "{name}");
     }
-    let (segments, cell) = given(&reference()["corner_cut"]);
+    let (segments, cell) = given(&reference("trim_marking")["corner_cut"]);
     assert_eq!(marks(cell, segments.into_iter()), [0, 2, 2, 2]);
 }
 
@@ -53,7 +51,7 @@ fn where_marks_fail_the_winding_does_not() {
     };
     let spike = [(0.3, 0.3), (0.9, 0.32), (0.3, 0.34)].map(DVec2::from).to_vec();
     let trials = [("circle", round(DVec2::new(0.52, 0.47), 0.31)), ("small", round(DVec2::new(0.56, 0.44), 0.03)), ("sharp", spike)];
-    let all = reference();
+    let all = reference("trim_marking");
     for (name, points) in &trials {
         let wanted = all["grid_trials"].as_object().unwrap().iter().find(|(n, _)| n.starts_with(name)).unwrap().1;
         let segments = closed(points);

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a test fails by panicking")]
 
-use std::path::Path;
+#[path = "support/reference.rs"]
+mod reference;
+
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -14,12 +16,8 @@ use lofting::mesh::Mesh;
 use lofting::network::Chain;
 use lofting::session::live::{Depth, Live};
 use lofting::surface::{closest, plane, polynomial, trim};
+use reference::reference;
 use serde_json::Value;
-
-fn reference(name: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference").join(name);
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect()
@@ -51,7 +49,7 @@ fn off(mesh: &Mesh, curve: impl Fn(f64) -> DVec3) -> f64 {
 
 #[test]
 fn two_faces_share_the_six_nodes_of_the_reference() {
-    let fact = &reference("meshing.json")["boundary_pretreatment"];
+    let fact = &reference("meshing")["boundary_pretreatment"];
     let (low, high) = (numbers(&fact["characteristic_points"]["face1"]), numbers(&fact["characteristic_points"]["face2"]));
     let mut text = "units m\ncurve spine = line((0, 0, 0), (10, 0, 0))\n".to_owned();
     let mut names = Vec::new();
@@ -81,7 +79,7 @@ fn two_faces_share_the_six_nodes_of_the_reference() {
 
 #[test]
 fn circles_take_the_segments_of_the_reference() {
-    for fact in reference("meshing.json")["chord_error"].as_array().unwrap() {
+    for fact in reference("meshing")["chord_error"].as_array().unwrap() {
         let radius = fact["radius"].as_f64().unwrap();
         if let (Some(error), Some(segments)) = (fact["error"].as_f64(), fact["segments_full_circle"].as_u64()) {
             let text = format!("units mm\ncurve c = circle((0, 0, 0), {radius})\nmesh m of c {{ size: 10m  chord_error: {error}mm }}\n");
@@ -106,7 +104,7 @@ fn circles_take_the_segments_of_the_reference() {
 
 #[test]
 fn what_samples_of_a_curve_miss_is_divided() {
-    let fact = &reference("meshing.json");
+    let fact = &reference("meshing");
     // The foot of the middle of the chord sees less than there is: limits between the two take two steps.
     let (seen, there) = (&fact["mid_chord_projection"]["epsilon"], &fact["mid_chord_projection"]["true_max_distance_to_chord"]);
     let (seen, there) = (seen.as_f64().unwrap(), there.as_f64().unwrap());
@@ -162,7 +160,7 @@ fn feet_of_the_reference_are_the_nearest() {
     let coefficients =
         [vec![DVec3::ZERO, DVec3::Y, DVec3::Z], vec![DVec3::X, DVec3::ZERO, DVec3::ZERO], vec![DVec3::Z, DVec3::ZERO, DVec3::ZERO]];
     let bowl = polynomial(&coefficients, Origin::NONE, &Tolerance::new(1e-6, 1.0)).unwrap();
-    let facts = reference("meshing.json");
+    let facts = reference("meshing");
     let fact = &facts["normal_projection"];
     let found = closest(&bowl, point(&fact["point"]));
     let result = &fact["result"];
@@ -178,7 +176,7 @@ fn feet_of_the_reference_are_the_nearest() {
 
 #[test]
 fn points_in_loops_are_those_of_the_reference() {
-    let (fact, tolerance) = (reference("point_in_loop.json"), Tolerance::new(1e-6, 1.0));
+    let (fact, tolerance) = (reference("point_in_loop"), Tolerance::new(1e-6, 1.0));
     let ring = |points: &[DVec3]| -> Vec<Chain> {
         let side = |k: usize| Chain::of_curve(&line(points[k], points[(k + 1) % points.len()], Origin::NONE).unwrap());
         (0..points.len()).map(side).collect()

@@ -2,29 +2,20 @@
 //! border crosses another one, and few elements more are taken for it.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/script.rs"]
+mod script;
+
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
-use lofting::base::job::Job;
 use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
-use lofting::session::run::{Outcome, Task, run};
+use lofting::session::run::Outcome;
 
 fn outcome(text: &str) -> Outcome {
-    let clock = || 0.0;
-    let task = Task {
-        name: "m.loft",
-        text: text.as_bytes(),
-        sets: &[],
-        strict: false,
-        keep_going: false,
-        full: true,
-        picture: None,
-        clock: &clock,
-    };
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    run(&task, &Disk::new(None, Some(folder), &[], Outputs::Written).unwrap(), &Job::default())
+    script::outcome("m.loft", text.as_bytes(), &[], &Disk::new(None, Some(folder), &[], Outputs::Written).unwrap())
 }
 
 fn mesh(text: &str) -> Arc<Mesh> {

@@ -1,6 +1,9 @@
 //! The curve network and chains against reference numbers, and what must never change them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, its helpers too")]
 
+#[path = "support/reference.rs"]
+mod reference;
+
 use glam::DVec3;
 use lofting::base::fault::Fault;
 use lofting::base::job::Job;
@@ -12,14 +15,10 @@ use lofting::network::{Chain, ChainFlow, Flow, FlowFault, FlowOptions, Input, Ne
 
 #[path = "../benches/shared/nets.rs"]
 mod nets;
+use reference::reference;
 use serde_json::Value;
 
 const O: Origin = Origin::NONE;
-
-fn reference(name: &str) -> Value {
-    let path = format!("{}/tests/data/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)

@@ -4,14 +4,15 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/script.rs"]
+mod script;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lofting::base::job::Job;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::report::Report;
-use lofting::session::run::{Task, run};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 
@@ -24,18 +25,8 @@ fn folder(name: &str) -> PathBuf {
 /// Runs a script in a folder; fails with what it said unless all is well.
 fn sound(folder: &Path, text: &str) -> Result<Report, TestCaseError> {
     let disk = Disk::new(Some(&folder.join("model.loft")), None, &[], Outputs::Written).unwrap();
-    let clock = || 0.0;
-    let task = Task {
-        name: "model.loft",
-        text: text.as_bytes(),
-        sets: &[],
-        strict: false,
-        keep_going: false,
-        full: true,
-        picture: None,
-        clock: &clock,
-    };
-    let outcome = guarded(|| run(&task, &disk, &Job::default())).map_err(|bug| TestCaseError::fail(format!("{bug:?}\n{text}")))?;
+    let run = || script::outcome("model.loft", text.as_bytes(), &[], &disk);
+    let outcome = guarded(run).map_err(|bug| TestCaseError::fail(format!("{bug:?}\n{text}")))?;
     if outcome.report.ok { Ok(outcome.report) } else { Err(TestCaseError::fail(format!("{}\n{text}", outcome.drawn(false, false)))) }
 }
 

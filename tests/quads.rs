@@ -1,17 +1,19 @@
 //! Quads on faces that no map fits: only quads, conforming, none turned over, within their limits; or an error that says where.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/script.rs"]
+mod script;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
 use glam::DVec3;
-use lofting::base::job::Job;
 use lofting::mesh::Mesh;
 use lofting::mesh::quality::of_element;
 use lofting::session::disk::{Disk, Outputs};
-use lofting::session::run::{Outcome, Task, run};
+use lofting::session::run::Outcome;
 
 const PLATE: &str = "units mm
 curve rim = polyline([(0, 0), (20, 0), (20, 10), (0, 10)], closed: true)
@@ -20,19 +22,8 @@ surface plate = trim(plane(rim), holes: hole)
 ";
 
 fn outcome(text: &str) -> Outcome {
-    let clock = || 0.0;
-    let task = Task {
-        name: "m.loft",
-        text: text.as_bytes(),
-        sets: &[],
-        strict: false,
-        keep_going: false,
-        full: true,
-        picture: None,
-        clock: &clock,
-    };
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    run(&task, &Disk::new(None, Some(folder), &[], Outputs::Written).unwrap(), &Job::default())
+    script::outcome("m.loft", text.as_bytes(), &[], &Disk::new(None, Some(folder), &[], Outputs::Written).unwrap())
 }
 
 fn meshes(text: &str) -> Vec<Arc<Mesh>> {

@@ -1,21 +1,19 @@
 //! The quadtree: leaf counts against an exact reference, and what meshes gain by it.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
+#[path = "support/borders.rs"]
+mod borders;
+#[path = "support/reference.rs"]
+mod reference;
+
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use borders::closed;
 use glam::DVec2;
 use lofting::mesh::free::tree::{Cell, Class, DEEPEST, Halt, Tree};
+use reference::reference;
 use serde_json::Value;
-
-fn reference() -> Value {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference/quadtree.json");
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
-
-fn closed(points: &[DVec2]) -> Vec<[DVec2; 2]> {
-    (0..points.len()).map(|k| [points[k], points[(k + 1) % points.len()]]).collect()
-}
 
 /// Leaves by level and class.
 fn counts(tree: &Tree) -> BTreeMap<(String, &'static str), u64> {
@@ -60,7 +58,7 @@ fn check_balance(tree: &Tree) {
 
 #[test]
 fn a_square_with_a_round_hole() {
-    let all = reference();
+    let all = reference("quadtree");
     let point = |p: &Value| DVec2::new(p[0].as_f64().unwrap(), p[1].as_f64().unwrap());
     let outer: Vec<DVec2> = all["square_with_hole"]["outer"].as_array().unwrap().iter().map(point).collect();
     let vertex = |k: usize| {
@@ -86,7 +84,7 @@ fn a_square_with_a_round_hole() {
 
 #[test]
 fn a_quadrilateral_to_given_depths() {
-    let all = reference();
+    let all = reference("quadtree");
     let given = &all["quadrilateral"];
     let point = |p: &Value| DVec2::new(p[0].as_f64().unwrap(), p[1].as_f64().unwrap());
     let segments = closed(&given["polygon"].as_array().unwrap().iter().map(point).collect::<Vec<_>>());

@@ -7,6 +7,9 @@
     reason = "a test fails by panicking and checks with the platform's functions"
 )]
 
+#[path = "support/reference.rs"]
+mod reference;
+
 use glam::DVec3;
 use lofting::base::fault::Fault;
 use lofting::base::origin::Origin;
@@ -20,12 +23,8 @@ use lofting::surface::coons::{Grid, Method, Settings, build};
 use lofting::surface::interpolate::{Tangents, fitted};
 use lofting::surface::revolve::Axis;
 use lofting::surface::{Domain, Lean, Nearest, NurbsSurface, Reparam, Side, Surface, axis_of, extrude, plane, revolve, ruled};
+use reference::reference;
 use serde_json::Value;
-
-fn reference(name: &str) -> Value {
-    let path = format!("{}/tests/data/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
 
 fn vec3(value: &Value) -> DVec3 {
     let number = |v: &Value| v.as_f64().unwrap_or_else(|| v.as_str().unwrap().parse().unwrap());

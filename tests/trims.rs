@@ -4,6 +4,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/script.rs"]
+mod script;
+
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -233,19 +236,8 @@ fn loops_on_closed_surfaces_part_them_or_say_why() {
             script += "check \"closed\": m.watertight\n";
         }
         let disk = Disk::new(None, Some(&folder), &[], Outputs::Written).unwrap();
-        let clock = || 0.0;
-        let task = lofting::session::run::Task {
-            name: "trim.loft",
-            text: script.as_bytes(),
-            sets: &[],
-            strict: false,
-            keep_going: false,
-            full: true,
-            picture: None,
-            clock: &clock,
-        };
-        let outcome = guarded(|| lofting::session::run::run(&task, &disk, &Job::default()))
-            .map_err(|bug| TestCaseError::fail(format!("{bug:?}\n{script}")))?;
+        let run = || script::outcome("trim.loft", script.as_bytes(), &[], &disk);
+        let outcome = guarded(run).map_err(|bug| TestCaseError::fail(format!("{bug:?}\n{script}")))?;
         let told = outcome.drawn(false, false);
         let reason = !told.contains("E901") && !told.contains("E999") && told.contains("trim.loft:");
         prop_assert!(outcome.report.ok || reason, "{}\n{}", told, script);

@@ -1,0 +1,12 @@
+//! A script run to its end, as `loft run` does.
+
+use lofting::base::job::Job;
+use lofting::session::disk::Disk;
+use lofting::session::run::{Outcome, Task, run};
+
+/// All that comes of a script, with params set from outside.
+pub fn outcome(name: &str, text: &[u8], sets: &[(String, String)], disk: &Disk) -> Outcome {
+    let clock = || 0.0;
+    let task = Task { name, text, sets, strict: false, keep_going: false, full: true, picture: None, clock: &clock };
+    run(&task, disk, &Job::default())
+}
