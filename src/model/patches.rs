@@ -59,7 +59,7 @@ impl OnChain {
 /// Turns the links of a ring that begins between two nodes so that the first one holds its start; that one is there once more
 /// as the last. Gives how far they reach out at both ends.
 fn turned(links: &mut Vec<(LinkId, bool)>, chain: &Chain, network: &Network, tolerance: &Tolerance) -> (f64, f64) {
-    let ([run], Some((first, _))) = (chain.runs(), links.first()) else { return (0.0, 0.0) };
+    let [run] = chain.runs() else { return (0.0, 0.0) };
     let length = |link: &(LinkId, bool)| {
         let s = network.links[link.0.index()].s;
         s.1 - s.0
@@ -69,8 +69,8 @@ fn turned(links: &mut Vec<(LinkId, bool)>, chain: &Chain, network: &Network, tol
     if chain.length() < total - tolerance.point {
         return (0.0, 0.0);
     }
-    let s = network.links[first.index()].s;
-    let ahead = if run.is_backward() { run.s0 - s.1 } else { s.0 - run.s0 };
+    let Some(start) = network.start_of_turn(run, tolerance) else { return (0.0, 0.0) };
+    let ahead = if run.is_backward() { run.s0 - start } else { start - run.s0 };
     let ahead = ahead - total * (ahead / total).floor();
     if ahead <= tolerance.point || ahead >= total - tolerance.point {
         return (0.0, 0.0);

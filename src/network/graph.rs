@@ -230,6 +230,13 @@ impl Network {
         Some(links)
     }
 
+    /// The arc length of the node at which the links of a whole turn begin, on the curve itself: a link may be that of another
+    /// curve, with lengths of its own. `None` for a curve that is open or not in the network.
+    pub fn start_of_turn(&self, run: &Run, tolerance: &Tolerance) -> Option<f64> {
+        let net = &self.curves[self.find(&run.curve)?.index()];
+        net.is_closed().then(|| net.stations[net.first_of_turn(run.s0.min(run.s1), tolerance)])
+    }
+
     /// The node within tolerance of a point; the nearest one.
     pub fn node_at(&self, point: DVec3, tolerance: &Tolerance) -> Option<NodeId> {
         let near = |k: &usize| self.nodes[*k].point.distance_squared(point);
@@ -257,19 +264,30 @@ fn concerns(note: &Fault, of: Origin) -> bool {
 }
 
 impl NetCurve {
+    fn is_closed(&self) -> bool {
+        self.nodes.first() == self.nodes.last() && self.stations[self.stations.len() - 1] >= self.curve.length()
+    }
+
+    /// The place among its own of the first link of a whole turn from wherever it begins; begun between nodes it is the ring
+    /// all the same.
+    fn first_of_turn(&self, lo: f64, tolerance: &Tolerance) -> usize {
+        let (reach, length) = (4.0 * tolerance.point, self.curve.length());
+        let at = |s: f64| self.stations.iter().position(|st| (st - s).abs() <= reach);
+        at(lo).or_else(|| at(lo + length)).or_else(|| at(lo - length)).unwrap_or(0)
+    }
+
     /// The links between two ascending arc lengths that are nodes within the tolerance.
     fn links_between(&self, lo: f64, hi: f64, tolerance: &Tolerance) -> Option<Vec<(LinkId, bool)>> {
         let reach = 4.0 * tolerance.point;
         let length = self.curve.length();
-        let closed = self.nodes.first() == self.nodes.last() && self.stations[self.stations.len() - 1] >= length;
+        let closed = self.is_closed();
         let at = |s: f64| self.stations.iter().position(|st| (st - s).abs() <= reach);
         if !closed {
             let (from, to) = (at(lo)?, at(hi)?);
             return Some(self.links[from..to].to_vec());
         }
         if hi - lo >= length - reach {
-            // A whole turn, from wherever it begins; begun between nodes it is the ring all the same.
-            let from = at(lo).or_else(|| at(lo + length)).or_else(|| at(lo - length)).unwrap_or(0);
+            let from = self.first_of_turn(lo, tolerance);
             return Some((0..self.links.len()).map(|k| self.links[(from + k) % self.links.len()]).collect());
         }
         let find = |s: f64| [0.0, length, -length].into_iter().find_map(|turn| at(s + turn)).map(|k| k % self.links.len());
