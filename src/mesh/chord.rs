@@ -8,12 +8,11 @@ use glam::{DVec2, DVec3};
 
 use super::chart::{Chart, Grid, Shape};
 use super::faces::Frame;
-use super::foot;
 use super::free::loads::from_pole;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::surface::{Domain, Surface};
+use crate::surface::{Domain, Surface, foot_within};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
@@ -282,7 +281,7 @@ fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> 
         if seen.seems < most || followed == FOLLOWED {
             break;
         }
-        let distance = foot::nearest(surface, seen.p, seen.uv, u, v).0;
+        let distance = foot_within(surface, seen.p, seen.uv, u, v).0;
         // What only seems far, as beside a pole, is passed by.
         followed += usize::from(distance >= WORTH * seen.seems);
         most = f64::max(most, distance);

@@ -7,13 +7,12 @@ use glam::DVec3;
 
 use super::build::Input;
 use super::edges::Limits;
-use super::foot;
 use super::free::face;
 use super::layout::{Face, Layout};
 use crate::base::fault::{MeshFault, Result};
 use crate::base::par;
 use crate::model::atoms::Use;
-use crate::surface::{Domain, Surface};
+use crate::surface::{Domain, Surface, foot_within};
 
 /// Places along a stretch at which gaps and bends are asked for, less one.
 pub const PLACES: usize = 64;
@@ -48,7 +47,7 @@ pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> 
     }
     let over = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
     let (u, v) = if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) };
-    foot::nearest(surface, p, place, over(u), over(v)).0
+    foot_within(surface, p, place, over(u), over(v)).0
 }
 
 /// A stretch as one side of a face has it.

@@ -14,7 +14,6 @@ pub mod data;
 mod edges;
 pub mod explain;
 pub mod faces;
-mod foot;
 pub mod free;
 mod gaps;
 mod hash;

@@ -9,14 +9,13 @@ use glam::{DVec2, DVec3};
 use super::chart::{Chart, Grid, Shape};
 use super::chord::{each_cell, ids};
 use super::faces::Frame;
-use super::foot;
 use super::free::bound::over_sides;
 use super::trilateral::lattice_points;
 use crate::base::par;
 use crate::base::range::Ranges;
 use crate::base::tolerance::EPSILON;
 use crate::surface::quick::Bends;
-use crate::surface::{Domain, Spread, Surface};
+use crate::surface::{Domain, Spread, Surface, foot_within};
 
 /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).
 const WIDER: f64 = 0.05;
@@ -265,7 +264,7 @@ impl Field<'_> {
     /// middle of the places (beyond a fold): then the point there, for any point of the surface tells a distance at most.
     fn between(&self, (a, at): (&Corner, DVec2), (b, bt): (&Corner, DVec2), uv: &[DVec2; 3]) -> (f64, Corner) {
         let (p, guess) = (0.5 * (a.p + b.p), 0.5 * (at + bt));
-        let (off, at) = foot::nearest(self.surface, p, (guess.x, guess.y), self.u, self.v);
+        let (off, at) = foot_within(self.surface, p, (guess.x, guess.y), self.u, self.v);
         let width = uv[0].max(uv[1]).max(uv[2]) - uv[0].min(uv[1]).min(uv[2]);
         let at = DVec2::from(at);
         let there = self.surface.point(guess.x, guess.y);

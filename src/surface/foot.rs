@@ -1,14 +1,9 @@
-//! The foot of a point near a guess: Gauss–Newton steps, halved until the distance falls.
+//! The foot of a point near a guess: steps in (u, v), halved until the distance falls.
 
 use glam::{DVec2, DVec3};
 
-use super::Jet2;
+use super::{Domain, Jet2, Surface};
 use crate::base::tolerance::EPSILON;
-
-/// Steps before the nearest place found so far is taken.
-const STEPS: usize = 24;
-/// Halvings of a step.
-const HALVINGS: usize = 6;
 
 /// The step in the parameters whose image under two tangents is a vector's tangential part, to first order; `None` where
 /// the tangents run together.
@@ -22,13 +17,22 @@ pub fn step(du: DVec3, dv: DVec3, d: DVec3) -> Option<DVec2> {
 
 /// Where a foot is looked for: a surface held in a part of its parameters.
 pub(super) trait Footing {
+    /// Steps before the nearest place found so far is taken.
+    const STEPS: usize = 24;
+    /// Tries of a step, each half as long as the one before.
+    const TRIES: usize = 6;
+
     /// Point and derivatives.
     fn jet(&self, uv: DVec2) -> Jet2;
     /// The nearest place that is allowed.
     fn hold(&self, uv: DVec2) -> DVec2;
-    /// The step in (u, v) whose image is nearest to `d`.
+    /// The step in (u, v) whose image is nearest to `d`, from the surface to the point.
     fn step(&self, jet: &Jet2, _uv: DVec2, d: DVec3) -> Option<DVec2> {
         step(jet.du, jet.dv, d)
+    }
+    /// Whether a step, from a place with a squared distance to another one, was the last that matters.
+    fn settled(&self, (from, _): (DVec2, f64), (to, _): (DVec2, f64)) -> bool {
+        (to - from).length() <= EPSILON
     }
 
     /// The foot of a point near a guess, with its distance.
@@ -36,11 +40,11 @@ pub(super) trait Footing {
         let mut uv = self.hold(guess);
         let mut jet = self.jet(uv);
         let mut best = jet.p.distance_squared(p);
-        for _ in 0..STEPS {
+        for _ in 0..Self::STEPS {
             let Some(full) = self.step(&jet, uv, p - jet.p) else { break };
             let mut share = 1.0;
             let mut better = None;
-            for _ in 0..HALVINGS {
+            for _ in 0..Self::TRIES {
                 let next = self.hold(uv + full * share);
                 let there = self.jet(next);
                 let distance = there.p.distance_squared(p);
@@ -51,7 +55,7 @@ pub(super) trait Footing {
                 share *= 0.5;
             }
             let Some((next, there, distance)) = better else { break };
-            let still = (next - uv).length() <= EPSILON;
+            let still = self.settled((uv, best), (next, distance));
             (uv, jet, best) = (next, there, distance);
             if still {
                 break;
@@ -59,4 +63,53 @@ pub(super) trait Footing {
         }
         (uv, best.sqrt())
     }
+}
+
+/// A surface held inside ranges of u and v, with its second derivatives.
+struct Within<'a> {
+    surface: &'a Surface,
+    u: (f64, f64),
+    v: (f64, f64),
+}
+
+impl Footing for Within<'_> {
+    const STEPS: usize = 12;
+    const TRIES: usize = 12;
+
+    fn jet(&self, uv: DVec2) -> Jet2 {
+        self.surface.jet(uv.x, uv.y)
+    }
+
+    fn hold(&self, uv: DVec2) -> DVec2 {
+        let held = DVec2::new(uv.x.clamp(self.u.0, self.u.1), uv.y.clamp(self.v.0, self.v.1));
+        let over = held.x + held.y - 1.0;
+        let slant = self.surface.domain() == Domain::Triangle && over > 0.0;
+        if slant { (held - 0.5 * over).clamp(DVec2::ZERO, DVec2::ONE) } else { held }
+    }
+
+    /// The full second derivative where it is positive, else the part that always is.
+    fn step(&self, jet: &Jet2, _uv: DVec2, d: DVec3) -> Option<DVec2> {
+        let r = -d;
+        let (gu, gv) = (r.dot(jet.du), r.dot(jet.dv));
+        let (a, b, c) = (jet.du.dot(jet.du), jet.du.dot(jet.dv), jet.dv.dot(jet.dv));
+        let (ha, hb, hc) = (a + r.dot(jet.duu), b + r.dot(jet.duv), c + r.dot(jet.dvv));
+        let (a, b, c) = if ha > 0.0 && ha * hc - hb * hb > 0.5 * (a * c - b * b).max(0.0) { (ha, hb, hc) } else { (a, b, c) };
+        let det = a * c - b * b;
+        Some(if det > EPSILON * a * c {
+            DVec2::new((b * gv - c * gu) / det, (b * gu - a * gv) / det)
+        } else {
+            DVec2::new(if a > 0.0 { -gu / a } else { 0.0 }, if c > 0.0 { -gv / c } else { 0.0 })
+        })
+    }
+
+    fn settled(&self, (_, before): (DVec2, f64), (_, after): (DVec2, f64)) -> bool {
+        before - after <= EPSILON * before
+    }
+}
+
+/// Distance of a point from a surface near (u, v), model units, with the place of the foot: Newton steps with second
+/// derivatives where they help, held inside the ranges of u and v.
+pub fn foot_within(surface: &Surface, p: DVec3, guess: (f64, f64), u: (f64, f64), v: (f64, f64)) -> (f64, (f64, f64)) {
+    let (uv, distance) = Within { surface, u, v }.foot(p, guess.into());
+    (distance, uv.into())
 }

@@ -50,7 +50,7 @@ pub use core::{Domain, Jet2, Side, Surface, SurfaceKind};
 pub use divide::divide;
 pub use extent::bbox;
 pub use extrude::extrude;
-pub use foot::step;
+pub use foot::{foot_within, step};
 pub use interpolate::grid;
 pub use iso::IsoLine;
 pub use nurbs::{Net, NurbsSurface};

@@ -199,13 +199,9 @@ impl Front<'_> {
             let Some(step) = spot.step(way * size) else { continue };
             let to = self.soil.ground.clamp(xy + step);
             let new = self.soil.ground.spot(to);
-            let nearest = self.border.any(new.p, SIGHT * size, size, |sample, _| {
-                let [c, d] = self.edges[sample.tag as usize].map(|n| n as usize);
-                apart(new.p, outline.p[c], outline.p[d]) < CLEAR * size
-                    || c as u32 != a && d as u32 != a && cross(xy, to, outline.xy[c], outline.xy[d])
-            });
+            let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
-            if !nearest && along != DVec3::ZERO && !self.near_node(new.p, size) {
+            if !near && along != DVec3::ZERO && !self.near_node(new.p, size) {
                 self.take(to, new.p, size, along);
                 self.open.clear();
             }
@@ -314,10 +310,18 @@ impl Front<'_> {
 
     /// Whether a step meets the border or ends too near to it.
     fn near_border(&self, from: DVec2, to: DVec2, p: DVec3, size: f64) -> bool {
+        self.near_edges((from, to), (p, size), CLEAR, None)
+    }
+
+    /// Whether a step to `p` meets an edge of the border, or ends nearer to one than `clear` of the wanted length; a step from a
+    /// node of the border meets its own edges there.
+    fn near_edges(&self, (from, to): (DVec2, DVec2), (p, size): (DVec3, f64), clear: f64, node: Option<u32>) -> bool {
         let outline = self.soil.outline;
         self.border.any(p, SIGHT * size, size, |sample, _| {
-            let [a, b] = self.edges[sample.tag as usize].map(|n| n as usize);
-            cross(from, to, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < CLEAR * size
+            let edge = self.edges[sample.tag as usize];
+            let [a, b] = edge.map(|n| n as usize);
+            let own = node.is_some_and(|n| edge.contains(&n));
+            !own && cross(from, to, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < clear * size
         })
     }
 }

@@ -3,9 +3,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Front, SIGHT, STRAIGHT, apart};
+use super::{Front, STRAIGHT};
 use crate::base::math;
-use crate::mesh::free::outline::cross;
 
 /// Nearest distance between two nodes of crystals, as a share of the wanted length: one in the middle of a square would have
 /// 0.707 to its corners.
@@ -150,11 +149,7 @@ impl Front<'_> {
             let Some(step) = spot.step(*arm) else { continue };
             let to = self.soil.ground.clamp(xy + step);
             let new = self.soil.ground.spot(to);
-            let near = self.border.any(new.p, SIGHT * size, size, |sample, _| {
-                let [c, d] = self.edges[sample.tag as usize].map(|n| n as usize);
-                apart(new.p, outline.p[c], outline.p[d]) < CLEAR * size
-                    || c as u32 != node && d as u32 != node && cross(xy, to, outline.xy[c], outline.xy[d])
-            });
+            let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
             let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
             if !near && !taken {
