@@ -149,6 +149,57 @@ fn lists_of_lists_fill_no_memory() {
     all("held", &cases);
 }
 
+/// Meshes of more elements than one may have are refused before their borders are divided, at the setting that asks.
+#[test]
+fn meshes_without_end() {
+    let disc = "curve c = circle(center: (0, 0, 0), radius: 1m)\nsurface s = plane([c])\npoint p = (100mm, 0, 0)\n";
+    let strip = "curve c = polyline([(0, 0), (1m, 0), (1m, 10um), (0, 10um)], closed: true)\nsurface s = trim(plane(c), holes: [])\n";
+    let tube = "curve c = circle(center: (0, 0, 0), radius: 1m)\nsurface s = extrude(c, by: (0, 0, 1m))\n";
+    let square = "point p = (100mm, 0, 0)\nlet at = [(0, 0, 0), (1m, 0, 0), (1m, 1m, 0), (0, 1m, 0)]\n\
+                  surface s = plane(line(at[0], at[1]), line(at[1], at[2]), line(at[2], at[3]), line(at[3], at[0]))\n";
+    let cases = [
+        (disc, "of s", "size: ", "1um", ""),
+        (disc, "of s", "size: ", "10um", ""),
+        (disc, "of s", "size: ", "1um", "  elements: quads"),
+        (disc, "of s", "size: ", "10um", "  elements: quads"),
+        (disc, "of s", "size: ", "10um", "  order: 2"),
+        (disc, "of s", "size: ", "10um", "  method: isoline"),
+        (disc, "of s", "size: ", "10um", "  method: display"),
+        (disc, "of s", "size: ", "10um", "  method: quadtree"),
+        (disc, "of s", "size: 100mm  chord_error: ", "1e-9mm", ""),
+        (disc, "of s", "size: 100mm  chord_error: ", "1e-9mm", "  elements: quads"),
+        (disc, "of s", "method: display  chord_error: ", "1e-9mm", ""),
+        (disc, "of s", "size: 100mm  near p { size: ", "1um", "  radius: 1m }"),
+        (disc, "of s", "size: 100mm  near p { size: ", "0.1mm", "  radius: 900mm }"),
+        (disc, "of s", "size: 100mm  on c { size: ", "1e-9mm", " }"),
+        (disc, "of s", "size: 100mm  on s { size: ", "10um", " }"),
+        (disc, "of s", "size: 100mm  on c { count: ", "50_000_000", " }"),
+        (disc, "of c", "size: ", "1e-9mm", ""),
+        (disc, "of c", "size: 1m  chord_error: ", "1e-9mm", ""),
+        (strip, "of s", "size: ", "1e-6mm", ""),
+        (strip, "of s", "size: ", "0.1um", ""),
+        (tube, "of s", "size: ", "1um", ""),
+        (tube, "of s", "size: ", "10um", "  method: delaunay"),
+        (tube, "of s", "size: 100mm  chord_error: ", "1e-9mm", ""),
+        (tube, "of s", "size: 100mm  method: isoline  chord_error: ", "1e-9mm", ""),
+        (square, "of s", "size: ", "1um", ""),
+        (square, "of s", "size: ", "10um", "  elements: quads"),
+        (square, "of s", "size: 100mm  near p { size: ", "1e-9mm", " }"),
+    ];
+    let folder = folder("meshes");
+    let mut wrong = Vec::new();
+    for (k, (model, of, before, asks, after)) in cases.into_iter().enumerate() {
+        let (name, start) = (format!("mesh{k}"), format!("mesh m {of} {{ {before}"));
+        wrong.extend(answer(&folder, &name, &format!("{model}{start}{asks}{after} }}\n"), "E217"));
+        let said = fs::read_to_string(folder.join(format!("{name}.loft.err"))).unwrap();
+        let place = format!("[{name}.loft:{}:{}]", model.lines().count() + 1, start.len() + 1);
+        if !said.contains(&place) {
+            wrong.push(format!("{place} wanted\n{said}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn files_that_are_none() {
     let folder = folder("files");

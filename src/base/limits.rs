@@ -31,6 +31,8 @@ limits! {
     pub const MEMBERS_MADE: usize = 20_000_000;
     /// Elements of one mesh.
     pub const MESH_ELEMENTS: u64 = 100_000_000;
+    /// Steps of a mesh along one stretch of border between two corners.
+    pub const MESH_STEPS: u32 = 1_000_000;
     /// Pixels along a side of a picture.
     pub const PICTURE_SIDE: u32 = 8_192;
     /// Pixels of one picture.

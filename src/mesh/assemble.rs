@@ -13,12 +13,11 @@ use super::layout::Layout;
 use super::limits::{self, Finished, Verdict};
 use super::narrow::{self, Narrow};
 use super::nodes::Nodes;
-use super::plan::Elements;
 use super::relations::Relations;
 use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Sizing};
-use super::{blame, inside, lines, second_order, shape_check, strips};
+use super::{ahead, blame, inside, lines, second_order, shape_check, strips};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -52,6 +51,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
     inside::place(input, &mut layout);
     let mut narrow: Vec<Narrow> = Vec::new();
     let mut sizing = Sizing::new(input, &mut layout, size, (known, &narrow))?;
+    ahead::refuse_large(input, &layout, &sizing, job)?;
     let limits = faces::limits_of(input);
     let wishes = wishes(input, &layout, &sizing, &limits, known);
     let mut relations = Relations::new(&layout, &wishes);
@@ -65,7 +65,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         relations.refuse_odd_loops(input, &layout, &sizing, &counts)?;
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
-        refuse_too_many(input, &layout, &relations, &counts)?;
+        ahead::refuse_counts(input, &layout, (&sizing, &relations), &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
         let border = nodes.points(&layout, &input.plan.points);
         let made = Made { input, layout: &layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
@@ -136,34 +136,6 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
     if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
 }
 
-/// Length over width of the thinnest face that is believed, times the steps across it.
-const THINNEST: f64 = 100_000.0;
-
-/// E217 before anything is allocated for more elements than a mesh may have.
-fn refuse_too_many(input: &Input, layout: &Layout, relations: &Relations, counts: &[u32]) -> Result<()> {
-    let mut total: u64 = 0;
-    for (face, rows) in layout.faces.iter().zip(&relations.of_face) {
-        if face.free {
-            // The border at least; how many are inside is known before any is made, but a border without end is not made either.
-            let border: u64 = face.sides.iter().flat_map(|s| &s.uses).map(|u| u64::from(counts[u.atom])).sum();
-            let across = input.model.surfaces[face.surface.index()].surface.hull().diagonal() / face.size.0;
-            let endless = across * across > THINNEST * MESH_ELEMENTS as f64;
-            total = total.saturating_add(if endless { (across * across) as u64 } else { border });
-            continue;
-        }
-        let n = |k: usize| u64::from(counts[rows[k]]);
-        let cells = if face.is_triangle() { n(0).saturating_mul(n(0)) } else { n(0).saturating_mul(n(1)) };
-        total = total.saturating_add(if face.elements == Elements::Triangles && !face.is_triangle() { 2 * cells } else { cells });
-    }
-    for uses in &layout.curves {
-        total = uses.iter().fold(total, |t, u| t.saturating_add(u64::from(counts[u.atom])));
-    }
-    if total > MESH_ELEMENTS {
-        return Err(faces::too_many(input.plan, total));
-    }
-    Ok(())
-}
-
 /// Charts and ids of all faces; free ones are left empty, since nothing else depends on what is in them.
 fn prepare(made: &Made, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
     let layout = made.layout;
@@ -203,7 +175,7 @@ fn number(made: &Made, prepared: &mut [Prepared]) -> Result<()> {
     for ready in prepared.iter_mut() {
         total += ready.triangles + ready.quads;
         if total > MESH_ELEMENTS {
-            return Err(faces::too_many(made.input.plan, total));
+            return Err(faces::too_many(made.input.plan, made.input.plan.size.map_or(made.input.plan.origin, |size| size.1), total));
         }
         ready.number(first);
         first += ready.inner as u32;

@@ -34,7 +34,7 @@ struct Load {
     angle: f64,
 }
 
-/// The least number of steps for the limits, up to `cap`.
+/// The least number of steps for the limits, up to `cap`: so many are not looked at any more.
 ///
 /// `divided` gives the fractions 0…1 of so many steps.
 pub fn least_steps(layout: &Layout, stretch: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
@@ -43,9 +43,12 @@ pub fn least_steps(layout: &Layout, stretch: usize, divided: &dyn Fn(u32) -> Vec
     }
     let mut n = 1_u32;
     for _ in 0..ROUNDS {
+        if n >= cap {
+            break;
+        }
         let load = worst(layout, stretch, divided(n), limits)?;
         let keeps = 1.0 + WHOLE_NUMBER;
-        if (load.chord <= keeps && load.angle <= keeps) || n >= cap {
+        if load.chord <= keeps && load.angle <= keeps {
             break;
         }
         // Deviation falls with the square of the step, turns with the step; from below, so that the least count is met.

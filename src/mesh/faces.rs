@@ -1,5 +1,6 @@
 //! Faces ready to be filled: their charts, the ids of their border nodes, and how many nodes and elements they make.
 
+use crate::base::origin::Origin;
 use glam::DVec3;
 
 use super::build::Input;
@@ -350,7 +351,6 @@ pub fn limits_of(input: &Input) -> Limits {
 }
 
 /// Too many elements, before anything is allocated.
-pub fn too_many(plan: &Plan, elements: u64) -> Fault {
-    let of = plan.size.map_or(plan.origin, |size| size.1);
+pub fn too_many(plan: &Plan, of: Origin, elements: u64) -> Fault {
     MeshFault::TooMany { of, name: plan.name.clone(), elements, limit: MESH_ELEMENTS }.into()
 }

@@ -3,6 +3,7 @@
 //! One dimension first: every stretch of a border or curve is divided once, for all faces that share it. Faces are then
 //! mapped between their divided sides. `docs/notes/mapped-mesh.md` tells the phases.
 
+mod ahead;
 mod assemble;
 mod blame;
 pub mod build;

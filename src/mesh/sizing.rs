@@ -15,7 +15,7 @@ use super::strips::Stretch;
 use super::wanted::{Wanted, least_on};
 use crate::base::digest::Digester;
 use crate::base::fault::{Fault, MeshFault, Result};
-use crate::base::limits::MESH_ELEMENTS;
+use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
@@ -72,6 +72,9 @@ pub struct Sizing {
     pub wanted: Wanted,
     overridden: Vec<(usize, usize, &'static str)>,
 }
+
+/// One step more than a stretch may have: enough to refuse it.
+const STEPS: u32 = MESH_STEPS + 1;
 
 /// Steps under a bias that are looked at one by one.
 const MOST_BIASED: u32 = 1 << 20;
@@ -152,22 +155,23 @@ impl Sizing {
             };
             // Without a limit there is nothing to find out, and a failure is found out again; a pace is not in the key.
             let known = known.filter(|_| (limits.chord.is_some() || limits.angle.is_some()) && sizing.paces[k].is_none());
-            recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, MOST)).map(|least| least.max(shape[k]))
+            recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, STEPS)).map(|least| least.max(shape[k]))
         })?;
         for k in 0..n {
             let (count, size, bias) = (count_of(k), size_of(k), bias_of(k));
             let wish = match (&sizing.paces[k], biased[k]) {
-                (Some(pace), _) => pace.wish(layout.length(k), size.0, MOST),
+                (Some(pace), _) => pace.wish(layout.length(k), size.0, STEPS),
                 (None, Some(steps)) => steps,
-                (None, None) => wanted_steps(layout.length(k), size.0, bias, MOST),
+                (None, None) => wanted_steps(layout.length(k), size.0, bias, STEPS),
             };
-            if count.is_none() {
+            if count.is_none() && least[k] <= MESH_STEPS {
                 sizing.refuse_below_floor(input, layout, k, (least[k], shape[k]))?;
             }
             let wish = wish.max(least[k]);
             sizing.decisions.push(Decision { count, size, bias, least: least[k], wish });
         }
         sizing.bias_rule = bias.iter().map(|b| b.map(|b| b.rule)).collect();
+        super::ahead::refuse_steps(input, layout, &sizing)?;
         Ok(sizing)
     }
 
@@ -223,7 +227,7 @@ impl Sizing {
     /// Steps of a stretch under a bias, none of them longer than the size or what is wanted along it.
     fn biased_steps(&self, layout: &Layout, k: usize, size: f64, bias: f64) -> u32 {
         let length = layout.length(k);
-        let mut count = wanted_steps(length, size, bias, MOST);
+        let mut count = wanted_steps(length, size, bias, STEPS);
         while count < MOST_BIASED && !self.wanted.sources.is_empty() {
             let over = steps(count, bias).windows(2).fold(1.0, |over: f64, w| {
                 let there = w.iter().map(|f| self.wanted.sources.at(layout.point(k, *f), size));
@@ -232,7 +236,7 @@ impl Sizing {
             if over <= 1.0 + WHOLE_NUMBER {
                 break;
             }
-            count = ((f64::from(count) * over).min(f64::from(MOST)) as u32).max(count + 1);
+            count = ((f64::from(count) * over).min(f64::from(STEPS)) as u32).max(count + 1);
         }
         count
     }

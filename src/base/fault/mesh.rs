@@ -26,6 +26,15 @@ pub enum MeshFault {
         /// How many may be.
         limit: u64,
     },
+    /// E217: more steps along a border than a mesh may have.
+    TooManySteps {
+        /// What asks for so many.
+        of: Origin,
+        /// The mesh.
+        name: String,
+        /// How many may be.
+        limit: u32,
+    },
     /// E702: two written counts on opposite sides differ, or no counts make the sides equal.
     CountsDiffer {
         /// Elements along one side and what says so.
@@ -247,6 +256,12 @@ impl Describe for MeshFault {
     }
 }
 
+/// A count in words: beyond sense the digits tell nothing.
+fn many(count: u64) -> String {
+    const SENSE: u64 = 1_000_000_000_000_000;
+    if count > SENSE { "more than 1e15".to_owned() } else { count.to_string() }
+}
+
 /// Counts and rules.
 fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
     use MeshFault as F;
@@ -255,9 +270,14 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
             .at(*rule, "has no effect")
             .help("remove it")
             .edit(Subject::Entity(*rule), Edit::DropRule(None)),
-        F::TooMany { of, name, elements, limit } => Report::new("E217", format!("the mesh `{name}` of {elements} elements is too much"))
+        F::TooMany { of, name, elements, limit } => {
+            Report::new("E217", format!("the mesh `{name}` of {} elements is too much", many(*elements)))
+                .at(*of, "asked for here")
+                .help(format!("a larger size; the limit is {limit} elements"))
+        }
+        F::TooManySteps { of, name, limit } => Report::new("E217", format!("the steps of the mesh `{name}` along a border are too many"))
             .at(*of, "asked for here")
-            .help(format!("a larger size; the limit is {limit} elements")),
+            .help(format!("larger steps; the limit is {limit} from corner to corner")),
         F::CountsDiffer { a, b, surface, at } => {
             let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
             for (count, origin) in [a, b] {
@@ -454,6 +474,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         // Answered by the table above; listed so that a new fault cannot be forgotten.
         F::RuleUnused { .. }
         | F::TooMany { .. }
+        | F::TooManySteps { .. }
         | F::CountsDiffer { .. }
         | F::SidesDoNotClose { .. }
         | F::CountTooCoarse { .. }

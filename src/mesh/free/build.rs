@@ -137,6 +137,15 @@ pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>
 /// Where more than one triangle in so many breaks a limit, dividing them mends most of the face as well.
 const FEW_BAD: usize = 100;
 
+/// About how many nodes each of some tasks on one outline asks for; `None` where the outline crosses itself or bounds nothing.
+pub fn expected_nodes<const N: usize>(tasks: [&Task; N]) -> Option<[f64; N]> {
+    let outline = tasks.first()?.outline;
+    let edges: Vec<[u32; 2]> = outline.edges().collect();
+    let coarse = points(&outline.xy, &edges).ok()?;
+    let kept = inside(&coarse, outline);
+    kept.contains(&true).then(|| tasks.map(|task| expected(task, &coarse, &kept)))
+}
+
 /// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
 fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
     let corner = |n: u32| (task.outline.xy[n as usize], task.outline.p[n as usize]);

@@ -10,6 +10,7 @@ pub(in crate::mesh) use border::Border;
 pub(super) use border::ONE_PLACE;
 pub use border::places;
 pub use fit::FILLED;
+pub(in crate::mesh) use fit::elements_ahead;
 pub(in crate::mesh) use quads::halved;
 
 use border::border;
@@ -146,6 +147,9 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
         Trouble::Border(PointsFault::Same(a, _)) => MeshFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
         Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(made, face),
         Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: DEEPEST }.into(),
-        Trouble::Full => crate::mesh::faces::too_many(made.input.plan, 2 * MESH_ELEMENTS),
+        Trouble::Full => {
+            let plan = made.input.plan;
+            crate::mesh::faces::too_many(plan, plan.size.map_or(plan.origin, |size| size.1), 2 * MESH_ELEMENTS)
+        }
     }
 }

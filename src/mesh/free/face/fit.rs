@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3};
 
 use super::longest::{LONGEST, Longest, longest_side};
-use super::{Made, SPACING};
+use super::{Made, SPACING, outlined};
 use crate::base::bbox::Box3;
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::Job;
@@ -15,7 +15,7 @@ use crate::mesh::edges::Limits;
 use crate::mesh::explain::{Decider, Tally, Why};
 use crate::mesh::faces::limits_of;
 use crate::mesh::free::bound;
-use crate::mesh::free::build::{Lattice, Task, Trouble, triangulate};
+use crate::mesh::free::build::{Lattice, Task, Trouble, expected_nodes, triangulate};
 use crate::mesh::free::ground::{Even, Field};
 use crate::mesh::free::improve::{Broken, Care};
 use crate::mesh::free::loads::Loads;
@@ -24,7 +24,7 @@ use crate::mesh::free::sheet::Sheet;
 use crate::mesh::free::size::{Background, Blend};
 use crate::mesh::free::web::Web;
 use crate::mesh::layout::Face;
-use crate::mesh::plan::Method;
+use crate::mesh::plan::{Elements, Method};
 use crate::mesh::sources::{Body, Source, Sources};
 use crate::mesh::wanted::floor_keeps;
 use crate::surface::Surface;
@@ -112,6 +112,23 @@ pub(super) fn fitting(
         let deciders = fit.deciders(&field, &web);
         (web, deciders, None)
     }))
+}
+
+/// About how many elements the wanted lengths ask for between borders as they are divided here, and how many the size of the
+/// face alone does; `None` where these borders cross or bound nothing.
+pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 2]> {
+    let (_, sheet, outline) = outlined(made, face)?;
+    let rules = near(made, face, &outline);
+    let quads = face.elements == Elements::Quads;
+    let (lattice, spacing) = if quads { (Lattice::Squares, 1.0) } else { (Lattice::Crystal, if face.is_grown() { SPACING } else { 1.0 }) };
+    let sources = Sources::new(rules.items().to_vec(), rules.slope() / spacing);
+    let field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
+    let even = Even(spacing * face.size.0);
+    let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
+    let care = Care { smooth: 0, wanted: WANTED, longest: LONGEST };
+    let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, broken: None };
+    let nodes = expected_nodes(fields.map(task).each_ref())?;
+    Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))
 }
 
 /// The sources of a plan that reach a face.
