@@ -1,72 +1,40 @@
 //! A free face of quads, or of quads and triangles.
 
 mod halved;
+mod maker;
 
 pub(in crate::mesh) use halved::halved;
 pub(super) use halved::odd;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use halved::has_odd;
+use maker::{Maker, nodes};
 
-use super::fit::{Fit, LESS, MOST, SMOOTH, WANTED_TREE, near};
-use super::longest::{LONGEST, Longest, longest_side};
+use super::fit::{Fit, SMOOTH, WANTED_TREE, near};
+use super::longest::{LONGEST, Longest};
 use super::{Border, Made, fault, prepared};
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::PointsFault;
 use crate::mesh::chart::Free;
 use crate::mesh::explain::Decider;
 use crate::mesh::faces::{Prepared, limits_of};
 use crate::mesh::free::bound;
-use crate::mesh::free::build::{Lattice, Task, Trouble, plant};
-use crate::mesh::free::ground::{Even, Field, Ground};
-use crate::mesh::free::improve::{Care, Gardener};
-use crate::mesh::free::loads::Loads;
+use crate::mesh::free::build::Trouble;
+use crate::mesh::free::improve::Care;
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::quads::halves::Halves;
-use crate::mesh::free::quads::net::{NONE, Net, Raw};
-use crate::mesh::free::quads::open::open;
-use crate::mesh::free::quads::pair::{Alone, pair};
-use crate::mesh::free::quads::smooth::Smoother;
-use crate::mesh::free::quads::split::split;
-use crate::mesh::free::quads::swap::Swapper;
+use crate::mesh::free::quads::net::{NONE, Net};
 use crate::mesh::free::sheet::Sheet;
 use crate::mesh::free::size::{Background, Blend};
-use crate::mesh::free::web::Web;
 use crate::mesh::layout::Face;
-use crate::mesh::plan::{Elements, Method};
+use crate::mesh::plan::Elements;
 use crate::mesh::sources::Sources;
 
 /// Distance of the crystal's nodes over the size.
 const SPACING: f64 = 0.85;
 /// Distance of nodes over the side of an equilateral triangle that keeps the limits: half a square has a longer side.
 const HALVED: f64 = 0.7;
-/// Quality of pairs that is better than two triangles: of `mixed`.
-const MIXED: Alone = Alone { least: 0.5, worth: 0.5 };
-/// The same for cells that are halved: triangles become three quads each.
-const CELLS: Alone = Alone { least: 0.2, worth: 0.45 };
-/// Quality below which elements are worked on.
-const WANTED: f64 = 0.8;
-/// Rounds of that work.
-const MENDS: usize = 6;
-
-/// Rounds in which long sides are shared out to their neighbours.
-const SHARES: usize = 60;
-
-/// Rounds in which nodes at long sides are opened.
-const OPENINGS: usize = 8;
-/// How much longer than that a side may be that is left after so many tries: a row of squares met another one there.
-const ROOM: f64 = 1.2;
-/// Tries in which no side may be longer: lengths are lowered everywhere for one that is, and the next try leaves another one.
-const STRICT: usize = 1;
-/// What is made smaller where a limit is broken is made more so.
-const LOWER: f64 = 0.9;
-/// Times a face is made anew for its limits.
-const TRIES: usize = 20;
-/// Rounds in which lengths are lowered only where a limit is broken.
-const LOCAL: usize = 2;
-/// The least that all lengths are lowered to at once, over what they were.
-const MOST_LESS: f64 = 0.9;
 
 /// Makes the face.
 pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline): (&Sheet, &Outline), job: &Job) -> Result<Prepared> {
@@ -110,19 +78,6 @@ fn of_whole(halves: &Halves, trouble: Trouble) -> Trouble {
     }
 }
 
-/// Twice the wanted lengths: of cells that are halved.
-struct Twice<'a>(&'a dyn Field);
-
-impl Field for Twice<'_> {
-    fn size(&self, xy: DVec2, p: DVec3) -> f64 {
-        2.0 * self.0.size(xy, p)
-    }
-
-    fn is_even(&self) -> bool {
-        self.0.is_even()
-    }
-}
-
 /// A net, and what decided its sizes.
 type Shown = (Net, Vec<Decider>);
 
@@ -134,9 +89,6 @@ fn concave(net: &Net) -> bool {
         (0..4).any(|k| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0)
     })
 }
-
-/// A net, or why there is none.
-type Fitted = Result<std::result::Result<Net, Trouble>>;
 
 /// Elements that keep the limits, and what decided their sizes.
 fn fitting(
@@ -173,191 +125,5 @@ impl Fit<'_> {
         let size = self.face.size.0 * SPACING;
         let wanted = |xy: DVec2| (HALVED * bound::wanted(&self.sheet.jet(xy), self.limits.chord, self.limits.angle)).min(size);
         Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &wanted)
-    }
-}
-
-/// The nodes of a net as those of a web, with each quad as two triangles.
-fn nodes(net: &Net) -> Web {
-    let mut web = Web::default();
-    (web.p, web.xy, web.size, web.fixed) = (net.p.clone(), net.xy.clone(), net.size.clone(), net.fixed);
-    for [a, b, c, d] in net.face.iter().copied() {
-        web.tri.push([a, b, c]);
-        if d != NONE {
-            web.tri.push([a, c, d]);
-        }
-    }
-    web
-}
-
-/// Makes nets of one face until one keeps the limits.
-struct Maker<'a> {
-    fit: &'a Fit<'a>,
-    halves: &'a Halves,
-}
-
-/// What breaks a limit most.
-#[derive(Clone, Copy)]
-struct Worst {
-    over: f64,
-    at: DVec3,
-    limit: &'static str,
-}
-
-impl Maker<'_> {
-    fn fitted(&self, field: &mut Blend, job: &Job) -> Fitted {
-        let plan = self.fit.made.input.plan;
-        let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
-        for round in 0..TRIES {
-            let net = match self.net(field, job)? {
-                Ok(net) => net,
-                Err(trouble) => return Ok(Err(trouble)),
-            };
-            worst = self.lower(field, &net)?;
-            let room = if worst.limit == "size" && round >= STRICT { ROOM } else { 1.0 };
-            if worst.over <= room {
-                return Ok(Ok(net));
-            }
-            if let Some(background) = &mut field.background {
-                // Where cells fall is another matter each time: in the end all of them are made smaller.
-                background.scale(if round < LOCAL { 1.0 } else { LESS });
-                background.level();
-            }
-            job.go_on()?;
-        }
-        let says = match worst.limit {
-            "size" => plan.size,
-            "chord_error" => plan.chord_error,
-            _ => plan.angle_error,
-        };
-        let reached = worst.over * says.map_or(self.fit.face.size.0, |s| s.0);
-        let (says, surface) = (says.map_or(plan.origin, |s| s.1), self.fit.surface.origin());
-        Err(MeshFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
-    }
-
-    /// One net for these lengths.
-    fn net(&self, field: &Blend, job: &Job) -> Fitted {
-        let same = Even(field.spacing * self.fit.face.size.0);
-        let plain = field.sources.is_empty() && field.background.is_none();
-        let wanted: &dyn Field = if plain { &same } else { field };
-        let quads = self.fit.face.elements == Elements::Quads;
-        let twice = Twice(wanted);
-        let cells: &dyn Field = if quads { &twice } else { wanted };
-        let lattice = if self.fit.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Squares };
-        let (ground, outline) = (self.fit.sheet, &self.halves.outline);
-        let most = if quads { MOST / 4 } else { MOST };
-        let task = Task { ground, field: cells, outline, care: self.fit.care, lattice, most, broken: None };
-        let web = match plant(&task, job)? {
-            Ok(web) => web,
-            Err(trouble) => return Ok(Err(trouble)),
-        };
-        let mut gardener = Gardener::new(web, ground, cells, self.fit.care);
-        gardener.flip_all();
-        let web = gardener.web;
-        job.go_on()?;
-        let normal: Vec<DVec3> = web.xy.iter().map(|xy| ground.spot(*xy).normal()).collect();
-        let flat = Alone::flat(&web, self.halves);
-        let mate = pair(&web, &normal, &flat, if quads { CELLS } else { MIXED });
-        let mut net = Raw { web: &web, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
-        drop(web);
-        self.smooth(&mut net, cells, job)?;
-        if quads {
-            Swapper::new(&mut net).swap();
-            self.smooth(&mut net, cells, job)?;
-        }
-        if quads {
-            net = split(&net, ground, wanted);
-            self.smooth(&mut net, wanted, job)?;
-        }
-        self.shorten(&mut net, wanted, job)?;
-        Ok(Ok(net))
-    }
-
-    /// Shares long sides out, and crosses those that stay too long by more quads.
-    fn shorten(&self, net: &mut Net, wanted: &dyn Field, job: &Job) -> Result<()> {
-        if self.fit.care.smooth == 0 {
-            return Ok(());
-        }
-        let (longest, ground) = (&self.fit.longest, self.fit.sheet);
-        let over =
-            |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32));
-        Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
-        for _ in 0..OPENINGS {
-            let opened = open(net, (ground, wanted), &over);
-            if opened.is_empty() {
-                break;
-            }
-            let mut smoother = Smoother::new(net, ground, wanted).only(&opened);
-            smoother.smooth(self.fit.care.smooth, job)?;
-            smoother.mend(WANTED, MENDS, job)?;
-            smoother.even_out(&over, SHARES, job)?;
-        }
-        Ok(())
-    }
-
-    fn smooth(&self, net: &mut Net, field: &dyn Field, job: &Job) -> Result<()> {
-        let mut smoother = Smoother::new(net, self.fit.sheet, field);
-        smoother.smooth(self.fit.care.smooth, job)?;
-        if self.fit.care.smooth > 0 {
-            smoother.mend(WANTED, MENDS, job)?;
-        }
-        Ok(())
-    }
-
-    /// Lowers lengths where elements break a limit; what is the worst of them.
-    fn lower(&self, field: &mut Blend, net: &Net) -> Result<Worst> {
-        let mut worst = self.too_long(net);
-        if worst.over > 1.0 {
-            field.spacing *= (1.0 / worst.over).clamp(MOST_LESS, LESS);
-        }
-        if field.background.is_none() {
-            return Ok(worst);
-        }
-        let web = nodes(net);
-        let mut loads = Loads::default();
-        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
-        loads.update(self.fit.sheet, &web, &all, &self.fit.limits);
-        let least = self.fit.made.wanted.written;
-        for t in 0..web.tri.len() as u32 {
-            let load = loads.of(t);
-            if load.worst() <= 1.0 {
-                continue;
-            }
-            let c = web.tri[t as usize].map(|n| n as usize);
-            let at = (web.p[c[0]] + web.p[c[1]] + web.p[c[2]]) / 3.0;
-            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle };
-            if longest_side(&web, t) <= least {
-                return Err(crate::mesh::wanted::floor_keeps(self.fit.made.input, least / factor, at));
-            }
-            if load.worst() > worst.over {
-                worst = Worst { over: load.worst(), at, limit: if load.chord >= load.angle { "chord_error" } else { "angle_error" } };
-            }
-            let smaller = (LOWER / factor).max(0.5);
-            if let Some(background) = &mut field.background {
-                c.iter().for_each(|n| background.lower(web.xy[*n], web.size[*n] * smaller));
-            }
-        }
-        Ok(worst)
-    }
-
-    /// The side inside the face that is longest for its place.
-    fn too_long(&self, net: &Net) -> Worst {
-        let longest = &self.fit.longest;
-        let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
-        for f in 0..net.face.len() {
-            let c = net.corners(f);
-            for k in 0..c.len() {
-                let (a, b) = (c[k], c[(k + 1) % c.len()]);
-                // Each side once; those between border nodes are what they are.
-                if a > b || a < net.fixed && b < net.fixed {
-                    continue;
-                }
-                let allowed = longest.at(&net.p, a).max(longest.at(&net.p, b));
-                let over = net.p[a as usize].distance(net.p[b as usize]) / allowed;
-                if over > worst.over {
-                    worst = Worst { over, at: net.p[a as usize], ..worst };
-                }
-            }
-        }
-        worst
     }
 }

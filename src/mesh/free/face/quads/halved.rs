@@ -1,9 +1,9 @@
 //! Which nodes of a border are the corners of cells that become four quads each.
 
-use super::NONE;
 use crate::mesh::free::face::{Border, Made};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::quads::halves::Halves;
+use crate::mesh::free::quads::net::NONE;
 use crate::mesh::layout::Face;
 
 /// Every second node of each stretch, ascending.
@@ -25,12 +25,7 @@ pub(in crate::mesh) fn halved(made: &Made, face: &Face, border: &Border, outline
         let middles = alternating(made, face, border, (outline, other))?;
         return Halves::new(outline, &border.ids, |n| middles[n as usize]);
     }
-    let odd = |stretch| {
-        let ids = made.nodes.of_stretch(made.layout, stretch, false);
-        ids.into_iter().skip(1).step_by(2)
-    };
-    let mut middles: Vec<u32> = face.stretches().flat_map(odd).collect();
-    middles.sort_unstable();
+    let middles = odd(made, face);
     Halves::new(outline, &border.ids, |n| middles.binary_search(&border.ids[n as usize]).is_ok())
 }
 
