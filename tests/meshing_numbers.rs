@@ -204,3 +204,13 @@ fn points_in_loops_are_those_of_the_reference() {
         assert_eq!(horseshoe.holds(u, v), wanted, "{key}");
     }
 }
+
+/// A curve that closes in itself turns all the way round: its steps share that out, also where nothing else divides it.
+#[test]
+fn angles_divide_closed_curves() {
+    let text = "units m\ncurve c = circle(center: (0, 0), radius: 1)\nsurface s = plane([c])\n\
+                mesh alone of c { size: 1m  angle_error: 1deg }\nmesh round of s { size: 1m  angle_error: 1deg }\n";
+    let [alone, round] = &meshes(text)[..] else { panic!("two meshes") };
+    assert_eq!(alone.nodes.len(), 360);
+    assert!(round.nodes.len() > 360, "{}", round.nodes.len());
+}

@@ -1,5 +1,7 @@
 //! The least number of steps along a stretch that keeps chord error and angle, and the nodes of these steps.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::counts::for_size;
@@ -135,8 +137,9 @@ fn hull_on_curve(curve: &Curve, s: (f64, f64), ends: (DVec3, DVec3), backwards: 
             chord = chord.max(distance_to_segment(*p, ends.0, ends.1));
         }
         for leg in points.windows(2).map(|w| w[1] - w[0]) {
-            if leg.length_squared() > 0.0 && along.length_squared() > 0.0 {
-                angle = angle.max(angle_between(leg, along));
+            if leg.length_squared() > 0.0 {
+                // A step round a whole loop has no chord and turns all the way.
+                angle = angle.max(if along == DVec3::ZERO { PI } else { angle_between(leg, along) });
             }
         }
     }
