@@ -200,7 +200,9 @@ impl Cx<'_> {
             1 => format!("`{}` takes one argument", signature.name),
             n => format!("`{}` takes at most {n} arguments", signature.name),
         };
-        self.error(code, "E302", text, code.span(id), "one too many").help(format!("`{}`", signature.shown)).stop()
+        let bare = matches!(code.expr(id), Expr::Number(_)) && signature.shown.contains(": point");
+        let draft = self.error(code, "E302", text, code.span(id), "one too many").help(format!("`{}`", signature.shown));
+        if bare { draft.note("a point has brackets: `(0, 0, 0)`").stop() } else { draft.stop() }
     }
 
     #[cold]

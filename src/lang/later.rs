@@ -91,6 +91,10 @@ impl Cx<'_> {
                 .filter_map(bound)
                 .map(|b| self.names.text(b.name).to_owned()),
         );
+        if PRINTS.contains(&text.as_str()) && !names.contains(&text) {
+            let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
+            return draft.help("`report` puts a value into the report; in a session an expression is shown by typing it").stop();
+        }
         let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
         let label = near.as_ref().map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
         self.error(code, "E201", format!("there is no function `{text}`"), span, label).puts(span, near).stop()
@@ -123,6 +127,9 @@ impl Cx<'_> {
         })
     }
 }
+
+/// What other languages call showing a value.
+const PRINTS: [&str; 6] = ["print", "println", "printf", "echo", "puts", "show"];
 
 /// Whether a bare name is a word of some choice of the language.
 fn is_word(name: &str) -> bool {

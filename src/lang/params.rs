@@ -225,7 +225,7 @@ impl Cx<'_> {
     pub(super) fn give_all(&mut self, module: ModuleId, sets: &[(String, String)]) {
         for (name, value) in sets {
             let text: Arc<str> = format!("{name}={value}").into();
-            let file = self.sources.add("--set", &*text);
+            let file = self.sources.add("set", &*text);
             if let Err(diagnostic) = self.give(module, name, Given::Text(text, file)) {
                 self.machine.filed.push((None, *diagnostic));
             }

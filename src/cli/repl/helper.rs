@@ -7,6 +7,7 @@ use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::complete::{Known, call_at, candidates};
 use crate::lang::symbols::Symbol;
@@ -21,15 +22,18 @@ const COLOURED: usize = 20_000;
 pub struct Line {
     known: Vec<Known>,
     color: bool,
+    /// Columns of the terminal beside the prompt.
+    columns: usize,
 }
 
 impl Line {
     pub fn new(color: bool) -> Self {
-        Self { known: Vec::new(), color }
+        Self { known: Vec::new(), color, columns: usize::MAX }
     }
 
-    /// Takes over the names of the session.
-    pub fn learn(&mut self, symbols: &[Symbol]) {
+    /// Takes over the names of the session, and how many columns the terminal has beside the prompt.
+    pub fn learn(&mut self, symbols: &[Symbol], columns: usize) {
+        self.columns = columns;
         self.known = symbols.iter().filter_map(|s| Some(Known { name: s.name.clone()?, keyword: written(s.keyword) })).collect();
     }
 }
@@ -59,8 +63,23 @@ impl Hinter for Line {
         if at < line.len() || line.is_empty() {
             return None;
         }
-        call_at(line).map(|(builtin, _)| format!("   {}", builtin.signature()))
+        let used = line.lines().last().map_or(0, UnicodeWidthStr::width);
+        call_at(line).map(|(builtin, _)| fitting(format!("   {}", builtin.signature()), self.columns.saturating_sub(used + 1)))
     }
+}
+
+/// A hint that stays on its line, with `…` for what has no room.
+fn fitting(hint: String, room: usize) -> String {
+    if hint.width() <= room {
+        return hint;
+    }
+    let mut width = 1;
+    let kept = hint.chars().take_while(|c| {
+        width += c.width().unwrap_or(0);
+        width <= room
+    });
+    let kept: String = kept.collect();
+    if kept.trim().is_empty() { String::new() } else { kept + "…" }
 }
 
 impl Highlighter for Line {
@@ -102,5 +121,19 @@ impl Highlighter for Line {
 
     fn highlight_char(&self, _: &str, _: usize, _: CmdKind) -> bool {
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hints_stay_on_their_line() {
+        assert_eq!(fitting("   line(from: point)".to_owned(), 40), "   line(from: point)");
+        let cut = fitting("   line(from: point)".to_owned(), 12);
+        assert_eq!((cut.as_str(), cut.width()), ("   line(fro…", 12));
+        assert_eq!(fitting("   line(from: point)".to_owned(), 3), "");
+        assert_eq!(fitting("   line(from: point)".to_owned(), 0), "");
     }
 }

@@ -123,8 +123,9 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     }
     terminal.print(GREETING);
     loop {
+        let columns = editor.dimensions().map_or(usize::MAX, |(columns, _)| usize::from(columns).saturating_sub(PROMPT.len()));
         if let Some(line) = editor.helper_mut() {
-            line.learn(notebook.symbols());
+            line.learn(notebook.symbols(), columns);
         }
         match editor.readline(PROMPT) {
             Ok(entry) => {
