@@ -46,7 +46,7 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
 /// results, `draw` an alphabet, `mesh` proofs of its limits, what it takes over and how places of borders are followed,
-/// `surface` how surfaces meet curves and each other, and `lang` the grammar over tokens and its tree, the evaluator, its
+/// `cli` what the line being edited tells, `surface` how surfaces meet curves and each other, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_800),
@@ -59,7 +59,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("draw", 3_000),
     ("lang", 20_200),
     ("session", 8_950),
-    ("cli", 3_500),
+    ("cli", 3_600),
 ];
 
 const LONGEST_FILE: usize = 800;

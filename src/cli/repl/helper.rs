@@ -7,7 +7,6 @@ use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
-use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::complete::{Known, call_at, candidates};
 use crate::lang::symbols::Symbol;
@@ -63,22 +62,17 @@ impl Hinter for Line {
         if at < line.len() || line.is_empty() {
             return None;
         }
-        let used = line.lines().last().map_or(0, UnicodeWidthStr::width);
+        let used = line.lines().last().map_or(0, |last| last.chars().map(|c| if c.is_ascii() { 1 } else { 2 }).sum());
         call_at(line).map(|(builtin, _)| fitting(format!("   {}", builtin.signature()), self.columns.saturating_sub(used + 1)))
     }
 }
 
 /// A hint that stays on its line, with `…` for what has no room.
 fn fitting(hint: String, room: usize) -> String {
-    if hint.width() <= room {
+    if hint.chars().count() <= room {
         return hint;
     }
-    let mut width = 1;
-    let kept = hint.chars().take_while(|c| {
-        width += c.width().unwrap_or(0);
-        width <= room
-    });
-    let kept: String = kept.collect();
+    let kept: String = hint.chars().take(room.saturating_sub(1)).collect();
     if kept.trim().is_empty() { String::new() } else { kept + "…" }
 }
 
@@ -132,7 +126,7 @@ mod tests {
     fn hints_stay_on_their_line() {
         assert_eq!(fitting("   line(from: point)".to_owned(), 40), "   line(from: point)");
         let cut = fitting("   line(from: point)".to_owned(), 12);
-        assert_eq!((cut.as_str(), cut.width()), ("   line(fro…", 12));
+        assert_eq!((cut.as_str(), cut.chars().count()), ("   line(fro…", 12));
         assert_eq!(fitting("   line(from: point)".to_owned(), 3), "");
         assert_eq!(fitting("   line(from: point)".to_owned(), 0), "");
     }
