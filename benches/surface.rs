@@ -12,7 +12,8 @@ use lofting::geometry::{Ends, Spline};
 use lofting::model::measure;
 use lofting::network::{Chain, ChainFlow, of_chains};
 use lofting::surface::coons::{Grid, Method, Settings, build};
-use lofting::surface::{Nearest, Reparam, Surface};
+use lofting::surface::nurbs::{Net, nurbs};
+use lofting::surface::{Nearest, Reparam, Surface, foot_within};
 
 /// Two arcs and two splines round a square of side 100.
 fn roof() -> Surface {
@@ -44,5 +45,38 @@ fn grids(c: &mut Criterion) {
     c.bench_function("coons nearest point", |b| b.iter(|| nearest.at(black_box(DVec3::new(30.0, 40.0, 20.0)))));
 }
 
-criterion_group!(benches, grids);
+/// A rational bicubic net of 20 × 20 points over a square of side 100, as in `models/nurbs.loft`.
+fn net() -> Surface {
+    let greville = |i: usize| {
+        let sum: usize = (0..3).map(|k| (i + 1 + k).saturating_sub(3).min(17)).sum();
+        sum as f64 / 51.0 * 100.0
+    };
+    let height = |x: f64, y: f64| {
+        let turn = |share: f64| (std::f64::consts::TAU * share).sin();
+        8.0 * turn(x / 50.0) * (std::f64::consts::TAU * y / 40.0).cos() + 3.0 * turn((x + y) / 70.0)
+    };
+    let at = |j: usize, i: usize| DVec3::new(greville(i), greville(j), height(greville(i), greville(j)));
+    let rows: Vec<Vec<DVec3>> = (0..20).map(|j| (0..20).map(|i| at(j, i)).collect()).collect();
+    let weight = |j: i32, i: i32| 1.0 + 0.15 * (1.3 * f64::from(i) + 0.7 * f64::from(j)).sin();
+    let weights: Vec<Vec<f64>> = (0..20).map(|j| (0..20).map(|i| weight(j, i)).collect()).collect();
+    let net = Net { rows: &rows, weights: Some(&weights) };
+    nurbs(&net, (3, 3), (None, None), Origin::NONE, &Tolerance::new(1e-4, 150.0)).expect("a net")
+}
+
+/// Points half a millimetre over the net: the nearest one anywhere, and the foot from a place 0.3 mm away.
+fn projections(c: &mut Criterion) {
+    let surface = net();
+    let place = |k: usize| (0.05 + 0.9 * (k as f64 * 0.618_034).fract(), 0.05 + 0.9 * (k as f64 * 0.754_878).fract());
+    let lifted = |(u, v): (f64, f64)| surface.point(u, v) + 0.5 * surface.normal(u, v);
+    let places: Vec<((f64, f64), DVec3)> = (0..10_000).map(place).map(|uv| (uv, lifted(uv))).collect();
+    let nearest = Nearest::new(&surface);
+    let far = |distance: f64| assert!(distance < 0.5 + 1e-9, "{distance}");
+    c.bench_function("net nearest points, 10 000", |b| b.iter(|| places.iter().for_each(|(_, p)| far(nearest.at(*p).distance))));
+    let quick = surface.quick();
+    let foot =
+        |(uv, p): &((f64, f64), DVec3)| foot_within((&surface, quick.as_ref()), *p, (uv.0 + 0.003, uv.1 - 0.002), (0.0, 1.0), (0.0, 1.0));
+    c.bench_function("net feet from a guess, 10 000", |b| b.iter(|| places.iter().for_each(|place| far(foot(place).0))));
+}
+
+criterion_group!(benches, grids, projections);
 criterion_main!(benches);

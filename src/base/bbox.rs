@@ -40,6 +40,11 @@ impl Box3 {
         (self.min - DVec3::splat(margin)).cmple(other.max).all() && other.min.cmple(self.max + DVec3::splat(margin)).all()
     }
 
+    /// Square of the distance of a point, model units; 0 inside.
+    pub fn distance_squared(&self, p: DVec3) -> f64 {
+        p.distance_squared(p.clamp(self.min, self.max))
+    }
+
     /// Length of the diagonal, 0 when empty.
     pub fn diagonal(&self) -> f64 {
         if self.is_empty() { 0.0 } else { (self.max - self.min).length() }

@@ -12,6 +12,7 @@ use super::free::loads::from_pole;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
+use crate::surface::quick::Quick;
 use crate::surface::{Domain, Surface, foot_within};
 
 /// Divisions of a triangle's side.
@@ -62,7 +63,7 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
                 (batch * BATCH..halves.len().min((batch + 1) * BATCH)).map(of_half).collect::<Vec<_>>()
             });
             let farthest = batches.into_iter().flatten().collect();
-            follow(surface, farthest, tolerance)
+            follow((surface, quick.as_ref()), farthest, tolerance)
         }
     }
 }
@@ -163,7 +164,7 @@ impl GridRow<'_> {
                 });
             }
         }
-        follow(self.surface, farthest, self.tolerance)
+        follow((self.surface, None), farthest, self.tolerance)
     }
 
     /// Surface points at sixths of the cells of a row, when they form a tensor grid.
@@ -266,7 +267,7 @@ fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points
 }
 
 /// Follows the triangles that seem farthest to their feet: the distance of the farthest.
-fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
+fn follow((surface, quick): (&Surface, Option<&Quick>), mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
     farthest.retain(|s| s.seems > tolerance.rounding);
     farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
     // A trimmed face may run over the seam of the surface below.
@@ -281,7 +282,7 @@ fn follow(surface: &Surface, mut farthest: Vec<Seen>, tolerance: &Tolerance) -> 
         if seen.seems < most || followed == FOLLOWED {
             break;
         }
-        let distance = foot_within(surface, seen.p, seen.uv, u, v).0;
+        let distance = foot_within((surface, quick), seen.p, seen.uv, u, v).0;
         // What only seems far, as beside a pole, is passed by.
         followed += usize::from(distance >= WORTH * seen.seems);
         most = f64::max(most, distance);

@@ -1,13 +1,16 @@
 //! Nearest points of surfaces.
 //!
 //! A surface is sampled once; a query starts a safeguarded Newton descent from the best few local minima among the
-//! samples. The samples are finer than the bends of the curves below (at least four in every cell between knots), but
+//! samples; blocks of samples whose box is too far away are not looked at. The samples are finer than the bends of the curves below (at least four in every cell between knots), but
 //! this is sampling: a dent narrower than a sixteenth of a cell may be missed. The distance found is never below the true one.
 
 use glam::DVec3;
 
+use super::Jet2;
 use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend};
+use super::quick::Quick;
+use crate::base::bbox::Box3;
 use crate::base::tolerance::EPSILON;
 use crate::network::Chain;
 
@@ -26,10 +29,32 @@ pub struct Closest {
 #[derive(Clone, Debug)]
 pub struct Nearest {
     surface: Surface,
+    /// The surface without its borders, which is sampled.
+    whole: Surface,
+    quick: Option<Quick>,
     xs: Vec<f64>,
     ys: Vec<f64>,
     points: Vec<DVec3>,
+    blocks: Vec<Block>,
 }
+
+/// Samples that lie together.
+#[derive(Clone, Debug)]
+struct Block {
+    /// First and one past the last of its rows and columns.
+    rows: (usize, usize),
+    columns: (usize, usize),
+    /// Their box.
+    around: Box3,
+    /// The farthest that samples beside them are from them.
+    reach: f64,
+}
+
+/// Samples along each side of a block.
+const BLOCK: usize = 8;
+/// A local minimum among the samples that is farther than the nearest sample by so many distances of neighbouring samples is
+/// not tried.
+const BEHIND: f64 = 2.0;
 
 /// Samples along one direction, at the least.
 const LEAST: usize = 24;
@@ -43,17 +68,34 @@ const STARTS: usize = 6;
 impl Nearest {
     /// Samples the surface.
     pub fn new(surface: &Surface) -> Self {
-        if surface.domain() == Domain::Loop && !surface.is_flat() {
-            let below = Self::new(&surface.untrimmed());
-            return Self { surface: surface.clone(), ..below };
+        let whole = if surface.domain() == Domain::Loop && !surface.is_flat() { surface.untrimmed() } else { surface.clone() };
+        let mut nearest =
+            Self { surface: surface.clone(), quick: None, xs: Vec::new(), ys: Vec::new(), points: Vec::new(), blocks: Vec::new(), whole };
+        if matches!(nearest.whole.domain(), Domain::Square | Domain::Triangle) {
+            nearest.sample();
         }
-        if !matches!(surface.domain(), Domain::Square | Domain::Triangle) {
-            return Self { surface: surface.clone(), xs: Vec::new(), ys: Vec::new(), points: Vec::new() };
+        nearest
+    }
+
+    fn sample(&mut self) {
+        let (us, vs) = self.whole.cells();
+        (self.xs, self.ys) = (stations(&us), stations(&vs));
+        self.quick = self.whole.quick();
+        self.points = self.whole.square_jets(&self.xs, &self.ys).iter().map(|jet| jet.p).collect();
+        let (nx, ny) = (self.xs.len(), self.ys.len());
+        for j in (0..ny).step_by(BLOCK) {
+            for i in (0..nx).step_by(BLOCK) {
+                let (rows, columns) = ((j, (j + BLOCK).min(ny)), (i, (i + BLOCK).min(nx)));
+                let of = || (rows.0..rows.1).flat_map(|j| (columns.0..columns.1).map(move |i| j * nx + i));
+                let reach = of().map(|k| self.reach(k)).fold(0.0, f64::max);
+                self.blocks.push(Block { rows, columns, around: Box3::of(of().map(|k| self.points[k])), reach });
+            }
         }
-        let (us, vs) = surface.cells();
-        let (xs, ys) = (stations(&us), stations(&vs));
-        let points = surface.square_jets(&xs, &ys).iter().map(|jet| jet.p).collect();
-        Self { surface: surface.clone(), xs, ys, points }
+    }
+
+    /// Point and derivatives at a place of the unit square.
+    fn jet(&self, x: f64, y: f64) -> Jet2 {
+        self.quick.as_ref().map_or_else(|| self.whole.square_jet(x, y), |quick| quick.jet(x, y))
     }
 
     /// The surface.
@@ -76,17 +118,52 @@ impl Nearest {
         Closest { uv, point, distance: point.distance(p) }
     }
 
-    fn search(&self, p: DVec3) -> Closest {
+    /// The farthest of the samples beside one.
+    fn reach(&self, k: usize) -> f64 {
+        let (nx, ny) = (self.xs.len(), self.ys.len());
+        let (i, j) = (k % nx, k / nx);
+        let beside = [(i > 0, k.wrapping_sub(1)), (i + 1 < nx, k + 1), (j > 0, k.wrapping_sub(nx)), (j + 1 < ny, k + nx)];
+        let apart = beside.into_iter().filter(|b| b.0).map(|(_, n)| self.points[n].distance_squared(self.points[k]));
+        apart.fold(0.0, f64::max).sqrt()
+    }
+
+    /// Local minima among the samples that may lead to the nearest point, the nearest first.
+    fn starts(&self, p: DVec3) -> Vec<usize> {
         let nx = self.xs.len();
         let far = |k: usize| self.points[k].distance_squared(p);
+        let of = |block: &Block| {
+            let (columns, rows) = (block.columns, block.rows);
+            (rows.0..rows.1).flat_map(move |j| (columns.0..columns.1).map(move |i| j * nx + i))
+        };
+        let apart: Vec<f64> = self.blocks.iter().map(|block| block.around.distance_squared(p)).collect();
+        let Some(first) = (0..apart.len()).min_by(|a, b| apart[*a].total_cmp(&apart[*b])) else { return Vec::new() };
+        let mut best = (f64::INFINITY, 0);
+        for b in std::iter::once(first).chain(0..apart.len()) {
+            if apart[b] < best.0 {
+                best = of(&self.blocks[b]).map(|k| (far(k), k)).fold(best, |best, next| if next.0 < best.0 { next } else { best });
+            }
+        }
         let lowest = |k: usize| {
             let (i, j) = (k % nx, k / nx);
             let (low, high) = ((i.saturating_sub(1), j.saturating_sub(1)), ((i + 1).min(nx - 1), (j + 1).min(self.ys.len() - 1)));
             (low.1..=high.1).all(|b| (low.0..=high.0).all(|a| far(k) <= far(b * nx + a)))
         };
-        let mut starts: Vec<usize> = (0..self.points.len()).filter(|&k| lowest(k)).collect();
+        let nearest = best.0.sqrt();
+        let mut starts = Vec::new();
+        for (block, apart) in self.blocks.iter().zip(&apart) {
+            if apart.sqrt() > nearest + BEHIND * block.reach {
+                continue;
+            }
+            starts.extend(of(block).filter(|&k| lowest(k) && far(k).sqrt() <= nearest + BEHIND * self.reach(k)));
+        }
         starts.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-        let half_square = |jet: &super::Jet2| {
+        starts
+    }
+
+    fn search(&self, p: DVec3) -> Closest {
+        let nx = self.xs.len();
+        let starts = self.starts(p);
+        let half_square = |jet: &Jet2| {
             let gap = jet.p - p;
             Local {
                 value: 0.5 * gap.length_squared(),
@@ -107,8 +184,9 @@ impl Nearest {
             (n <= STARTS).then_some(k)
         });
         let found = places.map(|k| {
-            let end = descend(&self.surface, (self.xs[k % nx], self.ys[k / nx]), half_square);
-            self.closest(self.surface.from_square(end.place.0, end.place.1), p)
+            let end = descend(&|x, y| self.jet(x, y), (self.xs[k % nx], self.ys[k / nx]), half_square);
+            let point = self.jet(end.place.0, end.place.1).p;
+            Closest { uv: self.whole.from_square(end.place.0, end.place.1), point, distance: point.distance(p) }
         });
         found.reduce(|best, next| if next.distance < best.distance { next } else { best }).unwrap_or_else(|| self.closest((0.0, 0.0), p))
     }
@@ -120,8 +198,7 @@ impl Nearest {
 
     /// The nearest point of the whole surface where that is kept, else the nearest one of the borders.
     fn inside_trim(&self, p: DVec3) -> Closest {
-        let below = Self { surface: self.surface.untrimmed(), ..self.clone() };
-        let found = below.search(p);
+        let found = self.search(p);
         if self.surface.keeps(found.uv.0, found.uv.1) {
             return found;
         }

@@ -1,7 +1,6 @@
 //! Local minima of a function of a surface's point, inside the unit square: Newton's method held in a trust region.
 
 use super::Jet2;
-use super::core::Surface;
 use crate::base::tolerance::{EPSILON, LEAST_CURVATURE};
 
 /// Value, gradient (x, y) and second derivatives (xx, xy, yy) of a function of the surface at one place.
@@ -24,12 +23,12 @@ pub struct Minimum {
 /// Steps of one descent.
 const STEPS: usize = 60;
 
-/// Goes down from a place to a local minimum of `f` in the square; never up. Variables at a border leave it only inwards.
+/// Goes down from a place to a local minimum of `f` of the `jet` of each place in the square; never up. Variables at a border leave it only inwards.
 ///
 /// Each step solves the shifted Newton equations; the shift grows until the value falls and shrinks when it falls as
 /// foreseen (Levenberg's rule), so the method is Newton's near a minimum.
-pub fn descend(surface: &Surface, start: (f64, f64), f: impl Fn(&Jet2) -> Local) -> Minimum {
-    let at = |(x, y): (f64, f64)| f(&surface.square_jet(x, y));
+pub fn descend(jet: &impl Fn(f64, f64) -> Jet2, start: (f64, f64), f: impl Fn(&Jet2) -> Local) -> Minimum {
+    let at = |(x, y): (f64, f64)| f(&jet(x, y));
     let (mut place, mut here) = (start, at(start));
     let mut shift = 0.0;
     for _ in 0..STEPS {

@@ -33,7 +33,7 @@ pub fn bbox(surface: &Surface) -> Box3 {
         order.sort_by(|&a, &b| height(a).total_cmp(&height(b)).then(a.cmp(&b)));
         for &k in order.iter().take(4) {
             let start = (xs[k % xs.len()], ys[k / xs.len()]);
-            let end = descend(surface, start, |jet| Local {
+            let end = descend(&|x, y| surface.square_jet(x, y), start, |jet| Local {
                 value: sign * jet.p[axis],
                 gradient: [sign * jet.du[axis], sign * jet.dv[axis]],
                 hessian: [sign * jet.duu[axis], sign * jet.duv[axis], sign * jet.dvv[axis]],
@@ -73,7 +73,7 @@ fn trimmed_bbox(surface: &Surface) -> Box3 {
         let mut order = kept.clone();
         order.sort_by(|&a, &b| (sign * jets[a].p[axis]).total_cmp(&(sign * jets[b].p[axis])).then(a.cmp(&b)));
         for &k in order.iter().take(4) {
-            let end = descend(&base, (xs[k % xs.len()], ys[k / xs.len()]), |jet| Local {
+            let end = descend(&|x, y| base.square_jet(x, y), (xs[k % xs.len()], ys[k / xs.len()]), |jet| Local {
                 value: sign * jet.p[axis],
                 gradient: [sign * jet.du[axis], sign * jet.dv[axis]],
                 hessian: [sign * jet.duu[axis], sign * jet.duv[axis], sign * jet.dvv[axis]],

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::quick::Quick;
 use super::{Domain, Jet2, Surface};
 use crate::base::tolerance::EPSILON;
 
@@ -68,6 +69,7 @@ pub(super) trait Footing {
 /// A surface held inside ranges of u and v, with its second derivatives.
 struct Within<'a> {
     surface: &'a Surface,
+    quick: Option<&'a Quick>,
     u: (f64, f64),
     v: (f64, f64),
 }
@@ -77,7 +79,7 @@ impl Footing for Within<'_> {
     const TRIES: usize = 12;
 
     fn jet(&self, uv: DVec2) -> Jet2 {
-        self.surface.jet(uv.x, uv.y)
+        self.quick.map_or_else(|| self.surface.jet(uv.x, uv.y), |quick| quick.jet(uv.x, uv.y))
     }
 
     fn hold(&self, uv: DVec2) -> DVec2 {
@@ -108,8 +110,14 @@ impl Footing for Within<'_> {
 }
 
 /// Distance of a point from a surface near (u, v), model units, with the place of the foot: Newton steps with second
-/// derivatives where they help, held inside the ranges of u and v.
-pub fn foot_within(surface: &Surface, p: DVec3, guess: (f64, f64), u: (f64, f64), v: (f64, f64)) -> (f64, (f64, f64)) {
-    let (uv, distance) = Within { surface, u, v }.foot(p, guess.into());
+/// derivatives where they help, held inside the ranges of u and v; with the surface made ready, where it can be.
+pub fn foot_within(
+    (surface, quick): (&Surface, Option<&Quick>),
+    p: DVec3,
+    guess: (f64, f64),
+    u: (f64, f64),
+    v: (f64, f64),
+) -> (f64, (f64, f64)) {
+    let (uv, distance) = Within { surface, quick, u, v }.foot(p, guess.into());
     (distance, uv.into())
 }
