@@ -409,7 +409,7 @@ fn the_page_of_the_code_is_true() {
 /// The golden file that the guide shows is one.
 #[test]
 fn the_guide_shows_a_golden() {
-    let guide = fs::read_to_string("docs/guide/README.md").unwrap();
+    let guide = fs::read_to_string("docs/guide/checks-and-goldens.md").unwrap();
     let text = guide.split("```golden\n").nth(1).unwrap().split("```").next().unwrap();
     let (golden, flaws) = Golden::parse(text.as_bytes()).unwrap();
     assert_eq!((flaws.as_slice(), golden.sections.len(), golden.text().lines().count()), (&[][..], 1, text.lines().count()));
