@@ -1,8 +1,8 @@
 //! Nearest points of surfaces.
 //!
 //! A surface is sampled once; a query starts a safeguarded Newton descent from the best few local minima among the
-//! samples; blocks of samples whose box is too far away are not looked at. The samples are finer than the bends of the curves below (at least four in every cell between knots), but
-//! this is sampling: a dent narrower than a sixteenth of a cell may be missed. The distance found is never below the true one.
+//! samples; blocks of samples whose box is too far away are not looked at. The samples are finer than the bends of the curves
+//! below (at least four in every cell between knots), but this is sampling: a dent narrower than a sixteenth of a cell may be missed. The distance found is never below the true one.
 
 use glam::DVec3;
 
@@ -50,6 +50,14 @@ struct Block {
     reach: f64,
 }
 
+impl Block {
+    /// The places of its samples among all, `nx` a row.
+    fn samples(&self, nx: usize) -> impl Iterator<Item = usize> + use<> {
+        let columns = self.columns;
+        (self.rows.0..self.rows.1).flat_map(move |j| (columns.0..columns.1).map(move |i| j * nx + i))
+    }
+}
+
 /// Samples along each side of a block.
 const BLOCK: usize = 8;
 /// A local minimum among the samples that is farther than the nearest sample by so many distances of neighbouring samples is
@@ -86,9 +94,12 @@ impl Nearest {
         for j in (0..ny).step_by(BLOCK) {
             for i in (0..nx).step_by(BLOCK) {
                 let (rows, columns) = ((j, (j + BLOCK).min(ny)), (i, (i + BLOCK).min(nx)));
-                let of = || (rows.0..rows.1).flat_map(|j| (columns.0..columns.1).map(move |i| j * nx + i));
-                let reach = of().map(|k| self.reach(k)).fold(0.0, f64::max);
-                self.blocks.push(Block { rows, columns, around: Box3::of(of().map(|k| self.points[k])), reach });
+                let mut block = Block { rows, columns, around: Box3::EMPTY, reach: 0.0 };
+                for k in block.samples(nx) {
+                    block.around = block.around.with(self.points[k]);
+                    block.reach = block.reach.max(self.reach(k));
+                }
+                self.blocks.push(block);
             }
         }
     }
@@ -131,16 +142,12 @@ impl Nearest {
     fn starts(&self, p: DVec3) -> Vec<usize> {
         let nx = self.xs.len();
         let far = |k: usize| self.points[k].distance_squared(p);
-        let of = |block: &Block| {
-            let (columns, rows) = (block.columns, block.rows);
-            (rows.0..rows.1).flat_map(move |j| (columns.0..columns.1).map(move |i| j * nx + i))
-        };
         let apart: Vec<f64> = self.blocks.iter().map(|block| block.around.distance_squared(p)).collect();
         let Some(first) = (0..apart.len()).min_by(|a, b| apart[*a].total_cmp(&apart[*b])) else { return Vec::new() };
-        let mut best = (f64::INFINITY, 0);
+        let mut best = f64::INFINITY;
         for b in std::iter::once(first).chain(0..apart.len()) {
-            if apart[b] < best.0 {
-                best = of(&self.blocks[b]).map(|k| (far(k), k)).fold(best, |best, next| if next.0 < best.0 { next } else { best });
+            if apart[b] < best {
+                best = self.blocks[b].samples(nx).map(far).fold(best, f64::min);
             }
         }
         let lowest = |k: usize| {
@@ -148,13 +155,13 @@ impl Nearest {
             let (low, high) = ((i.saturating_sub(1), j.saturating_sub(1)), ((i + 1).min(nx - 1), (j + 1).min(self.ys.len() - 1)));
             (low.1..=high.1).all(|b| (low.0..=high.0).all(|a| far(k) <= far(b * nx + a)))
         };
-        let nearest = best.0.sqrt();
+        let nearest = best.sqrt();
         let mut starts = Vec::new();
         for (block, apart) in self.blocks.iter().zip(&apart) {
             if apart.sqrt() > nearest + BEHIND * block.reach {
                 continue;
             }
-            starts.extend(of(block).filter(|&k| lowest(k) && far(k).sqrt() <= nearest + BEHIND * self.reach(k)));
+            starts.extend(block.samples(nx).filter(|&k| lowest(k) && far(k).sqrt() <= nearest + BEHIND * self.reach(k)));
         }
         starts.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
         starts

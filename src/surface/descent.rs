@@ -23,7 +23,8 @@ pub struct Minimum {
 /// Steps of one descent.
 const STEPS: usize = 60;
 
-/// Goes down from a place to a local minimum of `f` of the `jet` of each place in the square; never up. Variables at a border leave it only inwards.
+/// Goes down from a place to a local minimum of `f` of the `jet` of each place in the square; never up. Variables at a border
+/// leave it only inwards.
 ///
 /// Each step solves the shifted Newton equations; the shift grows until the value falls and shrinks when it falls as
 /// foreseen (Levenberg's rule), so the method is Newton's near a minimum.

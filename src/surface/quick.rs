@@ -112,8 +112,10 @@ impl Quick {
                 let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
                 let row = |j: usize| -> Vec<Third> {
                     let middle = |x: &[f64], k: usize| 0.5 * (x[k] + x[k + 1]);
-                    let jet = |i: usize| self.own_jet(middle(&us, i), middle(&vs, j));
-                    let normal = |i: usize| jet(i).du.cross(jet(i).dv).normalize_or_zero();
+                    let normal = |i: usize| {
+                        let jet = self.own_jet(middle(&us, i), middle(&vs, j));
+                        jet.du.cross(jet.dv).normalize_or_zero()
+                    };
                     (0..u_boxes.len()).map(|i| net.third(&u_boxes[i], &v_boxes[j], normal(i))).collect()
                 };
                 (0..v_boxes.len()).flat_map(row).collect()

@@ -7,6 +7,7 @@ use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
+use unicode_width::UnicodeWidthStr;
 
 use super::complete::{Known, call_at, candidates};
 use crate::lang::symbols::Symbol;
@@ -62,7 +63,7 @@ impl Hinter for Line {
         if at < line.len() || line.is_empty() {
             return None;
         }
-        let used = line.lines().last().map_or(0, |last| last.chars().map(|c| if c.is_ascii() { 1 } else { 2 }).sum());
+        let used = line.lines().last().map_or(0, UnicodeWidthStr::width);
         call_at(line).map(|(builtin, _)| fitting(format!("   {}", builtin.signature()), self.columns.saturating_sub(used + 1)))
     }
 }
