@@ -27,7 +27,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("tobj", &["src/io/obj"]),
     ("csv", &["src/io/table"]),
     ("ryu", &["src/base/text.rs"]),
-    ("unicode_width", &["src/lang/fmt/"]),
+    ("unicode_width", &["src/base/text.rs"]),
     ("png", &["src/draw/"]),
     ("pest", &["src/lang/syntax/"]),
     ("pest_derive", &["src/lang/syntax/"]),

@@ -5,6 +5,12 @@
 /// Digits of an `f64` need at most this many characters.
 const DIGITS: usize = 17;
 
+/// Columns a text of one line takes on a screen.
+#[must_use]
+pub fn columns(text: &str) -> usize {
+    unicode_width::UnicodeWidthStr::width(text)
+}
+
 /// Appends `x` with the fewest digits that read back to the same bits (`12.5`, `3`, `1e-7`).
 pub fn push_real(out: &mut Vec<u8>, x: f64) {
     let mut buffer = ryu::Buffer::new();

@@ -7,9 +7,9 @@ use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
-use unicode_width::UnicodeWidthStr;
 
 use super::complete::{Known, call_at, candidates};
+use crate::base::text::columns;
 use crate::lang::symbols::Symbol;
 use crate::lang::syntax::keywords::written;
 use crate::lang::syntax::outline::{Paint, painted};
@@ -63,7 +63,7 @@ impl Hinter for Line {
         if at < line.len() || line.is_empty() {
             return None;
         }
-        let used = line.lines().last().map_or(0, UnicodeWidthStr::width);
+        let used = line.lines().last().map_or(0, columns);
         call_at(line).map(|(builtin, _)| fitting(format!("   {}", builtin.signature()), self.columns.saturating_sub(used + 1)))
     }
 }

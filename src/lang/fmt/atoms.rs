@@ -5,8 +5,7 @@
 
 use std::ops::Range;
 
-use unicode_width::UnicodeWidthStr;
-
+use crate::base::text::columns;
 use crate::lang::syntax::{Kind, Tokens};
 
 /// A comment, `///` lines included.
@@ -75,7 +74,7 @@ pub(super) fn width(text: &str) -> u32 {
     if text.is_ascii() {
         return if text.len() > 120 && text.contains('\n') { MANY } else { text.len() as u32 };
     }
-    if text.contains('\n') { MANY } else { text.width() as u32 }
+    if text.contains('\n') { MANY } else { columns(text) as u32 }
 }
 
 /// More columns than any line has.
