@@ -110,3 +110,36 @@ surface face = trim(plane(rim), holes: [])";
         assert!(lines.contains("; least angle ") && lines.contains(reason), "{settings}: {lines}");
     }
 }
+
+/// A side with a piece of 0.01 between the corners of its neighbours.
+const SHORT_PIECE: &str = "surface a = ruled(line((0, 0, 0), (100, 0, 0)), line((0, 50, 0), (100, 50, 0)))
+surface b = ruled(line((0, 0, 0), (40, 0, 0)), line((0, 0, 20), (40, 0, 20)))
+surface c = ruled(line((40.01, 0, 0), (100, 0, 0)), line((40.01, 0, -20), (100, 0, -20)))
+shell all of [a, b, c]";
+/// A free face with a cut corner of 0.07 at the end of a mapped one.
+const CUT_CORNER: &str = "surface a = extrude(line((0, 0, 0), (100, 0, 0)), by: (0, 0, 30))
+surface top = trim(plane(polyline([(0, 0), (100, 0), (100.05, 0.05), (100.05, 60), (0, 60)], closed: true)), holes: [])
+shell all of [a, top]";
+/// A free face with a hole 0.1 from the side of a mapped one.
+const NEAR_ROWS: &str = "surface a = extrude(line((0, 0, 0), (100, 0, 0)), by: (0, 0, 30))
+curve eye = circle(center: (50, 10.1, 0), radius: 10)
+surface top = trim(plane(polyline([(0, 0), (100, 0), (100, 60), (0, 60)], closed: true)), holes: [eye])
+shell all of [a, top]";
+
+/// Rows give way where they would be as narrow as a short piece, or keep a free face from short steps; where they are written,
+/// and where they are of quads, they do not.
+#[test]
+fn rows_give_way() {
+    for (script, angle, most) in [(SHORT_PIECE, 30.0, 1700), (CUT_CORNER, 35.0, 1700), (NEAR_ROWS, 28.0, 1500)] {
+        let free = mesh(&format!("units mm\n{script}\nmesh m of all {{ size: 5mm }}\n"));
+        let least = free.quality().unwrap().min_angle.to_degrees();
+        assert!(least >= angle && free.triangles.len() <= most, "{least} degrees, {} triangles\n{script}", free.triangles.len());
+        for settings in ["on a { method: mapped }", "on a { count: 20 }"] {
+            let rows = mesh(&format!("units mm\n{script}\nmesh m of all {{ size: 5mm  {settings} }}\n"));
+            let least = rows.quality().unwrap().min_angle.to_degrees();
+            assert!(least < 10.0, "{settings}: {least} degrees\n{script}");
+        }
+    }
+    let quads = mesh(&format!("units mm\n{SHORT_PIECE}\nmesh m of all {{ size: 5mm  elements: quads }}\n"));
+    assert!(quads.triangles.is_empty() && quads.quads.len() < 400, "{} quads", quads.quads.len());
+}

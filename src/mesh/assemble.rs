@@ -17,7 +17,7 @@ use super::relations::Relations;
 use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Sizing};
-use super::{ahead, blame, inside, lines, second_order, shape_check, strips};
+use super::{ahead, blame, inside, lines, second_order, shape_check, strips, uneven};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -50,14 +50,11 @@ pub struct Part {
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
     inside::place(input, &mut layout);
     let mut narrow: Vec<Narrow> = Vec::new();
-    let mut sizing = Sizing::new(input, &mut layout, size, (known, &narrow))?;
-    ahead::refuse_large(input, &layout, &sizing, job)?;
     let limits = faces::limits_of(input);
-    let wishes = wishes(input, &layout, &sizing, &limits, known);
-    let mut relations = Relations::new(&layout, &wishes);
+    let (mut sizing, mut wishes, mut relations) = begin(input, &mut layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     let (mut looks, mut before) = (LOOKS, Vec::new());
-    for _ in 0..ROUNDS + LOOKS {
+    for _ in 0..ROUNDS + LOOKS + layout.faces.len() {
         job.go_on()?;
         let mut unknown = sizing.stretches(&layout);
         unknown.extend(relations.rows());
@@ -67,6 +64,14 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         let settled = counts == last;
         ahead::refuse_counts(input, &layout, (&sizing, &relations), &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
+        let uneven = uneven::look(&layout, &nodes, &sizing);
+        if !uneven.is_empty() {
+            uneven.into_iter().for_each(|(f, step)| layout.faces[f].uneven = Some(step));
+            (sizing, wishes, relations) = begin(input, &mut layout, size, (known, job))?;
+            narrow.clear();
+            (last, before) = (Vec::new(), Vec::new());
+            continue;
+        }
         let border = nodes.points(&layout, &input.plan.points);
         let made = Made { input, layout: &layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
         // Shorter steps that leave all counts as they are help no more.
@@ -106,6 +111,20 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         last = counts;
     }
     Err(relations.out_of_reach(input, &layout, &verdicts))
+}
+
+/// Sizes of everything, what rows want, and the equations between counts.
+fn begin(
+    input: &Input,
+    layout: &mut Layout,
+    size: f64,
+    (known, job): (Option<&Known>, &Job),
+) -> Result<(Sizing, Vec<[Wish; 2]>, Relations)> {
+    let sizing = Sizing::new(input, layout, size, (known, &[]))?;
+    ahead::refuse_large(input, layout, &sizing, job)?;
+    let wishes = wishes(input, layout, &sizing, &faces::limits_of(input), known);
+    let relations = Relations::new(layout, &wishes);
+    Ok((sizing, wishes, relations))
 }
 
 /// What the rows of each face want; nothing where all is written and no limit is set.

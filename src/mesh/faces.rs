@@ -1,6 +1,7 @@
 //! Faces ready to be filled: their charts, the ids of their border nodes, and how many nodes and elements they make.
 
 use crate::base::origin::Origin;
+use crate::base::text::real;
 use glam::DVec3;
 
 use super::build::Input;
@@ -12,6 +13,7 @@ use super::mapped;
 use super::nodes::Nodes;
 use super::plan::{Elements, Method, Plan};
 use super::trilateral::{Blocks, LatticeFrame};
+use super::uneven::Uneven;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
 use crate::model::SurfaceId;
@@ -73,7 +75,13 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
     for face in &mut layout.faces {
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let crossed = || (!face.lines.is_empty() || !face.points.is_empty()).then(|| crossed(face));
-        let why = unmappable(surface, face).or_else(crossed);
+        let uneven = || {
+            face.uneven.map(|why| match why {
+                Uneven::Row(step) => format!("with a piece of border of {}, as narrow as a row would be", short(step)),
+                Uneven::Beside(step) => format!("beside a free one that needs steps of {}, which rows do not follow", short(step)),
+            })
+        };
+        let why = unmappable(surface, face).or_else(crossed).or_else(uneven);
         let (of, at) = (surface.origin(), middle(input, face));
         let borderless = face.sides.iter().all(|s| s.uses.is_empty());
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
@@ -86,6 +94,11 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// A length with three digits that count.
+fn short(x: f64) -> String {
+    real(format!("{x:.2e}").parse().unwrap_or(x))
 }
 
 /// What lies inside a face, in words that follow "a face".

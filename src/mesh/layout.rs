@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::build::Input;
 use super::plan::{Elements, Method};
+use super::uneven::Uneven;
 use crate::model::atoms::{Atoms, Part, Use, atoms};
 use crate::model::gather::Station;
 use crate::model::glue::preference;
@@ -50,6 +51,8 @@ pub struct Face {
     pub near: f64,
     /// Sides in the order of the patch: four, or three of a triangle.
     pub sides: Vec<Border>,
+    /// What rows would have to follow, or keep others from following: it is made freely for that.
+    pub uneven: Option<Uneven>,
     /// Why it is made freely though no method says so, in words that follow "a face".
     pub why: Option<String>,
     /// Stretches of curves inside it.
@@ -197,6 +200,7 @@ impl Layout {
             size: (0.0, None),
             near: reach(input, std::iter::once(patch)),
             sides,
+            uneven: None,
             why: None,
             lines: Vec::new(),
             points: Vec::new(),

@@ -14,7 +14,7 @@ use super::gaps::{self, Beside, PLACES};
 use super::inside::trace;
 use super::layout::Layout;
 use super::narrow::Narrow;
-use super::sources::{Body, Source, Sources};
+use super::sources::{Body, STEEP, Source, Sources};
 use super::wanted::Wanted;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::base::{math, par};
@@ -175,16 +175,18 @@ pub struct Ask<'a> {
 }
 
 /// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
-/// Stretches of mapped faces follow the bends of free ones beside them and nothing else: their rows are even.
-pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
+/// Stretches of mapped faces follow the bends of free ones beside them and nothing else: their rows are even. The second
+/// list has the paces that those would have to follow, were they not.
+pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> (Vec<Option<Pace>>, Vec<Option<Pace>>) {
     let n = layout.pieces.atoms.len();
     let mut paces: Vec<Pace> = ask.size.iter().map(|s| Pace::even(*s)).collect();
     bends(input, layout, ask, &mut paces);
     let bent = paces.clone();
     let mut even = vec![false; n];
     layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|k| even[k] = true);
-    let walker = Walker { layout, ask, even: &even };
-    let gaps = walker.narrowed(input.plan.slope());
+    let least = if ask.wanted.written > 0.0 { ask.wanted.floor } else { input.tolerance.point };
+    let walker = Walker { layout, ask, even: &even, least };
+    let (gaps, strained) = walker.narrowed(input.plan.slope());
     for (pace, gap) in paces.iter_mut().zip(&gaps) {
         *pace = gap.as_ref().map_or_else(|| pace.clone(), |gap| lower_of(pace, gap));
     }
@@ -196,14 +198,16 @@ pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Vec<Option<Pace>> {
     }
     let bent = if ask.limits.chord.is_some() || ask.limits.angle.is_some() { bent } else { Vec::new() };
     walker.grade(&mut paces);
-    par::map(n, |k| {
+    let strained = walker.strained(&paces, strained);
+    let paces = par::map(n, |k| {
         let pace = &paces[k];
         let taken = ask.written[k].is_none() && pace.least() < ask.size[k] * (1.0 - EPSILON);
         taken.then(|| {
             let why = pace.at.iter().zip(&pace.lengths).map(|(f, l)| walker.why(k, (*f, *l), (bent.get(k), gaps[k].as_ref()))).collect();
             Pace { why, ..pace.clone() }
         })
-    })
+    });
+    (paces, strained)
 }
 
 /// Lowers paces to what the bends of free faces ask for.
@@ -247,6 +251,8 @@ struct Walker<'a> {
     layout: &'a Layout,
     ask: &'a Ask<'a>,
     even: &'a [bool],
+    /// The least length that others grow from, model units.
+    least: f64,
 }
 
 impl Walker<'_> {
@@ -265,16 +271,43 @@ impl Walker<'_> {
         }
     }
 
-    /// Paces of stretches by the borders that face them alone; longer by `slope` away from there.
-    fn narrowed(&self, slope: f64) -> Vec<Option<Pace>> {
-        let mut places: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.even.len()];
+    /// Paces of stretches by the borders that face them alone; longer by `slope` away from there. Those that rows of mapped
+    /// faces do not follow are apart.
+    fn narrowed(&self, slope: f64) -> (Vec<Option<Pace>>, Vec<Option<Pace>>) {
+        let mut places: [Vec<Vec<(f64, f64)>>; 2] = [vec![Vec::new(); self.even.len()], vec![Vec::new(); self.even.len()]];
         for narrow in self.ask.narrow {
-            if self.ask.written[narrow.stretch].is_none() && (narrow.must || !self.even[narrow.stretch]) {
-                places[narrow.stretch].push((narrow.f, narrow.size));
+            if self.ask.written[narrow.stretch].is_none() {
+                let left = usize::from(self.even[narrow.stretch] && !narrow.must);
+                places[left][narrow.stretch].push((narrow.f, narrow.size));
             }
         }
-        let pace = |k: usize| (!places[k].is_empty()).then(|| Pace::about(&places[k], self.ask.size[k], slope * self.layout.length(k)));
-        places.iter().enumerate().map(|(k, _)| pace(k)).collect()
+        let pace = |(k, places): (usize, &Vec<(f64, f64)>)| {
+            (!places.is_empty()).then(|| Pace::about(places, self.ask.size[k], slope * self.layout.length(k)))
+        };
+        let [taken, left] = places.map(|places| places.iter().enumerate().map(pace).collect());
+        (taken, left)
+    }
+
+    /// What stretches of mapped faces would be like if they followed what is beside them on free faces; nothing of others.
+    fn strained(&self, paces: &[Pace], narrow: Vec<Option<Pace>>) -> Vec<Option<Pace>> {
+        let mut found: Vec<Option<Pace>> = narrow;
+        for face in self.layout.faces.iter().filter(|face| face.free && !face.method.is_sparing()) {
+            let mut all: Vec<usize> = face.stretches().collect();
+            all.sort_unstable();
+            all.dedup();
+            let even: Vec<usize> = all.iter().copied().filter(|k| self.even[*k] && self.ask.written[*k].is_none()).collect();
+            if even.is_empty() {
+                continue;
+            }
+            let cap = all.iter().map(|k| self.ask.size[*k]).fold(0.0, f64::max);
+            let items: Vec<Source> = all.iter().flat_map(|k| self.steps_of(*k, &paces[*k], cap)).collect();
+            let sources = Sources::new(items, self.ask.wanted.sources.slope());
+            for k in even {
+                let pace = self.lowered(k, &paces[k], &sources);
+                found[k] = Some(found[k].as_ref().map_or_else(|| pace.clone(), |other| lower_of(other, &pace)));
+            }
+        }
+        found
     }
 
     /// Whether the steps of a stretch may vary.
@@ -367,9 +400,16 @@ impl Walker<'_> {
                     continue;
                 }
                 // The larger of both, so that no stretch lowers itself.
-                let size = a.2.max(b.2).max(floor);
+                let raw = a.2.max(b.2);
+                let size = raw.max(floor);
                 if size < least {
-                    found.push(Source { body: Body::Segment(a.1, b.1), radius: 0.0, size, tag: 0 });
+                    let source = Source { body: Body::Segment(a.1, b.1), radius: 0.0, size, steep: 1.0, tag: 0 };
+                    found.push(source);
+                    // From what is below the floor lengths grow fast up to it.
+                    let raw = raw.max(self.least);
+                    if raw < floor {
+                        found.push(Source { size: raw, steep: STEEP, ..source });
+                    }
                 }
             }
         }
@@ -436,7 +476,7 @@ impl Sampler<'_> {
         }
         let middle = self.place(0.5 * (a.f + b.f));
         // No source reaches the way at all.
-        if self.sources.who(middle.p, self.cap + self.sources.slope() * 0.5 * gap).is_none() {
+        if self.sources.who(middle.p, self.cap + self.sources.steepest() * 0.5 * gap).is_none() {
             return;
         }
         self.between(a, &middle, left - 1);

@@ -66,6 +66,8 @@ pub struct Sizing {
     pub homeless: Vec<Option<String>>,
     /// Steps of stretches that follow the bends of the faces beside them.
     pub paces: Vec<Option<Pace>>,
+    /// Steps that stretches of mapped faces would have to take for the free faces beside them.
+    pub strained: Vec<Option<Pace>>,
     /// The bias rule of each stretch.
     pub bias_rule: Vec<Option<usize>>,
     /// What `near`, `in` and `min_size` ask for.
@@ -143,7 +145,7 @@ impl Sizing {
         let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
         let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
         let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow };
-        sizing.paces = pace::along(input, layout, &ask);
+        (sizing.paces, sizing.strained) = pace::along(input, layout, &ask);
         sizing.mark_refined(input, layout, &sizes);
         let least = par::try_map(n, |k| {
             let bias = bias_of(k);

@@ -47,11 +47,11 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
     let (size, radius) = (refine.size.0, refine.radius);
     let of = |place: &Place| -> Vec<Source> {
         match place {
-            Place::Point(p) => vec![Source { body: Body::Point(*p), radius, size, tag }],
-            Place::Box(b) => vec![Source { body: Body::Box(*b), radius: 0.0, size, tag }],
+            Place::Point(p) => vec![Source { body: Body::Point(*p), radius, size, steep: 1.0, tag }],
+            Place::Box(b) => vec![Source { body: Body::Box(*b), radius: 0.0, size, steep: 1.0, tag }],
             Place::Chain(chain) => {
                 let off = OFF * size;
-                let piece = |(a, b)| Source { body: Body::Segment(a, b), radius: radius + off, size, tag };
+                let piece = |(a, b)| Source { body: Body::Segment(a, b), radius: radius + off, size, steep: 1.0, tag };
                 pieces(chain, off).into_iter().map(piece).collect()
             }
         }
@@ -91,7 +91,7 @@ pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &S
         let p = if triangle && x + y > 1.0 { surface.point(u.0, v.0) } else { surface.point(x, y) };
         let reach = (p - bounds.min).max(bounds.max - p).length();
         let now = best.map_or(most, |b| b.size);
-        let Some(here) = sources.who(p, now + sources.slope() * reach) else { continue };
+        let Some(here) = sources.who(p, now + sources.steepest() * reach) else { continue };
         if here.size < now {
             best = Some(here);
             if here.size <= sources.least() {
@@ -99,7 +99,7 @@ pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &S
             }
         }
         let now = best.map_or(most, |b| b.size);
-        if (here.size - sources.slope() * reach).max(sources.least()) >= now * (1.0 - NEARLY) {
+        if (here.size - sources.steepest() * reach).max(sources.least()) >= now * (1.0 - NEARLY) {
             continue;
         }
         let jet = surface.jet(x, y);

@@ -26,7 +26,7 @@ pub struct Taken {
 crate::plain!(Taken { free, made, deciders, tally });
 crate::plain!(Decider { why, nodes, at });
 crate::plain!(Tally { whole, crossed, corners, agree });
-crate::content!(Source { body, radius, size, tag });
+crate::content!(Source { body, radius, size, steep, tag });
 
 impl Content for Body {
     fn tell(&self, to: &mut Digester) {

@@ -25,7 +25,7 @@ use crate::mesh::free::size::{Background, Blend};
 use crate::mesh::free::web::Web;
 use crate::mesh::layout::Face;
 use crate::mesh::plan::{Elements, Method};
-use crate::mesh::sources::{Body, Source, Sources};
+use crate::mesh::sources::{Body, STEEP, Source, Sources};
 use crate::mesh::wanted::floor_keeps;
 use crate::surface::Surface;
 
@@ -159,17 +159,21 @@ impl Fit<'_> {
     /// sides are long.
     pub(super) fn short_edges(&self, background: Option<&Background>, spacing: f64) -> Vec<Source> {
         let growth = 1.0 + self.made.input.plan.slope();
-        let source = |edge: [u32; 2]| {
+        let least = if self.made.wanted.written > 0.0 { self.made.wanted.floor } else { self.made.input.tolerance.point };
+        let sources = |edge: [u32; 2]| {
             let [a, b] = edge.map(|n| n as usize);
             let size = self.outline.length(edge);
             let (xy, p) = (0.5 * (self.outline.xy[a] + self.outline.xy[b]), 0.5 * (self.outline.p[a] + self.outline.p[b]));
             let there = background.map_or(f64::INFINITY, |field| field.size(xy, p)).min(self.face.size.0 * SPACING);
             let body = Body::Segment(self.outline.p[a], self.outline.p[b]);
-            let from = size.max(self.made.wanted.floor);
+            let from = [(size.max(self.made.wanted.floor), 1.0), (size.max(least), STEEP)];
             // Nodes are as far from it as it is long.
-            (size > 0.0 && from * growth < there).then_some(Source { body, radius: 0.0, size: from / spacing, tag: BORDER })
+            let source = |(from, steep)| Source { body, radius: 0.0, size: from / spacing, steep, tag: BORDER };
+            let asks = |from: &(f64, f64)| size > 0.0 && from.0 * growth < there;
+            // What is below the floor asks twice.
+            from.into_iter().take(if from[1].0 < from[0].0 { 2 } else { 1 }).filter(asks).map(source).collect::<Vec<_>>()
         };
-        self.outline.edges().filter_map(source).collect()
+        self.outline.edges().flat_map(sources).collect()
     }
 
     fn task<'t>(&'t self, field: &'t dyn Field, broken: &'t Broken<'t>) -> Task<'t> {

@@ -87,7 +87,7 @@ impl Work<'_> {
             return (size, Why::Size);
         }
         // Lengths change by the slope, so what is asked at the middle bounds what is asked all over the box.
-        let reach = rules.slope() * 0.5 * lengths.length();
+        let reach = rules.steepest() * 0.5 * lengths.length();
         let p = self.point(0.5 * (low + high));
         match rules.who(p, size + reach) {
             Some(least) => ((least.size - reach).max(rules.least()), Why::Refined(rules.items()[least.item as usize].tag as usize)),
