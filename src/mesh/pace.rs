@@ -436,6 +436,8 @@ struct Spot {
     f: f64,
     p: DVec3,
     length: f64,
+    /// What the stretch wants there before the sources.
+    own: f64,
     /// The source that decides, whatever the size of the stretch.
     item: Option<u32>,
 }
@@ -455,7 +457,7 @@ impl Sampler<'_> {
         let own = self.pace.length_at(f).min(self.cap);
         let found = self.sources.who(p, own);
         let length = found.map_or(own, |l| l.size);
-        Spot { f, p, length, item: found.map(|l| l.item) }
+        Spot { f, p, length, own, item: found.map(|l| l.item) }
     }
 
     fn take(&mut self, spot: &Spot) {
@@ -466,8 +468,8 @@ impl Sampler<'_> {
     /// Halves the way between two places until lengths can hardly change on it.
     fn between(&mut self, a: &Spot, b: &Spot, left: u32) {
         let gap = (b.f - a.f) * self.walker.layout.length(self.k);
-        // Nothing asks for less than is there.
-        let settled = a.length.max(b.length) <= self.sources.least() * (1.0 + WHOLE_NUMBER);
+        // No source asks for less than is there already; what sources ask for at both ends says nothing of the way between.
+        let settled = a.own.max(b.own) <= self.sources.least() * (1.0 + WHOLE_NUMBER);
         if left == 0 || settled || gap <= APART * a.length.min(b.length) || self.made.at.len() >= MOST_PLACES {
             return;
         }
