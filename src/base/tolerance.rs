@@ -31,6 +31,8 @@ pub const PARALLEL: f64 = 1e-9;
 pub const EPSILON: f64 = 1e-14;
 /// Share of the largest speed below which a curve stands still: a cusp (math notes §4).
 pub const CUSP: f64 = 1e-10;
+/// Two runs of a loop that meet within the tolerance and are farther apart than this share of it do not cross each other.
+pub const BESIDE: f64 = 1e-3;
 /// Least interval, as a share of the domain, over which a direction is taken where derivatives vanish.
 pub const NUDGE: f64 = 1e-6;
 /// Step of a Newton iteration, as a share of the piece, after which one more would change nothing.

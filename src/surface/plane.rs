@@ -21,7 +21,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{CurveEnd, CurveFault, Fault, NetworkFault, Result, SurfaceFault};
 use crate::base::math;
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{BESIDE, Tolerance};
 use crate::geometry::{Hit, Motion, self_intersect};
 use crate::network::{Chain, Flow, FlowKind, meet};
 
@@ -235,11 +235,15 @@ fn fitted(walk: &[Step], tolerance: &Tolerance) -> Result<Frame> {
     Ok(Frame { origin: center + eu * u0 + ev * v0, eu: eu * (u1 - u0), ev: ev * (v1 - v0) })
 }
 
-/// E611 when curves of the boundary meet away from the ends that the walk joins.
+/// E611 when curves of the boundary meet away from the ends that the walk joins, or come as near to each other as the tolerance.
 pub(super) fn simple(walk: &[Step], tolerance: &Tolerance) -> Result<()> {
     let n = walk.len();
-    let crossing = |a: usize, b: usize, at: DVec3, along: (f64, f64)| {
-        Fault::from(SurfaceFault::LoopSelfIntersects { a: walk[a].0.origin(), b: walk[b].0.origin(), at, along })
+    let crossing = |(a, b): (usize, usize), at: DVec3, along: (f64, f64), apart: f64| -> Fault {
+        let (a, b) = (walk[a].0.origin(), walk[b].0.origin());
+        match apart > BESIDE * tolerance.point {
+            true => NetworkFault::LoopThin { a, b, at, apart, tolerance: tolerance.point }.into(),
+            false => SurfaceFault::LoopSelfIntersects { a, b, at, along }.into(),
+        }
     };
     for a in 0..n {
         for b in a + 1..n {
@@ -253,18 +257,21 @@ pub(super) fn simple(walk: &[Step], tolerance: &Tolerance) -> Result<()> {
             for hit in meet(&walk[a].0, &walk[b].0, tolerance)? {
                 let joined = joints.iter().any(|p| p.distance(hit.point) <= 2.0 * tolerance.point);
                 if !joined || hit.shared_to.is_some() {
-                    return Err(crossing(a, b, hit.point, (hit.fa, hit.fb)));
+                    let gap = |fa: f64, fb: f64| walk[a].0.point(fa).distance(walk[b].0.point(fb));
+                    let apart = hit.shared_to.map_or(f64::INFINITY, |(fa, fb)| gap(fa, fb)).min(gap(hit.fa, hit.fb));
+                    return Err(crossing((a, b), hit.point, (hit.fa, hit.fb), apart));
                 }
             }
         }
         let curve = walk[a].0.to_curve()?;
         let own = |t: f64| curve.length_at(t) / curve.length();
         if let Some(hit) = self_intersect(&curve, tolerance)?.first() {
-            let (at, along) = match hit {
-                Hit::Point { ta, tb, at, .. } => (*at, (own(*ta), own(*tb))),
-                Hit::Overlap { a, b } => (curve.point(a.0), (own(a.0), own(b.0))),
+            let gap = |ta: f64, tb: f64| curve.point(ta).distance(curve.point(tb));
+            let (at, along, apart) = match hit {
+                Hit::Point { ta, tb, at, gap, .. } => (*at, (own(*ta), own(*tb)), *gap),
+                Hit::Overlap { a, b } => (curve.point(a.0), (own(a.0), own(b.0)), gap(a.0, b.0).min(gap(a.1, b.1))),
             };
-            return Err(crossing(a, a, at, along));
+            return Err(crossing((a, a), at, along, apart));
         }
     }
     Ok(())

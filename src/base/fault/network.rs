@@ -73,6 +73,19 @@ pub enum NetworkFault {
         /// A tolerance that keeps them apart.
         smaller: f64,
     },
+    /// E611: a loop comes as near to itself as the tolerance, and does not cross itself.
+    LoopThin {
+        /// One curve.
+        a: Origin,
+        /// The other one (or the same).
+        b: Origin,
+        /// Where.
+        at: DVec3,
+        /// Distance of the two there, model units.
+        apart: f64,
+        /// The tolerance applied.
+        tolerance: f64,
+    },
     /// E507: two curves do not meet.
     NoMeeting {
         /// First curve and its nearest point.
@@ -247,6 +260,24 @@ impl Describe for NetworkFault {
                 }
                 let smaller = typed(say, *smaller);
                 report.help(format!("`tolerance {smaller}` keeps them apart")).edit(Subject::Call, Edit::Declare("tolerance", smaller))
+            }
+            Self::LoopThin { a, b, at, apart, tolerance } => {
+                let smaller = typed(say, round_down(0.5 * apart.min(*tolerance)));
+                Report::new(
+                    "E611",
+                    format!(
+                        "the boundary comes too near to itself: {} and {} are {} apart at {}, within the tolerance of {}",
+                        say.quoted(*a, "one curve"),
+                        if a == b { "itself".to_owned() } else { say.quoted(*b, "another one") },
+                        say.length(*apart),
+                        say.point(*at),
+                        say.length(*tolerance)
+                    ),
+                )
+                .at(*a, "this curve")
+                .at(*b, "runs beside this one")
+                .help(format!("`tolerance {smaller}` keeps them apart"))
+                .edit(Subject::Call, Edit::Declare("tolerance", smaller))
             }
             Self::NoMeeting { a, b, near, tolerance } => no_meeting(*a, *b, (*near, *tolerance), say),
             Self::PointOff { of, point, nearest, tolerance } => Report::new(
