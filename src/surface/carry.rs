@@ -1,5 +1,6 @@
 //! Curves carried to a surface: its points under a curve in (u, v), the feet of a curve in space, or where a curve meets
-//! the surface along a direction. None has an exact form in general: cubics within a quarter of the tolerance.
+//! the surface along a direction. Curves in (u, v) of planes and nets are exact where their degree allows (`compose`); the
+//! others have no exact form in general: cubics within a quarter of the tolerance.
 
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::Jet2;
 use super::breaks::chain_breaks;
 use super::closest::Nearest;
-use super::core::Surface;
+use super::core::{Domain, Surface};
 use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
@@ -98,7 +99,7 @@ struct Carrier<'a> {
     way: Way,
 }
 
-/// The curve on the surface, as long as the given one is in its parameter.
+/// The curve on the surface.
 ///
 /// Fails with E613 where the curve leaves the surface (its parameters, or the direction misses it), E413 where the result
 /// has a cusp.
@@ -111,17 +112,27 @@ pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
         at,
         tolerance: tolerance.point,
     };
-    let missed = |f: f64| off(chain.point(f), carrier.near.at(chain.point(f)).distance);
+    let missed = |f: f64| match (way, chain.point(f)) {
+        (Way::Parameters, p) => SurfaceFault::LoopOutsideParameters { of: chain.origin(), surface: surface.origin(), uv: (p.x, p.y) },
+        (_, p) => off(p, carrier.near.at(p).distance),
+    };
     let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
     let land = |f: f64, guess: Option<DVec2>, before: bool| carrier.at(f, guess, before).ok_or_else(|| Fault::from(missed(f)));
     let lost = |at| CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at }.into();
+    if let (Way::Parameters, Some(curve)) = (way, super::compose::exact(surface, chain, origin)) {
+        return long_enough(curve, tolerance);
+    }
     let fitted = |stops: &[f64]| cubics(stops, SHARE * tolerance.point, land, lost);
     // Long steps may land on another sheet of the surface, short ones follow their own.
     let pieces = fitted(&stops).or_else(|_| fitted(&walked(&stops)))?;
     let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(&pieces))), Kind::Project, origin);
+    long_enough(curve, tolerance)
+}
+
+fn long_enough(curve: Curve, tolerance: &Tolerance) -> Result<Curve> {
     let length = curve.length();
     if length <= tolerance.point {
-        return Err(CurveFault::ZeroLength { of: origin, length, tolerance: tolerance.point }.into());
+        return Err(CurveFault::ZeroLength { of: curve.origin(), length, tolerance: tolerance.point }.into());
     }
     Ok(curve)
 }
@@ -153,8 +164,9 @@ impl Carrier<'_> {
             Way::Parameters => {
                 let uv = DVec2::new(jet.p.x, jet.p.y);
                 let inside = |x: f64| (-NUDGE..=1.0 + NUDGE).contains(&x);
+                let endless = self.surface.domain() == Domain::Unbounded;
                 let (closed_u, closed_v) = self.surface.closed();
-                if !(closed_u || inside(uv.x)) || !(closed_v || inside(uv.y)) {
+                if !(endless || (closed_u || inside(uv.x)) && (closed_v || inside(uv.y))) {
                     return None;
                 }
                 let s = self.surface.jet(uv.x, uv.y);

@@ -6,6 +6,7 @@ mod blend_spread;
 mod breaks;
 pub mod carry;
 pub mod closest;
+mod compose;
 pub mod coons;
 pub mod core;
 mod descent;

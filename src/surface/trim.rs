@@ -9,6 +9,7 @@ use super::lone::{Keep, lone};
 use super::plane;
 use super::pull::{Course, Pull, foot};
 use super::shape::Shape;
+use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::predicates::{Side as Within, point_in_polygon};
@@ -95,6 +96,10 @@ pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
 /// a loop goes round the surface and bounds nothing alone, E613 when a loop leaves the surface.
 pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let mut base = plane::unmapped(base, tolerance)?;
+    if base.domain() == Domain::Unbounded {
+        // As much of it as the loop needs, with the frame that planes have.
+        base = plane::over(&base, outer.iter().map(Chain::bbox).fold(Box3::EMPTY, Box3::union));
+    }
     let goes_round = |base: &Surface, chains: &[Chain]| -> Fault {
         let of = chains.first().map_or(origin, Chain::origin);
         let at = chains.first().map_or(DVec3::ZERO, Chain::start);

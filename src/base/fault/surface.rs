@@ -259,6 +259,15 @@ pub enum SurfaceFault {
         /// The model's tolerance.
         tolerance: f64,
     },
+    /// E613: a loop in (u, v) that leaves 0…1.
+    LoopOutsideParameters {
+        /// The curve.
+        of: Origin,
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        uv: (f64, f64),
+    },
     /// E616: no choice of sides makes every edge be used in opposite senses.
     ShellNotOrientable {
         /// The shell.
@@ -567,6 +576,12 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         .at(*of, "this loop")
         .at(*surface, "this surface")
         .help("build the curve on the surface, or `project` it"),
+        F::LoopOutsideParameters { of, surface, uv } => {
+            let (curve, of_surface) = (say.quoted(*of, "the curve"), say.quoted(*surface, "the surface"));
+            Report::new("E613", format!("{curve} leaves {of_surface} at u = {:.6}, v = {:.6}: both run from 0 to 1", uv.0, uv.1))
+                .at(*of, "x and y of this loop are u and v")
+                .at(*surface, "this surface")
+        }
         F::LoopSelfIntersects { a, b, at, along } => Report::new(
             "E611",
             format!(
@@ -760,6 +775,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::LoopOutside { .. }
         | F::LoopGoesRound { .. }
         | F::LoopOutsideSurface { .. }
+        | F::LoopOutsideParameters { .. }
         | F::SliverPatch { .. }
         | F::AxisNotStraight { .. }
         | F::GeneratrixOnAxis { .. }

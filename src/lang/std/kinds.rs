@@ -62,6 +62,16 @@ one_of! {
 }
 
 one_of! {
+    /// What is trimmed.
+    Trimmed {
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+        /// An unbounded plane.
+        Plane(Arc<Plane>) = Ty::Plane, Value::Plane(p) => Self::Plane(p);
+    }
+}
+
+one_of! {
     /// What cuts a surface.
     Cutters {
         /// A curve.

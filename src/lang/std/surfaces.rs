@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::curves::unit;
-use super::kinds::Cutters;
+use super::kinds::{Cutters, Trimmed};
 use super::transforms::axis_line;
 use crate::base::fault::{Fault, ValueFault};
 use crate::builtins;
@@ -253,11 +253,12 @@ builtins! {
     /// curve rim = circle(center: (0, 0, 0), radius: 1m)
     /// curve eye = circle(center: (300mm, 0, 0), radius: 200mm)
     /// surface lid = trim(plane(rim), holes: [eye])
+    /// surface ring = trim(plane(at: (0, 0, 0), normal: (0, 0, 1)), outer: rim, holes: [eye])
     /// surface half = trim(lid, by: plane(at: (0, 0, 0), normal: (1, 0, 0)), keep: (-500mm, 0, 0))
     /// ```
     fn trim(
-        /// The surface that is trimmed.
-        s: Surface,
+        /// The surface that is trimmed; of an unbounded plane, the part inside `outer:`.
+        s: Trimmed,
         /// Curves of the outer loop.
         outer: Option<Ring>,
         /// A curve, or a list of curves, for each hole.
@@ -266,10 +267,18 @@ builtins! {
         by: Option<Cutters>,
         /// A point of the part that stays.
         keep: Option<Point>,
-        /// Whether x and y of the curves of loops are u and v of the surface.
+        /// Whether x and y of the curves of loops are u and v of the surface; of an unbounded plane, lengths from its point.
         uv: bool = "false",
     ) -> Surface = |cx, s, outer, holes, by, keep, uv| {
         let tolerance = cx.tolerance()?;
+        let s = match s {
+            Trimmed::Surface(s) => s,
+            Trimmed::Plane(_) if outer.is_none() => {
+                let what = "an outer loop: the plane has no border of its own";
+                return Err(ValueFault::Missing { function: "trim", what, example: "trim(s, outer: c)" }.into());
+            }
+            Trimmed::Plane(p) => plane::unbounded(p.at, p.normal, cx.origin())?,
+        };
         let mut outer = outer.map(|ring| ring.0).unwrap_or_default();
         let mut holes: Vec<Vec<Chain>> = holes.unwrap_or_default().into_iter().map(|ring| ring.0).collect();
         if uv {
