@@ -52,7 +52,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_800),
     ("geometry", 5_500),
     ("network", 3_500),
-    ("surface", 9_600),
+    ("surface", 9_900),
     ("model", 3_200),
     ("mesh", 17_600),
     ("io", 8_500),
