@@ -59,7 +59,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         let mut unknown = sizing.stretches(&layout);
         unknown.extend(relations.rows());
         let (counts, strip) = strips::solve(&unknown, &relations.list, MOST).map_err(|c| relations.fault(input, &layout, &sizing, &c))?;
-        relations.refuse_odd_loops(input, &layout, &sizing, &counts)?;
+        relations.refuse_odd_borders(input, &layout, &sizing, &counts)?;
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
         ahead::refuse_counts(input, &layout, (&sizing, &relations), &counts)?;

@@ -70,7 +70,7 @@ fn of_face(made: &Made, face: &Face) -> Vec<Narrow> {
     let gaze = Gaze { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
     let mut found = gaze.polygon();
     if face.takes_quads()
-        && let Some(halves) = super::free::face::halved(made, face, &border, &outline, false)
+        && let Some(halves) = super::free::face::halved(made, face, &border, &outline)
     {
         let ids: Vec<u32> = halves.of.iter().map(|n| border.ids[*n as usize]).collect();
         found.extend(Gaze { outline: &halves.outline, ids: &ids, ..gaze }.crossings());
@@ -99,7 +99,7 @@ fn bits(made: &Made, face: &Face) -> BTreeMap<(u32, u32), Bit> {
         let ids = made.nodes.of_stretch(made.layout, stretch, false);
         let at = made.nodes.fractions(stretch, false);
         for step in 1..=if face.takes_quads() { 2 } else { 1 } {
-            for k in (0..ids.len().saturating_sub(step)).step_by(step) {
+            for k in 0..ids.len().saturating_sub(step) {
                 let (a, b) = (ids[k], ids[k + step]);
                 bits.entry((a.min(b), a.max(b))).or_insert(Bit { stretch, first: a, f: (at[k], at[k + step]) });
             }

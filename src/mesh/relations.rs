@@ -10,7 +10,6 @@ use super::strips::{Conflict, Relation, Stretch};
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
-use crate::surface::Domain;
 
 /// A direction of a face as an unknown: what its rows want.
 #[derive(Clone, Debug)]
@@ -44,6 +43,10 @@ impl Relations {
         for (index, face) in layout.faces.iter().enumerate() {
             relations.of_face.push(Vec::new());
             if face.free {
+                if face.takes_quads() {
+                    let round = face.sides.iter().flat_map(|s| s.stretches()).collect();
+                    relations.push(index, Relation::EvenSum(round));
+                }
                 continue;
             }
             if !face.is_triangle() {
@@ -114,20 +117,15 @@ impl Relations {
         }
     }
 
-    /// E704 where free quads have a loop with an odd number of steps.
-    pub fn refuse_odd_loops(&self, input: &Input, layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Result<()> {
+    /// E704 where free quads have a border with an odd number of steps in all.
+    pub fn refuse_odd_borders(&self, input: &Input, layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Result<()> {
         for face in layout.faces.iter().filter(|f| f.takes_quads()) {
-            let surface = &input.model.surfaces[face.surface.index()].surface;
-            let loops = if surface.domain() == Domain::Loop { surface.loops() } else { vec![face.sides.len()] };
-            let mut sides = face.sides.as_slice();
-            for n in loops {
-                let (own, others) = sides.split_at(n.min(sides.len()));
-                sides = others;
-                let odd: Vec<usize> = own.iter().flat_map(|s| &s.uses).map(|u| u.atom).filter(|k| counts[*k] % 2 == 1).collect();
-                if odd.len() % 2 == 1 {
-                    let needs = odd[odd.len() - 1];
-                    return Err(self.fault(input, layout, sizing, &Conflict::Odd { written: Some(needs), needs }));
-                }
+            let round = face.sides.iter().flat_map(|s| &s.uses).map(|u| u.atom);
+            let odd: Vec<usize> = round.filter(|k| counts[*k] % 2 == 1).collect();
+            if odd.len() % 2 == 1 {
+                let written = odd.iter().copied().find(|k| sizing.decisions[*k].count.is_some());
+                let needs = written.unwrap_or(odd[0]);
+                return Err(self.fault(input, layout, sizing, &Conflict::Odd { written, needs }));
             }
         }
         Ok(())

@@ -193,7 +193,7 @@ impl Sizing {
     pub fn stretches(&self, layout: &Layout) -> Vec<Stretch> {
         let mut even = vec![false; self.decisions.len()];
         layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| even[s] = true);
-        // A written count may be odd where another one of the loop is.
+        // A written count may be odd where another one of the face is.
         let sides = layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| &s.uses);
         sides.filter(|u| self.decisions[u.atom].count.is_some()).for_each(|u| even[u.atom] = false);
         let one = |(k, d): (usize, &Decision)| Stretch {
@@ -538,9 +538,9 @@ fn shapes(layout: &Layout) -> Vec<u32> {
     let n = layout.pieces.atoms.len();
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by_key(|k| (ends(*k), *k));
-    // Free quads come from cells of twice the length, whose borders may not fall together either.
-    let mut cells = vec![1; n];
-    layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| cells[s] = 2);
+    // Free quads come from cells whose sides are two steps, or one where a count is odd; those may not fall together either.
+    let mut halved = vec![false; n];
+    layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| halved[s] = true);
     let mut least = vec![1; n];
     for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
         let length = |k: &usize| layout.pieces.atoms[*k].length();
@@ -548,12 +548,12 @@ fn shapes(layout: &Layout) -> Vec<u32> {
         let alike = group.iter().filter(|k| length(k) <= shortest * (1.0 + WHOLE_NUMBER)).count();
         for k in group {
             let (a, b) = ends(*k);
-            least[*k] = cells[*k]
-                * match () {
-                    () if a == b => 3,
-                    () if group.len() == 1 || (alike == 1 && length(k) == shortest) => 1,
-                    () => 2,
-                };
+            let sides = match () {
+                () if a == b => 3,
+                () if group.len() == 1 || (alike == 1 && length(k) == shortest) => 1,
+                () => 2,
+            };
+            least[*k] = if halved[*k] { 2 * sides - 1 } else { sides };
         }
     }
     least

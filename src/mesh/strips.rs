@@ -20,7 +20,7 @@ pub struct Stretch {
     pub written: Option<u32>,
     /// Length, model units; the longest step is the first to be halved.
     pub length: f64,
-    /// The count has to be even.
+    /// The count is even, unless a written one leaves no way: quads that no map gives are best so.
     pub even: bool,
 }
 
@@ -29,6 +29,8 @@ pub struct Stretch {
 pub enum Relation {
     /// Both sums are equal.
     Equal(Vec<usize>, Vec<usize>),
+    /// The border of quads that no map gives: an even sum.
+    EvenSum(Vec<usize>),
     /// Three sides filled with quads: an even sum, each side less than the other two together.
     ThreeSides([Vec<usize>; 3]),
 }
@@ -176,13 +178,12 @@ impl<'a> Solver<'a> {
         if needed.is_empty() {
             return Ok(());
         }
-        let odd = |strip: &&Strip| strip.fixed.is_some_and(|f| f.0 % 2 == 1);
-        if let Some((needs, strip)) = self.strips.iter().filter(odd).find_map(|strip| Some((strip.even?, strip))) {
-            return Err(Conflict::Odd { written: strip.fixed.map(|f| f.1), needs });
-        }
-        let known: Vec<Option<bool>> = self.strips.iter().map(|s| s.even.map(|_| false).or(s.fixed.map(|f| f.0 % 2 == 1))).collect();
         let sums: Vec<Sum> = self.relations.iter().map(|relation| self.sum_of(relation)).collect();
-        let found = parity::solve(&known, &needed, &sums).map_err(|relation| self.odd(&sums[relation]))?;
+        let written: Vec<Option<bool>> = self.strips.iter().map(|s| s.fixed.map(|f| f.0 % 2 == 1)).collect();
+        let even: Vec<Option<bool>> = self.strips.iter().zip(&written).map(|(s, w)| w.or(s.even.map(|_| false))).collect();
+        // All even where that can be; else as few as equations leave are not.
+        let found = parity::solve(&even, &needed, &sums).or_else(|_| parity::solve(&written, &needed, &sums));
+        let found = found.map_err(|relation| self.odd(&sums[relation]))?;
         self.strips.iter_mut().zip(found).for_each(|(strip, odd)| strip.odd = odd);
         for strip in &mut self.strips {
             strip.least.0 = strip.from(strip.least.0);
@@ -201,6 +202,7 @@ impl<'a> Solver<'a> {
         };
         match relation {
             Relation::Equal(a, b) => a.iter().chain(b).for_each(&mut add),
+            Relation::EvenSum(all) => all.iter().for_each(&mut add),
             Relation::ThreeSides(sides) => sides.iter().flatten().for_each(&mut add),
         }
         sum
@@ -235,6 +237,7 @@ impl<'a> Solver<'a> {
             for r in 0..self.relations.len() {
                 changed |= match &self.relations[r] {
                     Relation::Equal(a, b) => self.pass_over(r, a, b)?,
+                    Relation::EvenSum(_) => false,
                     Relation::ThreeSides(sides) => self.pass_corner(r, sides)?,
                 };
             }
@@ -374,6 +377,7 @@ impl<'a> Solver<'a> {
             for r in 0..self.relations.len() {
                 changed |= match &self.relations[r] {
                     Relation::Equal(a, b) => self.raise_over(r, a, b)?,
+                    Relation::EvenSum(_) => false,
                     Relation::ThreeSides(sides) => self.raise_corner(r, sides)?,
                 };
             }
@@ -466,6 +470,7 @@ mod tests {
             for relation in relations {
                 match relation {
                     Relation::Equal(a, b) => assert_eq!(sum(a), sum(b)),
+                    Relation::EvenSum(all) => assert_eq!(sum(all) % 2, 0),
                     Relation::ThreeSides(s) => {
                         let [a, b, c] = [sum(&s[0]), sum(&s[1]), sum(&s[2])];
                         assert!((a + b + c) % 2 == 0 && a < b + c && b < a + c && c < a + b, "{a} {b} {c}");
@@ -539,10 +544,13 @@ mod tests {
 
     #[test]
     fn odd_counts_that_must_be_even_are_refused() {
-        let odd = Stretch { even: true, ..written(5) };
-        check(&[odd], &[], Err(Conflict::Odd { written: Some(0), needs: 0 }));
-        check(&[even(4), written(7)], &[equal(&[0], &[1])], Err(Conflict::Odd { written: Some(1), needs: 0 }));
-        check(&[even(4), written(7), written(4)], &[equal(&[0], &[1, 2])], Err(Conflict::Odd { written: Some(1), needs: 0 }));
+        let border = |all: &[usize]| Relation::EvenSum(all.to_vec());
+        check(&[even(5), written(7)], &[border(&[0, 1])], Ok(&[5, 7]));
+        check(&[even(5), even(4), written(7)], &[border(&[0, 1, 2])], Ok(&[5, 4, 7]));
+        check(&[even(4), written(7)], &[equal(&[0], &[1]), border(&[0])], Err(Conflict::Odd { written: Some(1), needs: 0 }));
+        let both = [equal(&[0], &[1, 2]), border(&[0, 3])];
+        check(&[even(4), written(7), written(4), written(6)], &both, Err(Conflict::Odd { written: Some(1), needs: 0 }));
+        check(&[even(4), written(7), written(4), written(5)], &both, Ok(&[11, 7, 4, 5]));
     }
 
     #[test]

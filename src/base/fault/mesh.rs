@@ -91,7 +91,7 @@ pub enum MeshFault {
         /// Surface, number of triangles, place.
         places: Vec<(Origin, u64, DVec3)>,
     },
-    /// E704: a written count that is odd, or makes a count odd, on the border of quads that no map gives.
+    /// E704: counts that make the border of quads that no map gives odd in all.
     OddCount {
         /// The count and its expression; none where other faces alone are behind it.
         count: (u32, Origin),
@@ -382,7 +382,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 let even = (count.0 + 1).to_string();
                 report = report.at(count.1, steps(count.0)).help(format!("count: {even}")).edit(Subject::Entity(count.1), Edit::Put(even));
             }
-            report.at(*surface, "has no map, so that each loop of its border takes an even number of steps in all")
+            report.at(*surface, "has no map, so that its border takes an even number of steps in all")
         }
         F::TrianglesOnly { of, method, surface, at } => {
             Report::new("E704", format!("only quads is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))

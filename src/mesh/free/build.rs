@@ -52,6 +52,8 @@ pub enum Trouble {
     Empty,
     /// More nodes than allowed.
     Full,
+    /// Lines inside part the odd counts of a border.
+    Odd,
     /// A quadtree has to be deeper than it may be here.
     Deep(DVec3),
 }

@@ -25,6 +25,7 @@ use super::tree::DEEPEST;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
+use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
@@ -147,6 +148,10 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
         Trouble::Border(PointsFault::Same(a, _)) => MeshFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
         Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(made, face),
         Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: DEEPEST }.into(),
+        Trouble::Odd => {
+            let odd = face.stretches().find(|s| made.nodes.count(*s) % 2 == 1).unwrap_or(0);
+            MeshFault::OddCount { count: (0, Origin::NONE), surface, at: made.layout.point(odd, 0.5) }.into()
+        }
         Trouble::Full => {
             let plan = made.input.plan;
             crate::mesh::faces::too_many(plan, plan.size.map_or(plan.origin, |size| size.1), 2 * MESH_ELEMENTS)

@@ -7,7 +7,6 @@ pub(in crate::mesh) use halved::halved;
 pub(super) use halved::odd;
 
 use glam::DVec2;
-use halved::has_odd;
 use maker::{Maker, nodes};
 
 use super::fit::{Fit, SMOOTH, WANTED_TREE, near};
@@ -38,22 +37,13 @@ const HALVED: f64 = 0.7;
 
 /// Makes the face.
 pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline): (&Sheet, &Outline), job: &Job) -> Result<Prepared> {
-    let halves = |other: bool| match face.elements {
-        Elements::Quads => halved(made, face, &border, outline, other),
+    let halves = match face.elements {
+        Elements::Quads => halved(made, face, &border, outline),
         _ => Some(Halves::whole(outline, &border.ids)),
     };
-    let made_of = |other: bool| {
-        let Some(halves) = halves(other) else { return Err(fault(made, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
-        fitting(made, face, sheet, outline, &halves, job)?.map_err(|trouble| fault(made, face, &border, of_whole(&halves, trouble)))
-    };
-    let mut fitted = made_of(false);
-    // Corners in the middle of a cell's side may leave no room for convex quads; then the others may.
-    let flawed = |fitted: &Result<Shown>| fitted.as_ref().map_or(true, |(net, _)| concave(net));
-    if face.elements == Elements::Quads && has_odd(made, face) && flawed(&fitted) {
-        let second = made_of(true);
-        fitted = if flawed(&second) { fitted } else { second };
-    }
-    let (net, deciders) = fitted?;
+    let Some(halves) = halves else { return Err(fault(made, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
+    let fitted = fitting(made, face, sheet, outline, &halves, job)?;
+    let (net, deciders) = fitted.map_err(|trouble| fault(made, face, &border, of_whole(&halves, trouble)))?;
     let fixed = net.fixed as usize;
     let mut uv = border.uv;
     uv.extend(net.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
@@ -80,15 +70,6 @@ fn of_whole(halves: &Halves, trouble: Trouble) -> Trouble {
 
 /// A net, and what decided its sizes.
 type Shown = (Net, Vec<Decider>);
-
-/// Whether a net has a quad with a corner of a half turn or more.
-fn concave(net: &Net) -> bool {
-    net.face.iter().filter(|f| f[3] != NONE).any(|quad| {
-        let p = quad.map(|n| net.p[n as usize]);
-        let normal = (p[2] - p[0]).cross(p[3] - p[1]);
-        (0..4).any(|k| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0)
-    })
-}
 
 /// Elements that keep the limits, and what decided their sizes.
 fn fitting(

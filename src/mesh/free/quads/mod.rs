@@ -2,6 +2,7 @@
 
 pub mod halves;
 pub mod net;
+pub mod odd;
 pub mod open;
 pub mod pair;
 pub mod smooth;

@@ -1,4 +1,4 @@
-//! Every cell as quads of half its size: a quad as four, a triangle as three.
+//! Every cell as quads of half its size: a quad as four, a triangle as three; fewer where sides are not halved.
 
 use glam::{DVec2, DVec3};
 
@@ -6,8 +6,8 @@ use super::net::{NONE, Net};
 use crate::mesh::free::ground::{Field, Ground, foot_spot};
 
 /// Quads in place of all faces; sides of borders and lines get the nodes that are given for their middles. Neighbours are
-/// not noted in the finer net.
-pub fn split(net: &Net, ground: &dyn Ground, field: &dyn Field) -> Net {
+/// not noted in the finer net. `whole` has the sides of each face that are not halved, as bits, an even number of them.
+pub fn split(net: &Net, whole: &[u8], (ground, field): (&dyn Ground, &dyn Field)) -> Net {
     let mut fine = Net { p: net.p.clone(), xy: net.xy.clone(), normal: net.normal.clone(), fixed: net.fixed, ..Net::default() };
     for n in 0..net.fixed as usize {
         if fine.normal[n] == DVec3::ZERO {
@@ -21,6 +21,7 @@ pub fn split(net: &Net, ground: &dyn Ground, field: &dyn Field) -> Net {
             let other = net.across[f][k];
             let made = if other == NONE { NONE } else { mids[other as usize / 4][other as usize % 4] };
             mids[f][k] = match () {
+                () if whole[f] >> k & 1 == 1 => NONE,
                 () if net.mid[f][k] != NONE => net.mid[f][k],
                 () if made != NONE => made,
                 () => between(&mut fine, ground, &[c[k], c[(k + 1) % c.len()]]),
@@ -30,8 +31,34 @@ pub fn split(net: &Net, ground: &dyn Ground, field: &dyn Field) -> Net {
     for (f, mids) in mids.iter().enumerate() {
         let c = net.corners(f);
         let n = c.len();
-        let middle = between(&mut fine, ground, &mids[..n]);
-        fine.face.extend((0..n).map(|k| [c[k], mids[k], middle, mids[(k + n - 1) % n]]));
+        // The first of the sides that are not halved, the one before it halved where there are two in a row.
+        let open = |k: usize| mids[k % n] == NONE;
+        let first = (0..n).find(|k| open(*k) && !open(k + n - 1));
+        match first {
+            _ if (0..n).all(open) => fine.face.push(net.face[f]),
+            None => {
+                let middle = between(&mut fine, ground, &mids[..n]);
+                fine.face.extend((0..n).map(|k| [c[k], mids[k], middle, mids[(k + n - 1) % n]]));
+            }
+            Some(k) => {
+                let (c, m) = (|i: usize| c[(k + i) % n], |i: usize| mids[(k + i) % n]);
+                let third = (k + 2) % n;
+                if n == 3 && net.locked[f] >> third & 1 == 1 {
+                    // The only middle stays where it is: a side inwards from each of four corners, and a quad inside.
+                    let round = [c(0), c(1), c(2), m(2)];
+                    let inside = round.map(|a| between(&mut fine, ground, &[a, a, c(0), c(1), c(2)]));
+                    fine.face.extend((0..4).map(|i| [round[i], round[(i + 1) % 4], inside[(i + 1) % 4], inside[i]]));
+                    fine.face.push(inside);
+                } else if n == 3 {
+                    fine.face.push([c(0), c(1), c(2), m(2)]);
+                } else if open(k + 1) {
+                    let middle = between(&mut fine, ground, &[c(1), m(2), m(3)]);
+                    fine.face.extend([[c(0), c(1), middle, m(3)], [c(1), c(2), m(2), middle], [middle, m(2), c(3), m(3)]]);
+                } else {
+                    fine.face.extend([[c(0), c(1), m(1), m(3)], [m(3), m(1), c(2), c(3)]]);
+                }
+            }
+        }
     }
     fine.size = fine.xy.iter().zip(&fine.p).map(|(xy, p)| field.size(*xy, *p)).collect();
     fine

@@ -1,5 +1,7 @@
 //! Nets of quads made for wanted lengths, bounded, and made again with shorter ones until one keeps the limits.
 
+use std::collections::BTreeSet;
+
 use glam::{DVec2, DVec3};
 
 use crate::base::fault::{MeshFault, Result};
@@ -12,6 +14,7 @@ use crate::mesh::free::improve::Gardener;
 use crate::mesh::free::loads::Loads;
 use crate::mesh::free::quads::halves::Halves;
 use crate::mesh::free::quads::net::{NONE, Net, Raw};
+use crate::mesh::free::quads::odd::whole_sides;
 use crate::mesh::free::quads::open::open;
 use crate::mesh::free::quads::pair::{Alone, pair};
 use crate::mesh::free::quads::smooth::Smoother;
@@ -126,11 +129,32 @@ impl Maker<'_> {
             self.smooth(&mut net, cells, job)?;
         }
         if quads {
-            net = split(&net, ground, wanted);
+            let Some(whole) = whole_sides(&net) else { return Ok(Err(Trouble::Odd)) };
+            self.narrow_rows(&mut net, &whole, cells, job)?;
+            net = split(&net, &whole, (ground, wanted));
             self.smooth(&mut net, wanted, job)?;
         }
         self.shorten(&mut net, wanted, job)?;
         Ok(Ok(net))
+    }
+
+    /// Rows of sides that are not halved get half as wide as others.
+    fn narrow_rows(&self, net: &mut Net, whole: &[u8], cells: &dyn Field, job: &Job) -> Result<()> {
+        let mut sides: BTreeSet<(usize, usize)> = BTreeSet::new();
+        for (f, whole) in whole.iter().enumerate().filter(|(_, whole)| **whole != 0) {
+            let c = net.corners(f);
+            let side = |k: usize| (c[k] as usize, c[(k + 1) % c.len()] as usize);
+            sides.extend((0..c.len()).filter(|k| whole >> k & 1 == 1).map(side).map(|(a, b)| (a.min(b), a.max(b))));
+        }
+        if sides.is_empty() || self.fit.care.smooth == 0 {
+            return Ok(());
+        }
+        let longest = &self.fit.longest;
+        let over = |net: &Net, a: usize, b: usize| {
+            let steps = if sides.contains(&(a.min(b), a.max(b))) { 1.0 } else { 2.0 };
+            net.p[a].distance(net.p[b]) / (steps * longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32)))
+        };
+        Smoother::new(net, self.fit.sheet, cells).even_out(&over, SHARES, job)
     }
 
     /// Shares long sides out, and crosses those that stay too long by more quads.
