@@ -296,3 +296,27 @@ surface p = trim(plane([a, b, c]), holes: [])
         all_quads(&mesh(&format!("{triangle}mesh m of p {{ size: 1.2mm  elements: quads  {counts} }}")), 0.2, 1);
     }
 }
+
+/// A written count with steps twice as long as the size takes longer sides beside it, not thousands of quads or an error.
+#[test]
+fn coarse_written_counts_are_left_step_by_step() {
+    for (s, e) in [(8, 10), (10, 8), (9, 11), (11, 7), (31, 5)] {
+        let counts = format!("on s {{ count: {s} }}  on e {{ count: {e} }}");
+        let mesh = mesh(&format!(
+            "{BOX}surface b = plane([s, e, n, w])\nmesh a of b {{ size: 1mm  elements: quads  method: delaunay  {counts} }}"
+        ));
+        all_quads(&mesh, 0.5, 1);
+        assert!(mesh.quads.len() < 400, "{counts}: {}", mesh.quads.len());
+        let step = (20.0 / f64::from(s)).max(10.0 / f64::from(e));
+        assert!(longest(&mesh) <= 1.2 * 1.05 * step, "{counts}: {}", longest(&mesh));
+        // Away from them the size holds.
+        for q in &mesh.quads {
+            for k in 0..4 {
+                let [a, b] = [q[k], q[(k + 1) % 4]].map(|n| mesh.nodes[n as usize]);
+                let away = a.y.min(20.0 - a.x).max(b.y.min(20.0 - b.x));
+                let most = 1.05 * f64::max(1.0, step) - 0.3 * (away - 1e-9);
+                assert!(a.distance(b) <= 1.2 * most.max(1.05), "{counts}: {} at {a}", a.distance(b));
+            }
+        }
+    }
+}

@@ -6,7 +6,7 @@ use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::web::Web;
-use crate::mesh::sources::Sources;
+use crate::mesh::sources::{Body, Source, Sources};
 
 /// Longest edge inside over the size (language reference, mesh settings).
 pub(super) const LONGEST: f64 = 1.05;
@@ -19,12 +19,14 @@ pub(super) struct Longest<'a> {
     at_border: Vec<f64>,
     /// Places where they have to be shorter.
     rules: &'a Sources,
+    /// Longer steps of the border, with their lengths below zero: what is allowed falls from them with the distance.
+    steps: Sources,
 }
 
 impl<'a> Longest<'a> {
     pub(super) fn new(size: f64, outline: &Outline, rules: &'a Sources) -> Self {
         let inside = LONGEST * size * (1.0 + WHOLE_NUMBER);
-        let mut longest = Self { inside, at_border: Vec::new(), rules };
+        let mut longest = Self { inside, at_border: Vec::new(), rules, steps: Sources::default() };
         longest.at_border = outline.p.iter().map(|p| longest.there(*p)).collect();
         // Where something is refined a border may step out of it: the shorter edge at a node counts.
         let (start, pick): (f64, fn(f64, f64) -> f64) = if rules.is_empty() { (0.0, f64::max) } else { (f64::INFINITY, f64::min) };
@@ -37,9 +39,23 @@ impl<'a> Longest<'a> {
         longest
     }
 
+    /// Sides inside may be longer near long steps of the border, less so by `slope` away from them: quads cannot get shorter
+    /// from one row to the next at once.
+    pub(super) fn graded(mut self, outline: &Outline, slope: f64) -> Self {
+        let step = |edge: [u32; 2]| {
+            let [a, b] = edge.map(|n| outline.p[n as usize]);
+            let most = LONGEST * outline.length(edge);
+            (most > self.inside).then_some(Source { body: Body::Segment(a, b), radius: 0.0, size: -most, steep: 1.0, tag: 0 })
+        };
+        if self.rules.is_empty() {
+            self.steps = Sources::new(outline.edges().filter_map(step).collect(), slope);
+        }
+        self
+    }
+
     fn there(&self, p: DVec3) -> f64 {
         if self.rules.is_empty() {
-            return self.inside;
+            return -self.steps.at(p, -self.inside);
         }
         let share = LONGEST * (1.0 + WHOLE_NUMBER);
         share * self.rules.plateau(p, self.inside / share)

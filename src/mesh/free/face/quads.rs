@@ -86,7 +86,7 @@ fn fitting(
     let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
     let care = Care { smooth, wanted: WANTED_TREE, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
-    let longest = Longest::new(face.size.0, outline, &rules);
+    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
     let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
     let background = bent.then(|| fit.background_of_squares());
     let slope = rules.slope() / SPACING;
