@@ -8,6 +8,8 @@
     reason = "a test fails by panicking and checks with the platform's functions"
 )]
 
+#[path = "support/invariants.rs"]
+mod invariants;
 #[path = "support/reference.rs"]
 mod reference;
 #[path = "support/script.rs"]
@@ -103,6 +105,8 @@ fn all_hold(folder: &str) {
     assert!(scripts.len() >= 2, "{folder}");
     for script in scripts {
         let outcome = outcome(&script);
+        let text = std::fs::read_to_string(&script).unwrap();
+        assert_eq!(invariants::look(&text, &outcome, &mut [0; 5]), Vec::<String>::new(), "{}", script.display());
         for ((_, mesh), report) in outcome.meshes.iter().zip(&outcome.report.meshes) {
             sound(mesh);
             if let Some(limit) = written_limit(&script, &mesh.name) {
