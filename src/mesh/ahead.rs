@@ -9,6 +9,7 @@ use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use super::plan::Elements;
 use super::relations::Relations;
+use super::rows;
 use super::sizing::{Decision, Sizing};
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
@@ -69,8 +70,31 @@ fn of_stretch(input: &Input, layout: &Layout, sizing: &Sizing, k: usize) -> Orig
     of_size(input, decision.size.1)
 }
 
+/// The same where rows of mapped faces may ask for more steps than the stretch itself: then their bends do.
+fn of_count(input: &Input, layout: &Layout, sizing: &Sizing, (k, count): (usize, u32)) -> Origin {
+    let (plan, decision) = (input.plan, &sizing.decisions[k]);
+    let own = decision.count.map_or(decision.wish, |c| c.0).max(decision.least);
+    let (Some(limit), true) = (plan.chord_error.or(plan.angle_error), f64::from(count) > BY_ROWS * f64::from(own)) else {
+        return of_stretch(input, layout, sizing, k);
+    };
+    let Some(angle) = plan.angle_error.filter(|_| plan.chord_error.is_some()) else { return limit.1 };
+    let steps = |limits: Limits| -> f64 {
+        let beside = layout.faces.iter().filter(|f| !f.free && f.stretches().any(|s| s == k));
+        let wishes = beside.flat_map(|face| {
+            let patch = &input.model.patches[face.patch.index()];
+            rows::wishes(&input.model.surfaces[face.surface.index()].surface, patch.u, patch.v, face.size.0, &limits)
+        });
+        wishes.map(|w| w.least).fold(0.0, f64::max)
+    };
+    let by_angle = steps(Limits { chord: None, angle: Some(angle.0) });
+    if by_angle > steps(Limits { chord: Some(limit.0), angle: None }) { angle.1 } else { limit.1 }
+}
+
+/// Steps over those that a stretch asks for itself from which rows decide.
+const BY_ROWS: f64 = 1.1;
+
 /// The expression of a size: that of a rule or clause, else the mesh's own.
-fn of_size(input: &Input, clause: Option<usize>) -> Origin {
+pub fn of_size(input: &Input, clause: Option<usize>) -> Origin {
     let plan = input.plan;
     let own = plan.size.map_or(plan.origin, |size| size.1);
     let Some(clause) = clause else { return own };
@@ -112,7 +136,7 @@ pub fn refuse_large(input: &Input, layout: &Layout, sizing: &Sizing, job: &Job) 
 pub fn refuse_counts(input: &Input, layout: &Layout, (sizing, relations): (&Sizing, &Relations), counts: &[u32]) -> Result<()> {
     let stretches = layout.pieces.atoms.len();
     if let Some(k) = (0..stretches).find(|k| counts[*k] > MESH_STEPS) {
-        return Err(too_many_steps(input, of_stretch(input, layout, sizing, k)));
+        return Err(too_many_steps(input, of_count(input, layout, sizing, (k, counts[k]))));
     }
     let elements = |(face, rows): (&Face, &Vec<usize>)| -> u64 {
         if face.free {
@@ -132,6 +156,6 @@ pub fn refuse_counts(input: &Input, layout: &Layout, (sizing, relations): (&Sizi
     let largest = (0..of_faces.len()).max_by_key(|f| of_faces[*f]);
     let around: Vec<usize> = largest.map_or_else(|| (0..stretches).collect(), |f| layout.faces[f].stretches().collect());
     let longest = around.into_iter().max_by_key(|k| counts[*k]);
-    let of = longest.map_or(input.plan.origin, |k| of_stretch(input, layout, sizing, k));
+    let of = longest.map_or(input.plan.origin, |k| of_count(input, layout, sizing, (k, counts[k])));
     Err(faces::too_many(input.plan, of, total))
 }

@@ -273,11 +273,11 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         F::TooMany { of, name, elements, limit } => {
             Report::new("E217", format!("the mesh `{name}` of {} elements is too much", many(*elements)))
                 .at(*of, "asked for here")
-                .help(format!("a larger size; the limit is {limit} elements"))
+                .help(format!("a larger value; the limit is {limit} elements"))
         }
         F::TooManySteps { of, name, limit } => Report::new("E217", format!("the steps of the mesh `{name}` along a border are too many"))
             .at(*of, "asked for here")
-            .help(format!("larger steps; the limit is {limit} from corner to corner")),
+            .help(format!("fewer steps; the limit is {limit} from corner to corner")),
         F::CountsDiffer { a, b, surface, at } => {
             let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
             for (count, origin) in [a, b] {

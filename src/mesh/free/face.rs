@@ -2,6 +2,7 @@
 
 mod border;
 mod fit;
+mod large;
 mod longest;
 mod quads;
 mod sparing;
@@ -154,7 +155,10 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
         }
         Trouble::Full => {
             let plan = made.input.plan;
-            crate::mesh::faces::too_many(plan, plan.size.map_or(plan.origin, |size| size.1), 2 * MESH_ELEMENTS)
+            let bent = !made.input.model.surfaces[face.surface.index()].surface.is_flat();
+            let limit = plan.chord_error.or(plan.angle_error).filter(|_| bent).map(|limit| limit.1);
+            let of = limit.unwrap_or_else(|| crate::mesh::ahead::of_size(made.input, face.size.1));
+            crate::mesh::faces::too_many(plan, of, 2 * MESH_ELEMENTS)
         }
     }
 }

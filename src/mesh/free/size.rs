@@ -129,6 +129,13 @@ pub struct Blend<'a> {
 }
 
 impl Blend<'_> {
+    /// The least distance of nodes that is asked for anywhere, or less.
+    pub fn least(&self) -> f64 {
+        let by_bends = self.background.as_ref().map_or(f64::INFINITY, |b| b.size.iter().copied().fold(f64::INFINITY, f64::min));
+        let (most, least) = self.range;
+        (self.sources.least().min(most) * self.spacing).min(by_bends).max(least * self.spacing)
+    }
+
     /// The distance of nodes that bends ask for.
     pub fn by_bends(&self, xy: DVec2, p: DVec3) -> f64 {
         self.background.as_ref().map_or(f64::INFINITY, |b| b.size(xy, p))

@@ -102,12 +102,16 @@ pub(super) fn fitting(
         }
         return Ok(laid);
     }
-    let background = bent.then(|| fit.background());
+    let background = bent.then(|| fit.background(&fit.limits));
     // Growth is that of distances of nodes.
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    fit.refuse_large(&field)?;
     let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
+    if matches!(web, Err(Trouble::Full)) {
+        return Err(fit.too_large(&field, 2.0 * MESH_ELEMENTS as f64));
+    }
     Ok(web.map(|web| {
         let deciders = fit.deciders(&field, &web);
         (web, deciders, None)
@@ -141,15 +145,15 @@ pub(super) fn near(made: &Made, face: &Face, outline: &Outline) -> Sources {
 
 impl Fit<'_> {
     /// Distances of nodes by the bends of the surface.
-    fn background(&self) -> Background {
+    pub(super) fn background(&self, limits: &Limits) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
         let surface = (self.surface, self.sheet.quick());
         let wanted = |xy: DVec2| {
             let jet = self.sheet.jet(xy);
-            let plain = bound::wanted(&jet, self.limits.chord, self.limits.angle).min(size / FILLED);
+            let plain = bound::wanted(&jet, limits.chord, limits.angle).min(size / FILLED);
             let at = (DVec2::from(self.sheet.uv(xy)), &jet);
-            FILLED * self.limits.chord.map_or(plain, |limit| bound::surely(surface, at, jet.du, (limit, plain)))
+            FILLED * limits.chord.map_or(plain, |limit| bound::surely(surface, at, jet.du, (limit, plain)))
         };
         let of = |xy: DVec2| wanted(xy).min(size);
         Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &of)

@@ -25,6 +25,7 @@ impl Fit<'_> {
         let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: MOST };
         match lay(&ask, job)? {
             Ok(laid) => Ok(Ok((laid.web, laid.deciders, Some(laid.tally)))),
+            Err(Failure::Trouble(Trouble::Full)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
             Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
             Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
             Err(Failure::Missed(load, at)) => {

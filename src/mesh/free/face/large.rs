@@ -1,0 +1,109 @@
+//! Faces that would have more elements than a mesh may have: told before they are made, at the setting that asks for most of them.
+
+use super::SPACING;
+use super::fit::{Fit, MOST};
+use crate::base::fault::{Fault, Result};
+use crate::base::limits::MESH_ELEMENTS;
+use crate::base::origin::Origin;
+use crate::mesh::ahead::of_size;
+use crate::mesh::edges::Limits;
+use crate::mesh::faces::too_many;
+use crate::mesh::free::build::{Lattice, Task, expected_nodes};
+use crate::mesh::free::ground::{Even, Field};
+use crate::mesh::free::size::{Background, Blend};
+use crate::mesh::plan::{GROWTH, Target};
+use crate::mesh::sources::{Source, Sources};
+
+/// Share of the largest mesh below which the least length alone tells that it is small enough.
+const SMALL: f64 = 0.1;
+
+/// A field like another one of some of its parts.
+fn alone<'s>(field: &Blend, sources: &'s Sources, background: Option<Background>) -> Blend<'s> {
+    Blend { sources, range: field.range, spacing: field.spacing, background }
+}
+
+impl Fit<'_> {
+    /// E217 where wanted lengths, grown from short edges and by bends, ask for too much.
+    pub(super) fn refuse_large(&self, field: &Blend) -> Result<()> {
+        let across = self.surface.hull().diagonal() / field.least();
+        if across * across < SMALL * MESH_ELEMENTS as f64 {
+            return Ok(());
+        }
+        let [elements] = self.expected([field]);
+        if elements <= MESH_ELEMENTS as f64 { Ok(()) } else { Err(self.too_large(field, elements)) }
+    }
+
+    /// The fault for so many elements.
+    pub(super) fn too_large(&self, field: &Blend, elements: f64) -> Fault {
+        too_many(self.made.input.plan, self.asks(field), elements as u64)
+    }
+
+    /// The fault where limits alone decide.
+    pub(super) fn too_many_for_limits(&self) -> Fault {
+        let of = self.limit(self.limits.chord.is_some());
+        too_many(self.made.input.plan, of, 2 * MESH_ELEMENTS)
+    }
+
+    /// About how many elements each field asks for.
+    fn expected<const N: usize>(&self, fields: [&dyn Field; N]) -> [f64; N] {
+        let lattice = Lattice::Crystal;
+        let task = |field| Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, broken: None };
+        expected_nodes(fields.map(task).each_ref()).map_or([0.0; N], |nodes| nodes.map(|n| 2.0 * n))
+    }
+
+    /// The expression that asks for most of the elements.
+    fn asks(&self, field: &Blend) -> Origin {
+        let (plan, slope) = (self.made.input.plan, field.sources.slope());
+        let default = Sources::new(field.sources.items().to_vec(), (GROWTH - 1.0) / SPACING);
+        let grown = alone(field, &default, field.background.clone());
+        let refined = |source: &&Source| (source.tag as usize) < plan.refines.len();
+        let (rules, edges): (Vec<Source>, Vec<Source>) = field.sources.items().iter().partition(refined);
+        let least = rules.iter().min_by(|a, b| a.size.total_cmp(&b.size)).map(|source| source.tag as usize);
+        let [none, rules, edges] = [Vec::new(), rules, edges].map(|items| Sources::new(items, slope));
+        let (edges, rules) = (alone(field, &edges, None), alone(field, &rules, None));
+        let (bends, size) = (alone(field, &none, field.background.clone()), Even(self.face.size.0 * field.spacing));
+        let [grown, by_edges, by_rules, by_bends, by_size] = self.expected([&grown, &edges, &rules, &bends, &size]);
+        if let Some(growth) = plan.growth.filter(|g| g.0 < GROWTH && grown <= MESH_ELEMENTS as f64) {
+            return growth.1;
+        }
+        let own = of_size(self.made.input, self.face.size.1);
+        let most = by_edges.max(by_rules).max(by_bends);
+        if by_size > MESH_ELEMENTS as f64 || by_size >= most {
+            own
+        } else if by_bends == most {
+            self.limit(self.limits.chord.is_some() && !self.turns_more(field))
+        } else if by_rules == most {
+            least.map_or(own, |rule| plan.refines[rule].size.1)
+        } else {
+            self.of_edges().or(plan.growth.map(|g| g.1)).unwrap_or(own)
+        }
+    }
+
+    /// The expression of the chord error, or of the largest angle.
+    fn limit(&self, chord: bool) -> Origin {
+        let plan = self.made.input.plan;
+        let limit = if chord { plan.chord_error.or(plan.angle_error) } else { plan.angle_error.or(plan.chord_error) };
+        limit.map_or(plan.origin, |limit| limit.1)
+    }
+
+    /// Whether the angle asks for more than the chord error.
+    fn turns_more(&self, field: &Blend) -> bool {
+        if self.limits.angle.is_none() || self.limits.chord.is_none() {
+            return self.limits.chord.is_none();
+        }
+        let none = Sources::new(Vec::new(), field.sources.slope());
+        let by = |limits: Limits| alone(field, &none, Some(self.background(&limits)));
+        let [angle, chord] = self.expected([&by(Limits { chord: None, ..self.limits }), &by(Limits { angle: None, ..self.limits })]);
+        angle > chord
+    }
+
+    /// The shortest steps that are written for a curve.
+    fn of_edges(&self) -> Option<Origin> {
+        let rules = self.made.input.plan.rules.iter().filter_map(|rule| {
+            let Target::Chain(chain) = &rule.target else { return None };
+            let by_count = rule.count.map(|(n, of)| (chain.length() / f64::from(n), of));
+            by_count.or(rule.size)
+        });
+        rules.min_by(|a, b| a.0.total_cmp(&b.0)).map(|rule| rule.1)
+    }
+}
