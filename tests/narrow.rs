@@ -143,3 +143,39 @@ fn rows_give_way() {
     let quads = mesh(&format!("units mm\n{SHORT_PIECE}\nmesh m of all {{ size: 5mm  elements: quads }}\n"));
     assert!(quads.triangles.is_empty() && quads.quads.len() < 400, "{} quads", quads.quads.len());
 }
+
+/// Lines of a cone run together at its tip: cells there are as few as anywhere, and no triangle lies along a line.
+#[test]
+fn cells_at_the_tip_of_a_cone() {
+    let cone = "surface cone = revolve(line((20, 0, 0), (0, 0, 30)), axis: (0, 0, 1))";
+    // Settings, least angle (degrees), most triangles.
+    for (settings, angle, most) in [
+        ("size: 3mm  method: isoline  chord_error: 0.1mm", 5.0, 1000),
+        ("size: 5mm  method: isoline  chord_error: 0.1mm", 3.0, 550),
+        ("size: 3mm  method: isoline  chord_error: 0.05mm", 3.0, 1200),
+        ("size: 30mm  method: display  chord_error: 0.02mm", 0.5, 250),
+    ] {
+        let outcome = outcome(&format!("units mm\n{cone}\nmesh m of cone {{ {settings} }}\n"));
+        assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
+        let mesh = &outcome.meshes[0].1;
+        let least = mesh.quality().unwrap().min_angle.to_degrees();
+        assert!(least >= angle && mesh.triangles.len() <= most, "{settings}: {least} degrees, {} triangles", mesh.triangles.len());
+        let limit: f64 = settings.split("chord_error: ").nth(1).unwrap().trim_end_matches("mm").parse().unwrap();
+        assert!(outcome.report.meshes[0].chord_error.unwrap() <= limit, "{settings}");
+    }
+}
+
+/// The seam of a tube passes a corner of a hole at a hair's breadth.
+#[test]
+fn a_seam_beside_a_corner() {
+    for off in ["0.02", "0.005", "0.001"] {
+        let tube = format!(
+            "surface tube = extrude(circle(center: (0, 0, 0), radius: 20), by: (0, 0, 30))
+curve eye = project(polyline([(40, {off}, 8), (40, 6, 15), (40, {off}, 22), (40, -6, 15)], closed: true), onto: tube, along: (1, 0, 0))
+surface face = trim(tube, holes: [eye])"
+        );
+        let mesh = mesh(&format!("units mm\n{tube}\nmesh m of face {{ size: 3mm }}\n"));
+        let least = mesh.quality().unwrap().min_angle.to_degrees();
+        assert!(least >= 25.0 && mesh.triangles.len() < 2600, "{off}: {least} degrees, {}", mesh.triangles.len());
+    }
+}

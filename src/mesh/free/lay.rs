@@ -44,6 +44,8 @@ pub struct Ask<'a> {
     pub floor: f64,
     /// Most inner nodes.
     pub most: usize,
+    /// Points nearer to each other are one, model units.
+    pub point: f64,
 }
 
 /// Why there is no mesh.

@@ -8,7 +8,7 @@ use super::sheet::Sheet;
 use super::web::Web;
 use crate::base::math::angle_between;
 use crate::base::par;
-use crate::base::tolerance::SINGULAR;
+use crate::base::tolerance::{PARALLEL, SINGULAR};
 use crate::mesh::edges::Limits;
 use crate::mesh::gaps;
 
@@ -70,7 +70,10 @@ const UPRIGHT: f64 = 0.5;
 /// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
 /// triangle that stands on edge: near to what is over it along its own normal, and its sides far from the surface all the same.
 fn lean(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
-    let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
+    // Two corners in a pole, or three on a line, have no normal but by rounding.
+    let square = p[0].distance_squared(p[1]).max(p[1].distance_squared(p[2])).max(p[2].distance_squared(p[0]));
+    let up = (p[1] - p[0]).cross(p[2] - p[0]);
+    let normal = if up.length() > PARALLEL * square { up.normalize_or_zero() } else { DVec3::ZERO };
     let cosine = |xy: DVec2| {
         let own = sheet.spot(xy).normal();
         if own == DVec3::ZERO || normal == DVec3::ZERO { 1.0 } else { own.dot(normal) }

@@ -96,9 +96,13 @@ pub(super) fn fitting(
     let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
     if face.method.is_sparing() {
         let mut laid = fit.laid(&rules, job)?;
-        if let (Method::Display, Ok((web, _, tally))) = (face.method, &mut laid) {
-            fit.thin(web, job)?;
-            *tally = None;
+        match (face.method, &mut laid) {
+            (Method::Display, Ok((web, _, tally))) => {
+                fit.thin(web, job)?;
+                *tally = None;
+            }
+            (_, Ok((web, ..))) => fit.raise(web),
+            _ => {}
         }
         return Ok(laid);
     }

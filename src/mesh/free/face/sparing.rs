@@ -15,6 +15,9 @@ use crate::mesh::free::web::Web;
 use crate::mesh::sources::Sources;
 use crate::mesh::wanted::floor_keeps;
 
+/// Quality below which sides are flipped: that of a right angle beside one of 15°.
+const SHARP: f64 = 0.4;
+
 impl Fit<'_> {
     /// Between lines of constant u and v.
     pub(super) fn laid(&self, rules: &Sources, job: &Job) -> Result<std::result::Result<Shown, Trouble>> {
@@ -22,7 +25,8 @@ impl Fit<'_> {
         let floor = self.made.wanted.written;
         let flat = Limits::default();
         let limits = if self.surface.is_flat() { &flat } else { &self.limits };
-        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: MOST };
+        let point = self.made.input.tolerance.point;
+        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: MOST, point };
         match lay(&ask, job)? {
             Ok(laid) => Ok(Ok((laid.web, laid.deciders, Some(laid.tally)))),
             Err(Failure::Trouble(Trouble::Full)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
@@ -37,6 +41,17 @@ impl Fit<'_> {
                 Err(MeshFault::NotReached { limit, says: says.1, surface: self.surface.origin(), reached: over * says.0, at }.into())
             }
         }
+    }
+
+    /// Sides flipped where triangles are sharp, within the same limits: where lines of the surface run together, and where a
+    /// border runs along one of them.
+    pub(super) fn raise(&self, web: &mut Web) {
+        let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
+        let twins = self.outline.twins();
+        web.raise(SHARP, &|web, [a, b], both| {
+            let keeps = |c: &[u32; 3]| loads::load_of_long(self.sheet, web, *c, limits).worst() <= 1.0;
+            !web.joined_elsewhere(&twins, a, b) && both.iter().all(keeps)
+        });
     }
 
     /// Fewer triangles for the same limits.

@@ -38,7 +38,9 @@ impl Work<'_> {
         let mut bad: BTreeMap<u32, Cut> = BTreeMap::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
             let c = all.corners[t];
-            if sure.contains(&sorted(c)) {
+            // At a pole the chart has edges that are points in space, and lines of the surface run into it: what stands on an edge,
+            // or has its corners on a line, is no triangle in the end.
+            if sure.contains(&sorted(c)) || self.is_flat(web, c) {
                 continue;
             }
             let load = loads::load_of_long(self.ask.sheet, web, c, self.ask.limits);
@@ -61,6 +63,13 @@ impl Work<'_> {
             }
         }
         bad.into_iter().collect()
+    }
+
+    /// Whether the corners of a triangle lie on a straight line, within the tolerance.
+    fn is_flat(&self, web: &Web, c: [u32; 3]) -> bool {
+        let [a, b, d] = c.map(|n| web.p[n as usize]);
+        let longest = a.distance(b).max(b.distance(d)).max(d.distance(a));
+        (b - a).cross(d - a).length() <= self.ask.point * longest
     }
 
     /// Whether a side of a triangle that is no edge of the border is longer than cells may be.

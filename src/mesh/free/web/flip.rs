@@ -6,6 +6,9 @@ use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::outline::area2;
 use crate::mesh::free::shape::quality;
 
+/// Whether a new side, and the triangles on both sides of it, may be.
+type Fine<'a> = dyn Fn(&Web, [u32; 2], [[u32; 3]; 2]) -> bool + 'a;
+
 impl Web {
     /// The diagonal of the two triangles at side `k` of `t` becomes the other one. Both must be there and unlocked.
     pub fn flip(&mut self, t: u32, k: usize) {
@@ -73,5 +76,56 @@ impl Web {
         }
         self.flip(t, k);
         true
+    }
+
+    /// Flips sides of triangles below a quality where the worse of the two gets better by a twentieth, no side gets longer
+    /// than the longest of both, and `fine` holds of what comes: the new side first, then both triangles.
+    pub fn raise(&mut self, below: f64, fine: &Fine) {
+        const PASSES: usize = 8;
+        const GAIN: f64 = 1.05;
+        for _ in 0..PASSES {
+            let mut any = false;
+            for t in 0..self.tri.len() as u32 {
+                if !self.alive(t) || self.quality(t) >= below {
+                    continue;
+                }
+                let mut ways: Vec<(f64, usize)> = (0..3).filter_map(|k| Some((self.gain(t, k)?, k))).filter(|w| w.0 > GAIN).collect();
+                ways.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+                let found = ways.into_iter().find(|(_, k)| {
+                    let (a, b, d, tip) = self.round_side(t, *k);
+                    fine(self, [a, tip], [[a, b, tip], [a, tip, d]])
+                });
+                if let Some((_, k)) = found {
+                    self.flip(t, k);
+                    any = true;
+                }
+            }
+            if !any {
+                return;
+            }
+        }
+    }
+
+    /// The corner against side `k` of a triangle, its ends, and the corner beyond it.
+    fn round_side(&self, t: u32, k: usize) -> (u32, u32, u32, u32) {
+        let c = self.tri[t as usize];
+        let other = self.across[t as usize][k];
+        (c[k], c[(k + 1) % 3], c[(k + 2) % 3], self.tri[other as usize][self.side_to(other, t)])
+    }
+
+    /// How many times better the worse of two triangles gets by a flip of the side between them; `None` where the chart or a
+    /// side that would be too long forbids it.
+    fn gain(&self, t: u32, k: usize) -> Option<f64> {
+        let other = self.across[t as usize][k];
+        if other == NO_TRIANGLE || self.locked[t as usize] >> k & 1 == 1 {
+            return None;
+        }
+        let (a, b, d, tip) = self.round_side(t, k);
+        let (p, xy) = (|n: u32| self.p[n as usize], |n: u32| self.xy[n as usize]);
+        let longest = [(a, b), (b, d), (d, a), (b, tip), (tip, d)].map(|(x, y)| p(x).distance(p(y))).into_iter().fold(0.0, f64::max);
+        let convex = area2(xy(a), xy(b), xy(tip)) > 0.0 && area2(xy(a), xy(tip), xy(d)) > 0.0;
+        let of = |x: [u32; 3]| quality(p(x[0]), p(x[1]), p(x[2]));
+        let (now, then) = (of([a, b, d]).min(of([tip, d, b])), of([a, b, tip]).min(of([a, tip, d])));
+        (convex && p(a).distance(p(tip)) <= longest && then > now).then_some(then / now.max(f64::MIN_POSITIVE))
     }
 }
