@@ -4,6 +4,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/invariants.rs"]
+mod invariants;
 #[path = "support/script.rs"]
 mod script;
 
@@ -241,6 +243,70 @@ fn loops_on_closed_surfaces_part_them_or_say_why() {
         let told = outcome.drawn(false, false);
         let reason = !told.contains("E901") && !told.contains("E999") && told.contains("trim.loft:");
         prop_assert!(outcome.report.ok || reason, "{}\n{}", told, script);
+        Ok(())
+    });
+}
+
+/// Loops that come as near to themselves, to a hole or to another loop as a thousandth of their size, and touch or cross a little:
+/// on a plane and over a bent surface, by several methods, a mesh with the area of its face or a reason with its place.
+#[test]
+fn loops_that_nearly_touch_are_meshed_or_say_why() {
+    let gap = (-3.0_f64..-1.0).prop_map(|e| 100.0 * libm::pow(10.0, e));
+    let gap = prop_oneof![9 => gap.clone(), 1 => gap.prop_map(|g| -g), 1 => Just(0.0)];
+    let shape = (gap, 0..5_usize, 20.0_f64..80.0, 4.0_f64..12.0, 0..4_usize, any::<bool>());
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("near");
+    std::fs::create_dir_all(&folder).unwrap();
+    check_one_in(10, 14, &shape, |(gap, kind, along, radius, settings, bent)| {
+        let square = "(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)".to_owned();
+        let circle = |x: f64, y: f64| format!("circle(center: ({x:.9}, {y:.9}, 0), radius: {radius:.9})");
+        let (outer, holes) = match kind {
+            // A slot from one side that ends before the other, and one whose lips nearly close.
+            0 => {
+                let (a, b) = (along, along + 6.0);
+                (
+                    format!(
+                        "(0, 0, 0), ({a}, 0, 0), ({a}, {}, 0), ({b}, {}, 0), ({b}, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)",
+                        60.0 - gap,
+                        60.0 - gap
+                    ),
+                    vec![],
+                )
+            }
+            1 => {
+                let (a, b) = (along, along + gap);
+                (format!("(0, 0, 0), ({a}, 0, 0), ({a}, 40, 0), ({b}, 40, 0), ({b}, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)"), vec![])
+            }
+            2 => (square, vec![circle(along, radius + gap)]),
+            3 => (square, vec![circle(30.0, 30.0), circle(30.0 + 2.0 * radius + gap, 30.0)]),
+            // A corner that points at a hole.
+            _ => {
+                let tip = 30.0 - radius - gap;
+                (
+                    format!("(0, 0, 0), (40, 0, 0), (50, {tip}, 0), (60, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)"),
+                    vec![circle(50.0, 30.0)],
+                )
+            }
+        };
+        let settings = ["size: 10", "size: 25  method: quadtree", "size: 15  elements: mixed", "size: 12  chord_error: 1"][settings];
+        let mut script = "units mm\n".to_owned();
+        let flat = "let ground = plane(at: (0, 0, 0), normal: (0, 0, 1))\nfn laid(c: curve) = c\n";
+        let wave = "let ground = extrude(arc((-10, -10, -5), (-10, 70, -5), through: (-10, 30, 10)), by: (120, 0, 0))\nfn laid(c: curve) = project(c, onto: ground, along: (0, 0, 1))\n";
+        script += if bent { wave } else { flat };
+        writeln!(script, "curve rim = laid(polyline([{outer}], closed: true))").unwrap();
+        let names: Vec<String> = (0..holes.len()).map(|k| format!("hole{k}")).collect();
+        for (name, hole) in names.iter().zip(&holes) {
+            writeln!(script, "curve {name} = laid({hole})").unwrap();
+        }
+        writeln!(script, "surface s = trim(ground, outer: rim, holes: [{}])", names.join(", ")).unwrap();
+        writeln!(script, "mesh m of s {{ {settings} }}\ncheck \"area\": m.area == s.area within 15%").unwrap();
+        let disk = Disk::new(None, Some(&folder), &[], Outputs::Written).unwrap();
+        let run = || script::outcome("near.loft", script.as_bytes(), &[], &disk);
+        let outcome = guarded(run).map_err(|bug| TestCaseError::fail(format!("{bug:?}\n{script}")))?;
+        let told = outcome.drawn(false, false);
+        let reason = !told.contains("E901") && !told.contains("E999") && told.contains("near.loft:");
+        prop_assert!(outcome.report.ok || reason && gap <= 0.01, "{}\n{}", told, script);
+        let wrong = invariants::look(&script, &outcome, &mut [0; 5]);
+        prop_assert!(wrong.is_empty(), "{:?}\n{}", wrong, script);
         Ok(())
     });
 }

@@ -239,8 +239,12 @@ impl Fit<'_> {
         }
         let (limit, at) = (worst.2, worst.1);
         let plan = self.made.input.plan;
-        let says = if limit == "chord_error" { plan.chord_error } else { plan.angle_error };
-        let reached = worst.0 * says.map_or(0.0, |s| s.0);
+        let says = match limit {
+            "chord_error" => plan.chord_error,
+            "angle_error" => plan.angle_error,
+            _ => plan.size,
+        };
+        let reached = if limit == "size" { self.longest.inside } else { worst.0 * says.map_or(0.0, |s| s.0) };
         let says = says.map_or(plan.origin, |s| s.1);
         Err(MeshFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
     }
@@ -261,12 +265,14 @@ impl Fit<'_> {
             }
             let c = web.tri[t].map(|n| n as usize);
             let middle = (web.p[c[0]] + web.p[c[1]] + web.p[c[2]]) / 3.0;
-            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle };
+            // A side that is too long where limits have room gets shorter all the same.
+            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle }.max(1.0);
             if load.worst() > 1.0 && longest_side(web, t as u32) <= least {
                 return Err(floor_keeps(self.made.input, least / factor, middle));
             }
             if over > worst.0 {
-                worst = (over, middle, if load.chord >= load.angle { "chord_error" } else { "angle_error" });
+                let limit = if load.chord >= load.angle { "chord_error" } else { "angle_error" };
+                worst = (over, middle, if load.worst() > 1.0 { limit } else { "size" });
             }
             let smaller = (LESS / factor).max(0.5);
             if let Some(background) = &mut field.background {
