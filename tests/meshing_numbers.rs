@@ -7,17 +7,32 @@ mod reference;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::line;
 use lofting::mesh::Mesh;
+use lofting::mesh::free::ground::{Even, Ground, Spot};
+use lofting::mesh::free::quads::net::Net;
+use lofting::mesh::free::quads::smooth::Smoother;
 use lofting::network::Chain;
 use lofting::session::live::{Depth, Live};
 use lofting::surface::{closest, plane, polynomial, trim};
 use reference::reference;
 use serde_json::Value;
+
+/// The plane z = 0.
+struct Flat;
+
+impl Ground for Flat {
+    fn spot(&self, xy: DVec2) -> Spot {
+        Spot { p: xy.extend(0.0), dx: DVec3::X, dy: DVec3::Y }
+    }
+    fn clamp(&self, xy: DVec2) -> DVec2 {
+        xy
+    }
+}
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect()
@@ -213,4 +228,64 @@ fn angles_divide_closed_curves() {
     let [alone, round] = &meshes(text)[..] else { panic!("two meshes") };
     assert_eq!(alone.nodes.len(), 360);
     assert!(round.nodes.len() > 360, "{}", round.nodes.len());
+}
+
+/// One cubic span over its chord, d(t) = t (1 − t) (a + b t), of which three samples see the least share.
+#[test]
+fn the_worst_cubic_for_three_samples_is_divided() {
+    let wanted = reference("meshing")["three_sample_test"]["single_cubic_span_worst_ratio_true_over_sampled"].as_f64().unwrap();
+    let ratio = |angle: f64| {
+        let d = |t: f64| (t * (1.0 - t) * (angle.cos() + angle.sin() * t)).abs();
+        let seen = [0.25, 0.5, 0.75].map(d).into_iter().fold(0.0, f64::max);
+        let there = (0..=4000).map(|k| d(f64::from(k) / 4000.0)).fold(0.0, f64::max);
+        (there / seen, seen, there)
+    };
+    let angles = (0..20_000).map(|k| std::f64::consts::PI * f64::from(k) / 20_000.0);
+    let worst = angles.max_by(|a, b| ratio(*a).0.total_cmp(&ratio(*b).0)).unwrap();
+    let (found, seen, there) = ratio(worst);
+    assert!((found - wanted).abs() < 1e-4, "{found}");
+    let (a, b) = (worst.cos(), worst.sin());
+    // y = a t + (b − a) t² − b t³ over x = t, by its Bézier points.
+    let (first, second) = (a / 3.0, (a + b) / 3.0);
+    // Above the farthest control point one step is sure.
+    for (limit, divided) in [(0.5 * (seen + there), true), (1.001 * first.abs().max(second.abs()), false)] {
+        let text = format!(
+            "units m\ncurve c = bezier([(0, 0, 0), ({}, {first}, 0), ({}, {second}, 0), (1, 0, 0)])\nmesh m of c {{ size: 100m  chord_error: {limit}m }}\n",
+            1.0 / 3.0,
+            2.0 / 3.0
+        );
+        assert_eq!(meshes(&text).remove(0).lines.len() > 1, divided, "{limit}");
+    }
+}
+
+/// The plane with a node in the middle of four quads, smoothed once: it goes to the area-weighted mean of their centroids.
+#[test]
+fn a_node_goes_to_the_weighted_centroid_of_the_reference() {
+    let fact = &reference("meshing")["centroid_smoothing"]["planar"];
+    let mut net = Net::default();
+    let add = |p: DVec3, net: &mut Net| -> u32 {
+        let known = net.p.iter().position(|q| q.distance(p) < 1e-12);
+        known.unwrap_or_else(|| {
+            net.p.push(p);
+            net.xy.push(p.truncate());
+            net.normal.push(DVec3::Z);
+            net.size.push(1.0);
+            net.p.len() - 1
+        }) as u32
+    };
+    let rings: Vec<Vec<DVec3>> =
+        fact["polygons"].as_array().unwrap().iter().map(|ring| ring.as_array().unwrap().iter().map(point).collect()).collect();
+    // The border first, the node in the middle last.
+    for p in rings.iter().flat_map(|ring| &ring[1..]) {
+        add(*p, &mut net);
+    }
+    net.fixed = net.p.len() as u32;
+    for ring in &rings {
+        let corners: Vec<u32> = ring.iter().map(|p| add(*p, &mut net)).collect();
+        net.face.push([corners[0], corners[1], corners[2], corners[3]]);
+    }
+    let middle = net.fixed as usize;
+    assert_eq!(net.p.len(), middle + 1);
+    Smoother::new(&mut net, &Flat, &Even(1.0)).smooth(1, &Job::new()).unwrap();
+    assert!(net.p[middle].distance(point(&fact["new_position"])) < 1e-12, "{}", net.p[middle]);
 }
