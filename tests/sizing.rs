@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/script.rs"]
+mod script;
+
 use std::collections::BTreeMap;
 
 use glam::DVec3;
@@ -298,4 +301,53 @@ fn it_is_told_what_decided_where() {
     plan.method = Method::Mapped;
     let lines = scene.build(&plan).unwrap().explanation.lines;
     assert!(lines[0].contains("mapped") && lines[0].contains("; by size 0.1 near"), "{}", lines[0]);
+}
+
+const TOLD: &str = r#"units mm
+curve rim = polyline([(0, 0), (200, 0), (200, 100), (0, 100)], closed: true)
+curve eye = circle(center: (50, 50, 0), radius: 20)
+curve next = circle(center: (90.5, 50, 0), radius: 20)
+surface plate = trim(plane(rim), holes: [eye, next])
+surface strip = trim(plane([polyline([(300, 0), (400, 0), (400, 2), (300, 2)], closed: true)]))
+surface dome = bezier_surface([
+  [(300, 50, 0), (350, 50, 30), (400, 50, 0)],
+  [(300, 100, 20), (350, 100, 80), (400, 100, 20)],
+  [(300, 150, 0), (350, 150, 0), (400, 150, 0)]
+])
+mesh size of plate { size: 20mm }
+mesh refined of plate { size: 20mm  near (150, 50, 0) { size: 3mm  radius: 10mm }  in box((160, 0, -1), (200, 20, 1)) { size: 4mm } }
+mesh ruled of plate { size: 20mm  on eye { size: 2mm }  on next { count: 64 } }
+mesh chord of dome { size: 20mm  chord_error: 0.1mm  method: delaunay }
+mesh angle of dome { size: 20mm  angle_error: 4deg  method: delaunay }
+mesh floor of strip { size: 20mm  min_size: 8mm }
+"#;
+
+/// Each setting is told where it decided, in the words of the script.
+#[test]
+fn each_setting_is_told_where_it_decides() {
+    let disk = lofting::session::disk::Disk::new(None, None, &[], lofting::session::disk::Outputs::Counted).unwrap();
+    let outcome = script::outcome("told.loft", TOLD.as_bytes(), &[], &disk);
+    assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
+    let told = |mesh: &str, part: &str, words: &str| {
+        let mut lines = outcome.notes.iter().filter(|n| n.contains(&format!("mesh {mesh}: {part}")));
+        assert!(lines.any(|l| l.contains(words)), "{mesh}: {part}: {words}\n{}", outcome.notes.join("\n"));
+    };
+    for (mesh, part, words) in [
+        ("size", "face 0 of plate", " by the size"),
+        ("size", "face 0 of plate", " by growth from shorter edges, one at ("),
+        ("size", "strip of eye", "% by the border facing it"),
+        ("size", "strip of rim", " by the size"),
+        ("refined", "face 0 of plate", " by size 3 near (150.000, 50.000, 0.000), one at ("),
+        ("refined", "face 0 of plate", " by size 4 in the box (160.000, 0.000, -1.000)"),
+        ("refined", "strip of rim", "% by size 4 in the box"),
+        ("ruled", "strip of eye", "by the size"),
+        ("ruled", "strip of next", "by count 64 on next"),
+        ("chord", "face 0 of dome", " by chord_error, one at ("),
+        ("chord", "strip of", "% by chord_error"),
+        ("angle", "face 0 of dome", " by angle_error, one at ("),
+        ("angle", "strip of", "% by angle_error"),
+        ("floor", "strip of", "% by min_size"),
+    ] {
+        told(mesh, part, words);
+    }
 }
