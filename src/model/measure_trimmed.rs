@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
+use super::measure_strips::Strips;
 use crate::base::quadrature::gauss_legendre;
-use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY};
 use crate::network::Chain;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
 
@@ -14,7 +15,7 @@ const ACROSS: usize = 12;
 const DEEPEST: u32 = 14;
 
 /// Sums of N functions.
-type Sums<const N: usize> = [f64; N];
+pub(super) type Sums<const N: usize> = [f64; N];
 
 /// A border: the chain that carries it, or a line in (u, v).
 enum Way {
@@ -51,7 +52,21 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
     let (breaks_u, breaks_v) = surface.breaks();
     let quick = surface.quick();
     let jet = |u, v| quick.as_ref().map_or_else(|| surface.jet(u, v), |quick| quick.jet(u, v));
+    let part = |low: f64, high: f64, v: f64| -> Sums<N> {
+        let mut sum = [0.0; N];
+        for (x, w) in &across {
+            let u = 0.5 * (low + high) + 0.5 * (high - low) * x;
+            let value = f(&jet(u, v));
+            (0..N).for_each(|i| sum[i] += 0.5 * (high - low) * w * value[i]);
+        }
+        sum
+    };
+    let inside = outlines.iter().flatten().all(|p| (-EPSILON..=1.0 + EPSILON).contains(&p.x));
+    let strips = if inside { Strips::new((&breaks_u, &breaks_v), &across, &|u, v| f(&jet(u, v))) } else { None };
     let inner = |base: f64, at: DVec2| -> Sums<N> {
+        if let Some(strips) = &strips {
+            return strips.from(strips.nearest(base), at, |low, high| part(low, high, at.y));
+        }
         let mut sum = [0.0; N];
         let (first, last) = (base.min(at.x), base.max(at.x));
         let sign = if at.x < base { -1.0 } else { 1.0 };
@@ -65,13 +80,8 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         stops.sort_by(f64::total_cmp);
         stops.push(last);
         for high in stops {
-            for (x, w) in &across {
-                let u = 0.5 * (low + high) + 0.5 * (high - low) * x;
-                let value = f(&jet(u, at.y));
-                for i in 0..N {
-                    sum[i] += sign * 0.5 * (high - low) * w * value[i];
-                }
-            }
+            let own = part(low, high, at.y);
+            (0..N).for_each(|i| sum[i] += sign * own[i]);
             low = high;
         }
         sum
@@ -82,7 +92,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
             let half = 0.5 * (run.t.1 - run.t.0);
             let t = 0.5 * (run.t.0 + run.t.1) + half * x;
             let (base, way) = &ways[run.border];
-            let (at, dv) = way.at(surface, t);
+            let (at, dv) = way.at(surface, &jet, t);
             if dv == 0.0 {
                 continue;
             }
@@ -137,13 +147,13 @@ impl Way {
     }
 
     /// (u, v) at a share of the way, and dv by the share.
-    fn at(&self, surface: &Surface, t: f64) -> (DVec2, f64) {
+    fn at(&self, surface: &Surface, jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
         match self {
             Self::Line(a, b) => (DVec2::new(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t), b.1 - a.1),
             Self::Chain(side, chain, from, to) => {
                 let f = from + (to - from) * t;
                 let uv = surface.border_place(*side, f).unwrap_or_default();
-                let jet = surface.jet(uv.0, uv.1);
+                let jet = jet(uv.0, uv.1);
                 let d = chain.jet(f).d1 * (to - from);
                 let (e, g, m) = (jet.du.length_squared(), jet.dv.length_squared(), jet.du.dot(jet.dv));
                 let dv = (e * jet.dv.dot(d) - m * jet.du.dot(d)) / (e * g - m * m);

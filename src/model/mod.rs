@@ -9,6 +9,7 @@ pub mod glue;
 pub mod loops;
 pub mod measure;
 mod measure_quadrature;
+mod measure_strips;
 mod measure_trimmed;
 mod patches;
 mod sew;
