@@ -20,30 +20,36 @@ pub struct Entry {
 }
 
 /// Points in cubes of side 2^level × unit.
+///
+/// A point is kept with those of its own size and with those of twice and half of it, so that one level is looked at for a place.
 #[derive(Clone, Debug)]
 pub struct Cells {
     unit: f64,
     head: Vec<u32>,
     entries: Vec<Entry>,
-    used: u64,
+    /// Points may be of several sizes.
+    mixed: bool,
 }
 
 impl Cells {
-    /// An empty hash; `unit` is a typical size.
-    pub fn new(unit: f64) -> Self {
-        Self { unit, head: vec![NONE; 1 << 10], entries: Vec::new(), used: 0 }
+    /// An empty hash; `unit` is a typical size, `mixed` says that there may be others.
+    pub fn new(unit: f64, mixed: bool) -> Self {
+        Self { unit, head: vec![NONE; 1 << 10], entries: Vec::new(), mixed }
     }
 
     /// The cube's side is between once and twice the size.
+    #[inline]
     fn level(&self, size: f64) -> i32 {
         let exponent = ((size / self.unit).to_bits() >> 52 & 0x7ff) as i32 - 1022;
         exponent.clamp(-LEVELS / 2, LEVELS / 2 - 1)
     }
 
+    #[inline]
     fn side(&self, level: i32) -> f64 {
         self.unit * f64::from_bits(((level + 1023) as u64) << 52)
     }
 
+    #[inline]
     fn slot(&self, level: i32, cell: [i64; 3]) -> usize {
         let mut h = (level as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         for c in cell {
@@ -55,14 +61,16 @@ impl Cells {
 
     /// Adds a point of a size.
     pub fn add(&mut self, p: DVec3, xy: DVec2, size: f64, tag: u32) {
-        if self.entries.len() >= self.head.len() {
-            self.grow();
+        let middle = self.level(size);
+        let beside = i32::from(self.mixed);
+        for level in middle - beside..=middle + beside {
+            if self.entries.len() >= self.head.len() {
+                self.grow();
+            }
+            let slot = self.home(p, level);
+            self.entries.push(Entry { p, xy, tag, next: self.head[slot], level });
+            self.head[slot] = self.entries.len() as u32 - 1;
         }
-        let level = self.level(size);
-        self.used |= 1 << (level + LEVELS / 2);
-        let slot = self.home(p, level);
-        self.entries.push(Entry { p, xy, tag, next: self.head[slot], level });
-        self.head[slot] = self.entries.len() as u32 - 1;
     }
 
     fn home(&self, p: DVec3, level: i32) -> usize {
@@ -81,26 +89,22 @@ impl Cells {
     /// Calls `visit` with the points nearer than `reach` and the square of their distance, of sizes within a factor of two
     /// or so of `size`; stops when it says `true`, and tells whether it did.
     pub fn any(&self, p: DVec3, reach: f64, size: f64, mut visit: impl FnMut(&Entry, f64) -> bool) -> bool {
-        let middle = self.level(size);
+        let level = self.level(size);
         let square = reach * reach;
-        for level in (middle - 1).max(-LEVELS / 2)..=(middle + 1).min(LEVELS / 2 - 1) {
-            if self.used >> (level + LEVELS / 2) & 1 == 0 {
-                continue;
-            }
-            let inv = 1.0 / self.side(level);
-            let (low, high) = (((p - reach) * inv).floor(), ((p + reach) * inv).floor());
-            for z in low.z as i64..=high.z as i64 {
-                for y in low.y as i64..=high.y as i64 {
-                    for x in low.x as i64..=high.x as i64 {
-                        let mut at = self.head[self.slot(level, [x, y, z])];
-                        while at != NONE {
-                            let e = &self.entries[at as usize];
-                            let d = e.p.distance_squared(p);
-                            if d < square && visit(e, d) {
-                                return true;
-                            }
-                            at = e.next;
+        let inv = 1.0 / self.side(level);
+        let (low, high) = (((p - reach) * inv).floor(), ((p + reach) * inv).floor());
+        for z in low.z as i64..=high.z as i64 {
+            for y in low.y as i64..=high.y as i64 {
+                for x in low.x as i64..=high.x as i64 {
+                    let mut at = self.head[self.slot(level, [x, y, z])];
+                    while at != NONE {
+                        let e = &self.entries[at as usize];
+                        // Other levels may share the slot; each has its own entry of the point.
+                        let d = e.p.distance_squared(p);
+                        if e.level == level && d < square && visit(e, d) {
+                            return true;
                         }
+                        at = e.next;
                     }
                 }
             }

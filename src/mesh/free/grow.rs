@@ -94,8 +94,8 @@ pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
     let unit = edges.iter().map(|e| outline.length(*e)).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let mut front = Front {
         soil,
-        nodes: Cells::new(unit),
-        border: Cells::new(unit),
+        nodes: Cells::new(unit, !soil.field.is_even()),
+        border: Cells::new(unit, !soil.field.is_even()),
         edges,
         grown: Grown::default(),
         along: Vec::new(),
@@ -250,7 +250,7 @@ impl Front<'_> {
 /// Places along the edges of a border, near enough to each other that none is overlooked from a step away; tagged by edge.
 pub(super) fn samples(outline: &Outline, field: &dyn Field) -> Cells {
     let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
-    let mut cells = Cells::new(unit);
+    let mut cells = Cells::new(unit, !field.is_even());
     for (k, [a, b]) in outline.edges().enumerate() {
         let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
         let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
