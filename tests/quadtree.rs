@@ -184,7 +184,7 @@ mod plate {
         let mesh = |smooth: usize| {
             let care = Care { smooth, wanted: 0.8, longest: 1.3 };
             let (field, lattice) = (Even(4.0 * 0.8), Lattice::Tree);
-            let task = Task { ground: &Flat, field: &field, outline: &outline, lattice, care, most: 100_000, broken: None };
+            let task = Task { ground: &Flat, field: &field, outline: &outline, lattice, care, most: 100_000, guard: None };
             let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;
             figures(&web.p, web.tri.iter().copied())
         };

@@ -123,7 +123,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
         add_loop(&mut outline, &ground, &star(DVec2::ZERO, &inner, turn), size);
         let (even, by_place) = (Even(size), Graded(size));
         let field: &dyn Field = if graded { &by_place } else { &even };
-        let task = Task { ground: &ground, field, outline: &outline, lattice: Lattice::Crystal, care: CARE, most: 100_000, broken: None };
+        let task = Task { ground: &ground, field, outline: &outline, lattice: Lattice::Crystal, care: CARE, most: 100_000, guard: None };
         match triangulate(&task, &Job::new()).unwrap() {
             Ok(made) => sound(&made.web, &outline, None),
             Err(_) => Ok(()),
@@ -155,7 +155,7 @@ fn holes_of_any_size_are_kept() {
             lattice: Lattice::Crystal,
             care: CARE,
             most: 100_000,
-            broken: None,
+            guard: None,
         };
         let web = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?.web;
         sound(&web, &outline, Some(holes.len()))
@@ -178,8 +178,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
         }
     }
     let care = Care { smooth: 30, wanted: 0.92, longest: 1.4 };
-    let task =
-        Task { ground: &ground, field: &Even(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, broken: None };
+    let task = Task { ground: &ground, field: &Even(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, guard: None };
     let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;
     sound(&web, &outline, Some(20)).unwrap();
     let all: Vec<f64> = (0..web.tri.len() as u32).map(|t| web.quality(t)).collect();

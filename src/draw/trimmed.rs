@@ -74,7 +74,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let flat = surface.is_flat();
     let field = Even(if flat { 4.0 * bounds.diagonal() } else { size });
     let care = Care { smooth: 0, wanted: 0.0, longest: f64::INFINITY };
-    let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, broken: None };
+    let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, guard: None };
     match triangulate(&task, &Job::new()) {
         Ok(Ok(made)) => {
             let web = made.web;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::ground::{Field, Ground};
 use super::grow::{Cell, STRAIGHT, Soil, TALL, grow};
-use super::improve::{Broken, Care, Gardener};
+use super::improve::{Care, Gardener, Guard};
 use super::outline::Outline;
 use super::quadtree::{self, Plot};
 use super::web::Web;
@@ -39,8 +39,8 @@ pub struct Task<'a> {
     pub lattice: Lattice,
     /// Most inner nodes.
     pub most: usize,
-    /// Triangles that break a limit and are to be divided; asked again after each division.
-    pub broken: Option<&'a Broken<'a>>,
+    /// Limits: what breaks one is divided.
+    pub guard: Option<&'a dyn Guard>,
 }
 
 /// Why there is no mesh.
@@ -76,13 +76,13 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangu
     gardener.settle();
     job.go_on()?;
     // Where lengths were wrong, the rest of the work waits for better ones.
-    let mut bad = task.broken.map_or(Vec::new(), |broken| gardener.broken(broken, &[]));
+    let mut bad = task.guard.map_or(Vec::new(), |guard| gardener.broken(guard, &[]));
     if gardener.are_few(&bad) {
         if bad.len() * FEW_BAD <= gardener.web.tri.len() {
             gardener.improve(job)?;
         }
-        if let Some(broken) = task.broken {
-            bad = gardener.divide(broken, bad, job)?;
+        if let Some(guard) = task.guard {
+            bad = gardener.divide(guard, bad, job)?;
         }
     }
     let mut web = gardener.web;

@@ -8,6 +8,8 @@ mod flips;
 mod mend;
 mod smooth;
 
+use glam::{DVec2, DVec3};
+
 use super::ground::{Field, Ground};
 use super::pending::Pending;
 use super::shape::{Rim, Star};
@@ -29,8 +31,18 @@ pub struct Care {
 /// Rounds of work on bad triangles.
 const ROUNDS: usize = 6;
 
-/// Those of some triangles of a web that break a limit; all others are as they were when it was asked last.
-pub type Broken<'a> = dyn Fn(&Web, &[u32]) -> Vec<u32> + 'a;
+/// Limits that triangles have to keep.
+pub trait Guard {
+    /// Those of some triangles of a web that break a limit; all others are as they were when it was asked last.
+    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32>;
+
+    /// Whether triangles are bounded one by one, so that a change can be asked about ahead.
+    fn foresees(&self) -> bool;
+
+    /// Whether a triangle would keep the limits, with its first corner moved to a place; that of a new node has no number below
+    /// the border's. Always so where nothing is foreseen.
+    fn keeps(&self, web: &Web, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool;
+}
 
 /// A web being improved.
 pub struct Gardener<'a> {
@@ -42,6 +54,8 @@ pub struct Gardener<'a> {
     pub field: &'a dyn Field,
     /// How.
     pub care: Care,
+    /// What mended triangles have to keep.
+    pub guard: Option<&'a dyn Guard>,
     ring: Ring,
     rim: Rim,
     patch: Patch,
@@ -67,6 +81,7 @@ impl<'a> Gardener<'a> {
             ground,
             field,
             care,
+            guard: None,
             ring: Ring::default(),
             rim: Rim::default(),
             patch: Patch::default(),

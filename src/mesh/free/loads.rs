@@ -50,7 +50,7 @@ impl Loads {
         let stale: Vec<u32> = some.iter().copied().filter(|t| corners(*t) != self.seen[*t as usize].0).collect();
         let batches = par::map(stale.len().div_ceil(BATCH), |batch| {
             let some = &stale[batch * BATCH..stale.len().min((batch + 1) * BATCH)];
-            some.iter().map(|t| load(sheet, web, web.tri[*t as usize], limits)).collect::<Vec<_>>()
+            some.iter().map(|t| load(sheet, web, web.tri[*t as usize], None, limits)).collect::<Vec<_>>()
         });
         for (t, load) in stale.iter().zip(batches.into_iter().flatten()) {
             self.seen[*t as usize] = (corners(*t), load);
@@ -61,7 +61,7 @@ impl Loads {
 /// The bounds of three nodes as a triangle that may be long against the limits.
 pub fn load_of_long(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
-    leaning(load(sheet, web, corners, limits), lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])))
+    leaning(load(sheet, web, corners, None, limits), lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])))
 }
 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
@@ -86,14 +86,16 @@ fn leaning(load: Load, lean: f64) -> Load {
     Load { chord: if lean < UPRIGHT && load.chord > 0.0 { f64::INFINITY } else { load.chord / lean.max(UPRIGHT) }, ..load }
 }
 
-/// The bounds of three nodes as a triangle against the limits.
-pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+/// The bounds of three nodes as a triangle against the limits; `first` is where the first of them is to go.
+pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], first: Option<(DVec2, DVec3)>, limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
+    let at = |k: usize| first.filter(|_| k == 0).unwrap_or_else(|| (web.xy[c[k]], web.p[c[k]]));
+    let at = [at(0), at(1), at(2)];
     let beside = match limits.chord {
         Some(limit) => c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max),
         None => 0.0,
     };
-    of_places(sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n]), beside), limits)
+    of_places(sheet, (at.map(|at| at.0), at.map(|at| at.1), beside), limits)
 }
 
 /// The same of three places of the chart with their points, by parts.

@@ -145,7 +145,9 @@ impl Blend<'_> {
 impl Field for Blend<'_> {
     fn size(&self, xy: DVec2, p: DVec3) -> f64 {
         let (most, least) = self.range;
-        (self.sources.at(p, most) * self.spacing).min(self.by_bends(xy, p)).max(least * self.spacing)
+        // What bends allow is all that sources are asked about.
+        let bends = self.by_bends(xy, p).min(most * self.spacing);
+        self.sources.who(p, bends / self.spacing).map_or(bends, |found| found.size * self.spacing).max(least * self.spacing)
     }
 }
 

@@ -17,8 +17,8 @@ use crate::mesh::faces::limits_of;
 use crate::mesh::free::bound;
 use crate::mesh::free::build::{Lattice, Task, Trouble, expected_nodes, triangulate};
 use crate::mesh::free::ground::{Even, Field};
-use crate::mesh::free::improve::{Broken, Care};
-use crate::mesh::free::loads::Loads;
+use crate::mesh::free::improve::{Care, Guard};
+use crate::mesh::free::loads::{Loads, load};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::sheet::Sheet;
 use crate::mesh::free::size::{Background, Blend};
@@ -36,7 +36,7 @@ const WANTED_BENT: f64 = 0.85;
 /// The same for halves of squares, which have 0.83.
 pub(super) const WANTED_TREE: f64 = 0.8;
 /// Rounds of smoothing: more move nodes on, but make no triangle better (mean quality differs in the third digit).
-pub(super) const SMOOTH: usize = 8;
+const SMOOTH: usize = 5;
 /// The same for corners of cells, which start far from where they end.
 const SMOOTH_TREE: usize = 30;
 /// Most inner nodes of a face.
@@ -44,7 +44,7 @@ pub(super) const MOST: usize = MESH_ELEMENTS as usize / 2;
 /// What stands for the edges of a border among sources.
 const BORDER: u32 = u32::MAX;
 /// First lengths over those that bends ask for: triangles are not all equilateral.
-pub const FILLED: f64 = 0.85;
+pub const FILLED: f64 = 0.83;
 /// What is made smaller is made a little more so.
 pub(super) const LESS: f64 = 0.96;
 /// Times a face is made anew for its limits.
@@ -134,7 +134,7 @@ pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 
     let even = Even(spacing * face.size.0);
     let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
     let care = Care { smooth: 0, wanted: WANTED, longest: LONGEST };
-    let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, broken: None };
+    let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, guard: None };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))
 }
@@ -145,6 +145,52 @@ pub(super) fn near(made: &Made, face: &Face, outline: &Outline) -> Sources {
     let hull = made.input.model.surfaces[face.surface.index()].surface.hull().union(Box3::of(outline.p.iter().copied()));
     let items = all.items().iter().filter(|source| source.reaches(&hull, all.slope(), face.size.0));
     Sources::new(items.copied().collect(), all.slope())
+}
+
+/// Sides by their lengths and triangles by their bounds.
+struct Bounded<'a> {
+    fit: &'a Fit<'a>,
+    /// What is shorter is left as it is.
+    floor: f64,
+    loads: &'a RefCell<Loads>,
+}
+
+impl Guard for Bounded<'_> {
+    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
+        let mut loads = self.loads.borrow_mut();
+        loads.update(self.fit.sheet, web, some, &self.fit.limits);
+        let mut found = self.fit.longest.broken(web, some);
+        let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(web, *t) > self.floor;
+        found.extend(some.iter().copied().filter(over));
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn foresees(&self) -> bool {
+        true
+    }
+
+    fn keeps(&self, web: &Web, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
+        let [a, b, c] = corners.map(|n| n as usize);
+        let a = first.map_or_else(|| web.p[a], |first| first.1);
+        let longest = a.distance(web.p[b]).max(web.p[b].distance(web.p[c])).max(web.p[c].distance(a));
+        longest <= self.floor || load(self.fit.sheet, web, corners, first, &self.fit.limits).worst() <= 1.0
+    }
+}
+
+impl Guard for Longest<'_> {
+    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
+        self.broken(web, some)
+    }
+
+    fn foresees(&self) -> bool {
+        false
+    }
+
+    fn keeps(&self, _: &Web, _: [u32; 3], _: Option<(DVec2, DVec3)>) -> bool {
+        true
+    }
 }
 
 impl Fit<'_> {
@@ -166,7 +212,7 @@ impl Fit<'_> {
     /// Edges of the border that are so short that lengths have to grow from them; nodes are `spacing` times as far apart as
     /// sides are long.
     pub(super) fn short_edges(&self, background: Option<&Background>, spacing: f64) -> Vec<Source> {
-        let growth = 1.0 + self.made.input.plan.slope();
+        let slope = self.made.input.plan.slope();
         let least = if self.made.wanted.written > 0.0 { self.made.wanted.floor } else { self.made.input.tolerance.point };
         let sources = |edge: [u32; 2]| {
             let [a, b] = edge.map(|n| n as usize);
@@ -177,25 +223,24 @@ impl Fit<'_> {
             let from = [(size.max(self.made.wanted.floor), 1.0), (size.max(least), STEEP)];
             // Nodes are as far from it as it is long.
             let source = |(from, steep)| Source { body, radius: 0.0, size: from / spacing, steep, tag: BORDER };
-            let asks = |from: &(f64, f64)| size > 0.0 && from.0 * growth < there;
+            let asks = |(from, steep): &(f64, f64)| size > 0.0 && from * (1.0 + slope * steep) < there;
             // What is below the floor asks twice.
             from.into_iter().take(if from[1].0 < from[0].0 { 2 } else { 1 }).filter(asks).map(source).collect::<Vec<_>>()
         };
         self.outline.edges().flat_map(sources).collect()
     }
 
-    fn task<'t>(&'t self, field: &'t dyn Field, broken: &'t Broken<'t>) -> Task<'t> {
+    fn task<'t>(&'t self, field: &'t dyn Field, guard: &'t dyn Guard) -> Task<'t> {
         let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
-        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, broken: Some(broken) }
+        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, guard: Some(guard) }
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
     fn even(&self, field: &mut Blend, job: &Job) -> Fitted {
-        let broken = |web: &Web, some: &[u32]| self.longest.broken(web, some);
         for _ in 0..ROUNDS {
             let same = Even(field.spacing * self.face.size.0);
             let field_now: &dyn Field = if field.sources.is_empty() { &same } else { &*field };
-            match triangulate(&self.task(field_now, &broken), job)? {
+            match triangulate(&self.task(field_now, &self.longest), job)? {
                 Ok(made) if !made.keeps => field.spacing *= LESS,
                 other => return Ok(other.map(|made| made.web)),
             }
@@ -212,17 +257,8 @@ impl Fit<'_> {
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
         let loads = RefCell::new(Loads::default());
         for _ in 0..ROUNDS {
-            let broken = |web: &Web, some: &[u32]| {
-                let mut loads = loads.borrow_mut();
-                loads.update(self.sheet, web, some, &self.limits);
-                let mut found = self.longest.broken(web, some);
-                let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(web, *t) > floor;
-                found.extend(some.iter().copied().filter(over));
-                found.sort_unstable();
-                found.dedup();
-                found
-            };
-            let web = match triangulate(&self.task(&*field, &broken), job)? {
+            let guard = Bounded { fit: self, floor, loads: &loads };
+            let web = match triangulate(&self.task(&*field, &guard), job)? {
                 // Below a floor limits may be broken all the same; that is told.
                 Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.web)),
                 Ok(made) => made.web,
@@ -288,11 +324,12 @@ impl Fit<'_> {
         let (most, least) = field.range;
         for n in 0..web.p.len() {
             let (xy, p) = (web.xy[n], web.p[n]);
-            let source = field.sources.who(p, most);
+            let bends = field.by_bends(xy, p);
+            let source = field.sources.who(p, most.min(bends / field.spacing));
             let by_sources = source.map_or(most, |s| s.size) * field.spacing;
             let why = match source {
-                _ if by_sources.min(field.by_bends(xy, p)) < least * field.spacing => Why::Floor,
-                _ if field.by_bends(xy, p) < by_sources => Why::Bends,
+                _ if by_sources.min(bends) < least * field.spacing => Why::Floor,
+                _ if bends < by_sources => Why::Bends,
                 Some(source) if field.sources.items()[source.item as usize].tag == BORDER => Why::Border,
                 Some(source) => Why::Refined(field.sources.items()[source.item as usize].tag as usize),
                 None => Why::Size,

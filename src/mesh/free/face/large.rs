@@ -47,7 +47,7 @@ impl Fit<'_> {
     /// About how many elements each field asks for.
     fn expected<const N: usize>(&self, fields: [&dyn Field; N]) -> [f64; N] {
         let lattice = Lattice::Crystal;
-        let task = |field| Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, broken: None };
+        let task = |field| Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, guard: None };
         expected_nodes(fields.map(task).each_ref()).map_or([0.0; N], |nodes| nodes.map(|n| 2.0 * n))
     }
 

@@ -9,7 +9,7 @@ pub(super) use halved::odd;
 use glam::DVec2;
 use maker::{Maker, nodes};
 
-use super::fit::{Fit, SMOOTH, WANTED_TREE, near};
+use super::fit::{Fit, WANTED_TREE, near};
 use super::longest::{LONGEST, Longest};
 use super::{Border, Made, fault, prepared};
 use crate::base::fault::Result;
@@ -32,6 +32,8 @@ use crate::mesh::sources::Sources;
 
 /// Distance of the crystal's nodes over the size.
 const SPACING: f64 = 0.85;
+/// Rounds of smoothing.
+const SMOOTH: usize = 8;
 /// Distance of nodes over the side of an equilateral triangle that keeps the limits: half a square has a longer side.
 const HALVED: f64 = 0.7;
 

@@ -1,9 +1,10 @@
 //! Triangles that break a limit divided, and lengths squeezed where that does not do.
 
 use super::mend::{Keep, Plan};
-use super::{Broken, Gardener};
+use super::{Gardener, Guard};
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use crate::mesh::free::pending::Pending;
 
 /// Divisions of triangles that break a limit.
 const DIVISIONS: usize = 64;
@@ -11,18 +12,21 @@ const DIVISIONS: usize = 64;
 const PATIENCE: usize = 2;
 /// What lengths are squeezed by.
 const SQUEEZE: f64 = 0.93;
+/// What is wanted less of the quality while more than one triangle in so many breaks a limit.
+const ROUGH: f64 = 0.05;
+const SOME: usize = 200;
 /// One triangle in so many may be divided; where more break a limit, the lengths were wrong.
 const MANY: usize = 12;
 
-impl Gardener<'_> {
+impl<'a> Gardener<'a> {
     /// Triangles that break a limit, given those that did when it was looked at last.
-    pub fn broken(&mut self, broken: &Broken, before: &[u32]) -> Vec<u32> {
+    pub fn broken(&mut self, guard: &dyn Guard, before: &[u32]) -> Vec<u32> {
         let nodes = self.unseen.take();
         let mut some = self.triangles_at(&nodes);
         some.extend(before.iter().filter(|t| self.web.alive(**t)));
         some.sort_unstable();
         some.dedup();
-        broken(&self.web, &some)
+        guard.broken(&self.web, &some)
     }
 
     /// Whether so few triangles break a limit that dividing them will do.
@@ -31,9 +35,19 @@ impl Gardener<'_> {
     }
 
     /// Puts nodes into triangles that break a limit until none does, or too many do; what is left of `bad`.
-    pub fn divide(&mut self, broken: &Broken, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
+    ///
+    /// Where changes can be asked about ahead, only rough triangles are mended while many are divided, for what mending breaks has
+    /// to be divided again; when all keep their limits, the others are mended so that none breaks one anew.
+    pub fn divide(&mut self, guard: &'a dyn Guard, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
+        let wanted = self.care.wanted;
         for round in 0..DIVISIONS {
-            bad = self.broken(broken, &bad);
+            bad = self.broken(guard, &bad);
+            if bad.is_empty() && guard.foresees() && self.guard.is_none() {
+                (self.guard, self.care.wanted) = (Some(guard), wanted);
+                self.changed = Pending::all(self.web.p.len());
+                self.mend();
+                bad = self.broken(guard, &bad);
+            }
             if bad.is_empty() || !self.are_few(&bad) {
                 break;
             }
@@ -51,6 +65,8 @@ impl Gardener<'_> {
                 break;
             }
             self.flip_all();
+            let rough = guard.foresees() && round > 0 && bad.len() * SOME > self.web.tri.len();
+            self.care.wanted = if rough { wanted - ROUGH } else { wanted };
             self.mend();
             job.go_on()?;
         }

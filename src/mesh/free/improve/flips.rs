@@ -54,10 +54,11 @@ impl Gardener<'_> {
             if !self.convex(quad) {
                 continue;
             }
+            let [na, nb, nc, nd] = quad;
             let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
             let before = quality(a, b, d).min(quality(c, d, b));
             let after = quality(a, b, c).min(quality(a, c, d));
-            if after > before + GAIN {
+            if after > before + GAIN && self.keeps([na, nb, nc], None) && self.keeps([na, nc, nd], None) {
                 let other = self.web.across[t as usize][k];
                 self.web.flip(t, k);
                 self.wake(t);

@@ -1,5 +1,7 @@
 //! Bad triangles mended, worst first: a corner moved, a side flipped, or a patch made anew with a node more or less.
 
+use glam::{DVec2, DVec3};
+
 use super::Gardener;
 use super::flips::GAIN;
 use crate::base::triangulate_points::NO_TRIANGLE;
@@ -60,7 +62,7 @@ impl Gardener<'_> {
             let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
             let before = self.rim.worst(xy, p);
             let star = self.rim.best(self.ground, xy, p);
-            if star.worst > before + GAIN {
+            if star.worst > before + GAIN && self.star_keeps(&self.ring.node, node, &star) {
                 self.place(node, star.xy, star.p);
                 any = true;
             }
@@ -79,6 +81,7 @@ impl Gardener<'_> {
                 && let Some((after, plan)) = self.plan(&patch, keep, before * HOPE)
                 && after > before + GAIN
                 && best.as_ref().is_none_or(|b| after - before > b.0)
+                && self.plan_keeps(&patch, &plan)
             {
                 best = Some((after - before, patch.clone(), plan));
             }
@@ -93,6 +96,26 @@ impl Gardener<'_> {
             }
         }
         true
+    }
+
+    /// Whether a triangle keeps the limits, with its first corner moved to a place.
+    pub(super) fn keeps(&self, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
+        self.guard.is_none_or(|guard| guard.keeps(&self.web, corners, first))
+    }
+
+    /// The same of the triangles from a place to the sides of a rim.
+    fn star_keeps(&self, rim: &[u32], node: u32, star: &Star) -> bool {
+        let n = rim.len();
+        (0..n).all(|i| self.keeps([node, rim[i], rim[(i + 1) % n]], Some((star.xy, star.p))))
+    }
+
+    fn plan_keeps(&self, patch: &Patch, plan: &Plan) -> bool {
+        let rim = &patch.rim;
+        let n = rim.len();
+        match plan {
+            Plan::Star(star, node) => self.star_keeps(rim, node.unwrap_or(u32::MAX), star),
+            Plan::Fan(k) => (1..n - 1).all(|i| self.keeps([rim[*k], rim[(k + i) % n], rim[(k + i + 1) % n]], None)),
+        }
     }
 
     /// Sets of triangles round a triangle: two at each side for a new node, stars of corners without it, stars of two

@@ -109,7 +109,7 @@ impl Maker<'_> {
         let lattice = if self.fit.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Squares };
         let (ground, outline) = (self.fit.sheet, &self.halves.outline);
         let most = if quads { MOST / 4 } else { MOST };
-        let task = Task { ground, field: cells, outline, care: self.fit.care, lattice, most, broken: None };
+        let task = Task { ground, field: cells, outline, care: self.fit.care, lattice, most, guard: None };
         let web = match plant(&task, job)? {
             Ok(web) => web,
             Err(trouble) => return Ok(Err(trouble)),
