@@ -31,6 +31,10 @@ pub(super) trait Footing {
     fn step(&self, jet: &Jet2, _uv: DVec2, d: DVec3) -> Option<DVec2> {
         step(jet.du, jet.dv, d)
     }
+    /// Whether a step is so short that its end needs no look: the squared distance there is the one here.
+    fn is_last(&self, _jet: &Jet2, _d: DVec3, _step: DVec2) -> bool {
+        false
+    }
     /// Whether a step, from a place with a squared distance to another one, was the last that matters.
     fn settled(&self, (from, _): (DVec2, f64), (to, _): (DVec2, f64)) -> bool {
         (to - from).length() <= EPSILON
@@ -43,6 +47,9 @@ pub(super) trait Footing {
         let mut best = jet.p.distance_squared(p);
         for _ in 0..Self::STEPS {
             let Some(full) = self.step(&jet, uv, p - jet.p) else { break };
+            if self.is_last(&jet, p - jet.p, full) {
+                return (self.hold(uv + full), best.sqrt());
+            }
             let mut share = 1.0;
             let mut better = None;
             for _ in 0..Self::TRIES {
@@ -102,6 +109,11 @@ impl Footing for Within<'_> {
         } else {
             DVec2::new(if a > 0.0 { -gu / a } else { 0.0 }, if c > 0.0 { -gv / c } else { 0.0 })
         })
+    }
+
+    /// By what Newton's step takes from the squared distance.
+    fn is_last(&self, jet: &Jet2, d: DVec3, step: DVec2) -> bool {
+        (d.dot(jet.du) * step.x + d.dot(jet.dv) * step.y).abs() <= EPSILON * d.length_squared()
     }
 
     fn settled(&self, (_, before): (DVec2, f64), (_, after): (DVec2, f64)) -> bool {
