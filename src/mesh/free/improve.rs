@@ -22,6 +22,8 @@ use crate::base::job::Job;
 pub struct Care {
     /// Rounds of smoothing.
     pub smooth: usize,
+    /// Share of the way to the mean of its neighbours that a node is moved.
+    pub beyond: f64,
     /// Triangles below this quality are worked on.
     pub wanted: f64,
     /// Longest edge over wanted length.

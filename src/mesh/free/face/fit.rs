@@ -37,6 +37,11 @@ const WANTED_BENT: f64 = 0.85;
 pub(super) const WANTED_TREE: f64 = 0.8;
 /// Rounds of smoothing: more move nodes on, but make no triangle better (mean quality differs in the third digit).
 const SMOOTH: usize = 5;
+/// Share of the way to the mean that a node is moved: five rounds beyond it do what eight do that stop there, as for any relaxation
+/// from neighbour to neighbour.
+const BEYOND: f64 = 1.6;
+/// Rounds that stop at the mean, where lengths grow from short pieces: there nodes overshoot.
+const SMOOTH_GRADED: usize = 8;
 /// The same for corners of cells, which start far from where they end.
 const SMOOTH_TREE: usize = 30;
 /// Most inner nodes of a face.
@@ -81,6 +86,7 @@ pub(super) fn fitting(
     let tree = face.method == Method::Quadtree;
     let smooth = if tree { SMOOTH_TREE } else { SMOOTH };
     let care = Care {
+        beyond: BEYOND,
         smooth: made.input.plan.smooth.map_or(smooth, |n| n.0 as usize),
         wanted: if tree {
             WANTED_TREE
@@ -93,7 +99,7 @@ pub(super) fn fitting(
     };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules);
-    let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
+    let mut fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
     if face.method.is_sparing() {
         let mut laid = fit.laid(&rules, job)?;
         match (face.method, &mut laid) {
@@ -110,6 +116,10 @@ pub(super) fn fitting(
     // Growth is that of distances of nodes.
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
+    if !bent && !tree && !sources.is_empty() {
+        fit.care.beyond = 1.0;
+        fit.care.smooth = made.input.plan.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
+    }
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;
     let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
@@ -133,7 +143,7 @@ pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 
     let field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
     let even = Even(spacing * face.size.0);
     let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
-    let care = Care { smooth: 0, wanted: WANTED, longest: LONGEST };
+    let care = Care { smooth: 0, beyond: 1.0, wanted: WANTED, longest: LONGEST };
     let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, guard: None };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))

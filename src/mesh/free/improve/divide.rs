@@ -42,7 +42,7 @@ impl<'a> Gardener<'a> {
         let wanted = self.care.wanted;
         for round in 0..DIVISIONS {
             bad = self.broken(guard, &bad);
-            if bad.is_empty() && guard.foresees() && self.guard.is_none() {
+            if bad.is_empty() && guard.foresees() && self.guard.is_none() && self.care.smooth > 0 {
                 (self.guard, self.care.wanted) = (Some(guard), wanted);
                 self.changed = Pending::all(self.web.p.len());
                 self.mend();

@@ -8,9 +8,6 @@ use crate::mesh::free::ground::foot_near;
 
 /// A move below this share of the wanted length ends the smoothing of a node.
 const STILL: f64 = 0.005;
-/// Share of the way to the mean that a node is moved: five rounds beyond it do what twelve do that stop there, as for any
-/// relaxation from neighbour to neighbour.
-const BEYOND: f64 = 1.6;
 /// A node whose triangles are all at least this good is left where it is.
 const FINE: f64 = 0.9999;
 
@@ -61,7 +58,7 @@ impl Gardener<'_> {
         let wish = sum / (3.0 * weights) - here;
         // The same mean in the chart is nearly the foot of the one in space.
         let way = place / (3.0 * weights) - xy;
-        let mut share = BEYOND;
+        let mut share = self.care.beyond;
         for _ in 0..3 {
             let step = wish * share;
             if step.length() < STILL * size {
