@@ -96,7 +96,7 @@ const BY_ROWS: f64 = 1.1;
 /// The expression of a size: that of a rule or clause, else the mesh's own.
 pub fn of_size(input: &Input, clause: Option<usize>) -> Origin {
     let plan = input.plan;
-    let own = plan.size.map_or(plan.origin, |size| size.1);
+    let own = plan.size_origin();
     let Some(clause) = clause else { return own };
     match plan.rules.get(clause) {
         Some(rule) => rule.size.map_or(rule.origin, |s| s.1),

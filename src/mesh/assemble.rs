@@ -194,7 +194,7 @@ fn number(made: &Made, prepared: &mut [Prepared]) -> Result<()> {
     for ready in prepared.iter_mut() {
         total += ready.triangles + ready.quads;
         if total > MESH_ELEMENTS {
-            return Err(faces::too_many(made.input.plan, made.input.plan.size.map_or(made.input.plan.origin, |size| size.1), total));
+            return Err(faces::too_many(made.input.plan, made.input.plan.size_origin(), total));
         }
         ready.number(first);
         first += ready.inner as u32;

@@ -1,7 +1,5 @@
 //! Faces ready to be filled: their charts, the ids of their border nodes, and how many nodes and elements they make.
 
-use crate::base::origin::Origin;
-use crate::base::text::real;
 use glam::DVec3;
 
 use super::build::Input;
@@ -16,6 +14,8 @@ use super::trilateral::{Blocks, LatticeFrame};
 use super::uneven::Uneven;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::limits::MESH_ELEMENTS;
+use crate::base::origin::Origin;
+use crate::base::text::real;
 use crate::model::SurfaceId;
 use crate::surface::{Domain, Surface};
 

@@ -186,6 +186,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// What asks for the size: its expression, or the mesh where none is written.
+    pub fn size_origin(&self) -> Origin {
+        self.size.map_or(self.origin, |size| size.1)
+    }
+
     /// A mesh of surfaces with every setting at its default.
     pub fn of(name: &str, surfaces: Vec<(SurfaceId, bool)>) -> Self {
         Self {

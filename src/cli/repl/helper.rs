@@ -70,7 +70,7 @@ impl Hinter for Line {
 
 /// A hint that stays on its line, with `…` for what has no room.
 fn fitting(hint: String, room: usize) -> String {
-    if hint.chars().count() <= room {
+    if columns(&hint) <= room {
         return hint;
     }
     let kept: String = hint.chars().take(room.saturating_sub(1)).collect();

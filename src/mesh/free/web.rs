@@ -157,6 +157,8 @@ impl Web {
             let k = self.corner(t, node);
             ring.tri.push(t);
             ring.node.push(self.tri[t as usize][(k + 1) % 3]);
+            // A web that hangs together wrongly is found before it takes all memory.
+            assert!(ring.tri.len() <= self.tri.len(), "triangles go round node {node} for ever");
             let next = self.across[t as usize][(k + 1) % 3];
             if next == NO_TRIANGLE {
                 ring.node.push(self.tri[t as usize][(k + 2) % 3]);

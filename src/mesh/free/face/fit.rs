@@ -256,7 +256,7 @@ impl Fit<'_> {
             }
         }
         let plan = self.made.input.plan;
-        let (says, at) = (plan.size.map_or(plan.origin, |s| s.1), self.outline.p[0]);
+        let (says, at) = (plan.size_origin(), self.outline.p[0]);
         let reached = self.longest.inside;
         Err(MeshFault::NotReached { limit: "size", says, surface: self.surface.origin(), reached, at }.into())
     }

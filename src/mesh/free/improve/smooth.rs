@@ -66,7 +66,8 @@ impl Gardener<'_> {
             }
             let (xy, spot) = foot_near(self.ground, self.ground.clamp(xy + way * share), here + step, step.length());
             let p = spot.p;
-            if self.rim.worst(xy, p) >= before.min(FINE) {
+            // Where rounding has turned a triangle over already, that is no leave to turn others.
+            if self.rim.worst(xy, p) >= before.clamp(0.0, FINE) {
                 self.place(node, xy, p);
                 return true;
             }

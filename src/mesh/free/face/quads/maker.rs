@@ -127,8 +127,6 @@ impl Maker<'_> {
         if quads {
             Swapper::new(&mut net).swap();
             self.smooth(&mut net, cells, job)?;
-        }
-        if quads {
             let Some(whole) = whole_sides(&net) else { return Ok(Err(Trouble::Odd)) };
             self.narrow_rows(&mut net, &whole, cells, job)?;
             net = split(&net, &whole, (ground, wanted));
