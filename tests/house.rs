@@ -54,7 +54,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_500),
     ("surface", 9_900),
     ("model", 3_300),
-    ("mesh", 17_700),
+    ("mesh", 18_000),
     ("io", 8_500),
     ("draw", 3_000),
     ("lang", 20_200),

@@ -355,7 +355,10 @@ fn revolved_surfaces_close_and_have_one_node_a_pole() {
         assert!((area(&mesh) / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.02);
     }
     let mut plan = scene.plan();
-    plan.elements = Elements::Quads;
+    (plan.elements, plan.size) = (Elements::Quads, Some((0.2, Origin::NONE)));
+    let mesh = scene.sound(&plan);
+    assert!(mesh.triangles.is_empty() && edges_of(&mesh) == (0, 2), "no map, no triangles");
+    plan.method = lofting::mesh::plan::Method::Mapped;
     assert_eq!(scene.mesh(&plan).unwrap_err().code().0, "E704");
     // A tube round the axis: seams are welded, rings have at least three steps.
     let profile = straight(p(1., 0., 0.), p(1., 0., 3.));

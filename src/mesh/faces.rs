@@ -81,7 +81,7 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
                 Uneven::Beside(step) => format!("beside a free one that needs steps of {}, which rows do not follow", short(step)),
             })
         };
-        let why = unmappable(surface, face).or_else(crossed).or_else(uneven);
+        let why = unmappable(surface, face).or_else(crossed).or_else(uneven).or_else(|| pole(face));
         let (of, at) = (surface.origin(), middle(input, face));
         let borderless = face.sides.iter().all(|s| s.uses.is_empty());
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
@@ -94,6 +94,12 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Why a face of quads that nothing says to map is not, in words that follow "a face".
+fn pole(face: &Face) -> Option<String> {
+    let is_quads = face.method == Method::Auto && face.elements == Elements::Quads && !face.is_triangle();
+    (is_quads && face.sides.iter().any(|side| side.uses.is_empty())).then(|| "with a pole, where a map would make triangles".to_owned())
 }
 
 /// A length with three digits that count.
