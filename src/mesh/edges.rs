@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use super::counts::for_size;
 use super::layout::Layout;
@@ -65,10 +65,16 @@ fn worst(layout: &Layout, stretch: usize, fractions: Vec<f64>, limits: &Limits) 
     let atom = &layout.pieces.atoms[stretch];
     let track = &layout.parts[atom.track].track;
     let at: Vec<f64> = fractions.into_iter().map(|f| atom.s.0 + (atom.s.1 - atom.s.0) * f).collect();
+    let points: Vec<DVec3> = at.iter().map(|s| track.point(*s)).collect();
     let mut load = Load::default();
-    for w in at.windows(2) {
+    for (w, ends) in at.windows(2).zip(points.windows(2)) {
         let (chord, angle) = match track {
-            Track::Links { .. } => hull_of(track, w[0], w[1])?,
+            Track::Links { .. } => {
+                // What is kept for sure, or no worse than what was seen, need not be known closer.
+                let (chord, angle) =
+                    (limits.chord.map(|limit| limit * load.chord.max(1.0)), limits.angle.map(|limit| limit * load.angle.max(1.0)));
+                hull_of(track, (w[0], w[1]), (ends[0], ends[1]), (chord.unwrap_or(f64::INFINITY), angle.unwrap_or(f64::INFINITY)))?
+            }
             Track::Iso(_) => probed(track, w[0], w[1]),
         };
         load.chord = load.chord.max(limits.chord.map_or(0.0, |limit| chord / limit));
@@ -78,7 +84,8 @@ fn worst(layout: &Layout, stretch: usize, fractions: Vec<f64>, limits: &Limits) 
 }
 
 /// Bounds over a step on links: distance from the chord by the convex hull, turn by the cone of the control legs [Floater 1992].
-fn hull_of(track: &Track, s0: f64, s1: f64) -> Result<(f64, f64)> {
+/// Bounds up to `enough` may be rough.
+fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), enough: (f64, f64)) -> Result<(f64, f64)> {
     let Track::Links { chains, starts, span } = track else {
         return Ok((0.0, 0.0));
     };
@@ -90,7 +97,8 @@ fn hull_of(track: &Track, s0: f64, s1: f64) -> Result<(f64, f64)> {
     if *against {
         (from, to) = (length - to, length - from);
     }
-    let ends = (track.point(s0), track.point(s1));
+    // The cone stands about the chord, so two directions in it differ by twice its half angle at most.
+    let enough = (enough.0, 0.5 * enough.1);
     let ends = if *against { (ends.1, ends.0) } else { ends };
     let (mut chord, mut angle, mut before) = (0.0_f64, 0.0_f64, 0.0);
     for run in chain.runs() {
@@ -101,15 +109,15 @@ fn hull_of(track: &Track, s0: f64, s1: f64) -> Result<(f64, f64)> {
             continue;
         }
         let (c, t) = if run.s0 <= run.s1 { (run.s0 + low, run.s0 + high) } else { (run.s0 - high, run.s0 - low) };
-        let bound = hull_on_curve(&run.curve, (c, t), ends, run.s0 > run.s1)?;
+        let ends = if run.s0 > run.s1 { (ends.1, ends.0) } else { ends };
+        let bound = hull_on_curve(&run.curve, (c, t), ends, enough)?;
         (chord, angle) = (chord.max(bound.0), angle.max(bound.1));
     }
-    // The cone stands about the chord, so two directions in it differ by twice its half angle at most.
     Ok((chord, 2.0 * angle))
 }
 
-/// Distance and direction bounds of a piece of a curve against a chord.
-fn hull_on_curve(curve: &Curve, s: (f64, f64), ends: (DVec3, DVec3), backwards: bool) -> Result<(f64, f64)> {
+/// Distance and direction bounds of a piece of a curve against a chord, closer only where they are above what is `enough`.
+fn hull_on_curve(curve: &Curve, s: (f64, f64), ends: (DVec3, DVec3), enough: (f64, f64)) -> Result<(f64, f64)> {
     let length = curve.length();
     let wrap = |x: f64| if x > length { x - length } else { x };
     let (s0, mut s1) = (wrap(s.0), wrap(s.1));
@@ -120,30 +128,36 @@ fn hull_on_curve(curve: &Curve, s: (f64, f64), ends: (DVec3, DVec3), backwards: 
     if t1 <= t0 {
         return Ok((0.0, 0.0));
     }
-    let ends = if backwards { (ends.1, ends.0) } else { ends };
     let along = ends.1 - ends.0;
     let nurbs = curve.part(t0, t1).to_nurbs(&Tolerance::new(along.length() * CONVERSION, along.length()))?;
     let (mut chord, mut angle) = (0.0_f64, 0.0_f64);
     let mut open: Vec<_> = nurbs.beziers().into_iter().map(|b| (b, HALVINGS)).collect();
     while let Some((piece, left)) = open.pop() {
-        if left > 0 && piece.poles.len() > 2 {
+        let own = hull_of_poles(&piece.poles, ends, along, enough.1.is_finite());
+        let rough = own.0 > enough.0.max(chord) || own.1 > enough.1.max(angle);
+        if rough && left > 0 && piece.poles.len() > 2 {
             let (a, b) = piece.halves();
             open.push((a, left - 1));
             open.push((b, left - 1));
             continue;
         }
-        let points: Vec<DVec3> = piece.poles.iter().map(|q| projected(*q)).collect();
-        for p in &points {
-            chord = chord.max(distance_to_segment(*p, ends.0, ends.1));
-        }
-        for leg in points.windows(2).map(|w| w[1] - w[0]) {
-            if leg.length_squared() > 0.0 {
-                // A step round a whole loop has no chord and turns all the way.
-                angle = angle.max(if along == DVec3::ZERO { PI } else { angle_between(leg, along) });
-            }
-        }
+        (chord, angle) = (chord.max(own.0), angle.max(own.1));
     }
     Ok((chord, angle))
+}
+
+/// Distance of a control polygon from a chord, and the largest turn of its legs from it where that is asked for.
+fn hull_of_poles(poles: &[DVec4], ends: (DVec3, DVec3), along: DVec3, turns: bool) -> (f64, f64) {
+    let (mut chord, mut angle, mut last) = (0.0_f64, 0.0_f64, None);
+    for p in poles.iter().map(|q| projected(*q)) {
+        chord = chord.max(distance_to_segment(p, ends.0, ends.1));
+        let leg = last.replace(p).map_or(DVec3::ZERO, |last| p - last);
+        if turns && leg.length_squared() > 0.0 {
+            // A step round a whole loop has no chord and turns all the way.
+            angle = angle.max(if along == DVec3::ZERO { PI } else { angle_between(leg, along) });
+        }
+    }
+    (chord, angle)
 }
 
 /// Share of a step within which curves without an exact NURBS form are converted for their bound.

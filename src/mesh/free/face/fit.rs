@@ -213,7 +213,7 @@ impl Fit<'_> {
             let jet = self.sheet.jet(xy);
             let plain = bound::wanted(&jet, limits.chord, limits.angle).min(size / FILLED);
             let at = (DVec2::from(self.sheet.uv(xy)), &jet);
-            FILLED * limits.chord.map_or(plain, |limit| bound::surely(surface, at, jet.du, (limit, plain)))
+            FILLED * limits.chord.map_or(plain, |limit| bound::likely(surface, at, jet.du, (limit, plain)))
         };
         let of = |xy: DVec2| wanted(xy).min(size);
         Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &of)
