@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::topology::EdgeCurve;
 use crate::base::digest::{Content, Digester};
 use crate::base::quadrature::{self, RUNNING};
-use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, Tolerance};
+use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
@@ -100,7 +100,9 @@ impl Trace {
         let k = self.panels.partition_point(|p| p.s <= s).saturating_sub(1);
         let (panel, half) = (&self.panels[k], 0.5 * (self.panels[k].t.1 - self.panels[k].t.0));
         let wanted = (s - panel.s) / half;
-        let (mut low, mut high, mut x) = (-1.0, 1.0, 0.0);
+        // As if it were run at one speed.
+        let whole = self.panels.get(k + 1).map_or(self.length, |next| next.s) - panel.s;
+        let (mut low, mut high, mut x) = (-1.0, 1.0, (2.0 * (s - panel.s) / whole - 1.0).clamp(-1.0, 1.0));
         for _ in 0..STEPS {
             let (value, slope) = quadrature::chebyshev(&panel.running, x);
             let miss = value - wanted;
@@ -111,10 +113,12 @@ impl Trace {
             }
             let newton = x - miss / slope;
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if next == x || (high - low).abs() < f64::EPSILON {
+            // Newton's step squares what is amiss.
+            let last = next == newton && (next - x).abs() <= NEWTON_STEP;
+            x = next;
+            if last || (high - low).abs() < f64::EPSILON {
                 break;
             }
-            x = next;
         }
         panel.t.0 + half * (x + 1.0)
     }

@@ -85,26 +85,35 @@ pub fn chord(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], want
         let at = of.1.map_or_else(|| of.0.point(uv.x, uv.y), |quick| quick.point(uv.x, uv.y));
         (at - p[0]).dot(normal)
     };
-    let mut worst = 0.0_f64;
-    let mut open = vec![(uv, [0.0_f64; 3], PARTS)];
-    while let Some((uv, above, left)) = open.pop() {
-        let known = above.into_iter().fold(0.0, |m: f64, f| m.max(f.abs()));
-        let bound = if known > wanted { known } else { part(of, uv, normal, Some(above)) };
-        if bound <= wanted || left == 0 || known > wanted {
-            worst = worst.max(bound);
-            if worst > wanted {
-                break;
-            }
-            continue;
-        }
+    let quarter = |uv: [DVec2; 3], above: [f64; 3]| {
         let middle = |i: usize, j: usize| 0.5 * (uv[i] + uv[j]);
         let m = [middle(1, 2), middle(2, 0), middle(0, 1)];
         let f = m.map(height);
-        open.push((m, f, left - 1));
-        for k in 0..3 {
+        let corner = |k: usize| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            open.push(([uv[k], m[j], m[i]], [above[k], f[j], f[i]], left - 1));
+            ([uv[k], m[j], m[i]], [above[k], f[j], f[i]])
+        };
+        let seen = f.into_iter().fold(0.0, |seen: f64, f| seen.max(f.abs()));
+        ([(m, f), corner(0), corner(1), corner(2)], seen)
+    };
+    let (mut worst, mut open) = (0.0_f64, Vec::with_capacity(4 * PARTS as usize));
+    let mut next = Some((uv, [0.0_f64; 3], PARTS));
+    while let Some((uv, above, left)) = next {
+        let (parts, seen) = quarter(uv, above);
+        if seen > wanted {
+            return seen;
         }
+        for (uv, above) in parts {
+            let bound = part(of, uv, normal, Some(above));
+            if bound > wanted && left > 1 {
+                open.push((uv, above, left - 1));
+            } else if bound > wanted {
+                return bound;
+            } else {
+                worst = worst.max(bound);
+            }
+        }
+        next = open.pop();
     }
     worst
 }
