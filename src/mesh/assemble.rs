@@ -9,7 +9,7 @@ use super::edges::Limits;
 use super::explain::Explanation;
 use super::faces::{self, Frame, Prepared};
 use super::free::face::{self as free_face, Made};
-use super::layout::Layout;
+use super::layout::{Face, Layout};
 use super::limits::{self, Finished, Verdict};
 use super::narrow::{self, Narrow};
 use super::nodes::Nodes;
@@ -23,6 +23,8 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::par;
+use crate::surface::Domain;
+use crate::surface::quick::Quick;
 
 /// Refinements of whole faces before a limit counts as out of reach.
 const ROUNDS: usize = 40;
@@ -45,12 +47,26 @@ pub struct Part {
     pub sizing: Sizing,
 }
 
+/// Surfaces that are made ready once for their borders, faces and bounds, where there are few: each takes many times the room
+/// of its net.
+const HELD: usize = 64;
+
+/// The surfaces of faces that are surely made freely under limits, ready for many evaluations.
+fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Quick> {
+    if limits.chord.is_none() && limits.angle.is_none() {
+        return Vec::new();
+    }
+    let free = |face: &&Face| face.method.is_free() || input.model.surfaces[face.surface.index()].surface.domain() == Domain::Loop;
+    layout.faces.iter().filter(free).take(HELD).filter_map(|face| input.model.surfaces[face.surface.index()].surface.quick()).collect()
+}
+
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
     inside::place(input, &mut layout);
     let mut narrow: Vec<Narrow> = Vec::new();
     let limits = faces::limits_of(input);
+    let _held = held(input, &layout, &limits);
     let (mut sizing, mut wishes, mut relations) = begin(input, &mut layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     let (mut looks, mut before) = (LOOKS, Vec::new());

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::quick::Ready;
 use super::rail::Lean;
 use super::rail::Rail;
 use super::reparam::Map;
@@ -158,7 +159,14 @@ impl Border {
 /// Where derivatives jump (kink lines), [`Surface::jet`] takes those of the piece that follows in u and v;
 /// [`Surface::jet_lean`] chooses.
 #[derive(Clone, Debug)]
-pub struct Surface(Arc<Parts>);
+pub struct Surface(Arc<Whole>);
+
+/// A surface with what is made of it for many evaluations.
+#[derive(Debug)]
+struct Whole {
+    parts: Parts,
+    ready: Ready,
+}
 
 /// Everything a surface is made of; what builders fill in.
 #[derive(Clone, Debug)]
@@ -196,17 +204,21 @@ impl Content for Side {
 
 impl Content for Surface {
     fn tell(&self, to: &mut Digester) {
-        self.0.tell(to);
+        self.0.parts.tell(to);
     }
 }
 
 impl Surface {
     pub(super) fn new(parts: Parts) -> Self {
-        Self(Arc::new(parts))
+        Self(Arc::new(Whole { parts, ready: Ready::default() }))
+    }
+
+    pub(super) fn ready(&self) -> &Ready {
+        &self.0.ready
     }
 
     pub(super) fn parts(&self) -> &Parts {
-        &self.0
+        &self.0.parts
     }
 
     /// Whether two values are one and the same: made once and copied, not only alike.
@@ -216,28 +228,28 @@ impl Surface {
 
     /// The expression that made it.
     pub fn origin(&self) -> Origin {
-        self.0.origin
+        self.0.parts.origin
     }
 
     /// The same made by another expression.
     pub fn with_origin(&self, origin: Origin) -> Self {
-        Self::new(Parts { origin, ..(*self.0).clone() })
+        Self::new(Parts { origin, ..self.0.parts.clone() })
     }
 
     /// The word it was made with.
     pub fn kind(&self) -> SurfaceKind {
-        self.0.kind
+        self.0.parts.kind
     }
 
     /// Phrase of its flow (math notes §7), for example "quadrilateral"; empty where there is none.
     pub fn flow(&self) -> String {
-        self.0.flow.clone()
+        self.0.parts.flow.clone()
     }
 
     /// The curves that a flow put along u (ascending v) and along v (ascending u), `None` for a pole, in the parameters it
     /// found; empty for surfaces that no curves were sorted for.
     pub fn families(&self) -> (Vec<Option<&Chain>>, Vec<Option<&Chain>>) {
-        match &self.0.shape {
+        match &self.0.parts.shape {
             Shape::Blend(blend) => (blend.along_u().iter().map(Rail::chain).collect(), blend.along_v().iter().map(Rail::chain).collect()),
             Shape::Trilateral(sides) => sides.families(),
             _ => (Vec::new(), Vec::new()),
@@ -246,12 +258,12 @@ impl Surface {
 
     /// Square, triangle for a uniform trilateral, or a plane without a map.
     pub fn domain(&self) -> Domain {
-        self.0.domain
+        self.0.parts.domain
     }
 
     /// Whether u (first) and v (second) are periodic.
     pub fn closed(&self) -> (bool, bool) {
-        self.0.closed
+        self.0.parts.closed
     }
 
     /// Point and derivatives.
@@ -264,18 +276,18 @@ impl Surface {
     pub fn jet_lean(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
         let (u, v) = self.wrapped(u, v);
         let (u, v, lean) = self.inner(u, v, lean);
-        self.outer(self.0.shape.jet(u, v, lean))
+        self.outer(self.0.parts.shape.jet(u, v, lean))
     }
 
     /// Into 0…1 where a surface closes: borders may run over the seam. What rounding put beside a seam stays on its side.
     pub(super) fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
         let wrap = |x: f64, closed: bool| if closed && !(-NUDGE..=1.0 + NUDGE).contains(&x) { x - x.floor() } else { x };
-        (wrap(u, self.0.closed.0), wrap(v, self.0.closed.1))
+        (wrap(u, self.0.parts.closed.0), wrap(v, self.0.parts.closed.1))
     }
 
     /// From this surface's parameters to the shape's.
     pub(super) fn inner(&self, u: f64, v: f64, lean: (Lean, Lean)) -> (f64, f64, (Lean, Lean)) {
-        match (self.0.flipped, self.ground()) {
+        match (self.0.parts.flipped, self.ground()) {
             (false, _) => (u, v, lean),
             (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
             (true, _) => (u, 1.0 - v, (lean.0, lean.1.turned())),
@@ -284,7 +296,7 @@ impl Surface {
 
     /// From the shape's derivatives to this surface's.
     pub(super) fn outer(&self, jet: Jet2) -> Jet2 {
-        match (self.0.flipped, self.ground()) {
+        match (self.0.parts.flipped, self.ground()) {
             (false, _) => jet,
             (true, Domain::Triangle) => Jet2 { du: jet.dv, dv: jet.du, duu: jet.dvv, dvv: jet.duu, ..jet },
             (true, _) => Jet2 { dv: -jet.dv, duv: -jet.duv, ..jet },
@@ -308,7 +320,8 @@ impl Surface {
             return normal;
         }
         let at_end = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];
-        let pole = (0..4).find(|&k| at_end[k] && self.0.domain == Domain::Square && matches!(self.0.borders[k].side, Side::Pole(_)));
+        let pole =
+            (0..4).find(|&k| at_end[k] && self.0.parts.domain == Domain::Square && matches!(self.0.parts.borders[k].side, Side::Pole(_)));
         pole.map_or(DVec3::ZERO, |k| self.pole_normal(k))
     }
 
@@ -346,8 +359,8 @@ impl Surface {
     ///
     /// `out` holds `us.len() * vs.len()` points.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        match (self.0.flipped, self.ground()) {
-            (false, _) => self.0.shape.grid(us, vs, out),
+        match (self.0.parts.flipped, self.ground()) {
+            (false, _) => self.0.parts.shape.grid(us, vs, out),
             (true, Domain::Triangle) => {
                 for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
                     for (p, &u) in row.iter_mut().zip(us) {
@@ -357,7 +370,7 @@ impl Surface {
             }
             (true, _) => {
                 let turned: Vec<f64> = vs.iter().map(|v| 1.0 - v).collect();
-                self.0.shape.grid(us, &turned, out);
+                self.0.parts.shape.grid(us, &turned, out);
             }
         }
     }
@@ -365,31 +378,31 @@ impl Surface {
     /// Jets of the tensor grid `us × vs`, each parameter with its side, u fastest; curves evaluated once per row.
     pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)]) -> Vec<Jet2> {
         let mut out = Vec::with_capacity(us.len() * vs.len());
-        if self.0.flipped && self.ground() == Domain::Triangle {
+        if self.0.parts.flipped && self.ground() == Domain::Triangle {
             for &(v, lean_v) in vs {
                 out.extend(us.iter().map(|&(u, lean_u)| self.jet_lean(u, v, (lean_u, lean_v))));
             }
-        } else if self.0.flipped {
+        } else if self.0.parts.flipped {
             let turned: Vec<(f64, Lean)> = vs.iter().map(|(v, lean)| (1.0 - v, lean.turned())).collect();
-            self.0.shape.jets(us, &turned, &mut out);
+            self.0.parts.shape.jets(us, &turned, &mut out);
             out.iter_mut().for_each(|jet| *jet = self.outer(*jet));
         } else {
-            self.0.shape.jets(us, vs, &mut out);
+            self.0.parts.shape.jets(us, vs, &mut out);
         }
         out
     }
 
     /// Interior values of u (first) and v (second) where the surface has a kink line, ascending.
     pub fn kinks(&self) -> (&[f64], &[f64]) {
-        (&self.0.kinks.0, &self.0.kinks.1)
+        (&self.0.parts.kinks.0, &self.0.parts.kinks.1)
     }
 
     /// Interior values of u (first) and v (second) where the surface is less than analytic: kinks, network lines, joints
     /// and knots of the curves, ascending. Between them quadrature and bounds behave.
     pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.0.shape.breaks();
+        let (us, vs) = self.0.parts.shape.breaks();
         let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.flipped, self.ground()) {
+        match (self.0.parts.flipped, self.ground()) {
             (false, _) => (us, vs),
             (true, Domain::Triangle) => (vs, us),
             (true, _) => (us, turned(&vs)),
@@ -398,9 +411,9 @@ impl Surface {
 
     /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.
     pub(super) fn cells(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.0.shape.cells();
+        let (us, vs) = self.0.parts.shape.cells();
         let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.flipped, self.ground()) {
+        match (self.0.parts.flipped, self.ground()) {
             (false, _) => (us, vs),
             (true, Domain::Triangle) => (vs, us),
             (true, _) => (us, turned(&vs)),
@@ -409,7 +422,7 @@ impl Surface {
 
     /// How many sides: 4, 3 for a triangle, any number for a plane without a map, 0 when unbounded.
     pub fn n_sides(&self) -> usize {
-        self.0.borders.len()
+        self.0.parts.borders.len()
     }
 
     /// Sides in the order v = 0, u = 1, v = 1, u = 0 (a triangle: v = 0, the slant from (1, 0) to (0, 1), u = 0;
@@ -417,12 +430,12 @@ impl Surface {
     ///
     /// Each runs with ascending u or v (the slant: ascending v).
     pub fn side(&self, k: usize) -> Side {
-        self.0.borders.get(k).map_or(Side::Free, |border| border.side.clone())
+        self.0.parts.borders.get(k).map_or(Side::Free, |border| border.side.clone())
     }
 
     /// Side parameter (u or v) at a fraction of the chain that lies along side `k`.
     pub fn side_parameter(&self, k: usize, fraction: f64) -> f64 {
-        let Some(border) = self.0.borders.get(k) else { return fraction };
+        let Some(border) = self.0.parts.borders.get(k) else { return fraction };
         let Side::Chain { from, to, .. } = &border.side else { return fraction };
         match &border.map {
             Some(map) if border.turned => 1.0 - map.inverse(fraction),
@@ -433,7 +446,7 @@ impl Surface {
 
     /// Inverse of [`Surface::side_parameter`]: fraction of the chain at a side parameter.
     pub fn side_fraction(&self, k: usize, parameter: f64) -> f64 {
-        let Some(border) = self.0.borders.get(k) else { return parameter };
+        let Some(border) = self.0.parts.borders.get(k) else { return parameter };
         let Side::Chain { from, to, .. } = &border.side else { return parameter };
         match &border.map {
             Some(map) => map.value(if border.turned { 1.0 - parameter } else { parameter }),
@@ -444,25 +457,25 @@ impl Surface {
 
     /// (u, v) of the foot of a point on a plane; `None` on any other surface.
     pub fn flat_uv(&self, p: DVec3) -> Option<(f64, f64)> {
-        let Shape::Plane(frame) = &self.0.shape else { return None };
+        let Shape::Plane(frame) = &self.0.parts.shape else { return None };
         let (u, v) = frame.uv(p);
-        Some(if self.0.flipped { (u, 1.0 - v) } else { (u, v) })
+        Some(if self.0.parts.flipped { (u, 1.0 - v) } else { (u, v) })
     }
 
     /// The modeling curves it stands on.
     pub fn chains(&self) -> &[Chain] {
-        &self.0.chains
+        &self.0.parts.chains
     }
 
     /// Curves the surface makes itself: copies of a swept profile and the paths of its ends. They join the network as
     /// links and nodes, not as modeling curves (math notes §9).
     pub fn generated(&self) -> &[Chain] {
-        &self.0.generated
+        &self.0.parts.generated
     }
 
     /// The same surface with its other side up: v runs backwards (a triangle: u and v exchanged), so the normal turns.
     pub fn flipped(&self) -> Self {
-        let parts = &*self.0;
+        let parts = &self.0.parts;
         let old = &parts.borders;
         let borders = match parts.domain {
             Domain::Square => vec![old[2].clone(), old[1].turned(), old[0].clone(), old[3].turned()],
@@ -488,7 +501,7 @@ impl Surface {
 
     /// Carried by a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let parts = &*self.0;
+        let parts = &self.0.parts;
         Self::new(Parts {
             shape: parts.shape.moved(motion),
             borders: parts.borders.iter().map(|b| b.moved(motion)).collect(),
@@ -500,7 +513,7 @@ impl Surface {
 
     /// A box that holds the surface, of control points and curve boxes: larger than the exact one.
     pub fn hull(&self) -> Box3 {
-        self.0.shape.hull()
+        self.0.parts.shape.hull()
     }
 
     /// Warnings found while building (singular or folded patches, oscillation), by sampling 9×9 a cell.

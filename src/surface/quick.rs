@@ -4,7 +4,7 @@
 //! With |∂³| known over a box, second derivatives in it are those in its middle and a little more: a bound for the price
 //! of one evaluation. `docs/notes/bounds.md` has the formulas.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -25,6 +25,13 @@ const BOXES: usize = 3;
 #[derive(Clone, Debug)]
 pub struct Quick {
     surface: Surface,
+    net: Arc<Powers>,
+}
+
+/// What is made of a net: shared by all that use it at the same time, and gone with the last of them, for it takes many times
+/// the room of the net.
+#[derive(Debug)]
+struct Powers {
     degree: (usize, usize),
     /// Knots without repetition, 0 and 1 among them.
     stops: (Vec<f64>, Vec<f64>),
@@ -36,6 +43,21 @@ pub struct Quick {
     rough: (Vec<f64>, Vec<f64>),
     /// Knots at which first derivatives may jump.
     corners: (Vec<f64>, Vec<f64>),
+}
+
+/// The powers of a surface that is a net, while somebody holds them.
+#[derive(Debug, Default)]
+pub(super) struct Ready(Mutex<Weak<Powers>>);
+
+impl Ready {
+    fn take(&self, make: impl FnOnce() -> Powers) -> Arc<Powers> {
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        held.upgrade().unwrap_or_else(|| {
+            let made = Arc::new(make());
+            *held = Arc::downgrade(&made);
+            made
+        })
+    }
 }
 
 /// Bounds of |∂uuu|, |∂uuv|, |∂uvv|, |∂vvv| over a box: along a unit vector, and as a whole.
@@ -72,14 +94,14 @@ impl Surface {
     /// The net made ready; `None` for surfaces that are none.
     pub fn quick(&self) -> Option<Quick> {
         match &self.parts().shape {
-            Shape::Nurbs(net) => Some(Quick::new(self, net)),
+            Shape::Nurbs(net) => Some(Quick { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) }),
             _ => None,
         }
     }
 }
 
-impl Quick {
-    fn new(surface: &Surface, net: &NurbsSurface) -> Self {
+impl Powers {
+    fn new(net: &NurbsSurface) -> Self {
         let (us, vs) = net.breaks();
         let stops = |inner: Vec<f64>| [vec![0.0], inner, vec![1.0]].concat();
         let stops = (stops(us), stops(vs));
@@ -95,7 +117,6 @@ impl Quick {
             (u, repeated(&stops.1, &net.knots.1, &|often| wanted(often, q)))
         };
         Self {
-            surface: surface.clone(),
             degree: net.degree,
             powers: powers.collect(),
             thirds: OnceLock::new(),
@@ -104,11 +125,13 @@ impl Quick {
             stops,
         }
     }
+}
 
+impl Quick {
     fn thirds(&self) -> &[Third] {
-        self.thirds.get_or_init(|| match &self.surface.parts().shape {
+        self.net.thirds.get_or_init(|| match &self.surface.parts().shape {
             Shape::Nurbs(net) => {
-                let (us, vs) = (divided(&self.stops.0), divided(&self.stops.1));
+                let (us, vs) = (divided(&self.net.stops.0), divided(&self.net.stops.1));
                 let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
                 let row = |j: usize| -> Vec<Third> {
                     let middle = |x: &[f64], k: usize| 0.5 * (x[k] + x[k + 1]);
@@ -128,9 +151,9 @@ impl Quick {
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
-        let ((i, s, _), (j, t, _)) = (place(&self.stops.0, u), place(&self.stops.1, v));
+        let ((i, s, _), (j, t, _)) = (place(&self.net.stops.0, u), place(&self.net.stops.1, v));
         let mut sum = DVec4::ZERO;
-        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+        for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
             let value = row.iter().rev().fold(DVec4::ZERO, |value, c| value * s + *c);
             sum = sum * t + value;
         }
@@ -141,9 +164,9 @@ impl Quick {
     pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 3] {
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
-        let ((i, s, w), (j, t, h)) = (place(&self.stops.0, u), place(&self.stops.1, v));
+        let ((i, s, w), (j, t, h)) = (place(&self.net.stops.0, u), place(&self.net.stops.1, v));
         let mut sums = [DVec4::ZERO; 3];
-        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+        for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
             let (mut value, mut slope) = (DVec4::ZERO, DVec4::ZERO);
             for c in row.iter().rev() {
                 slope = slope * s + value;
@@ -170,10 +193,10 @@ impl Quick {
 
     /// The same in the net's own parameters.
     fn own_jet(&self, u: f64, v: f64) -> Jet2 {
-        let ((i, s, w), (j, t, h)) = (place(&self.stops.0, u), place(&self.stops.1, v));
+        let ((i, s, w), (j, t, h)) = (place(&self.net.stops.0, u), place(&self.net.stops.1, v));
         // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
         let mut sums = [DVec4::ZERO; 6];
-        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+        for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
             let (mut value, mut slope, mut bend) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
             for c in row.iter().rev() {
                 bend = bend * s + slope;
@@ -204,14 +227,14 @@ impl Quick {
         if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
             return None;
         }
-        if crossed(&self.corners.0, low.x, high.x).next().is_some() || crossed(&self.corners.1, low.y, high.y).next().is_some() {
+        if crossed(&self.net.corners.0, low.x, high.x).next().is_some() || crossed(&self.net.corners.1, low.y, high.y).next().is_some() {
             return None;
         }
         let mut whole: Option<Bends> = None;
         let mut from = low;
-        for y in crossed(&self.rough.1, low.y, high.y).chain([high.y]) {
+        for y in crossed(&self.net.rough.1, low.y, high.y).chain([high.y]) {
             from.x = low.x;
-            for x in crossed(&self.rough.0, low.x, high.x).chain([high.x]) {
+            for x in crossed(&self.net.rough.0, low.x, high.x).chain([high.x]) {
                 let own = self.smooth((from, DVec2::new(x, y)), along);
                 whole = Some(whole.map_or(own, |w| w.union(&own)));
                 from.x = x;
@@ -229,8 +252,8 @@ impl Quick {
             let boxed = |k: usize, s: f64| k * BOXES + ((s.max(0.0) * BOXES as f64) as usize).min(BOXES - 1);
             (boxed(i, s), boxed(j, t))
         };
-        let ((i0, i1), (j0, j1)) = (range(&self.stops.0, low.x, high.x), range(&self.stops.1, low.y, high.y));
-        let n = (self.stops.0.len() - 1) * BOXES;
+        let ((i0, i1), (j0, j1)) = (range(&self.net.stops.0, low.x, high.x), range(&self.net.stops.1, low.y, high.y));
+        let n = (self.net.stops.0.len() - 1) * BOXES;
         let mut most = [0.0_f64; 4];
         for j in j0..=j1 {
             for third in &self.thirds()[j * n + i0..=j * n + i1] {
@@ -246,8 +269,8 @@ impl Quick {
     }
 
     fn span(&self, i: usize, j: usize) -> &[DVec4] {
-        let n = (self.degree.0 + 1) * (self.degree.1 + 1);
-        &self.powers[(j * (self.stops.0.len() - 1) + i) * n..][..n]
+        let n = (self.net.degree.0 + 1) * (self.net.degree.1 + 1);
+        &self.net.powers[(j * (self.net.stops.0.len() - 1) + i) * n..][..n]
     }
 }
 
