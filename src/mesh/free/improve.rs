@@ -26,6 +26,8 @@ pub struct Care {
     pub beyond: f64,
     /// Triangles below this quality are worked on.
     pub wanted: f64,
+    /// From this quality on a change has to be worth its while: what is little better is looked at again and again.
+    pub fair: f64,
     /// Longest edge over wanted length.
     pub longest: f64,
 }

@@ -32,11 +32,15 @@ use crate::surface::Surface;
 /// Quality below which triangles are worked on.
 const WANTED: f64 = 0.92;
 /// The same where lengths vary with the bends: neighbouring triangles cannot all be equilateral there.
-const WANTED_BENT: f64 = 0.85;
+const WANTED_BENT: f64 = 0.83;
+/// Quality from which on triangles are mended there only where that is worth its while.
+const FAIR_BENT: f64 = 0.78;
 /// The same for halves of squares, which have 0.83.
 pub(super) const WANTED_TREE: f64 = 0.8;
 /// Rounds of smoothing: more move nodes on, but make no triangle better (mean quality differs in the third digit).
 const SMOOTH: usize = 5;
+/// The same where lengths vary with the bends: dividing and mending move most nodes again.
+const SMOOTH_BENT: usize = 4;
 /// Share of the way to the mean that a node is moved: five rounds beyond it do what eight do that stop there, as for any relaxation
 /// from neighbour to neighbour.
 const BEYOND: f64 = 1.6;
@@ -84,19 +88,15 @@ pub(super) fn fitting(
     let limits = limits_of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let tree = face.method == Method::Quadtree;
-    let smooth = if tree { SMOOTH_TREE } else { SMOOTH };
-    let care = Care {
-        beyond: BEYOND,
-        smooth: made.input.plan.smooth.map_or(smooth, |n| n.0 as usize),
-        wanted: if tree {
-            WANTED_TREE
-        } else if bent {
-            WANTED_BENT
-        } else {
-            WANTED
-        },
-        longest: LONGEST / SPACING,
+    let (smooth, wanted, fair) = if tree {
+        (SMOOTH_TREE, WANTED_TREE, 1.0)
+    } else if bent {
+        (SMOOTH_BENT, WANTED_BENT, FAIR_BENT)
+    } else {
+        (SMOOTH, WANTED, 1.0)
     };
+    let smooth = made.input.plan.smooth.map_or(smooth, |n| n.0 as usize);
+    let care = Care { smooth, beyond: BEYOND, wanted, fair, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules);
     let mut fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
@@ -143,7 +143,7 @@ pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 
     let field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
     let even = Even(spacing * face.size.0);
     let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
-    let care = Care { smooth: 0, beyond: 1.0, wanted: WANTED, longest: LONGEST };
+    let care = Care { smooth: 0, beyond: 1.0, wanted: WANTED, fair: 1.0, longest: LONGEST };
     let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, guard: None };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))

@@ -86,7 +86,7 @@ fn fitting(
     let limits = limits_of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
-    let care = Care { smooth, beyond: 1.0, wanted: WANTED_TREE, longest: LONGEST / SPACING };
+    let care = Care { smooth, beyond: 1.0, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
     let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };

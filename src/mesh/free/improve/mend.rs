@@ -10,7 +10,9 @@ use crate::mesh::free::shape::{Star, quality};
 use crate::mesh::free::web::Patch;
 
 /// Share of the quality that is there which a first guess must have to be searched on.
-const HOPE: f64 = 0.6;
+const HOPE: f64 = 0.75;
+/// What a change must gain where all is fair.
+const WORTH: f64 = 0.01;
 
 impl Gardener<'_> {
     /// Works on triangles below the wanted quality, the worst first; how many changes were made.
@@ -33,6 +35,11 @@ impl Gardener<'_> {
 
     fn mend_one(&mut self, t: u32) -> bool {
         self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
+    }
+
+    /// What a change must gain where the worst triangle is so good.
+    fn gain(&self, worst: f64) -> f64 {
+        if worst < self.care.fair { GAIN } else { WORTH }
     }
 
     /// What a triangle is worth: its quality less what its longest side takes.
@@ -62,7 +69,7 @@ impl Gardener<'_> {
             let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
             let before = self.rim.worst(xy, p);
             let star = self.rim.best(self.ground, xy, p);
-            if star.worst > before + GAIN && self.star_keeps(&self.ring.node, node, &star) {
+            if star.worst > before + self.gain(before) && self.star_keeps(&self.ring.node, node, &star) {
                 self.place(node, star.xy, star.p);
                 any = true;
             }
@@ -79,7 +86,7 @@ impl Gardener<'_> {
             let fits = self.web.patch(&tri, &mut patch);
             if fits.is_some()
                 && let Some((after, plan)) = self.plan(&patch, keep, before * HOPE)
-                && after > before + GAIN
+                && after > before + self.gain(before)
                 && best.as_ref().is_none_or(|b| after - before > b.0)
                 && self.plan_keeps(&patch, &plan)
             {
