@@ -119,7 +119,7 @@ mod plate {
     use lofting::base::triangulate_points::points;
     use lofting::mesh::free::build::{Lattice, Task, triangulate};
     use lofting::mesh::free::ground::{Even, Ground, Spot};
-    use lofting::mesh::free::improve::Care;
+    use lofting::mesh::free::improve::{Care, FINEST};
     use lofting::mesh::free::outline::Outline;
     use lofting::mesh::free::shape::quality;
 
@@ -182,7 +182,7 @@ mod plate {
         let inside = |t: &[u32; 3]| tree.holds(t.map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0);
         let bare = figures(&outline.p, all.corners.iter().copied().filter(inside));
         let mesh = |smooth: usize| {
-            let care = Care { smooth, beyond: 1.0, wanted: 0.8, fair: 1.0, longest: 1.3 };
+            let care = Care { smooth, beyond: 1.0, fine: FINEST, wanted: 0.8, fair: 1.0, longest: 1.3 };
             let (field, lattice) = (Even(4.0 * 0.8), Lattice::Tree);
             let task = Task { ground: &Flat, field: &field, outline: &outline, lattice, care, most: 100_000, guard: None };
             let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;

@@ -18,7 +18,7 @@ use lofting::base::math::{cos, sin, sin_cos};
 use lofting::base::triangulate_points::NO_TRIANGLE;
 use lofting::mesh::free::build::{Lattice, Task, triangulate};
 use lofting::mesh::free::ground::{Even, Field, Ground, Spot};
-use lofting::mesh::free::improve::Care;
+use lofting::mesh::free::improve::{Care, FINEST};
 use lofting::mesh::free::outline::Outline;
 use lofting::mesh::free::web::Web;
 use lofting::session::disk::{Disk, Outputs};
@@ -50,7 +50,7 @@ impl Field for Graded {
     }
 }
 
-const CARE: Care = Care { smooth: 20, beyond: 1.0, wanted: 0.9, fair: 1.0, longest: 1.25 };
+const CARE: Care = Care { smooth: 20, beyond: 1.0, fine: FINEST, wanted: 0.9, fair: 1.0, longest: 1.25 };
 
 fn add_loop(outline: &mut Outline, ground: &dyn Ground, corners: &[DVec2], size: f64) {
     let first = outline.xy.len() as u32;
@@ -177,7 +177,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
             add_loop(&mut outline, &ground, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
         }
     }
-    let care = Care { smooth: 30, beyond: 1.0, wanted: 0.92, fair: 1.0, longest: 1.4 };
+    let care = Care { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
     let task = Task { ground: &ground, field: &Even(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, guard: None };
     let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;
     sound(&web, &outline, Some(20)).unwrap();

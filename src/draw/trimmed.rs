@@ -8,7 +8,7 @@ use crate::base::bbox::Box3;
 use crate::base::job::Job;
 use crate::mesh::free::build::{Lattice, Task, triangulate};
 use crate::mesh::free::ground::Even;
-use crate::mesh::free::improve::Care;
+use crate::mesh::free::improve::{Care, FINEST};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::sheet as chart;
 use crate::surface::{Side, Surface};
@@ -73,7 +73,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let size = (8.0 * fine / bend).sqrt().clamp(bounds.diagonal() / MOST as f64, bounds.diagonal() / show.least() as f64);
     let flat = surface.is_flat();
     let field = Even(if flat { 4.0 * bounds.diagonal() } else { size });
-    let care = Care { smooth: 0, beyond: 1.0, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
+    let care = Care { smooth: 0, beyond: 1.0, fine: FINEST, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
     let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, guard: None };
     match triangulate(&task, &Job::new()) {
         Ok(Ok(made)) => {

@@ -24,6 +24,8 @@ pub struct Care {
     pub smooth: usize,
     /// Share of the way to the mean of its neighbours that a node is moved.
     pub beyond: f64,
+    /// A node whose triangles are all at least this good is left where it is.
+    pub fine: f64,
     /// Triangles below this quality are worked on.
     pub wanted: f64,
     /// From this quality on a change has to be worth its while: what is little better is looked at again and again.
@@ -32,6 +34,8 @@ pub struct Care {
     pub longest: f64,
 }
 
+/// What cannot get better by smoothing.
+pub const FINEST: f64 = 0.9999;
 /// Rounds of work on bad triangles.
 const ROUNDS: usize = 6;
 

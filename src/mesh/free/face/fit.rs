@@ -17,7 +17,7 @@ use crate::mesh::faces::limits_of;
 use crate::mesh::free::bound;
 use crate::mesh::free::build::{Lattice, Task, Trouble, expected_nodes, triangulate};
 use crate::mesh::free::ground::{Even, Field};
-use crate::mesh::free::improve::{Care, Guard};
+use crate::mesh::free::improve::{Care, FINEST, Guard};
 use crate::mesh::free::loads::{Loads, load};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::sheet::Sheet;
@@ -33,6 +33,8 @@ use crate::surface::Surface;
 const WANTED: f64 = 0.92;
 /// The same where lengths vary with the bends: neighbouring triangles cannot all be equilateral there.
 const WANTED_BENT: f64 = 0.83;
+/// Quality of all its triangles with which a node is left where it is there.
+const FINE_BENT: f64 = 0.98;
 /// Quality from which on triangles are mended there only where that is worth its while.
 const FAIR_BENT: f64 = 0.78;
 /// The same for halves of squares, which have 0.83.
@@ -88,15 +90,15 @@ pub(super) fn fitting(
     let limits = limits_of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let tree = face.method == Method::Quadtree;
-    let (smooth, wanted, fair) = if tree {
-        (SMOOTH_TREE, WANTED_TREE, 1.0)
+    let (smooth, fine, wanted, fair) = if tree {
+        (SMOOTH_TREE, FINEST, WANTED_TREE, 1.0)
     } else if bent {
-        (SMOOTH_BENT, WANTED_BENT, FAIR_BENT)
+        (SMOOTH_BENT, FINE_BENT, WANTED_BENT, FAIR_BENT)
     } else {
-        (SMOOTH, WANTED, 1.0)
+        (SMOOTH, FINEST, WANTED, 1.0)
     };
     let smooth = made.input.plan.smooth.map_or(smooth, |n| n.0 as usize);
-    let care = Care { smooth, beyond: BEYOND, wanted, fair, longest: LONGEST / SPACING };
+    let care = Care { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules);
     let mut fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
@@ -143,7 +145,7 @@ pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 
     let field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
     let even = Even(spacing * face.size.0);
     let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
-    let care = Care { smooth: 0, beyond: 1.0, wanted: WANTED, fair: 1.0, longest: LONGEST };
+    let care = Care { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
     let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, guard: None };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))

@@ -20,7 +20,7 @@ use crate::mesh::explain::Decider;
 use crate::mesh::faces::{Prepared, limits_of};
 use crate::mesh::free::bound;
 use crate::mesh::free::build::Trouble;
-use crate::mesh::free::improve::Care;
+use crate::mesh::free::improve::{Care, FINEST};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::quads::halves::Halves;
 use crate::mesh::free::quads::net::{NONE, Net};
@@ -86,7 +86,7 @@ fn fitting(
     let limits = limits_of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
-    let care = Care { smooth, beyond: 1.0, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
+    let care = Care { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
     let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };

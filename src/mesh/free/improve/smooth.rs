@@ -8,8 +8,6 @@ use crate::mesh::free::ground::foot_near;
 
 /// A move below this share of the wanted length ends the smoothing of a node.
 const STILL: f64 = 0.005;
-/// A node whose triangles are all at least this good is left where it is.
-const FINE: f64 = 0.9999;
 
 impl Gardener<'_> {
     /// Moves free nodes that wait towards the area-weighted mean of their triangles' centroids, and in the next round their
@@ -37,7 +35,7 @@ impl Gardener<'_> {
         self.fill_rim(node);
         let here = self.web.p[node as usize];
         let before = self.rim.worst(self.web.xy[node as usize], here);
-        if before > FINE {
+        if before > self.care.fine {
             return false;
         }
         let xy = self.web.xy[node as usize];
@@ -67,7 +65,7 @@ impl Gardener<'_> {
             let (xy, spot) = foot_near(self.ground, self.ground.clamp(xy + way * share), here + step, step.length());
             let p = spot.p;
             // Where rounding has turned a triangle over already, that is no leave to turn others.
-            if self.rim.worst(xy, p) >= before.clamp(0.0, FINE) {
+            if self.rim.worst(xy, p) >= before.clamp(0.0, self.care.fine) {
                 self.place(node, xy, p);
                 return true;
             }
