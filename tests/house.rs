@@ -46,13 +46,13 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
 /// results, `draw` an alphabet, `mesh` proofs of its limits, what it takes over and how places of borders are followed,
-/// `model` a table for integrals over many cells, `cli` what the line being edited tells, `surface` how surfaces meet curves and each other, and `lang` the grammar over tokens and its tree, the evaluator, its
+/// `model` a table for integrals over many cells, `cli` what the line being edited tells, `surface` how surfaces meet curves and each other and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_800),
     ("geometry", 5_500),
     ("network", 3_500),
-    ("surface", 9_900),
+    ("surface", 10_000),
     ("model", 3_300),
     ("mesh", 18_000),
     ("io", 8_500),

@@ -81,7 +81,8 @@ impl Rim {
         &self.xy
     }
 
-    /// Least quality of the star of a place; −1 where a triangle is turned over in the chart.
+    /// Least quality of the star of a place; −1 where a triangle is turned over in the chart. Over a side whose ends are one point,
+    /// as at a pole, there is no triangle in space.
     pub fn worst(&mut self, xy: DVec2, p: DVec3) -> f64 {
         let n = self.p.len();
         let (mut worst, mut turned) = (f64::INFINITY, false);
@@ -95,7 +96,13 @@ impl Rim {
             // As `quality`, of known lengths.
             let square = (self.p[before] - p).cross(self.p[i] - p).length_squared();
             let below = near * far * side * (near + far + side);
-            let quality = if below > 0.0 { 4.0 * square / below } else { 0.0 };
+            let quality = if side == 0.0 {
+                1.0
+            } else if below > 0.0 {
+                4.0 * square / below
+            } else {
+                0.0
+            };
             let weighed = self.weigh(quality, far);
             self.weighed[before] = weighed;
             worst = worst.min(weighed);
@@ -150,6 +157,9 @@ impl Rim {
         for i in 0..n {
             let j = if i + 1 < n { i + 1 } else { 0 };
             let (a, b, length) = (self.p[i], self.p[j], self.sides[i]);
+            if length == 0.0 {
+                continue;
+            }
             // Over the middle of the side, where the place is.
             let (side, middle) = (b - a, 0.5 * (a + b));
             let off = p - middle;

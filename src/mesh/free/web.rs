@@ -46,21 +46,36 @@ pub struct Ring {
     pub closed: bool,
 }
 
+/// The kept triangles in the order of their first nodes: nodes that grew one after the other lie beside each other, so that what
+/// is near is near in memory too, and a large face is worked on in half the time.
+fn by_nodes(all: &Triangles, kept: &[bool], nodes: usize) -> Vec<u32> {
+    let first = |t: usize| all.corners[t].into_iter().fold(u32::MAX, u32::min) as usize;
+    let mut from = vec![0_u32; nodes + 1];
+    (0..kept.len()).filter(|t| kept[*t]).for_each(|t| from[first(t) + 1] += 1);
+    for k in 0..nodes {
+        from[k + 1] += from[k];
+    }
+    let mut order = vec![0; from[nodes] as usize];
+    for t in (0..kept.len()).filter(|t| kept[*t]) {
+        let slot = &mut from[first(t)];
+        order[*slot as usize] = t as u32;
+        *slot += 1;
+    }
+    order
+}
+
 impl Web {
     /// From triangles of which the kept ones are marked, over border and inner nodes.
     pub fn new(p: Vec<DVec3>, xy: Vec<DVec2>, size: Vec<f64>, fixed: u32, all: &Triangles, kept: &[bool]) -> Self {
+        let order = by_nodes(all, kept, p.len());
+        let n = order.len();
         let mut number = vec![NO_TRIANGLE; kept.len()];
-        let mut next = 0;
-        for (slot, _) in number.iter_mut().zip(kept).filter(|(_, kept)| **kept) {
-            *slot = next;
-            next += 1;
-        }
-        let n = next as usize;
+        order.iter().enumerate().for_each(|(k, t)| number[*t as usize] = k as u32);
         let mut web = Self { at: vec![NO_TRIANGLE; p.len()], p, xy, size, fixed, ..Self::default() };
         web.tri.reserve_exact(n);
         web.across.reserve_exact(n);
         web.locked.reserve_exact(n);
-        for k in (0..kept.len()).filter(|k| kept[*k]) {
+        for k in order.into_iter().map(|k| k as usize) {
             let across = all.across[k].map(|t| if t == NO_TRIANGLE { t } else { number[t as usize] });
             let open = (0..3).filter(|c| across[*c] == NO_TRIANGLE).fold(0, |bits, c| bits | 1 << c);
             for c in all.corners[k] {
@@ -108,6 +123,15 @@ impl Web {
     pub fn quality(&self, t: u32) -> f64 {
         let [a, b, c] = self.tri[t as usize].map(|n| self.p[n as usize]);
         quality(a, b, c)
+    }
+
+    /// Quality of what three nodes make; 1 where two of the border are one point, as at a pole: that is no triangle in space.
+    pub fn shape(&self, corners: [u32; 3]) -> f64 {
+        let [a, b, c] = corners.map(|n| self.p[n as usize]);
+        let one = |i: usize, j: usize| {
+            !self.is_free(corners[i]) && !self.is_free(corners[j]) && self.p[corners[i] as usize] == self.p[corners[j] as usize]
+        };
+        if one(0, 1) || one(1, 2) || one(2, 0) { 1.0 } else { quality(a, b, c) }
     }
 
     /// Twice the area of a triangle in the chart.

@@ -6,7 +6,6 @@ use super::Gardener;
 use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::outline::area2;
-use crate::mesh::free::shape::quality;
 
 /// What a change must gain.
 pub(super) const GAIN: f64 = 0.001;
@@ -55,9 +54,8 @@ impl Gardener<'_> {
                 continue;
             }
             let [na, nb, nc, nd] = quad;
-            let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
-            let before = quality(a, b, d).min(quality(c, d, b));
-            let after = quality(a, b, c).min(quality(a, c, d));
+            let before = self.web.shape([na, nb, nd]).min(self.web.shape([nc, nd, nb]));
+            let after = self.web.shape([na, nb, nc]).min(self.web.shape([na, nc, nd]));
             if after > before + GAIN && self.keeps([na, nb, nc], None) && self.keeps([na, nc, nd], None) {
                 let other = self.web.across[t as usize][k];
                 self.web.flip(t, k);

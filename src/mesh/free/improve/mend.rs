@@ -6,7 +6,7 @@ use super::Gardener;
 use super::flips::GAIN;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::outline::area2;
-use crate::mesh::free::shape::{Star, quality};
+use crate::mesh::free::shape::Star;
 use crate::mesh::free::web::Patch;
 
 /// Share of the quality that is there which a first guess must have to be searched on.
@@ -45,14 +45,14 @@ impl Gardener<'_> {
     /// What a triangle is worth: its quality less what its longest side takes.
     fn worth(&self, t: u32) -> f64 {
         let c = self.web.tri[t as usize];
-        let [a, b, d] = c.map(|n| self.web.p[n as usize]);
-        let mut worth = quality(a, b, d);
+        let shape = self.web.shape(c);
+        let mut worth = shape;
         for k in 0..3 {
             let (i, j) = (c[k], c[(k + 1) % 3]);
             if self.web.is_free(i) || self.web.is_free(j) {
                 let size = if self.web.is_free(i) { self.web.size[i as usize] } else { self.web.size[j as usize] };
                 let length = self.web.p[i as usize].distance(self.web.p[j as usize]);
-                worth = worth.min(quality(a, b, d) * (size * self.care.longest / length).min(1.0));
+                worth = worth.min(shape * (size * self.care.longest / length).min(1.0));
             }
         }
         worth
@@ -200,7 +200,7 @@ impl Gardener<'_> {
                 let far = p[k].distance(p[a]);
                 let longest = self.web.size[patch.rim[a] as usize] * self.care.longest;
                 let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
-                worst = worst.min(quality(p[k], p[a], p[b]) * share);
+                worst = worst.min(self.web.shape([k, a, b].map(|i| patch.rim[i])) * share);
             }
             if worst > 0.0 && best.is_none_or(|b| worst > b.0) {
                 best = Some((worst, k));
