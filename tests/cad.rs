@@ -188,8 +188,8 @@ fn meshes_as_known(Case(file, size, area, euler, loops, rim, least): &Case) {
     assert_eq!((census.euler, census.loops), (*euler, *loops), "{file}");
     assert_eq!(turned(&mesh), 0, "{file}");
     assert_eq!(mesh.is_watertight(), *loops == 0, "{file}");
-    // Chords of the rim are shorter than it.
-    assert!(census.free <= free && census.free >= 0.98 * free, "{file}: {} of {free}", census.free);
+    // Chords of the rim are shorter than it, but for the rounding of their sum.
+    assert!(census.free <= free * (1.0 + 1e-12) && census.free >= 0.98 * free, "{file}: {} of {free}", census.free);
     assert!(census.least_angle >= *least, "{file}: least angle {}", census.least_angle);
 }
 

@@ -10,7 +10,7 @@ use crate::mesh::free::shape::Star;
 use crate::mesh::free::web::Patch;
 
 /// Share of the quality that is there which a first guess must have to be searched on.
-const HOPE: f64 = 0.75;
+const HOPE: f64 = 0.6;
 /// What a change must gain where all is fair.
 const WORTH: f64 = 0.01;
 
