@@ -70,7 +70,7 @@ pub const MESH: &[Setting] = &[
     Setting {
         key: "smooth",
         docs: "Most rounds of smoothing on free faces; a node that lies still is left earlier. 0 leaves nodes where they grew.",
-        default: "5; 8 of quads and where lengths grow from short pieces; 30 with `quadtree`",
+        default: "5; 4 within `chord_error` or `angle_error`; 8 of quads and where lengths grow from short pieces; 30 with `quadtree`",
         ty: Ty::Count,
     },
     Setting { key: "elements", docs: "Kind of elements.", default: "triangles", ty: Ty::Choice(ELEMENTS) },

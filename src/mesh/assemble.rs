@@ -56,8 +56,9 @@ fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Quick> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
     }
-    let free = |face: &&Face| face.method.is_free() || input.model.surfaces[face.surface.index()].surface.domain() == Domain::Loop;
-    layout.faces.iter().filter(free).take(HELD).filter_map(|face| input.model.surfaces[face.surface.index()].surface.quick()).collect()
+    let surface = |face: &Face| &input.model.surfaces[face.surface.index()].surface;
+    let free = |face: &&Face| face.method.is_free() || surface(face).domain() == Domain::Loop;
+    layout.faces.iter().filter(free).take(HELD).filter_map(|face| surface(face).quick()).collect()
 }
 
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says

@@ -65,15 +65,15 @@ fn worst(layout: &Layout, stretch: usize, fractions: Vec<f64>, limits: &Limits) 
     let atom = &layout.pieces.atoms[stretch];
     let track = &layout.parts[atom.track].track;
     let at: Vec<f64> = fractions.into_iter().map(|f| atom.s.0 + (atom.s.1 - atom.s.0) * f).collect();
-    let points: Vec<DVec3> = at.iter().map(|s| track.point(*s)).collect();
-    let mut load = Load::default();
-    for (w, ends) in at.windows(2).zip(points.windows(2)) {
+    // What is kept for sure, or no worse than what was seen, need not be known closer.
+    let enough = |limit: Option<f64>, seen: f64| limit.map_or(f64::INFINITY, |limit| limit * seen.max(1.0));
+    let (mut load, mut reached) = (Load::default(), track.point(at[0]));
+    for w in at.windows(2) {
         let (chord, angle) = match track {
             Track::Links { .. } => {
-                // What is kept for sure, or no worse than what was seen, need not be known closer.
-                let (chord, angle) =
-                    (limits.chord.map(|limit| limit * load.chord.max(1.0)), limits.angle.map(|limit| limit * load.angle.max(1.0)));
-                hull_of(track, (w[0], w[1]), (ends[0], ends[1]), (chord.unwrap_or(f64::INFINITY), angle.unwrap_or(f64::INFINITY)))?
+                let start = std::mem::replace(&mut reached, track.point(w[1]));
+                let enough = (enough(limits.chord, load.chord), enough(limits.angle, load.angle));
+                hull_of(track, (w[0], w[1]), (start, reached), enough)?
             }
             Track::Iso(_) => probed(track, w[0], w[1]),
         };
