@@ -37,7 +37,7 @@ pub(super) struct Atom {
     pub fresh: bool,
     /// A blank line stands before it, or before the comments above it.
     pub blank: bool,
-    /// Blanks before it on its line; 0 when it is the first.
+    /// Blanks before it, or before the comments in front of it, on its line; 0 when it is the first.
     pub gap: u32,
 }
 
@@ -183,6 +183,10 @@ impl<'a> Text<'a> {
         let gap = self.gap(comments, Some(before.end), Some(atom.start));
         (before.after, before.ends_line) = (gap.trailing.clone(), !gap.trailing.is_empty());
         (atom.own, atom.before, atom.blank) = (gap.own, gap.before, gap.blank);
+        // A column is in front of the comments that belong to what stands in it.
+        let first = atom.before.clone().next().map(|first| self.comments[first].start);
+        let beside = first.filter(|start| gap.trailing.is_empty() && atom.own.is_empty() && !self.has_line_end(before.end, *start));
+        atom.gap = beside.map_or(0, |start| start - before.end);
         if atom.kind == Kind::Comma && gap.trailing.is_empty() && atom.own.is_empty() {
             before.after = std::mem::take(&mut atom.before);
         }

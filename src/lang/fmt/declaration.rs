@@ -61,7 +61,7 @@ impl Builder<'_> {
         self.push(Cmd::Blank);
         if simple {
             let equals = &self.atoms[self.at];
-            let wide = equals.gap > 1 && equals.is_bare();
+            let wide = equals.gap > 1;
             self.push(Cmd::Mark { kind, wide });
         }
         self.text();
@@ -291,7 +291,7 @@ impl Builder<'_> {
         self.things(true);
         self.push_all(&[Cmd::Close, Cmd::Blank]);
         let curly = &self.atoms[self.at];
-        let wide = curly.gap > 1 && curly.is_bare();
+        let wide = curly.gap > 1;
         self.push(Cmd::Mark { kind: CLAUSE, wide });
         self.settings();
         self.push(Cmd::MarkEnd);
