@@ -68,10 +68,19 @@ impl Nurbs {
 
     /// The Bézier pieces between distinct knots, in order.
     pub fn beziers(&self) -> Vec<Bezier> {
+        self.beziers_from((f64::NEG_INFINITY, f64::INFINITY))
+    }
+
+    /// Those that begin at or after one parameter and before another.
+    pub fn beziers_from(&self, (from, to): (f64, f64)) -> Vec<Bezier> {
         let p = self.degree;
         let mut pieces = Vec::new();
-        for k in p..self.poles.len() {
+        let first = self.knots.partition_point(|t| *t < from).max(p);
+        for k in first..self.poles.len() {
             let (t0, t1) = (self.knots[k], self.knots[k + 1]);
+            if t0 >= to {
+                break;
+            }
             if t0 < t1 {
                 let mut arguments = [t0; MAX_DEGREE];
                 let mut poles = Vec::with_capacity(p + 1);

@@ -232,7 +232,7 @@ fn rated(curve: &Curve, range: (f64, f64)) -> Vec<(f64, f64, Rates)> {
         }
         Shape::Nurbs(c) => {
             let mut out = Vec::new();
-            for piece in c.beziers().into_iter().filter(|b| range.0 <= b.t0 && b.t0 < range.1) {
+            for piece in c.beziers_from(range) {
                 // A cusp parts sections inside a span.
                 if piece.t1 > range.1 {
                     rated_bezier(part_of(c, (piece.t0, range.1)), c.polynomial, &mut out);

@@ -6,10 +6,11 @@ use super::measure_strips::Strips;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY};
 use crate::network::Chain;
+use crate::surface::quick::Quick;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
 
-/// Points of the rules along a border and across the surface.
-const ALONG: [usize; 2] = [8, 12];
+/// Points of the rules along a border, each pair compared before the next one is tried, and across the surface.
+const ALONG: [[usize; 2]; 2] = [[4, 6], [8, 12]];
 const ACROSS: usize = 12;
 /// A run of a border is halved at most so often.
 const DEEPEST: u32 = 14;
@@ -24,6 +25,7 @@ enum Way {
 }
 
 /// A run of a border between two shares of it.
+#[derive(Clone, Copy)]
 struct Run {
     border: usize,
     t: (f64, f64),
@@ -48,7 +50,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
             _ => None,
         })
         .collect();
-    let (rules, across) = (ALONG.map(gauss_legendre), gauss_legendre(ACROSS));
+    let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
     let quick = surface.quick();
     let jet = |u, v| quick.as_ref().map_or_else(|| surface.jet(u, v), |quick| quick.jet(u, v));
@@ -92,7 +94,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
             let half = 0.5 * (run.t.1 - run.t.0);
             let t = 0.5 * (run.t.0 + run.t.1) + half * x;
             let (base, way) = &ways[run.border];
-            let (at, dv) = way.at(surface, &jet, t);
+            let (at, dv) = way.at((surface, quick.as_ref()), &jet, t);
             if dv == 0.0 {
                 continue;
             }
@@ -109,24 +111,34 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         open.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
     }
     open.reverse();
-    let scale = open.iter().fold([0.0; N], |scale, r| {
-        let size = run(r, &rules[0]).1;
-        std::array::from_fn(|i| scale[i] + size[i])
-    });
+    let rough = |r: &Run| run(r, &rules[0][0]);
+    let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(open.len()));
+    for (sum, size) in open.iter().map(rough) {
+        (0..N).for_each(|i| scale[i] += size[i]);
+        first.push(sum);
+    }
     let share = MEASURE_ACCURACY / open.len().max(1) as f64;
+    let apart = |a: &Sums<N>, b: &Sums<N>| -> Sums<N> { std::array::from_fn(|i| (a[i] - b[i]).abs()) };
+    let settled = |apart: &Sums<N>| (0..N).all(|i| apart[i] <= share * scale[i]);
+    let mut open: Vec<(Run, Sums<N>)> = open.into_iter().zip(first).collect();
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
-    while let Some(next) = open.pop() {
-        let (rough, value) = (run(&next, &rules[0]).0, run(&next, &rules[1]).0);
-        let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
-        if next.depth == DEEPEST || (0..N).all(|i| apart[i] <= share * scale[i]) {
+    while let Some((next, rough_sum)) = open.pop() {
+        let mut value = run(&next, &rules[0][1]).0;
+        let mut off = apart(&value, &rough_sum);
+        if !settled(&off) {
+            let before = run(&next, &rules[1][0]).0;
+            value = run(&next, &rules[1][1]).0;
+            off = apart(&value, &before);
+        }
+        if next.depth == DEEPEST || settled(&off) {
             for i in 0..N {
                 sum[i] += value[i];
-                error[i] += apart[i];
+                error[i] += off[i];
             }
         } else {
             let middle = 0.5 * (next.t.0 + next.t.1);
-            open.push(Run { t: (middle, next.t.1), depth: next.depth + 1, ..next });
-            open.push(Run { t: (next.t.0, middle), depth: next.depth + 1, ..next });
+            let halves = [(middle, next.t.1), (next.t.0, middle)].map(|t| Run { t, depth: next.depth + 1, ..next });
+            open.extend(halves.map(|half| (half, rough(&half).0)));
         }
     }
     (sum, error)
@@ -147,12 +159,12 @@ impl Way {
     }
 
     /// (u, v) at a share of the way, and dv by the share.
-    fn at(&self, surface: &Surface, jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
+    fn at(&self, (surface, quick): (&Surface, Option<&Quick>), jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
         match self {
             Self::Line(a, b) => (DVec2::new(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t), b.1 - a.1),
             Self::Chain(side, chain, from, to) => {
                 let f = from + (to - from) * t;
-                let uv = surface.border_place(*side, f).unwrap_or_default();
+                let uv = surface.border_place_by(quick, *side, f).unwrap_or_default();
                 let jet = jet(uv.0, uv.1);
                 let d = chain.jet(f).d1 * (to - from);
                 let (e, g, m) = (jet.du.length_squared(), jet.dv.length_squared(), jet.du.dot(jet.dv));

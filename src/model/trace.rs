@@ -8,6 +8,7 @@ use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
+use crate::surface::quick::Quick;
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
@@ -18,14 +19,15 @@ const STEPS: usize = 60;
 #[derive(Clone, Debug)]
 pub struct Trace {
     surface: Surface,
+    quick: Option<Quick>,
     from: (f64, f64),
     to: (f64, f64),
     panels: Vec<Panel>,
     length: f64,
 }
 
-// The panels follow from the rest.
-crate::content!(Trace { surface, from, to } but { panels, length });
+// The others follow from these.
+crate::content!(Trace { surface, from, to } but { quick, panels, length });
 
 /// One stretch whose length is a known polynomial of the place.
 #[derive(Clone, Debug)]
@@ -38,7 +40,12 @@ struct Panel {
 impl Trace {
     /// The line between two (u, v); the surface must be smooth along it but for jumps of higher derivatives.
     pub fn new(surface: &Surface, from: (f64, f64), to: (f64, f64)) -> Self {
-        let mut trace = Self { surface: surface.clone(), from, to, panels: Vec::new(), length: 0.0 };
+        Self::by((surface, None), from, to)
+    }
+
+    /// The same with the surface made ready, where it is.
+    pub fn by((surface, quick): (&Surface, Option<Quick>), from: (f64, f64), to: (f64, f64)) -> Self {
+        let mut trace = Self { surface: surface.clone(), quick, from, to, panels: Vec::new(), length: 0.0 };
         let (start, end) = (trace.surface.point(from.0, from.1), trace.surface.point(to.0, to.1));
         // Along a pole all is rounding.
         let rounding = EPSILON * start.abs().max(end.abs()).max_element();
@@ -73,8 +80,14 @@ impl Trace {
     /// Point and derivative by `t`.
     pub fn jet(&self, t: f64) -> (DVec3, DVec3) {
         let (u, v) = self.uv(t);
-        let jet = self.surface.jet(u, v);
-        (jet.p, jet.du * (self.to.0 - self.from.0) + jet.dv * (self.to.1 - self.from.1))
+        let [p, du, dv] = match &self.quick {
+            Some(quick) => quick.tangents(u, v),
+            None => {
+                let jet = self.surface.jet(u, v);
+                [jet.p, jet.du, jet.dv]
+            }
+        };
+        (p, du * (self.to.0 - self.from.0) + dv * (self.to.1 - self.from.1))
     }
 
     fn speed(&self, t: f64) -> f64 {

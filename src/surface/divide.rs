@@ -89,7 +89,7 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> Vec<Edge> {
         let place = |f: f64| match (&piece.course, piece.own_chain()) {
             (Course::Pull(pull), Some(chain)) => {
                 let f = pull.fraction(f);
-                super::pull::foot(base, chain.point(f), pull.guess(f)).0
+                super::pull::foot((base, None), chain.point(f), pull.guess(f)).0
             }
             (course, _) => {
                 let places = course.places();

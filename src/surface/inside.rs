@@ -65,7 +65,7 @@ impl Surface {
         let guess = a.lerp(b, 0.5);
         let at = match self.flat_uv(chain.point(middle)) {
             Some((u, v)) => DVec2::new(u, v),
-            None => foot(self, chain.point(middle), guess).0,
+            None => foot((self, None), chain.point(middle), guess).0,
         };
         self.turn_of(chain, (fa, a), (middle, at), p, left - 1) + self.turn_of(chain, (middle, at), (fb, b), p, left - 1)
     }

@@ -47,11 +47,11 @@ fn shares(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> [f64; MAX_
 type Net = Vec<Vec<DVec4>>;
 
 /// Differences along u (within rows) times `f`.
-pub(super) fn along_u(net: &Net, f: f64) -> Net {
+fn along_u(net: &Net, f: f64) -> Net {
     net.iter().map(|row| row.windows(2).map(|w| (w[1] - w[0]) * f).collect()).collect()
 }
 
-pub(super) fn along_v(net: &Net, f: f64) -> Net {
+fn along_v(net: &Net, f: f64) -> Net {
     net.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(a, b)| (*b - *a) * f).collect()).collect()
 }
 
@@ -124,13 +124,29 @@ impl NurbsSurface {
     /// Bézier points over a rectangle, rows along u.
     pub(super) fn piece(&self, u: &NetStrip, v: &NetStrip) -> Net {
         let (p, q) = self.degree;
-        let rows: Net = (0..=q)
-            .map(|j| {
-                let row = &self.poles[(v.first + j) * self.counts.0 + u.first..][..=p];
-                u.shares.iter().map(|share| row.iter().zip(share).fold(DVec4::ZERO, |sum, (pole, s)| sum + *pole * *s)).collect()
-            })
-            .collect();
-        let column = |share: &[f64], i: usize| rows.iter().zip(share).fold(DVec4::ZERO, |sum, (row, s)| sum + row[i] * *s);
-        v.shares.iter().map(|share| (0..=p).map(|i| column(share, i)).collect()).collect()
+        let mut all = [DVec4::ZERO; POINTS];
+        self.piece_into(u, v, &mut all);
+        all[..(p + 1) * (q + 1)].chunks_exact(p + 1).map(<[DVec4]>::to_vec).collect()
+    }
+
+    /// The same into one list, row after row.
+    pub(super) fn piece_into(&self, u: &NetStrip, v: &NetStrip, into: &mut [DVec4; POINTS]) {
+        let (p, q) = self.degree;
+        let n = p + 1;
+        let mut rows = [DVec4::ZERO; POINTS];
+        for j in 0..=q {
+            let row = &self.poles[(v.first + j) * self.counts.0 + u.first..][..n];
+            for (k, share) in u.shares.iter().enumerate() {
+                rows[j * n + k] = row.iter().zip(share).fold(DVec4::ZERO, |sum, (pole, s)| sum + *pole * *s);
+            }
+        }
+        for (k, share) in v.shares.iter().enumerate() {
+            for i in 0..n {
+                into[k * n + i] = (0..=q).fold(DVec4::ZERO, |sum, j| sum + rows[j * n + i] * share[j]);
+            }
+        }
     }
 }
+
+/// Most points of a piece of a net.
+pub(super) const POINTS: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Jet2, Surface};
 use super::foot::{Footing, step};
+use super::quick::Quick;
 use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
 use crate::network::Chain;
 
@@ -126,7 +127,7 @@ impl Pull {
         let widest = Cell::new(0.0_f64);
         let land = |f: f64, guess: DVec2| -> Result<DVec2, Off> {
             let p = chain.point(f);
-            let (uv, distance) = foot(surface, p, guess);
+            let (uv, distance) = foot((surface, None), p, guess);
             if distance > near {
                 return Err(Off { at: p, distance });
             }
@@ -229,11 +230,11 @@ fn walk(
 }
 
 /// Feet on a surface, held in the parts of (u, v) where it is.
-struct Whole<'a>(&'a Surface);
+struct Whole<'a>(&'a Surface, Option<&'a Quick>);
 
 impl Footing for Whole<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
-        self.0.jet(uv.x, uv.y)
+        self.1.map_or_else(|| self.0.jet(uv.x, uv.y), |quick| quick.jet(uv.x, uv.y))
     }
 
     fn hold(&self, uv: DVec2) -> DVec2 {
@@ -241,7 +242,7 @@ impl Footing for Whole<'_> {
     }
 }
 
-/// The foot of a point near a guess, with its distance.
-pub(super) fn foot(surface: &Surface, p: DVec3, guess: DVec2) -> (DVec2, f64) {
-    Whole(surface).foot(p, guess)
+/// The foot of a point near a guess, with its distance; by the surface made ready, where it is.
+pub(super) fn foot((surface, quick): (&Surface, Option<&Quick>), p: DVec3, guess: DVec2) -> (DVec2, f64) {
+    Whole(surface, quick).foot(p, guess)
 }

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::Jet2;
 use super::core::Surface;
-use super::net_spread::{NetStrip, along_u, along_v};
+use super::net_spread::{NetStrip, POINTS};
 use super::nurbs::{NurbsSurface, quotient};
 use super::rail::Lean;
 use super::shape::Shape;
@@ -33,8 +33,7 @@ pub struct Quick {
 #[derive(Debug)]
 struct Powers {
     degree: (usize, usize),
-    /// Knots without repetition, 0 and 1 among them.
-    stops: (Vec<f64>, Vec<f64>),
+    stops: (Stops, Stops),
     /// Coefficients of each span (u fastest): those of s^i t^j with i fastest.
     powers: Vec<DVec4>,
     /// Over [`BOXES`]² boxes a span; found when they are asked for.
@@ -43,6 +42,33 @@ struct Powers {
     rough: (Vec<f64>, Vec<f64>),
     /// Knots at which first derivatives may jump.
     corners: (Vec<f64>, Vec<f64>),
+}
+
+/// Knots without repetition, 0 and 1 among them, and one over the widths between them.
+#[derive(Debug)]
+struct Stops {
+    at: Vec<f64>,
+    by: Vec<f64>,
+}
+
+impl Stops {
+    fn new(at: Vec<f64>) -> Self {
+        Self { by: at.windows(2).map(|w| 1.0 / (w[1] - w[0])).collect(), at }
+    }
+
+    /// The span of a parameter, the place in it from 0 to 1, and one over its width.
+    fn place(&self, x: f64) -> (usize, f64, f64) {
+        let (stops, n) = (&self.at, self.by.len());
+        // Even knots are met at once.
+        let mut k = ((x * n as f64) as usize).min(n - 1);
+        while k > 0 && x < stops[k] {
+            k -= 1;
+        }
+        while k + 1 < n && x >= stops[k + 1] {
+            k += 1;
+        }
+        (k, (x - stops[k]) * self.by[k], self.by[k])
+    }
 }
 
 /// The powers of a surface that is a net, while somebody holds them.
@@ -122,7 +148,7 @@ impl Powers {
             thirds: OnceLock::new(),
             rough: both(&|often, degree| often + 1 == degree),
             corners: both(&|often, degree| often >= degree),
-            stops,
+            stops: (Stops::new(stops.0), Stops::new(stops.1)),
         }
     }
 }
@@ -131,7 +157,7 @@ impl Quick {
     fn thirds(&self) -> &[Third] {
         self.net.thirds.get_or_init(|| match &self.surface.parts().shape {
             Shape::Nurbs(net) => {
-                let (us, vs) = (divided(&self.net.stops.0), divided(&self.net.stops.1));
+                let (us, vs) = (divided(&self.net.stops.0.at), divided(&self.net.stops.1.at));
                 let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
                 let row = |j: usize| -> Vec<Third> {
                     let middle = |x: &[f64], k: usize| 0.5 * (x[k] + x[k + 1]);
@@ -151,7 +177,7 @@ impl Quick {
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
-        let ((i, s, _), (j, t, _)) = (place(&self.net.stops.0, u), place(&self.net.stops.1, v));
+        let ((i, s, _), (j, t, _)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
         let mut sum = DVec4::ZERO;
         for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
             let value = row.iter().rev().fold(DVec4::ZERO, |value, c| value * s + *c);
@@ -164,7 +190,7 @@ impl Quick {
     pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 3] {
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
-        let ((i, s, w), (j, t, h)) = (place(&self.net.stops.0, u), place(&self.net.stops.1, v));
+        let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
         let mut sums = [DVec4::ZERO; 3];
         for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
             let (mut value, mut slope) = (DVec4::ZERO, DVec4::ZERO);
@@ -178,8 +204,8 @@ impl Quick {
         }
         let over = 1.0 / sums[0].w;
         let p = sums[0].truncate() * over;
-        let du = (sums[1].truncate() - p * sums[1].w) * (over / w);
-        let dv = (sums[2].truncate() - p * sums[2].w) * (over / h);
+        let du = (sums[1].truncate() - p * sums[1].w) * (over * w);
+        let dv = (sums[2].truncate() - p * sums[2].w) * (over * h);
         let jet = self.surface.outer(Jet2 { p, du, dv, ..Jet2::default() });
         [jet.p, jet.du, jet.dv]
     }
@@ -193,7 +219,7 @@ impl Quick {
 
     /// The same in the net's own parameters.
     fn own_jet(&self, u: f64, v: f64) -> Jet2 {
-        let ((i, s, w), (j, t, h)) = (place(&self.net.stops.0, u), place(&self.net.stops.1, v));
+        let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
         // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
         let mut sums = [DVec4::ZERO; 6];
         for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
@@ -210,7 +236,7 @@ impl Quick {
             sums[1] = sums[1] * t + slope;
             sums[3] = sums[3] * t + bend;
         }
-        let scale = [1.0, 1.0 / w, 1.0 / h, 2.0 / (w * w), 1.0 / (w * h), 2.0 / (h * h)];
+        let scale = [1.0, w, h, 2.0 * w * w, w * h, 2.0 * h * h];
         for (sum, scale) in sums.iter_mut().zip(scale) {
             *sum *= scale;
         }
@@ -247,13 +273,13 @@ impl Quick {
     /// The same over a box of the net's own parameters in which second derivatives do not jump.
     fn smooth(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Bends {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let range = |stops: &[f64], a: f64, b: f64| {
-            let ((i, s, _), (j, t, _)) = (place(stops, a), place(stops, b));
+        let range = |stops: &Stops, a: f64, b: f64| {
+            let ((i, s, _), (j, t, _)) = (stops.place(a), stops.place(b));
             let boxed = |k: usize, s: f64| k * BOXES + ((s.max(0.0) * BOXES as f64) as usize).min(BOXES - 1);
             (boxed(i, s), boxed(j, t))
         };
         let ((i0, i1), (j0, j1)) = (range(&self.net.stops.0, low.x, high.x), range(&self.net.stops.1, low.y, high.y));
-        let n = (self.net.stops.0.len() - 1) * BOXES;
+        let n = self.net.stops.0.by.len() * BOXES;
         let mut most = [0.0_f64; 4];
         for j in j0..=j1 {
             for third in &self.thirds()[j * n + i0..=j * n + i1] {
@@ -270,28 +296,13 @@ impl Quick {
 
     fn span(&self, i: usize, j: usize) -> &[DVec4] {
         let n = (self.net.degree.0 + 1) * (self.net.degree.1 + 1);
-        &self.net.powers[(j * (self.net.stops.0.len() - 1) + i) * n..][..n]
+        &self.net.powers[(j * self.net.stops.0.by.len() + i) * n..][..n]
     }
 }
 
 /// Lines strictly inside an interval.
 fn crossed(lines: &[f64], low: f64, high: f64) -> impl Iterator<Item = f64> + '_ {
     lines.iter().copied().filter(move |x| *x > low + EPSILON && *x < high - EPSILON)
-}
-
-/// The span of a parameter, the place in it from 0 to 1, and its width.
-fn place(stops: &[f64], x: f64) -> (usize, f64, f64) {
-    let n = stops.len() - 1;
-    // Even knots are met at once.
-    let mut k = ((x * n as f64) as usize).min(n - 1);
-    while k > 0 && x < stops[k] {
-        k -= 1;
-    }
-    while k + 1 < n && x >= stops[k + 1] {
-        k += 1;
-    }
-    let width = stops[k + 1] - stops[k];
-    (k, (x - stops[k]) / width, width)
 }
 
 fn spans(net: &NurbsSurface, in_u: bool, stops: &[f64]) -> Vec<NetStrip> {
@@ -324,28 +335,36 @@ impl NurbsSurface {
     /// Bounds of the third derivatives over a rectangle inside one span: hulls of differences, and the quotient rule
     /// about the first point; apart along the normal in the middle, where a change of parameters adds nothing.
     fn third(&self, u: &NetStrip, v: &NetStrip, normal: DVec3) -> Third {
-        let net = self.piece(u, v);
-        let origin = projected(net[0][0]);
-        let local: Vec<Vec<DVec4>> =
-            net.iter().map(|row| row.iter().map(|q| (q.truncate() - origin * q.w).extend(q.w)).collect()).collect();
-        let all = |f: &dyn Fn(DVec3) -> f64, net: &[Vec<DVec4>]| net.iter().flatten().map(|q| f(q.truncate())).fold(0.0, f64::max);
-        let light = net.iter().flatten().map(|q| q.w).fold(f64::INFINITY, f64::min);
-        let (upright, whole) = (|q: DVec3| q.dot(normal).abs(), |q: DVec3| q.length());
-        let points: Vec<Vec<DVec4>> = local.iter().map(|row| row.iter().map(|q| projected(*q).extend(1.0)).collect()).collect();
-        // Bounds of the i-th difference along u and the j-th along v: normal and whole numerator, weight.
-        let (mut a, mut b, mut w) = ([[0.0; 4]; 4], [[0.0; 4]; 4], [[0.0; 4]; 4]);
-        let mut in_u = local;
-        for i in 0..4_usize {
-            let mut in_v = in_u.clone();
-            for j in 0..4 - i {
-                (a[i][j], b[i][j]) = (all(&upright, &in_v), all(&whole, &in_v));
-                w[i][j] = in_v.iter().flatten().map(|q| q.w.abs()).fold(0.0, f64::max);
-                in_v = along_v(&in_v, (self.degree.1 as f64 - j as f64) / v.width());
-            }
-            in_u = along_u(&in_u, (self.degree.0 as f64 - i as f64) / u.width());
+        let (n, rows) = (self.degree.0 + 1, self.degree.1 + 1);
+        let mut net = [DVec4::ZERO; POINTS];
+        self.piece_into(u, v, &mut net);
+        let light = net[..n * rows].iter().map(|q| q.w).fold(f64::INFINITY, f64::min);
+        let origin = projected(net[0]);
+        let (mut points, reach) = ((0.0_f64, 0.0_f64), |q: DVec3| (q.dot(normal).abs(), q.length()));
+        for q in &mut net[..n * rows] {
+            *q = (q.truncate() - origin * q.w).extend(q.w);
+            let (up, whole) = reach(projected(*q));
+            points = (points.0.max(up), points.1.max(whole));
         }
-        let upright = highest(&a, &w, all(&upright, &points), light);
-        Third { normal, upright, whole: highest(&b, &w, all(&whole, &points), light) }
+        // Bounds of the i-th difference along u and the j-th along v: normal and whole numerator, weight.
+        let (mut a, mut b, mut w) = ([[0.0_f64; 4]; 4], [[0.0_f64; 4]; 4], [[0.0_f64; 4]; 4]);
+        for i in 0..4_usize.min(n) {
+            let mut in_v = net;
+            for j in 0..(4 - i).min(rows) {
+                for q in (0..rows - j).flat_map(|r| &in_v[r * n..r * n + n - i]) {
+                    let (up, whole) = reach(q.truncate());
+                    (a[i][j], b[i][j], w[i][j]) = (a[i][j].max(up), b[i][j].max(whole), w[i][j].max(q.w.abs()));
+                }
+                let f = (self.degree.1 as f64 - j as f64) / v.width();
+                (0..(rows - j - 1) * n).for_each(|k| in_v[k] = (in_v[k + n] - in_v[k]) * f);
+            }
+            let f = (self.degree.0 as f64 - i as f64) / u.width();
+            for r in 0..rows {
+                (r * n..r * n + n - i - 1).for_each(|k| net[k] = (net[k + 1] - net[k]) * f);
+            }
+        }
+        let upright = highest(&a, &w, points.0, light);
+        Third { normal, upright, whole: highest(&b, &w, points.1, light) }
     }
 }
 

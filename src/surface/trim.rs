@@ -8,6 +8,7 @@ use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
 use super::lone::{Keep, lone};
 use super::plane;
 use super::pull::{Course, Pull, foot};
+use super::quick::Quick;
 use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Result, SurfaceFault};
@@ -262,6 +263,11 @@ impl Surface {
     ///
     /// Beyond 0…1 where the surface closes and the border crosses its seam.
     pub fn border_place(&self, k: usize, fraction: f64) -> Option<(f64, f64)> {
+        self.border_place_by(None, k, fraction)
+    }
+
+    /// The same with the surface made ready, where it is.
+    pub fn border_place_by(&self, quick: Option<&Quick>, k: usize, fraction: f64) -> Option<(f64, f64)> {
         let Side::Chain { chain, .. } = self.side(k) else { return None };
         let p = chain.point(fraction);
         let course = self.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
@@ -272,7 +278,7 @@ impl Surface {
                 Some((a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t))
             }
             Some(Course::Pull(pull)) => {
-                let uv = foot(self, p, pull.guess(fraction)).0;
+                let uv = foot((self, quick), p, pull.guess(fraction)).0;
                 Some((uv.x, uv.y))
             }
             None => None,
