@@ -51,7 +51,7 @@ pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> 
 }
 
 /// A stretch as one side of a face has it.
-pub fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &Use)) -> Beside {
+fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &Use)) -> Beside {
     let surface = &input.model.surfaces[own.surface.index()].surface;
     let share = |i: usize| i as f64 / PLACES as f64;
     let points: Vec<DVec3> = (0..=PLACES).map(|i| layout.point(u.atom, share(i))).collect();
@@ -72,35 +72,34 @@ pub fn left(limit: f64, off: f64) -> f64 {
     (limit - off).max(limit * LEFT)
 }
 
+/// What runs beside each face, side by side, where limits are asked about it: free faces with bends, and those whose borders
+/// do not come from themselves.
+pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<Beside>> {
+    par::map(layout.faces.len(), |f| {
+        let own = &layout.faces[f];
+        let surface = &input.model.surfaces[own.surface.index()].surface;
+        let bends = own.free && !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
+        let asked = bends || limits.chord.is_some() && is_off(input, own, surface);
+        let sides = own.sides.iter().enumerate().filter(|_| asked);
+        sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, (k, u)))).collect()
+    })
+}
+
+/// Whether borders of a face may run beside it.
+fn is_off(input: &Input, own: &Face, surface: &Surface) -> bool {
+    own.near > input.tolerance.point || surface.domain() == Domain::Loop
+}
+
 /// E703 where an edge is glued so far beside a face that nothing is left of the chord error.
-pub fn refuse(input: &Input, layout: &Layout, limits: &Limits) -> Result<()> {
+pub fn refuse(input: &Input, layout: &Layout, limits: &Limits, rows: &[Vec<Beside>]) -> Result<()> {
     let (Some(limit), Some((_, says))) = (limits.chord, input.plan.chord_error) else { return Ok(()) };
-    let widest = par::map(layout.faces.len(), |f| widest(input, layout, &layout.faces[f]));
-    for (face, (gap, at)) in layout.faces.iter().zip(widest) {
+    for (face, rows) in layout.faces.iter().zip(rows) {
+        let surface = &input.model.surfaces[face.surface.index()].surface;
+        let all = rows.iter().filter(|_| is_off(input, face, surface)).flat_map(|row| row.off.iter().zip(&row.points));
+        let (gap, at) = all.fold((0.0, DVec3::ZERO), |found, (gap, at)| if *gap > found.0 { (*gap, *at) } else { found });
         if gap > limit * (1.0 - LEFT) {
-            let surface = input.model.surfaces[face.surface.index()].surface.origin();
-            return Err(MeshFault::GapTooWide { gap, limit: (limit, says), surface, at }.into());
+            return Err(MeshFault::GapTooWide { gap, limit: (limit, says), surface: surface.origin(), at }.into());
         }
     }
     Ok(())
-}
-
-/// The widest gap beside a face, with its place; 0 where borders come from the face itself.
-fn widest(input: &Input, layout: &Layout, own: &Face) -> (f64, DVec3) {
-    let surface = &input.model.surfaces[own.surface.index()].surface;
-    let mut found = (0.0, DVec3::ZERO);
-    if own.near <= input.tolerance.point && surface.domain() != Domain::Loop {
-        return found;
-    }
-    for (k, side) in own.sides.iter().enumerate() {
-        for u in &side.uses {
-            let row = beside(input, layout, own, (k, u));
-            for (gap, at) in row.off.iter().zip(&row.points) {
-                if *gap > found.0 {
-                    found = (*gap, *at);
-                }
-            }
-        }
-    }
-    found
 }

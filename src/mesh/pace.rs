@@ -14,6 +14,7 @@ use super::gaps::{self, Beside, PLACES};
 use super::inside::trace;
 use super::layout::Layout;
 use super::narrow::Narrow;
+use super::plan::Method;
 use super::sources::{Body, STEEP, Source, Sources};
 use super::wanted::Wanted;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
@@ -172,6 +173,8 @@ pub struct Ask<'a> {
     pub written: &'a [Option<Pace>],
     /// Places where borders face each other.
     pub narrow: &'a [Narrow],
+    /// What runs beside each face.
+    pub rows: &'a [Vec<Beside>],
 }
 
 /// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
@@ -215,7 +218,7 @@ fn bends(input: &Input, layout: &Layout, ask: &Ask, paces: &mut [Pace]) {
     if ask.limits.chord.is_none() && ask.limits.angle.is_none() {
         return;
     }
-    let found = par::map(layout.faces.len(), |f| of_face(input, layout, f, ask.limits));
+    let found = par::map(layout.faces.len(), |f| of_face(input, layout, (f, &ask.rows[f]), ask.limits));
     for (stretch, lengths) in found.into_iter().flatten() {
         let (pace, size) = (&mut paces[stretch], ask.size[stretch]);
         if pace.at.len() == 2 {
@@ -488,7 +491,7 @@ impl Sampler<'_> {
 }
 
 /// Wanted lengths along the stretches of one face.
-fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(usize, Vec<f64>)> {
+fn of_face(input: &Input, layout: &Layout, (f, rows): (usize, &[Beside]), limits: &Limits) -> Vec<(usize, Vec<f64>)> {
     let own = &layout.faces[f];
     let surface = &input.model.surfaces[own.surface.index()].surface;
     if !own.free || surface.is_flat() {
@@ -505,19 +508,33 @@ fn of_face(input: &Input, layout: &Layout, f: usize, limits: &Limits) -> Vec<(us
     };
     let mut found = Vec::new();
     let apart = |stretch: usize| layout.length(stretch) / PLACES as f64;
-    for (k, side) in own.sides.iter().enumerate() {
-        for u in &side.uses {
-            let row = gaps::beside(input, layout, own, (k, u));
-            found.push((u.atom, wanted(&row, apart(u.atom))));
-        }
+    // Cells halve their borders as they are: there it is left to the steps of a curve all together.
+    let by_cells = own.method == Method::Isoline;
+    let both = |row: &Beside, apart: f64| {
+        let curve = |i: usize| if by_cells { f64::INFINITY } else { by_curve(&row.points, i, limits) };
+        wanted(row, apart).into_iter().enumerate().map(|(i, length)| length.min(curve(i))).collect::<Vec<_>>()
+    };
+    for (u, row) in own.sides.iter().flat_map(|side| &side.uses).zip(rows) {
+        found.push((u.atom, both(row, apart(u.atom))));
     }
     for line in &own.lines {
         let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
         let places = trace(surface, &input.model.patches[own.patch.index()], &points);
         let row = Beside::new(surface, (places, points), input.tolerance.point * gaps::SLIGHT);
-        found.push((*line, wanted(&row, apart(*line))));
+        found.push((*line, both(&row, apart(*line))));
     }
     found
+}
+
+/// The length at a place of a row of points for which a step keeps the limits as a piece of the curve, by the circle through it and
+/// its neighbours: what is left to find out by [`super::edges::least_steps`] for all steps together is next to nothing.
+fn by_curve(points: &[DVec3], i: usize, limits: &Limits) -> f64 {
+    let i = i.clamp(1, points.len() - 2);
+    let (a, b) = (points[i] - points[i - 1], points[i + 1] - points[i]);
+    let bend = 2.0 * a.cross(b).length() / (a.length() * b.length() * (a + b).length());
+    let by_chord = limits.chord.map_or(f64::INFINITY, |limit| (8.0 * limit / bend).sqrt());
+    let by_angle = limits.angle.map_or(f64::INFINITY, |limit| limit / bend);
+    by_chord.min(by_angle)
 }
 
 /// Lengths along a row of places `apart` so that triangles on both sides of it keep the limits, the chord error less how far
@@ -527,7 +544,7 @@ fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (siz
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
     let length = |i: usize, off: f64| {
         let at = row.places[i];
-        let jet = surface.jet(at.0, at.1);
+        let jet = surfaces.1.map_or_else(|| surface.jet(at.0, at.1), |quick| quick.jet(at.0, at.1));
         let chord = limits.chord.map(|limit| gaps::left(limit, off));
         let plain = bound::wanted(&jet, chord, limits.angle).min(size / face::FILLED);
         let along = jet.du * step(i).x + jet.dv * step(i).y;

@@ -123,7 +123,8 @@ impl Sizing {
         }
         let own = own_sizes(layout, size);
         let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
-        super::gaps::refuse(input, layout, &limits)?;
+        let rows = super::gaps::rows(input, layout, &limits);
+        super::gaps::refuse(input, layout, &limits, &rows)?;
         let shape = shapes(layout);
         let count_of = |k: usize| division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
         let size_of = |k: usize| match division[k] {
@@ -144,7 +145,7 @@ impl Sizing {
         let written_steps = |k: usize| Some(Pace::of_count(layout.length(k), count_of(k).map(|c| c.0).or(biased[k])?, bias_of(k)));
         let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
         let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
-        let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow };
+        let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow, rows: &rows };
         (sizing.paces, sizing.strained) = pace::along(input, layout, &ask);
         sizing.mark_refined(input, layout, &sizes);
         let least = par::try_map(n, |k| {

@@ -175,7 +175,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
 }
 
 /// Triangles that are divided when nodes are counted ahead.
-const LOOKS: usize = 50_000;
+const LOOKS: usize = 10_000;
 /// Nodes up to which lengths are taken as one over a triangle.
 const FEW: f64 = 8.0;
 /// Ratio of lengths that count as one.

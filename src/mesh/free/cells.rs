@@ -53,10 +53,12 @@ impl Cells {
     fn slot(&self, level: i32, cell: [i64; 3]) -> usize {
         let mut h = (level as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         for c in cell {
-            h = (h ^ c as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
+            h = (h ^ (c >> 1) as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
             h ^= h >> 32;
         }
-        h as usize & (self.head.len() - 1)
+        // Eight neighbours lie in one place of memory.
+        let own = (cell[0] & 1) | (cell[1] & 1) << 1 | (cell[2] & 1) << 2;
+        (h << 3 | own as u64) as usize & (self.head.len() - 1)
     }
 
     /// Adds a point of a size.
@@ -84,6 +86,20 @@ impl Cells {
             let slot = self.home(self.entries[k].p, self.entries[k].level);
             self.entries[k].next = std::mem::replace(&mut self.head[slot], k as u32);
         }
+    }
+
+    /// Whether a point nearer than `reach` lies in the same cube: what most often is all there is to ask.
+    pub fn beside(&self, p: DVec3, reach: f64, size: f64) -> bool {
+        let level = self.level(size);
+        let mut at = self.head[self.home(p, level)];
+        while at != NONE {
+            let e = &self.entries[at as usize];
+            if e.level == level && e.p.distance_squared(p) < reach * reach {
+                return true;
+            }
+            at = e.next;
+        }
+        false
     }
 
     /// Calls `visit` with the points nearer than `reach` and the square of their distance, of sizes within a factor of two

@@ -27,10 +27,33 @@ impl Spot {
     }
 }
 
+/// A surface beside a place of its chart, to second order.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Near {
+    /// The place itself.
+    pub spot: Spot,
+    /// ∂²/∂x², ∂²/∂x∂y and ∂²/∂y².
+    pub bends: [DVec3; 3],
+}
+
+impl Near {
+    /// Point and derivatives so far from the place.
+    pub fn spot(&self, d: DVec2) -> Spot {
+        let Spot { p, dx, dy } = self.spot;
+        let [xx, xy, yy] = self.bends;
+        let (by_x, by_y) = (xx * d.x + xy * d.y, xy * d.x + yy * d.y);
+        Spot { p: p + (dx + by_x * 0.5) * d.x + (dy + by_y * 0.5) * d.y, dx: dx + by_x, dy: dy + by_y }
+    }
+}
+
 /// A surface over the plane of its chart, in which lengths are nearly those in space on average.
 pub trait Ground: Sync {
     /// Point and derivatives.
     fn spot(&self, xy: DVec2) -> Spot;
+    /// What is beside a place; a plane where second derivatives are not known.
+    fn near(&self, xy: DVec2) -> Near {
+        Near { spot: self.spot(xy), ..Near::default() }
+    }
     /// The point alone.
     fn point(&self, xy: DVec2) -> DVec3 {
         self.spot(xy).p

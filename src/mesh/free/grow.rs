@@ -20,6 +20,10 @@ use crate::base::tolerance::NUDGE;
 
 /// Nearest distance between two nodes, as a share of the wanted length.
 const APART: f64 = 0.7;
+/// The same before the length wanted there is known, which is hardly ever less than half of that here.
+const TAKEN: f64 = 0.5 * APART;
+/// Distance of two places, as a share of the wanted length, within which what is near to one is near to the other.
+const ALIKE: f64 = 0.02;
 /// Nearest distance of a node to an edge of the border, as a share of the wanted length.
 const CLEAR: f64 = 0.52;
 /// How far along the border its samples are apart, as a share of the wanted length.
@@ -189,6 +193,9 @@ impl Front<'_> {
     /// A neighbour in a direction, `stretch` times the wanted length away; it carries `ahead` on, or looks on along the arm.
     fn propose(&mut self, (xy, p, size): (DVec2, DVec3, f64), spot: &Spot, (way, stretch): (DVec3, f64), ahead: Option<DVec3>) {
         let guess = p + way * size;
+        if self.soil.cell == Cell::Triangle && self.nodes.beside(guess, TAKEN * size, size) {
+            return;
+        }
         let Some(step) = spot.step(way * size) else { return };
         // The mean of the lengths wanted here and there.
         let there = self.soil.field.size(self.soil.ground.clamp(xy + step), guess);
@@ -212,7 +219,8 @@ impl Front<'_> {
                 return;
             }
         }
-        if new.p.distance_squared(p + way * length) > 0.0 && self.near_node(new.p, there) {
+        let off = new.p.distance_squared(p + way * length);
+        if off > ALIKE * ALIKE * there * there && self.near_node(new.p, there) {
             return;
         }
         let arm = ahead.unwrap_or(new.p - p);

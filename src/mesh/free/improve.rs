@@ -5,8 +5,10 @@
 
 mod divide;
 mod flips;
+mod last;
 mod mend;
 mod smooth;
+mod tried;
 
 use glam::{DVec2, DVec3};
 
@@ -16,6 +18,7 @@ use super::shape::{Rim, Star};
 use super::web::{Patch, Ring, Web};
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use tried::Tried;
 
 /// How the improvement is done.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +80,8 @@ pub struct Gardener<'a> {
     unseen: Pending,
     /// What lengths at each node are squeezed by.
     squeezed: Vec<f64>,
+    /// What could not be mended, and since when.
+    tried: Tried,
 }
 
 impl<'a> Gardener<'a> {
@@ -98,6 +103,7 @@ impl<'a> Gardener<'a> {
             changed: all.clone(),
             unseen: all,
             squeezed,
+            tried: Tried::default(),
         }
     }
 
@@ -142,6 +148,9 @@ impl<'a> Gardener<'a> {
             self.flip_all();
         }
         self.mend();
+        if self.last() > 0 {
+            self.mend();
+        }
         Ok(())
     }
 
@@ -167,6 +176,7 @@ impl<'a> Gardener<'a> {
     /// The nodes of a triangle may have to move.
     fn wake(&mut self, t: u32) {
         for n in self.web.tri[t as usize] {
+            self.tried.change(n);
             self.active.add(n);
             self.changed.add(n);
             self.unseen.add(n);
@@ -175,6 +185,7 @@ impl<'a> Gardener<'a> {
 
     /// A node or its triangles changed.
     fn touch(&mut self, node: u32) {
+        self.tried.change(node);
         self.active.add(node);
         self.moved.add(node);
         self.changed.add(node);

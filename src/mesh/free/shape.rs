@@ -48,6 +48,9 @@ const ROUNDS: usize = 12;
 const STILL: f64 = 0.002;
 /// What the side of an equilateral triangle weighs.
 const LEAST: f64 = 0.001;
+/// Times the derivatives are taken anew, where what they said of the worst triangle was not so near to what it is.
+const STARTS: usize = 3;
+const TRUE: f64 = 0.01;
 /// Gain that a round must bring.
 const GAIN: f64 = 0.0001;
 
@@ -116,18 +119,57 @@ impl Rim {
         if length > self.longest { quality * (self.longest / length) } else { quality }
     }
 
+    /// What no star inside is worth more than, where the rim lies in a plane: of the two angles into which a corner falls one is at
+    /// most half of it, and the best triangle with an angle α has two sides alike beside it, 4 sin(α/2) (1 − sin(α/2)).
+    pub fn ceiling(&self) -> f64 {
+        let n = self.p.len();
+        let mut ceiling = 1.0_f64;
+        for b in 0..n {
+            let (a, c) = (if b > 0 { b - 1 } else { n - 1 }, if b + 1 < n { b + 1 } else { 0 });
+            if area2(self.xy[a], self.xy[b], self.xy[c]) > 0.0 {
+                let cosine = (self.p[a] - self.p[b]).dot(self.p[c] - self.p[b]) / (self.sides[a] * self.sides[b]);
+                let half = (0.5 + 0.5 * cosine).max(0.0).sqrt();
+                let quarter = (0.5 - 0.5 * half).max(0.0).sqrt();
+                ceiling = ceiling.min(4.0 * quarter * (1.0 - quarter));
+            }
+        }
+        ceiling
+    }
+
     /// Mean of the rim.
     pub fn middle(&self) -> (DVec2, DVec3) {
         let n = self.p.len() as f64;
         (self.xy.iter().copied().sum::<DVec2>() / n, self.p.iter().copied().sum::<DVec3>() / n)
     }
 
-    /// Climbs from a place to one where the worst triangle is as good as it can be: towards the mean of the tips that the
-    /// sides wish for, the worst ones first.
+    /// Climbs from a place to one where the worst triangle is as good as it can be. On the way the surface is what its
+    /// derivatives at the start say it is; where that tells too little, from there on what those at the end say.
     pub fn best(&mut self, ground: &dyn Ground, from: DVec2, p: DVec3) -> Star {
         let mut star = Star { p, xy: from, worst: self.worst(from, p) };
-        let mut spot = ground.spot(from);
-        let mut wish = self.wish(p);
+        for _ in 0..STARTS {
+            let seen = self.climb(ground, star);
+            if seen.xy == star.xy {
+                break;
+            }
+            let p = ground.point(seen.xy);
+            let worst = self.worst(seen.xy, p);
+            if worst <= star.worst {
+                break;
+            }
+            star = Star { p, xy: seen.xy, worst };
+            if (worst - seen.worst).abs() <= TRUE {
+                break;
+            }
+        }
+        star
+    }
+
+    /// Steps towards the mean of the tips that the sides wish for, the worst ones first.
+    fn climb(&mut self, ground: &dyn Ground, mut star: Star) -> Star {
+        let from = star.xy;
+        let near = ground.near(from);
+        let mut spot = near.spot(DVec2::ZERO);
+        let mut wish = self.wish(star.p);
         let mut share = 1.0;
         for _ in 0..ROUNDS {
             let step = wish * share;
@@ -136,7 +178,7 @@ impl Rim {
             }
             let Some(way) = spot.step(step) else { break };
             let xy = ground.clamp(star.xy + way);
-            let new = ground.spot(xy);
+            let new = near.spot(xy - from);
             let worst = self.worst(xy, new.p);
             if worst > star.worst + GAIN {
                 star = Star { p: new.p, xy, worst };
@@ -151,7 +193,7 @@ impl Rim {
 
     /// Where the sides want a place to go that was weighed just now: to the tips of their equilateral triangles, the worst
     /// sides more than others.
-    fn wish(&self, p: DVec3) -> DVec3 {
+    pub fn wish(&self, p: DVec3) -> DVec3 {
         let n = self.p.len();
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         for i in 0..n {

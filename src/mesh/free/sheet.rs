@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Ground, Spot};
+use super::ground::{Ground, Near, Spot};
 use crate::base::tolerance::EPSILON;
 use crate::surface::quick::Quick;
 use crate::surface::{Domain, Jet2, Surface};
@@ -18,6 +18,8 @@ pub struct Sheet {
     a: f64,
     b: f64,
     c: f64,
+    /// 1 / a and 1 / c.
+    by: (f64, f64),
 }
 
 impl Sheet {
@@ -45,13 +47,14 @@ impl Sheet {
             a,
             b,
             c,
+            by: (1.0 / a, 1.0 / c),
         })
     }
 
     /// Surface parameters of a place of the chart.
     pub fn uv(&self, xy: DVec2) -> (f64, f64) {
-        let v = xy.y / self.c;
-        ((xy.x - self.b * v) / self.a, v)
+        let v = xy.y * self.by.1;
+        ((xy.x - self.b * v) * self.by.0, v)
     }
 
     /// The surface.
@@ -94,8 +97,17 @@ impl Ground for Sheet {
     fn spot(&self, xy: DVec2) -> Spot {
         let (u, v) = self.uv(xy);
         let [p, du, dv] = self.tangents((u, v));
-        let dx: DVec3 = du / self.a;
-        Spot { p, dx, dy: (dv - dx * self.b) / self.c }
+        let dx: DVec3 = du * self.by.0;
+        Spot { p, dx, dy: (dv - dx * self.b) * self.by.1 }
+    }
+
+    fn near(&self, xy: DVec2) -> Near {
+        let jet = self.jet(xy);
+        let (by_x, by_y) = self.by;
+        let (dx, dxx) = (jet.du * by_x, jet.duu * (by_x * by_x));
+        let dxv = jet.duv * by_x;
+        let bends = [dxx, (dxv - dxx * self.b) * by_y, (jet.dvv - (dxv * 2.0 - dxx * self.b) * self.b) * (by_y * by_y)];
+        Near { spot: Spot { p: jet.p, dx, dy: (jet.dv - dx * self.b) * by_y }, bends }
     }
 
     fn point(&self, xy: DVec2) -> DVec3 {

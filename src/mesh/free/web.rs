@@ -2,6 +2,7 @@
 
 mod flip;
 mod patch;
+mod undo;
 
 use glam::{DVec2, DVec3};
 pub use patch::Patch;

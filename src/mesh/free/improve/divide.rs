@@ -1,6 +1,6 @@
 //! Triangles that break a limit divided, and lengths squeezed where that does not do.
 
-use super::mend::{Keep, Plan};
+use super::mend::{Keep, Plan, Worth};
 use super::{Gardener, Guard};
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -46,6 +46,9 @@ impl<'a> Gardener<'a> {
                 (self.guard, self.care.wanted) = (Some(guard), wanted);
                 self.changed = Pending::all(self.web.p.len());
                 self.mend();
+                if self.last() > 0 {
+                    self.mend();
+                }
                 bad = self.broken(guard, &bad);
             }
             if bad.is_empty() || !self.are_few(&bad) {
@@ -76,6 +79,7 @@ impl<'a> Gardener<'a> {
     /// Lengths wanted at the corners of a triangle are a little shorter from now on.
     fn squeeze(&mut self, t: u32) {
         for n in self.web.tri[t as usize].map(|n| n as usize) {
+            self.tried.change(n as u32);
             self.squeezed[n] *= SQUEEZE;
             self.web.size[n] *= SQUEEZE;
         }
@@ -90,10 +94,8 @@ impl<'a> Gardener<'a> {
         sides.sort_by(|a, b| length(*b).total_cmp(&length(*a)).then(a.cmp(b)));
         for k in sides {
             let mut patch = std::mem::take(&mut self.patch);
-            let plan = self
-                .web
-                .patch(&[t, self.web.across[t as usize][k]], &mut patch)
-                .and_then(|()| self.plan(&patch, Keep::New, f64::NEG_INFINITY));
+            let plan =
+                self.web.patch(&[t, self.web.across[t as usize][k]], &mut patch).and_then(|()| self.plan(&patch, Keep::New, Worth::ANY));
             let made = match plan {
                 Some((worst, Plan::Star(star, node))) if worst > 0.0 => {
                     self.restar(&patch, node, &star);

@@ -84,7 +84,7 @@ impl Gardener<'_> {
     }
 
     /// Whether the chart allows the flip.
-    fn convex(&self, [a, b, c, d]: [u32; 4]) -> bool {
+    pub(super) fn convex(&self, [a, b, c, d]: [u32; 4]) -> bool {
         let xy = |n: u32| self.web.xy[n as usize];
         area2(xy(a), xy(b), xy(c)) > 0.0 && area2(xy(a), xy(c), xy(d)) > 0.0
     }

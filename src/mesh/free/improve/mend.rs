@@ -24,7 +24,11 @@ impl Gardener<'_> {
         let mut changes = 0;
         for (_, t) in bad {
             for _ in 0..3 {
-                if !self.web.alive(t) || self.worth(t) >= self.care.wanted || !self.mend_one(t) {
+                if !self.web.alive(t) || self.worth(t) >= self.care.wanted {
+                    break;
+                }
+                if !self.mend_one(t) {
+                    self.tried.give_up(t);
                     break;
                 }
                 changes += 1;
@@ -43,7 +47,7 @@ impl Gardener<'_> {
     }
 
     /// What a triangle is worth: its quality less what its longest side takes.
-    fn worth(&self, t: u32) -> f64 {
+    pub(super) fn worth(&self, t: u32) -> f64 {
         let c = self.web.tri[t as usize];
         let shape = self.web.shape(c);
         let mut worth = shape;
@@ -61,11 +65,15 @@ impl Gardener<'_> {
     /// Moves a corner to where its worst triangle is best.
     fn shift_corners(&mut self, t: u32) -> bool {
         let mut any = false;
+        let since = self.tried.since(t);
         for node in self.web.tri[t as usize] {
             if !self.web.is_free(node) {
                 continue;
             }
             self.fill_rim(node);
+            if !self.tried.is_new(self.ring.node.iter().copied().chain([node]), since) {
+                continue;
+            }
             let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
             let before = self.rim.worst(xy, p);
             let star = self.rim.best(self.ground, xy, p);
@@ -80,12 +88,17 @@ impl Gardener<'_> {
     /// Tries patches round a triangle with a node more or less; takes the best.
     fn rebuild(&mut self, t: u32) -> bool {
         let mut best: Option<(f64, Patch, Plan)> = None;
+        let since = self.tried.since(t);
         for (tri, keep) in self.candidates(t) {
+            if !self.tried.is_new(tri.iter().flat_map(|t| self.web.tri[*t as usize]), since) {
+                continue;
+            }
             let before = tri.iter().map(|t| self.worth(*t)).fold(f64::INFINITY, f64::min);
             let mut patch = std::mem::take(&mut self.patch);
             let fits = self.web.patch(&tri, &mut patch);
             if fits.is_some()
-                && let Some((after, plan)) = self.plan(&patch, keep, before * HOPE)
+                && let Some((after, plan)) =
+                    self.plan(&patch, keep, Worth { least: before * HOPE, more: before + best.as_ref().map_or(0.0, |b| b.0) })
                 && after > before + self.gain(before)
                 && best.as_ref().is_none_or(|b| after - before > b.0)
                 && self.plan_keeps(&patch, &plan)
@@ -127,7 +140,7 @@ impl Gardener<'_> {
 
     /// Sets of triangles round a triangle: two at each side for a new node, stars of corners without it, stars of two
     /// neighbouring corners as one.
-    fn candidates(&mut self, t: u32) -> Vec<(Vec<u32>, Keep)> {
+    pub(super) fn candidates(&mut self, t: u32) -> Vec<(Vec<u32>, Keep)> {
         let mut sets = Vec::new();
         let c = self.web.tri[t as usize];
         let across = self.web.across[t as usize];
@@ -165,18 +178,21 @@ impl Gardener<'_> {
         sets
     }
 
-    /// The best that can be made of a patch.
-    pub(super) fn plan(&mut self, patch: &Patch, keep: Keep, least: f64) -> Option<(f64, Plan)> {
+    /// The best that can be made of a patch, where that may be worth it.
+    pub(super) fn plan(&mut self, patch: &Patch, keep: Keep, worth: Worth) -> Option<(f64, Plan)> {
         self.rim.fill(patch.rim.iter().map(|n| (self.web.p[*n as usize], self.web.xy[*n as usize])));
         if let Keep::None = keep {
             return self.best_fan(patch);
+        }
+        if self.rim.ceiling() <= worth.more {
+            return None;
         }
         let (xy, p) = self.rim.middle();
         let xy = self.ground.clamp(xy);
         self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.care.longest;
         // A rim that is far too large or too small for one node is not searched for its best place.
         let p = self.ground.point(xy);
-        if self.rim.worst(xy, p) < least {
+        if self.rim.worst(xy, p) < worth.least {
             return None;
         }
         let star = self.rim.best(self.ground, xy, p);
@@ -208,6 +224,18 @@ impl Gardener<'_> {
         }
         best.map(|(worst, k)| (worst, Plan::Fan(k)))
     }
+}
+
+/// What a patch made anew must be worth: its first guess, and its best.
+#[derive(Clone, Copy)]
+pub(super) struct Worth {
+    pub least: f64,
+    pub more: f64,
+}
+
+impl Worth {
+    /// Anything.
+    pub const ANY: Self = Self { least: f64::NEG_INFINITY, more: f64::NEG_INFINITY };
 }
 
 /// Which node a patch keeps.

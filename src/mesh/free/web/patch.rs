@@ -17,6 +17,8 @@ pub struct Patch {
     beyond: Vec<(u32, bool)>,
     /// Nodes inside it.
     pub inner: Vec<u32>,
+    /// Sides that are not in the rim yet: from, to, the triangle beyond, and whether it is locked.
+    sides: Vec<(u32, u32, u32, bool)>,
 }
 
 impl Web {
@@ -33,7 +35,8 @@ impl Web {
         for t in tri {
             self.stamp[*t as usize] = turn;
         }
-        let mut sides: Vec<(u32, u32, u32, bool)> = Vec::with_capacity(tri.len() + 2);
+        let sides = &mut patch.sides;
+        sides.clear();
         for &t in tri {
             for k in 0..3 {
                 let next = self.across[t as usize][k];
