@@ -120,7 +120,7 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
     }
     let bounds = walks.first().map(Walk::polygon).unwrap_or_default();
     let mut apart = Vec::new();
-    for (k, chains) in holes.iter().enumerate() {
+    for chains in holes {
         let walk = around(&base, chains, tolerance)?;
         let polygon = walk.polygon();
         let within = |by: DVec2| bounds.is_empty() || polygon.iter().all(|p| inside(&bounds, *p + by));
@@ -129,8 +129,9 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
         } else if shifts(&base).len() > 1 && walk.lies_within(&base, &bounds) {
             apart.push(chains);
         } else {
-            let at = base.point(polygon[0].x, polygon[0].y);
-            return Err(SurfaceFault::LoopOutside { of: origin, hole: k + 1, at }.into());
+            let outside = polygon.iter().find(|p| !inside(&bounds, **p)).unwrap_or(&polygon[0]);
+            let (of, at) = (chains.first().map_or(origin, Chain::origin), base.point(outside.x, outside.y));
+            return Err(SurfaceFault::LoopOutside { of, trimming: origin, at }.into());
         }
     }
     let mut made = assembled(&base, walks, origin)?;

@@ -228,10 +228,10 @@ pub enum SurfaceFault {
     },
     /// E612: a hole that is not inside its outer loop.
     LoopOutside {
-        /// The trimming.
+        /// The hole.
         of: Origin,
-        /// Which hole, from 1.
-        hole: usize,
+        /// The trimming.
+        trimming: Origin,
         /// A point of it.
         at: DVec3,
     },
@@ -547,9 +547,11 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*surface, "one polynomial through all curves")
         .help("`coons` with the same curves stays between them"),
-        F::LoopOutside { of, hole, at } => {
-            Report::new("E612", format!("hole {hole} is not inside the outer loop: its point {} is outside, or crosses it", say.point(*at)))
-                .at(*of, "trimmed here")
+        F::LoopOutside { of, trimming, at } => {
+            let which = say.quoted(*of, "the hole");
+            Report::new("E612", format!("{which} is not inside the outer loop: its point {} is outside, or crosses it", say.point(*at)))
+                .at(*trimming, "trimmed here")
+                .at(*of, "this hole")
                 .help("a hole lies wholly inside; where it cuts the border, make one outer loop of both")
         }
         F::LoopGoesRound { of, surface, trimming, at } => {
