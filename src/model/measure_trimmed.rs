@@ -9,7 +9,7 @@ use crate::network::Chain;
 use crate::surface::quick::Quick;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
 
-/// Points of the rules along a border, each pair compared before the next one is tried, and across the surface.
+/// Points of the rules along a border, the first pair for runs between breaks only, and across the surface.
 const ALONG: [[usize; 2]; 2] = [[4, 6], [8, 12]];
 const ACROSS: usize = 12;
 /// A run of a border is halved at most so often.
@@ -30,6 +30,18 @@ struct Run {
     border: usize,
     t: (f64, f64),
     depth: u32,
+}
+
+/// What a rule makes of a run: the sum, that of what is added up regardless of sign, and the box of its places in (u, v).
+struct Met<const N: usize> {
+    sum: Sums<N>,
+    size: Sums<N>,
+    box_: (DVec2, DVec2),
+}
+
+/// Whether one of some values, ascending, lies between two.
+fn parts(breaks: &[f64], low: f64, high: f64) -> bool {
+    breaks.partition_point(|b| *b <= low) < breaks.partition_point(|b| *b < high)
 }
 
 /// The integral of N functions of the jet over a trimmed surface, with estimated errors.
@@ -88,13 +100,15 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         }
         sum
     };
-    let run = |run: &Run, rule: &[(f64, f64)]| -> (Sums<N>, Sums<N>) {
+    let run = |run: &Run, rule: &[(f64, f64)]| -> Met<N> {
         let (mut sum, mut size) = ([0.0; N], [0.0; N]);
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (x, w) in rule {
             let half = 0.5 * (run.t.1 - run.t.0);
             let t = 0.5 * (run.t.0 + run.t.1) + half * x;
             let (base, way) = &ways[run.border];
             let (at, dv) = way.at((surface, quick.as_ref()), &jet, t);
+            (low, high) = (low.min(at), high.max(at));
             if dv == 0.0 {
                 continue;
             }
@@ -103,7 +117,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
                 size[i] += (half * w * dv * value).abs();
             }
         }
-        (sum, size)
+        Met { sum, size, box_: (low, high) }
     };
     let mut open: Vec<Run> = Vec::new();
     for (border, (_, way)) in ways.iter().enumerate() {
@@ -111,25 +125,31 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         open.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
     }
     open.reverse();
+    // Where nothing breaks between the first places few points tell as much as many.
+    let even = |(low, high): (DVec2, DVec2)| {
+        let alone = |breaks: &[f64], low: f64, high: f64| breaks.is_empty() || low >= 0.0 && high <= 1.0 && !parts(breaks, low, high);
+        alone(&breaks_u, low.x, high.x) && alone(&breaks_v, low.y, high.y)
+    };
     let rough = |r: &Run| run(r, &rules[0][0]);
     let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(open.len()));
-    for (sum, size) in open.iter().map(rough) {
-        (0..N).for_each(|i| scale[i] += size[i]);
-        first.push(sum);
+    for met in open.iter().map(rough) {
+        (0..N).for_each(|i| scale[i] += met.size[i]);
+        first.push(met);
     }
     let share = MEASURE_ACCURACY / open.len().max(1) as f64;
     let apart = |a: &Sums<N>, b: &Sums<N>| -> Sums<N> { std::array::from_fn(|i| (a[i] - b[i]).abs()) };
     let settled = |apart: &Sums<N>| (0..N).all(|i| apart[i] <= share * scale[i]);
-    let mut open: Vec<(Run, Sums<N>)> = open.into_iter().zip(first).collect();
+    let mut open: Vec<(Run, Met<N>)> = open.into_iter().zip(first).collect();
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
-    while let Some((next, rough_sum)) = open.pop() {
-        let mut value = run(&next, &rules[0][1]).0;
-        let mut off = apart(&value, &rough_sum);
-        if !settled(&off) {
-            let before = run(&next, &rules[1][0]).0;
-            value = run(&next, &rules[1][1]).0;
-            off = apart(&value, &before);
-        }
+    while let Some((next, met)) = open.pop() {
+        let few = even(met.box_).then(|| {
+            let value = run(&next, &rules[0][1]).sum;
+            (value, apart(&value, &met.sum))
+        });
+        let (value, off) = few.filter(|(_, off)| settled(off)).unwrap_or_else(|| {
+            let value = run(&next, &rules[1][1]).sum;
+            (value, apart(&value, &run(&next, &rules[1][0]).sum))
+        });
         if next.depth == DEEPEST || settled(&off) {
             for i in 0..N {
                 sum[i] += value[i];
@@ -138,7 +158,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         } else {
             let middle = 0.5 * (next.t.0 + next.t.1);
             let halves = [(middle, next.t.1), (next.t.0, middle)].map(|t| Run { t, depth: next.depth + 1, ..next });
-            open.extend(halves.map(|half| (half, rough(&half).0)));
+            open.extend(halves.map(|half| (half, rough(&half))));
         }
     }
     (sum, error)
