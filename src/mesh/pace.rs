@@ -508,7 +508,7 @@ fn of_face(input: &Input, layout: &Layout, (f, rows): (usize, &[Beside]), limits
     };
     let mut found = Vec::new();
     let apart = |stretch: usize| layout.length(stretch) / PLACES as f64;
-    // Cells halve their borders as they are: there it is left to the steps of a curve all together.
+    // Cells halve by twos and fit best where a curve has one length; `display` joins them again.
     let by_cells = own.method == Method::Isoline;
     let both = |row: &Beside, apart: f64| {
         let curve = |i: usize| if by_cells { f64::INFINITY } else { by_curve(&row.points, i, limits) };
@@ -570,7 +570,7 @@ fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, li
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
     let length = |i: usize| {
         let at = row.places[i];
-        let jet = surface.jet(at.0, at.1);
+        let jet = ready.1.map_or_else(|| surface.jet(at.0, at.1), |quick| quick.jet(at.0, at.1));
         let along = jet.du * step(i).x + jet.dv * step(i).y;
         let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
         bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), wide).min(size)

@@ -147,6 +147,7 @@ impl Sizing {
         let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
         let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow, rows: &rows };
         (sizing.paces, sizing.strained) = pace::along(input, layout, &ask);
+        drop(rows);
         sizing.mark_refined(input, layout, &sizes);
         let least = par::try_map(n, |k| {
             let bias = bias_of(k);

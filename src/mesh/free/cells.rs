@@ -88,7 +88,7 @@ impl Cells {
         }
     }
 
-    /// Whether a point nearer than `reach` lies in the same cube: what most often is all there is to ask.
+    /// Whether a point nearer than `reach` is among those kept with the cube of a place: what most often is all there is to ask.
     pub fn beside(&self, p: DVec3, reach: f64, size: f64) -> bool {
         let level = self.level(size);
         let mut at = self.head[self.home(p, level)];

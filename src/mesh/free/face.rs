@@ -62,6 +62,8 @@ pub fn empty(made: &Made, face: &Face) -> Prepared {
 /// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
 pub(in crate::mesh) fn outlined(made: &Made, face: &Face) -> Option<(Border, Sheet, Outline)> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
+    // Made ready once for the border and the sheet.
+    let _ready = surface.quick();
     let mut border = border(made, face);
     let sheet = Sheet::new(surface, border.uv.iter().copied())?;
     if face.near > made.input.tolerance.point {

@@ -20,9 +20,11 @@ use crate::base::tolerance::NUDGE;
 
 /// Nearest distance between two nodes, as a share of the wanted length.
 const APART: f64 = 0.7;
-/// The same before the length wanted there is known, which is hardly ever less than half of that here.
+/// The same before the length wanted there is known, which is hardly ever less than half of that here; where it is, nodes that are
+/// nearer to it grow there.
 const TAKEN: f64 = 0.5 * APART;
-/// Distance of two places, as a share of the wanted length, within which what is near to one is near to the other.
+/// Distance of two places, as a share of the wanted length, within which what is near to one counts as near to the other: nodes may be as
+/// much nearer to each other.
 const ALIKE: f64 = 0.02;
 /// Nearest distance of a node to an edge of the border, as a share of the wanted length.
 const CLEAR: f64 = 0.52;

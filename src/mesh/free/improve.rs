@@ -124,6 +124,11 @@ impl<'a> Gardener<'a> {
         if 2 * nodes.len() > self.web.p.len() {
             return (0..n).filter(|t| self.web.alive(*t)).collect();
         }
+        self.rings_of(nodes)
+    }
+
+    /// The same, each node looked at whatever their number.
+    fn rings_of(&mut self, nodes: &[u32]) -> Vec<u32> {
         let mut found = Vec::with_capacity(6 * nodes.len());
         for node in nodes {
             self.web.ring(*node, &mut self.ring);
@@ -148,7 +153,7 @@ impl<'a> Gardener<'a> {
             self.flip_all();
         }
         self.mend();
-        if self.last() > 0 {
+        if self.last(job)? > 0 {
             self.mend();
         }
         Ok(())

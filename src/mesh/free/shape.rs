@@ -119,14 +119,16 @@ impl Rim {
         if length > self.longest { quality * (self.longest / length) } else { quality }
     }
 
-    /// What no star inside is worth more than, where the rim lies in a plane: of the two angles into which a corner falls one is at
-    /// most half of it, and the best triangle with an angle α has two sides alike beside it, 4 sin(α/2) (1 − sin(α/2)).
+    /// What no star inside is worth more than, where the rim lies in a plane: a corner falls into two angles of which one is at most
+    /// half of it and the other at least, and the best triangle with an angle α has two sides alike beside it, 4 sin(α/2) (1 − sin(α/2)).
+    /// On a bent surface it is a guess.
     pub fn ceiling(&self) -> f64 {
         let n = self.p.len();
         let mut ceiling = 1.0_f64;
         for b in 0..n {
             let (a, c) = (if b > 0 { b - 1 } else { n - 1 }, if b + 1 < n { b + 1 } else { 0 });
-            if area2(self.xy[a], self.xy[b], self.xy[c]) > 0.0 {
+            // At a pole two places are one point.
+            if self.sides[a] > 0.0 && self.sides[b] > 0.0 && area2(self.xy[a], self.xy[b], self.xy[c]) > 0.0 {
                 let cosine = (self.p[a] - self.p[b]).dot(self.p[c] - self.p[b]) / (self.sides[a] * self.sides[b]);
                 let half = (0.5 + 0.5 * cosine).max(0.0).sqrt();
                 let quarter = (0.5 - 0.5 * half).max(0.0).sqrt();
@@ -151,13 +153,19 @@ impl Rim {
             if seen.xy == star.xy {
                 break;
             }
-            let p = ground.point(seen.xy);
-            let worst = self.worst(seen.xy, p);
-            if worst <= star.worst {
+            let mut truly = |xy: DVec2| {
+                let p = ground.point(xy);
+                Star { p, xy, worst: self.worst(xy, p) }
+            };
+            let (here, mut there) = (star.worst, truly(seen.xy));
+            if there.worst <= here {
+                there = truly(ground.clamp(0.5 * (star.xy + seen.xy)));
+            }
+            if there.worst <= here {
                 break;
             }
-            star = Star { p, xy: seen.xy, worst };
-            if (worst - seen.worst).abs() <= TRUE {
+            star = there;
+            if (star.worst - seen.worst).abs() <= TRUE {
                 break;
             }
         }

@@ -46,7 +46,7 @@ impl<'a> Gardener<'a> {
                 (self.guard, self.care.wanted) = (Some(guard), wanted);
                 self.changed = Pending::all(self.web.p.len());
                 self.mend();
-                if self.last() > 0 {
+                if self.last(job)? > 0 {
                     self.mend();
                 }
                 bad = self.broken(guard, &bad);

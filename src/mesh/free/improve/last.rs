@@ -5,21 +5,23 @@ use glam::{DVec2, DVec3};
 
 use super::Gardener;
 use super::mend::{Plan, Worth};
+use crate::base::fault::Result;
+use crate::base::job::Job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::shape::Star;
 use crate::mesh::free::web::Patch;
 
-/// One triangle in so many is worked on, and one more.
+/// One triangle in so many is worked on; of small faces one in so many more, up to so many.
 const RARE: usize = 8000;
-/// Those below this share of the wanted quality.
-const BAD: f64 = 1.0;
+const SMALL: (usize, usize) = (64, 8);
 /// Sweeps over the nodes round a triangle, and those after which a change has to look like something.
 const SWEEPS: usize = 10;
 const FIRST: usize = 3;
 /// Share of the way that a node goes in a sweep to where the worst sides want it.
 const SHARE: f64 = 0.4;
-/// Share of what is bad that must be left at most, and up to which more sweeps may help.
+/// Share of how bad a place is that may be left of it.
 const LESS: f64 = 0.9;
+/// How bad it may be after the first sweeps, over what it has to come below.
 const HOPE: f64 = 3.0;
 
 /// A change of the triangles.
@@ -37,37 +39,52 @@ struct Sight {
     bad: f64,
 }
 
+/// How bad a place is after a change, and where its free nodes are then.
+struct Swept {
+    bad: f64,
+    places: Vec<(u32, DVec2, DVec3)>,
+}
+
 impl Gardener<'_> {
-    /// Works on the worst triangles; how many places got better.
-    pub fn last(&mut self) -> usize {
+    /// Works on the worst triangles below the wanted quality; how many places got better.
+    pub fn last(&mut self, job: &Job) -> Result<usize> {
         let live = (0..self.web.tri.len() as u32).filter(|t| self.web.alive(*t));
-        let mut bad: Vec<(f64, u32)> = live.map(|t| (self.worth(t), t)).filter(|(q, _)| *q < BAD * self.care.wanted).collect();
+        let mut bad: Vec<(f64, u32)> = live.map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        bad.truncate(self.web.tri.len() / RARE + 8);
-        let still = |of: &Self, t: u32| of.web.alive(t) && of.worth(t) < BAD * of.care.wanted;
-        bad.into_iter().filter(|(_, t)| still(self, *t) && self.try_all(*t)).count()
+        let n = self.web.tri.len();
+        bad.truncate(1 + (n / SMALL.0).min(SMALL.1) + n / RARE);
+        let mut better = 0;
+        for (_, t) in bad {
+            job.go_on()?;
+            let still = self.web.alive(t) && self.worth(t) < self.care.wanted;
+            better += usize::from(still && self.try_all(t));
+        }
+        Ok(better)
     }
 
     fn try_all(&mut self, t: u32) -> bool {
         let corners = self.web.tri[t as usize];
-        let near = self.triangles_at(&corners);
+        let near = self.rings_of(&corners);
         let nodes = self.nodes_of(&near);
-        let all = self.triangles_at(&nodes);
+        let all = self.rings_of(&nodes);
         let kept = self.web.before(&all);
         let before = self.sight(&all);
-        let mut best: Option<(f64, usize, Vec<(u32, DVec2, DVec3)>)> = None;
+        let mut best: Option<(usize, Swept)> = None;
         let changes = self.changes(t);
         for (k, change) in changes.iter().enumerate() {
-            let nodes = self.apply(change, &nodes);
-            let most = best.as_ref().map_or(before.bad * LESS, |best| best.0);
-            if let Some((bad, places)) = self.sweep(&nodes, (before, most)) {
-                best = Some((bad, k, places));
+            let (nodes, _) = self.apply(change, &nodes);
+            let most = best.as_ref().map_or(before.bad * LESS, |best| best.1.bad);
+            if let Some(swept) = self.sweep(&nodes, (before, most)) {
+                best = Some((k, swept));
             }
             self.web.put_back(&kept);
         }
-        let Some((_, k, places)) = best else { return false };
-        let nodes = self.apply(&changes[k], &nodes);
+        let Some((k, Swept { places, .. })) = best else { return false };
+        let (nodes, star) = self.apply(&changes[k], &nodes);
         self.squeezed.resize(self.web.p.len(), 1.0);
+        if let (Change::Star(patch, ..), Some(node)) = (&changes[k], star) {
+            self.squeezed[node as usize] = self.squeezed(&patch.rim);
+        }
         for (n, xy, p) in places {
             self.place(n, xy, p);
         }
@@ -95,8 +112,11 @@ impl Gardener<'_> {
     fn changes(&mut self, t: u32) -> Vec<Change> {
         let mut changes = vec![Change::None];
         let near = self.web.across[t as usize].into_iter().filter(|next| *next != NO_TRIANGLE);
-        for t in std::iter::once(t).chain(near).collect::<Vec<_>>() {
-            changes.extend((0..3).filter(|k| self.quad(t, *k).is_some_and(|quad| self.convex(quad))).map(|k| Change::Flip(t, k)));
+        for other in std::iter::once(t).chain(near) {
+            // A side of both is flipped once.
+            let own = |k: &usize| other == t || self.web.across[other as usize][*k] != t;
+            let free = |k: &usize| self.quad(other, *k).is_some_and(|quad| self.convex(quad));
+            changes.extend((0..3).filter(own).filter(free).map(|k| Change::Flip(other, k)));
         }
         for (tri, keep) in self.candidates(t) {
             let mut patch = Patch::default();
@@ -112,9 +132,9 @@ impl Gardener<'_> {
         changes
     }
 
-    /// Makes a change; the nodes of the place after it.
-    fn apply(&mut self, change: &Change, nodes: &[u32]) -> Vec<u32> {
-        let mut nodes = nodes.to_vec();
+    /// Makes a change; the nodes of the place after it, and that of a star.
+    fn apply(&mut self, change: &Change, nodes: &[u32]) -> (Vec<u32>, Option<u32>) {
+        let (mut nodes, mut made) = (nodes.to_vec(), None);
         match change {
             Change::None => {}
             Change::Flip(t, k) => self.web.flip(*t, *k),
@@ -122,31 +142,33 @@ impl Gardener<'_> {
                 let size = self.field.size(star.xy, star.p) * self.squeezed(&patch.rim);
                 let new = self.web.restar(patch, *node, star, size);
                 nodes.push(new);
+                made = Some(new);
             }
             Change::Fan(patch, k) => self.web.refan(patch, *k),
         }
         nodes.retain(|n| self.web.at[*n as usize] != NO_TRIANGLE);
         nodes.sort_unstable();
         nodes.dedup();
-        nodes
+        (nodes, made)
     }
 
-    /// Moves the nodes of a place together, as often as it helps; how bad it is then and where they are, where that is less than
-    /// `most`, no triangle is worse than before, and all keep the limits.
-    fn sweep(&mut self, nodes: &[u32], (before, most): (Sight, f64)) -> Option<(f64, Vec<(u32, DVec2, DVec3)>)> {
-        let all = self.triangles_at(nodes);
-        let mut best = None;
-        let mut most = most;
+    /// Moves the nodes of a place together, time and again; how bad it was at its best and where they were then, where that is less than
+    /// `most`, the worst triangle was worth no less than before, and all keep the limits.
+    fn sweep(&mut self, nodes: &[u32], (before, most): (Sight, f64)) -> Option<Swept> {
+        let all = self.rings_of(nodes);
+        let (mut best, mut most): (Option<Swept>, f64) = (None, most);
         for round in 0..=SWEEPS {
             let now = self.sight(&all);
             if now.bad < most && now.least >= before.least && all.iter().all(|t| self.web.chart_area(*t) > 0.0) {
                 let free = nodes.iter().filter(|n| self.web.is_free(**n));
-                best = Some((now.bad, free.map(|n| (*n, self.web.xy[*n as usize], self.web.p[*n as usize])).collect::<Vec<_>>()));
+                let places = free.map(|n| (*n, self.web.xy[*n as usize], self.web.p[*n as usize])).collect();
+                best = Some(Swept { bad: now.bad, places });
                 most = now.bad;
             }
             if round == SWEEPS || round == FIRST && now.bad > HOPE * most {
                 break;
             }
+            let mut moved = false;
             for &node in nodes {
                 if !self.web.is_free(node) {
                     continue;
@@ -159,13 +181,17 @@ impl Gardener<'_> {
                 let p = self.ground.point(xy);
                 if self.rim.worst(xy, p) > 0.0 {
                     (self.web.xy[node as usize], self.web.p[node as usize]) = (xy, p);
+                    moved = true;
                 }
             }
+            if !moved {
+                break;
+            }
         }
-        let (bad, places) = best?;
-        for (n, xy, p) in &places {
+        let best = best?;
+        for (n, xy, p) in &best.places {
             (self.web.xy[*n as usize], self.web.p[*n as usize]) = (*xy, *p);
         }
-        all.iter().all(|t| self.keeps(self.web.tri[*t as usize], None)).then_some((bad, places))
+        all.iter().all(|t| self.keeps(self.web.tri[*t as usize], None)).then_some(best)
     }
 }

@@ -1,14 +1,20 @@
 //! Changes that did not help: tried again only where something changed.
 
 /// Triangles for which no change helped, and nodes that changed since.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Tried {
-    /// Changes so far.
+    /// Triangles given up so far, and one: what changes now is newer than those.
     now: u32,
     /// When each node, or a triangle at it, changed last.
     changed: Vec<u32>,
     /// When nothing helped each triangle; 0 where that was not so.
     given_up: Vec<u32>,
+}
+
+impl Default for Tried {
+    fn default() -> Self {
+        Self { now: 1, changed: Vec::new(), given_up: Vec::new() }
+    }
 }
 
 impl Tried {
@@ -18,7 +24,6 @@ impl Tried {
         if n >= self.changed.len() {
             self.changed.resize(n + 1, 0);
         }
-        self.now += 1;
         self.changed[n] = self.now;
     }
 
@@ -29,6 +34,7 @@ impl Tried {
             self.given_up.resize(t + 1, 0);
         }
         self.given_up[t] = self.now;
+        self.now += 1;
     }
 
     /// Since when a triangle has been given up; 0 where it was not.
