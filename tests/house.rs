@@ -54,7 +54,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_500),
     ("surface", 10_000),
     ("model", 3_300),
-    ("mesh", 18_400),
+    ("mesh", 18_450),
     ("io", 8_500),
     ("draw", 3_000),
     ("lang", 20_200),
