@@ -54,7 +54,7 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
                 }
             });
             let quick = surface.quick();
-            let point = |(u, v)| quick.as_ref().map_or_else(|| surface.point(u, v), |quick| quick.point(u, v));
+            let point = |(u, v)| surface.point_by(quick.as_ref(), u, v);
             let of_half = |k: usize| {
                 let at = beside_pole(surface, halves[k].map(|n| uv[n]));
                 of_triangle(&point, at, halves[k].map(|n| nodes[ids[n] as usize]))

@@ -544,7 +544,7 @@ fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (siz
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
     let length = |i: usize, off: f64| {
         let at = row.places[i];
-        let jet = surfaces.1.map_or_else(|| surface.jet(at.0, at.1), |quick| quick.jet(at.0, at.1));
+        let jet = surface.jet_by(surfaces.1, at.0, at.1);
         let chord = limits.chord.map(|limit| gaps::left(limit, off));
         let plain = bound::wanted(&jet, chord, limits.angle).min(size / face::FILLED);
         let along = jet.du * step(i).x + jet.dv * step(i).y;
@@ -570,7 +570,7 @@ fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, li
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
     let length = |i: usize| {
         let at = row.places[i];
-        let jet = ready.1.map_or_else(|| surface.jet(at.0, at.1), |quick| quick.jet(at.0, at.1));
+        let jet = surface.jet_by(ready.1, at.0, at.1);
         let along = jet.du * step(i).x + jet.dv * step(i).y;
         let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
         bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), wide).min(size)

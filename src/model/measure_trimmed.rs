@@ -36,7 +36,7 @@ struct Run {
 struct Met<const N: usize> {
     sum: Sums<N>,
     size: Sums<N>,
-    box_: (DVec2, DVec2),
+    within: (DVec2, DVec2),
 }
 
 /// Whether one of some values, ascending, lies between two.
@@ -65,7 +65,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
     let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
     let quick = surface.quick();
-    let jet = |u, v| quick.as_ref().map_or_else(|| surface.jet(u, v), |quick| quick.jet(u, v));
+    let jet = |u, v| surface.jet_by(quick.as_ref(), u, v);
     let part = |low: f64, high: f64, v: f64| -> Sums<N> {
         let mut sum = [0.0; N];
         for (x, w) in &across {
@@ -117,7 +117,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
                 size[i] += (half * w * dv * value).abs();
             }
         }
-        Met { sum, size, box_: (low, high) }
+        Met { sum, size, within: (low, high) }
     };
     let mut open: Vec<Run> = Vec::new();
     for (border, (_, way)) in ways.iter().enumerate() {
@@ -142,7 +142,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
     let mut open: Vec<(Run, Met<N>)> = open.into_iter().zip(first).collect();
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
     while let Some((next, met)) = open.pop() {
-        let few = even(met.box_).then(|| {
+        let few = even(met.within).then(|| {
             let value = run(&next, &rules[0][1]).sum;
             (value, apart(&value, &met.sum))
         });

@@ -80,13 +80,7 @@ impl Trace {
     /// Point and derivative by `t`.
     pub fn jet(&self, t: f64) -> (DVec3, DVec3) {
         let (u, v) = self.uv(t);
-        let [p, du, dv] = match &self.quick {
-            Some(quick) => quick.tangents(u, v),
-            None => {
-                let jet = self.surface.jet(u, v);
-                [jet.p, jet.du, jet.dv]
-            }
-        };
+        let [p, du, dv] = self.surface.tangents_by(self.quick.as_ref(), u, v);
         (p, du * (self.to.0 - self.from.0) + dv * (self.to.1 - self.from.1))
     }
 

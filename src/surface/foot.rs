@@ -86,7 +86,7 @@ impl Footing for Within<'_> {
     const TRIES: usize = 12;
 
     fn jet(&self, uv: DVec2) -> Jet2 {
-        self.quick.map_or_else(|| self.surface.jet(uv.x, uv.y), |quick| quick.jet(uv.x, uv.y))
+        self.surface.jet_by(self.quick, uv.x, uv.y)
     }
 
     fn hold(&self, uv: DVec2) -> DVec2 {

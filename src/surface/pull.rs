@@ -234,7 +234,7 @@ struct Whole<'a>(&'a Surface, Option<&'a Quick>);
 
 impl Footing for Whole<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
-        self.1.map_or_else(|| self.0.jet(uv.x, uv.y), |quick| quick.jet(uv.x, uv.y))
+        self.0.jet_by(self.1, uv.x, uv.y)
     }
 
     fn hold(&self, uv: DVec2) -> DVec2 {

@@ -126,6 +126,28 @@ impl Surface {
     }
 }
 
+/// Evaluation by the net made ready, where it is.
+impl Surface {
+    /// The point.
+    pub fn point_by(&self, quick: Option<&Quick>, u: f64, v: f64) -> DVec3 {
+        quick.map_or_else(|| self.point(u, v), |quick| quick.point(u, v))
+    }
+
+    /// Point, ∂/∂u and ∂/∂v.
+    pub fn tangents_by(&self, quick: Option<&Quick>, u: f64, v: f64) -> [DVec3; 3] {
+        let plain = || {
+            let jet = self.jet(u, v);
+            [jet.p, jet.du, jet.dv]
+        };
+        quick.map_or_else(plain, |quick| quick.tangents(u, v))
+    }
+
+    /// Point and all derivatives.
+    pub fn jet_by(&self, quick: Option<&Quick>, u: f64, v: f64) -> Jet2 {
+        quick.map_or_else(|| self.jet(u, v), |quick| quick.jet(u, v))
+    }
+}
+
 impl Powers {
     fn new(net: &NurbsSurface) -> Self {
         let (us, vs) = net.breaks();

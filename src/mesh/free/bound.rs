@@ -82,7 +82,7 @@ pub fn chord(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], want
         return first;
     }
     let height = |uv: DVec2| {
-        let at = of.1.map_or_else(|| of.0.point(uv.x, uv.y), |quick| quick.point(uv.x, uv.y));
+        let at = of.0.point_by(of.1, uv.x, uv.y);
         (at - p[0]).dot(normal)
     };
     let quarter = |uv: [DVec2; 3], above: [f64; 3]| {
@@ -213,7 +213,7 @@ fn surely_tall(
     let aside = normal.cross(along);
     let closed = turning(surface);
     let inside = |uv: DVec2| surface.is_flat() || (closed.0 || (0.0..=1.0).contains(&uv.x)) && (closed.1 || (0.0..=1.0).contains(&uv.y));
-    let point = |uv: DVec2| quick.map_or_else(|| surface.point(uv.x, uv.y), |quick| quick.point(uv.x, uv.y));
+    let point = |uv: DVec2| surface.point_by(quick, uv.x, uv.y);
     let mut h = from;
     for way in [aside, -aside] {
         for k in 0..GUESSES + tries {

@@ -152,11 +152,7 @@ impl<'a> Gardener<'a> {
             self.smooth(self.care.smooth.min(4));
             self.flip_all();
         }
-        self.mend();
-        if self.last(job)? > 0 {
-            self.mend();
-        }
-        Ok(())
+        self.mend_last(job)
     }
 
     /// What lengths are squeezed by among some nodes.

@@ -153,17 +153,13 @@ impl Rim {
             if seen.xy == star.xy {
                 break;
             }
-            let mut truly = |xy: DVec2| {
+            let truly = |xy: DVec2| {
                 let p = ground.point(xy);
                 Star { p, xy, worst: self.worst(xy, p) }
             };
-            let (here, mut there) = (star.worst, truly(seen.xy));
-            if there.worst <= here {
-                there = truly(ground.clamp(0.5 * (star.xy + seen.xy)));
-            }
-            if there.worst <= here {
-                break;
-            }
+            // Where it is no better, half the way may be.
+            let places = [seen.xy, ground.clamp(0.5 * (star.xy + seen.xy))].into_iter();
+            let Some(there) = places.map(truly).find(|there| there.worst > star.worst) else { break };
             star = there;
             if (star.worst - seen.worst).abs() <= TRUE {
                 break;

@@ -69,22 +69,13 @@ impl Sheet {
 
     /// Point, ∂/∂u and ∂/∂v.
     pub fn tangents(&self, (u, v): (f64, f64)) -> [DVec3; 3] {
-        match &self.quick {
-            Some(quick) => quick.tangents(u, v),
-            None => {
-                let jet = self.surface.jet(u, v);
-                [jet.p, jet.du, jet.dv]
-            }
-        }
+        self.surface.tangents_by(self.quick(), u, v)
     }
 
     /// Point and all derivatives by u and v at a place of the chart.
     pub fn jet(&self, xy: DVec2) -> Jet2 {
         let (u, v) = self.uv(xy);
-        match &self.quick {
-            Some(quick) => quick.jet(u, v),
-            None => self.surface.jet(u, v),
-        }
+        self.surface.jet_by(self.quick(), u, v)
     }
 
     /// The place of surface parameters in the chart.
@@ -112,10 +103,7 @@ impl Ground for Sheet {
 
     fn point(&self, xy: DVec2) -> DVec3 {
         let (u, v) = self.uv(xy);
-        match &self.quick {
-            Some(quick) => quick.point(u, v),
-            None => self.surface.point(u, v),
-        }
+        self.surface.point_by(self.quick(), u, v)
     }
 
     fn clamp(&self, xy: DVec2) -> DVec2 {

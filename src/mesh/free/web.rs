@@ -152,6 +152,14 @@ impl Web {
         node >= self.fixed
     }
 
+    /// The nodes of some triangles, ascending.
+    pub fn nodes_of(&self, some: &[u32]) -> Vec<u32> {
+        let mut nodes: Vec<u32> = some.iter().flat_map(|t| self.tri[*t as usize]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
     /// Triangles and nodes round a node, into `ring`.
     pub fn ring(&self, node: u32, ring: &mut Ring) {
         ring.tri.clear();

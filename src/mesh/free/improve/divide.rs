@@ -45,10 +45,7 @@ impl<'a> Gardener<'a> {
             if bad.is_empty() && guard.foresees() && self.guard.is_none() && self.care.smooth > 0 {
                 (self.guard, self.care.wanted) = (Some(guard), wanted);
                 self.changed = Pending::all(self.web.p.len());
-                self.mend();
-                if self.last(job)? > 0 {
-                    self.mend();
-                }
+                self.mend_last(job)?;
                 bad = self.broken(guard, &bad);
             }
             if bad.is_empty() || !self.are_few(&bad) {

@@ -1,5 +1,5 @@
 //! The last bad triangles, where no single change helps: each change near one is tried, all nodes round it are moved together
-//! after it, and what is best of all that stays [Freitag 1997, §3: smoothing beside swaps].
+//! after it, and what is best of all that stays [Freitag 1997].
 
 use glam::{DVec2, DVec3};
 
@@ -46,8 +46,17 @@ struct Swept {
 }
 
 impl Gardener<'_> {
+    /// Works on bad triangles, and then on the worst that are left.
+    pub fn mend_last(&mut self, job: &Job) -> Result<()> {
+        self.mend();
+        if self.last(job)? > 0 {
+            self.mend();
+        }
+        Ok(())
+    }
+
     /// Works on the worst triangles below the wanted quality; how many places got better.
-    pub fn last(&mut self, job: &Job) -> Result<usize> {
+    fn last(&mut self, job: &Job) -> Result<usize> {
         let live = (0..self.web.tri.len() as u32).filter(|t| self.web.alive(*t));
         let mut bad: Vec<(f64, u32)> = live.map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -65,7 +74,7 @@ impl Gardener<'_> {
     fn try_all(&mut self, t: u32) -> bool {
         let corners = self.web.tri[t as usize];
         let near = self.rings_of(&corners);
-        let nodes = self.nodes_of(&near);
+        let nodes = self.web.nodes_of(&near);
         let all = self.rings_of(&nodes);
         let kept = self.web.before(&all);
         let before = self.sight(&all);
@@ -90,14 +99,6 @@ impl Gardener<'_> {
         }
         nodes.into_iter().for_each(|n| self.touch(n));
         true
-    }
-
-    /// The nodes of some triangles, ascending.
-    fn nodes_of(&self, some: &[u32]) -> Vec<u32> {
-        let mut nodes: Vec<u32> = some.iter().flat_map(|t| self.web.tri[*t as usize]).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
     }
 
     fn sight(&self, some: &[u32]) -> Sight {

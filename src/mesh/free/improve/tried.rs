@@ -1,20 +1,14 @@
 //! Changes that did not help: tried again only where something changed.
 
 /// Triangles for which no change helped, and nodes that changed since.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Tried {
-    /// Triangles given up so far, and one: what changes now is newer than those.
+    /// Triangles given up so far.
     now: u32,
     /// When each node, or a triangle at it, changed last.
     changed: Vec<u32>,
     /// When nothing helped each triangle; 0 where that was not so.
     given_up: Vec<u32>,
-}
-
-impl Default for Tried {
-    fn default() -> Self {
-        Self { now: 1, changed: Vec::new(), given_up: Vec::new() }
-    }
 }
 
 impl Tried {
@@ -33,8 +27,8 @@ impl Tried {
         if t >= self.given_up.len() {
             self.given_up.resize(t + 1, 0);
         }
-        self.given_up[t] = self.now;
         self.now += 1;
+        self.given_up[t] = self.now;
     }
 
     /// Since when a triangle has been given up; 0 where it was not.
@@ -44,7 +38,7 @@ impl Tried {
 
     /// Whether one of some nodes changed since then.
     pub fn is_new(&self, mut nodes: impl Iterator<Item = u32>, since: u32) -> bool {
-        since == 0 || nodes.any(|n| self.changed.get(n as usize).is_some_and(|at| *at > since))
+        since == 0 || nodes.any(|n| self.changed.get(n as usize).is_some_and(|at| *at >= since))
     }
 }
 
