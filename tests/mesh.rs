@@ -54,7 +54,7 @@ fn over(chains: &[Chain], method: Method) -> Surface {
 }
 
 fn coons_of(chains: &[Chain]) -> Surface {
-    over(chains, Method::Composite)
+    over(chains, Method::Coons)
 }
 
 /// Curves in a network, surfaces over them, glued.

@@ -92,7 +92,7 @@ fn coons_c1(reparam: Reparam) -> (Surface, f64) {
     let u1 = (crossing(0) + crossing(1) + crossing(2)) / 3.0;
     let along_u = (0..3).map(|n| member(n, &[0.0, crossing(n), 1.0])).collect();
     let along_v = (0..3).map(|m| member(3 + m, &[0.0, at(3 + m, node(m, 1)), 1.0])).collect();
-    (built(&chains, &quad_flow(along_u, along_v), Method::Composite, reparam), u1)
+    (built(&chains, &quad_flow(along_u, along_v), Method::Coons, reparam), u1)
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn three_great_circles_give_the_uniform_trilateral() {
     let data = reference("flow_types");
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     let chains = [quarter(x, y), quarter(y, z), quarter(x, z)];
-    let (surface, _) = spanned(&chains, &ChainFlow::default(), Method::Composite);
+    let (surface, _) = spanned(&chains, &ChainFlow::default(), Method::Coons);
     assert_eq!((surface.domain(), surface.flow().as_str()), (Domain::Triangle, "uniform trilateral"));
     for sample in data["uniform_trilateral"]["samples"].as_array().unwrap() {
         let l = vec3(&sample["l"]);
@@ -216,7 +216,7 @@ fn grid_parameters_of_a_reversed_curve() {
         straight([4.0, 0.0, 0.0], [4.0, 2.0, 0.0]),
     ];
     let (flow, _) = of_chains(&chains, &ChainFlow::default(), &tolerance()).unwrap();
-    let surface = built(&chains, &flow, Method::Composite, Reparam::Linear);
+    let surface = built(&chains, &flow, Method::Coons, Reparam::Linear);
     assert_eq!(surface.breaks().0, [number(&data["u_1"])]);
     for (key, value) in data["f_2"].as_object().unwrap() {
         let u: f64 = key.trim_start_matches("u=").parse().unwrap();
@@ -439,7 +439,7 @@ fn curves_in_any_order_and_direction_give_one_surface() {
     let surface = |chains: &[Chain]| {
         let (flow, nodes) = of_chains(chains, &ChainFlow::default(), &t).unwrap();
         assert!(nodes.len() == 9 && flow.poles == (None, None));
-        let settings = Settings { method: Method::Composite, reparam: Reparam::Smooth, origin: Origin::NONE };
+        let settings = Settings { method: Method::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
         build(&Grid { chains, flow: &flow, poles: (None, None) }, &settings, &t).unwrap().0
     };
     let original = surface(&chains);
@@ -477,7 +477,7 @@ fn motions_and_flips_commute_with_everything() {
     let (fan, _) = spanned(
         &[quarter(DVec3::X, DVec3::Y), quarter(DVec3::Y, DVec3::Z), quarter(DVec3::X, DVec3::Z)],
         &ChainFlow::default(),
-        Method::Composite,
+        Method::Coons,
     );
     let wall = extrude(&straight([0.0, 0.0, 0.0], [1.0, 2.0, 0.0]), DVec3::new(0.0, 0.3, 2.0), Origin::NONE, &tolerance()).unwrap();
     let rotation = Motion::rotation(DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, -1.0).normalize(), 0.83);
@@ -545,7 +545,7 @@ fn closed_flows_have_a_seam() {
         let (s, c) = (quarter_turn * f64::from(k) + 0.1).sin_cos();
         chains.push(straight([c, s, 0.0], [1.5 * c, 1.5 * s, 2.0]));
     }
-    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Composite);
+    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Coons);
     assert!(notes.is_empty());
     assert_eq!((surface.flow().as_str(), surface.closed()), ("quadrilateral closed in u", (true, false)));
     for v in [0.0, 0.4, 1.0] {
@@ -569,7 +569,7 @@ fn ends_over_the_border_are_trimmed_with_a_note() {
         straight([0.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
         straight([4.0, 0.0, 0.0], [4.0, 2.0, 0.0]),
     ];
-    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Composite);
+    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Coons);
     let codes: Vec<&str> = notes.iter().map(|n| n.code().0).collect();
     assert_eq!(codes, ["N609"]);
     close(surface.point(0.5, 0.0), DVec3::new(2.0, 0.0, 0.0), 1e-12, "half of what is left");
@@ -723,7 +723,7 @@ fn areas_volumes_and_moments_of_known_bodies() {
     let octant = spanned(
         &[quarter(DVec3::X, DVec3::Y), quarter(DVec3::Y, DVec3::Z), quarter(DVec3::X, DVec3::Z)],
         &ChainFlow::default(),
-        Method::Composite,
+        Method::Coons,
     )
     .0;
     let (whole, moved) = (measure::area(&octant), measure::area(&octant.moved(&Motion::scaling(DVec3::ONE, 10.0))));

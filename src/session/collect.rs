@@ -247,6 +247,7 @@ pub fn flows(cx: &Cx, model: &Model) -> Vec<String> {
                 parts.push(format!("{way}: {}", words(&family)));
             }
         }
+        parts.extend(surface.blending().map(|rule| format!("{rule} blend")));
         parts.retain(|part| !part.is_empty());
         if parts.is_empty() {
             parts.push("no flow".to_owned());

@@ -25,7 +25,7 @@ impl Blend {
     /// Lines where the blending rule changes, ends included.
     pub fn rule_changes(&self, along_u: bool) -> Vec<f64> {
         let axis = if along_u { self.axes().0 } else { self.axes().1 };
-        if axis.rule == Rule::Cubic { axis.nodes.clone() } else { Vec::new() }
+        if axis.rule != Rule::Lagrange { axis.nodes.clone() } else { Vec::new() }
     }
 
     /// What depends on u (`along_u`) or on v alone, between two values inside one cell.

@@ -1,5 +1,5 @@
-//! Surfaces from a grid of curves: composite Coons, Lagrange transfinite, and the uniform trilateral
-//! [Koh & Park 1990, §4; math notes §6, §7].
+//! Surfaces from a grid of curves: Coons, Lagrange transfinite, and the uniform trilateral
+//! [Koh & Park 1990, §4; Coons 1967; math notes §6, §7].
 
 use glam::DVec3;
 
@@ -20,10 +20,21 @@ use crate::network::{Chain, Flow, FlowKind};
 /// How curves are blended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Patch by patch between neighbours, C1 across the curves (`coons`).
-    Composite,
+    /// Linear in a grid of one cell, so that four straight lines give the hyperbolic paraboloid; cubic where inner curves
+    /// make several cells (`coons`).
+    Coons,
+    /// Linear between neighbours [Coons 1967], with a kink along each inner curve.
+    Linear,
+    /// Cubic between neighbours, C1 across the curves [Koh & Park 1990, eq. 4.3–4.5].
+    Cubic,
     /// One polynomial through all curves (`transfinite`).
     Lagrange,
+}
+
+impl Method {
+    fn kind(self) -> SurfaceKind {
+        if self == Self::Lagrange { SurfaceKind::Transfinite } else { SurfaceKind::Coons }
+    }
 }
 
 /// Settings of [`build`].
@@ -76,7 +87,14 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
         false => averages(&along_u, grid, &flow.along_v, tolerance)?,
     };
     let nodes_v = averages(&along_v, grid, &flow.along_u, tolerance)?;
-    let rule = if settings.method == Method::Composite { Rule::Cubic } else { Rule::Lagrange };
+    let one_cell = 2 == nodes_u.len() && nodes_v.len() == 2;
+    let rule = match settings.method {
+        Method::Coons if one_cell => Rule::Linear,
+        Method::Coons => Rule::Cubic,
+        Method::Linear => Rule::Linear,
+        Method::Cubic => Rule::Cubic,
+        Method::Lagrange => Rule::Lagrange,
+    };
 
     let rails = |curves: &[Prepared], nodes: &[f64], closed: bool| -> Vec<Rail> {
         curves.iter().map(|c| Rail::new(c.chain.clone(), Map::new(nodes.to_vec(), c.raw.clone(), settings.reparam, closed))).collect()
@@ -113,7 +131,7 @@ fn finish(
     notes: &mut Vec<Fault>,
 ) -> Surface {
     let kinks = set_kinks(&mut blend, settings.origin, tolerance, notes);
-    let kind = if settings.method == Method::Composite { SurfaceKind::Coons } else { SurfaceKind::Transfinite };
+    let kind = settings.method.kind();
     if settings.method == Method::Lagrange {
         notes.extend(oscillation(&blend, settings.origin));
     }
@@ -266,10 +284,12 @@ fn in_order(along_u: &[Prepared], along_v: &[Prepared]) -> Vec<Chain> {
 /// Finds the kink lines of both directions and tells the rails; W614 for slivers.
 pub(super) fn set_kinks(blend: &mut Blend, origin: Origin, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> (Vec<f64>, Vec<f64>) {
     let mut lines = [Vec::new(), Vec::new()];
+    let creases = [blend.axes().0.creases().to_vec(), blend.axes().1.creases().to_vec()];
     let (along_u, along_v) = blend.rails_mut();
     for (direction, (rails, lines)) in [along_u, along_v].into_iter().zip(&mut lines).enumerate() {
         let longest = rails.iter().map(Rail::length).fold(0.0, f64::max);
-        let own: Vec<Vec<(f64, f64)>> = rails.iter().map(|rail| rail.kink_lines(tolerance)).collect();
+        let mut own: Vec<Vec<(f64, f64)>> = rails.iter().map(|rail| rail.kink_lines(tolerance)).collect();
+        own.push(creases[direction].iter().map(|&x| (x, 0.0)).collect());
         let (found, own) = merge_kinks(&own, tolerance, |a, b| (b - a) * longest);
         for (rail, own) in rails.iter_mut().zip(own) {
             rail.set_kinks(own);
@@ -339,7 +359,7 @@ fn trilateral(grid: &Grid, settings: &Settings) -> Result<(Surface, Vec<Fault>)>
     let (bottom, slant, left) = (side(along_u.first()), side(along_v.get(1)), side(along_v.first()));
     let surface = Surface::new(Parts {
         origin: settings.origin,
-        kind: if settings.method == Method::Composite { SurfaceKind::Coons } else { SurfaceKind::Transfinite },
+        kind: settings.method.kind(),
         flow: grid.flow.phrase(),
         domain: Domain::Triangle,
         closed: (false, false),

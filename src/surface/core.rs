@@ -246,6 +246,14 @@ impl Surface {
         self.0.parts.flow.clone()
     }
 
+    /// How neighbouring curves of a Coons surface are blended, `linear` or `cubic`; none for other surfaces.
+    pub fn blending(&self) -> Option<&'static str> {
+        match (&self.parts().shape, self.kind()) {
+            (Shape::Blend(blend), SurfaceKind::Coons) => blend.axes().0.rule.name(),
+            _ => None,
+        }
+    }
+
     /// The curves that a flow put along u (ascending v) and along v (ascending u), `None` for a pole, in the parameters it
     /// found; empty for surfaces that no curves were sorted for.
     pub fn families(&self) -> (Vec<Option<&Chain>>, Vec<Option<&Chain>>) {

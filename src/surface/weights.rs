@@ -1,4 +1,4 @@
-//! Blending functions of one direction: cubic between neighbours (composite Coons) or Lagrange through all.
+//! Blending functions of one direction: linear or cubic between neighbours (Coons) or Lagrange through all.
 
 use super::rail::Lean;
 use crate::base::range::Range;
@@ -7,10 +7,23 @@ use crate::base::tolerance::EPSILON;
 /// How curves are blended across one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
+    /// 1 − ξ and ξ between the two neighbours [Coons 1967]: local, continuous.
+    Linear,
     /// 3ξ² − 2ξ³ between the two neighbours [Koh & Park 1990, eq. 4.3–4.5]: C1, local.
     Cubic,
     /// The Lagrange polynomial through all of them [Koh & Park 1990, eq. 4.1]; with two curves linear.
     Lagrange,
+}
+
+impl Rule {
+    /// Its word in the language; none for the polynomial through all curves.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Self::Linear => Some("linear"),
+            Self::Cubic => Some("cubic"),
+            Self::Lagrange => None,
+        }
+    }
 }
 
 /// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
@@ -60,7 +73,12 @@ impl Weights {
 impl Axis {
     /// How many curves take part at any one parameter.
     pub fn active(&self) -> usize {
-        if self.rule == Rule::Cubic { 2 } else { self.nodes.len() }
+        if self.rule == Rule::Lagrange { self.nodes.len() } else { 2 }
+    }
+
+    /// Inner parameters where the slope of the blending values jumps.
+    pub fn creases(&self) -> &[f64] {
+        if self.rule == Rule::Linear { &self.nodes[1..self.nodes.len() - 1] } else { &[] }
     }
 
     /// The cell that holds a parameter.
@@ -72,7 +90,7 @@ impl Axis {
     /// Blending values at a parameter.
     pub fn weights(&self, x: f64, lean: Lean) -> Weights {
         match self.rule {
-            Rule::Cubic => {
+            Rule::Linear | Rule::Cubic => {
                 let k = self.cell(x, lean);
                 let h = self.nodes[k + 1] - self.nodes[k];
                 let mut weights = Weights::room(k, 2);
@@ -82,8 +100,10 @@ impl Axis {
                 } else {
                     (1, 0, (self.nodes[k + 1] - x) / h, -1.0)
                 };
-                let value = t * t * (3.0 - 2.0 * t);
-                let (d1, d2) = (sign * 6.0 * t * (1.0 - t) / h, (6.0 - 12.0 * t) / (h * h));
+                let [value, d1, d2] = match self.rule {
+                    Rule::Linear => [t, sign / h, 0.0],
+                    _ => [t * t * (3.0 - 2.0 * t), sign * 6.0 * t * (1.0 - t) / h, (6.0 - 12.0 * t) / (h * h)],
+                };
                 weights.set(far, [value, d1, d2]);
                 weights.set(near, [1.0 - value, -d1, -d2]);
                 weights
@@ -118,6 +138,7 @@ impl Axis {
         let at = self.weights(middle, Lean::After);
         let steps = Range::around_zero(half);
         let third = |k: usize| match self.rule {
+            Rule::Linear => Range::at(0.0),
             Rule::Cubic => {
                 let h = self.nodes[at.first + 1] - self.nodes[at.first];
                 Range::at(if k == 1 { -12.0 } else { 12.0 } / (h * h * h))
@@ -153,7 +174,7 @@ impl Axis {
     ///
     /// Between two nodes the sum is one polynomial with a single maximum, so golden sections find it.
     pub fn lebesgue(&self) -> f64 {
-        if self.rule == Rule::Cubic {
+        if self.rule != Rule::Lagrange {
             return 1.0;
         }
         let sum = |x: f64| (0..self.nodes.len()).map(|i| self.lagrange(i, x)[0].abs()).sum::<f64>();
@@ -181,7 +202,7 @@ mod tests {
 
     #[test]
     fn weights_sum_to_one_and_are_exact_at_nodes() {
-        for rule in [Rule::Cubic, Rule::Lagrange] {
+        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange] {
             let axis = Axis { nodes: vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule };
             for i in 0..=100 {
                 for lean in [Lean::After, Lean::Before] {
@@ -202,7 +223,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_difference_quotients() {
-        for rule in [Rule::Cubic, Rule::Lagrange] {
+        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange] {
             let axis = Axis { nodes: vec![0.0, 0.2, 0.5, 1.0], rule };
             let h = 1e-5;
             for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {

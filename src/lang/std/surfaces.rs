@@ -42,6 +42,18 @@ crate::choices! {
     }
 }
 
+crate::choices! {
+    /// How neighbouring curves of a grid are blended.
+    pub enum BlendWord {
+        /// Linearly inside one loop, cubically where inner curves make several cells.
+        Auto = "auto",
+        /// Linearly between neighbours; across inner curves the surface has a kink.
+        Linear = "linear",
+        /// Cubically between neighbours, so that the surface is C1 across inner curves.
+        Cubic = "cubic",
+    }
+}
+
 /// Curves as a builtin gets them: those in a row, and those said to run along u and v.
 struct Curves {
     row: Rest<Chain>,
@@ -111,10 +123,12 @@ const TRIM_EXAMPLE: &str = "trim(s, by: [c], keep: P)";
 const PLANE_EXAMPLE: &str = "plane(a, b, c), or plane(at: P, normal: (0, 0, 1))";
 
 builtins! {
-    /// Composite Coons surface through a closed loop or a grid of curves.
+    /// Coons surface through a closed loop or a grid of curves.
     ///
     /// Curves come in any order and direction: what they span is found from the nodes they share. The surface
-    /// contains every curve and is C1 across inner ones. The first curve written runs along u.
+    /// contains every curve. The first curve written runs along u. Inside one loop curves are blended linearly (four
+    /// straight lines give the hyperbolic paraboloid); where inner curves make several cells the blend is cubic, and
+    /// the surface is C1 across them.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// curve north = arc((0, 3m, 0), (4m, 3m, 0), through: (2m, 3m, 1m))
@@ -135,8 +149,15 @@ builtins! {
         closed: bool = "false",
         /// How curves are matched between their meetings.
         reparam: ReparamWord = "smooth",
-    ) -> Surface = |cx, row, u, v, pole, closed, reparam| {
-        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method: Method::Composite })
+        /// How neighbouring curves are blended: `auto` is `linear` for one cell and `cubic` for several.
+        blend: BlendWord = "auto",
+    ) -> Surface = |cx, row, u, v, pole, closed, reparam, blend| {
+        let method = match blend {
+            BlendWord::Auto => Method::Coons,
+            BlendWord::Linear => Method::Linear,
+            BlendWord::Cubic => Method::Cubic,
+        };
+        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method })
     };
 
     /// Transfinite surface through a grid of curves: one blend over the whole grid.
