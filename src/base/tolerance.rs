@@ -39,6 +39,8 @@ pub const NUDGE: f64 = 1e-6;
 pub const NEWTON_STEP: f64 = 1e-8;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
+/// Relative error of a volume of which only the sign is wanted, where the body is not thin.
+pub const SIGN_ACCURACY: f64 = 1e-3;
 /// Below this barycentric distance from a corner a quotient 0/0 is replaced by its expansion.
 pub const POLE_REACH: f64 = 1e-6;
 /// Parameter distance from a pole at which its normal is averaged when the tangents there are parallel (math notes §7).

@@ -40,6 +40,10 @@ pub(super) fn number(value: &Value) -> Option<f64> {
     }
 }
 
+fn truth(value: &Value) -> Option<bool> {
+    if let Value::Bool(b) = value { Some(*b) } else { None }
+}
+
 fn elements(value: &Value) -> Option<Elements> {
     let Value::Word(w) = value else { return None };
     Some(match &**w {
@@ -89,20 +93,22 @@ impl Cx<'_> {
                 Keyword::Shell => {
                     let settings = gather.take(cx.settings(code, "shell", settings::SHELL, settings));
                     gather.done()?;
-                    let mut snap = said(&settings.unwrap_or_default(), "snap", number);
+                    let settings = settings.unwrap_or_default();
+                    let mut snap = said(&settings, "snap", number);
+                    let flip = said(&settings, "flip", truth).is_some_and(|said| said.0);
                     let things = things.unwrap_or_default();
                     let mut surfaces = Vec::with_capacity(things.len());
                     for (thing, _) in things {
                         match thing {
                             Value::Surface(s) => surfaces.push(s),
                             Value::Shell(s) => {
-                                surfaces.extend(s.surfaces.iter().cloned());
+                                surfaces.extend(s.surfaces.iter().map(|face| if s.flip { face.flipped() } else { face.clone() }));
                                 snap = snap.or(s.snap);
                             }
                             _ => return Err(Stop::Bug("a shell of something else")),
                         }
                     }
-                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap })))
+                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap, flip })))
                 }
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));
@@ -124,7 +130,8 @@ impl Cx<'_> {
                         elements: said(&settings, "elements", elements),
                         order: said(&settings, "order", |v| number(v).map(|n| n as u8)),
                         method: said(&settings, "method", method),
-                        conforming: said(&settings, "conforming", |v| if let Value::Bool(b) = v { Some(*b) } else { None }),
+                        conforming: said(&settings, "conforming", truth),
+                        flip: said(&settings, "flip", truth),
                         rules,
                         refines,
                     });

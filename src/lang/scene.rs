@@ -62,7 +62,8 @@ impl Scene {
         surfaces.into_iter().map(place).collect()
     }
 
-    /// A shell as the model sees it. Its sides follow the first surface as listed; notes go to `sink`.
+    /// A shell as the model sees it; notes go to `sink`. A closed one points out of its material, an open one follows its first
+    /// surface as listed; `flip: true` turns either.
     pub fn shell(&self, shell: &ShellValue, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell, Stop> {
         let places = self.find_all(&shell.surfaces)?;
         let mut surfaces: Vec<SurfaceId> = Vec::with_capacity(places.len());
@@ -73,7 +74,7 @@ impl Scene {
         });
         let request = ShellRequest { name: shell.name.to_string(), surfaces, snap: shell.snap, origin: shell.origin };
         let mut built = self.model.shell(&request, &self.network, tolerance, sink)?;
-        if places.first().is_some_and(|(_, flipped)| *flipped) {
+        if shell.flip != (!built.closed && places.first().is_some_and(|(_, flipped)| *flipped)) {
             built.surfaces.iter_mut().for_each(|(_, other)| *other = !*other);
         }
         Ok(built)

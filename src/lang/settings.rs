@@ -82,6 +82,13 @@ pub const MESH: &[Setting] = &[
         ty: Ty::Choice(METHODS),
     },
     Setting { key: "conforming", docs: "Neighbouring faces share nodes.", default: "true", ty: Ty::Bool },
+    Setting {
+        key: "flip",
+        docs: "Faces show their other sides. Without it faces that close point out of what they enclose; a list of faces that stay open \
+               keeps the sides that it was given.",
+        default: "false",
+        ty: Ty::Bool,
+    },
 ];
 
 /// `on things { … }` inside a mesh.
@@ -114,12 +121,21 @@ pub const NEAR: &[Setting] = &[
 pub const IN: &[Setting] = &[Setting { key: "size", docs: "Target edge length in the box, as with `near`.", default: "", ty: LENGTH }];
 
 /// `shell s of … { … }`.
-pub const SHELL: &[Setting] = &[Setting {
-    key: "snap",
-    docs: "Edges of faces that came with borders of their own (imported, fitted) are one within this distance.",
-    default: "ten times the widest gap within the borders of a face, at least the tolerance",
-    ty: LENGTH,
-}];
+pub const SHELL: &[Setting] = &[
+    Setting {
+        key: "snap",
+        docs: "Edges of faces that came with borders of their own (imported, fitted) are one within this distance.",
+        default: "ten times the widest gap within the borders of a face, at least the tolerance",
+        ty: LENGTH,
+    },
+    Setting {
+        key: "flip",
+        docs: "The other side is shown. Without it a closed shell points out of its material, whatever the order and direction of its \
+               faces, and an open one follows its first face.",
+        default: "false",
+        ty: Ty::Bool,
+    },
+];
 
 /// `export x to "…" { … }`.
 pub const EXPORT: &[Setting] = &[

@@ -137,6 +137,8 @@ pub struct ShellValue {
     pub surfaces: Vec<Surface>,
     /// How far apart borders may be and still be one edge, model units, with the expression that says so.
     pub snap: Option<(f64, Origin)>,
+    /// Whether it shows the other side: a closed one points inwards, an open one away from where its first surface does.
+    pub flip: bool,
 }
 
 /// A mesh: of a `mesh` declaration, or data (imported, moved).

@@ -11,7 +11,7 @@ use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
 use crate::base::par;
 use crate::base::quadrature::integrate;
-use crate::base::tolerance::MEASURE_ACCURACY;
+use crate::base::tolerance::{MEASURE_ACCURACY, SIGN_ACCURACY};
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, chain_breaks};
 
@@ -43,7 +43,7 @@ pub struct Solid {
 
 /// Area of one surface, square model units; 0 for an unbounded plane's (it has none).
 pub fn area(surface: &Surface) -> f64 {
-    over(surface, DVec3::ZERO, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
+    over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
 }
 
 /// Area of the part of a surface between two values of u and two of v, square model units; of a plane without a map and
@@ -52,7 +52,7 @@ pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {
     if part == WHOLE || surface.domain() != Domain::Square {
         return area(surface);
     }
-    integral(surface, part, &|jet| [jet.du.cross(jet.dv).length()]).0[0]
+    integral(surface, part, MEASURE_ACCURACY, &|jet| [jet.du.cross(jet.dv).length()]).0[0]
 }
 
 /// Centre of the length of a curve.
@@ -69,7 +69,7 @@ pub fn curve_centroid(chain: &Chain) -> DVec3 {
 pub fn sheet(surfaces: &[Surface]) -> Sheet {
     let about = center(surfaces);
     let parts = par::map(surfaces.len(), |k| {
-        over(&surfaces[k], about, &|jet, r| {
+        over(&surfaces[k], about, MEASURE_ACCURACY, &|jet, r| {
             let a = jet.du.cross(jet.dv).length();
             [a, a * r.x, a * r.y, a * r.z, a * r.x * r.x, a * r.y * r.y, a * r.z * r.z, a * r.x * r.y, a * r.y * r.z, a * r.z * r.x]
         })
@@ -86,7 +86,7 @@ pub fn solid(faces: &[(Surface, bool)]) -> Solid {
     let surfaces: Vec<Surface> = faces.iter().map(|(surface, other)| if *other { surface.flipped() } else { surface.clone() }).collect();
     let about = center(&surfaces);
     let parts = par::map(surfaces.len(), |k| {
-        over(&surfaces[k], about, &|jet, r| {
+        over(&surfaces[k], about, MEASURE_ACCURACY, &|jet, r| {
             // ∫ x² y dV = ½ ∮ … and so on: the divergence theorem with one primitive each.
             let n = jet.du.cross(jet.dv);
             let (x, y, z) = (r.x, r.y, r.z);
@@ -109,6 +109,25 @@ pub fn solid(faces: &[(Surface, bool)]) -> Solid {
     Solid { volume: mass, centroid, inertia, error: relative(error[0], mass) }
 }
 
+/// Whether the normals of a closed set of faces point into what they enclose, `true` using a surface's other side: the sign of
+/// the integral that is its volume. `None` where that cannot be told from 0, as for a sheet folded onto itself.
+pub fn points_inwards(faces: &[(Surface, bool)]) -> Option<bool> {
+    /// A value is told from 0 where it is so many times its estimated error.
+    const SURE: f64 = 10.0;
+    let surfaces: Vec<Surface> = faces.iter().map(|(surface, _)| surface.clone()).collect();
+    let about = center(&surfaces);
+    // Bodies that are not thin are known from few places.
+    [SIGN_ACCURACY, MEASURE_ACCURACY].into_iter().find_map(|accuracy| {
+        let parts = par::map(surfaces.len(), |k| over(&surfaces[k], about, accuracy, &|jet, r| [r.dot(jet.du.cross(jet.dv))]));
+        let (mut volume, mut error) = (0.0, 0.0);
+        for ((_, other), (value, apart)) in faces.iter().zip(parts) {
+            volume += if *other { -value[0] } else { value[0] };
+            error += apart[0] + MEASURE_ACCURACY * value[0].abs();
+        }
+        (f64::abs(volume) > SURE * error).then_some(volume < 0.0)
+    })
+}
+
 /// The smallest box along the axes that holds surfaces; infinite for an unbounded plane.
 pub fn bounds(surfaces: &[Surface]) -> Box3 {
     par::map(surfaces.len(), |k| bbox(&surfaces[k])).into_iter().fold(Box3::EMPTY, Box3::union)
@@ -121,14 +140,14 @@ fn center(surfaces: &[Surface]) -> DVec3 {
 }
 
 /// The integral of `f(jet, p − about)` over a surface, with its error estimate.
-fn over<const N: usize>(surface: &Surface, about: DVec3, f: &impl Fn(&Jet2, DVec3) -> [f64; N]) -> ([f64; N], [f64; N]) {
+fn over<const N: usize>(surface: &Surface, about: DVec3, accuracy: f64, f: &impl Fn(&Jet2, DVec3) -> [f64; N]) -> ([f64; N], [f64; N]) {
     let at = |jet: &Jet2| f(jet, jet.p - about);
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
-        (_, SurfaceKind::Plane) => flat_integral(surface, &at),
-        _ if surface.is_flat() => flat_integral(surface, &at),
-        (Domain::Loop, _) => trimmed_integral(surface, &at),
-        _ => integral(surface, WHOLE, &at),
+        (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, &at),
+        _ if surface.is_flat() => flat_integral(surface, accuracy, &at),
+        (Domain::Loop, _) => trimmed_integral(surface, accuracy, &at),
+        _ => integral(surface, WHOLE, accuracy, &at),
     }
 }
 

@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use crate::base::quadrature::gauss_legendre;
-use crate::base::tolerance::MEASURE_ACCURACY;
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Side, Surface};
 
@@ -32,9 +31,9 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 
 /// The integral of N functions of the jet over a rectangle of the unit square of a surface, with estimated errors.
 ///
-/// A cell is done when two orders differ by no more than [`MEASURE_ACCURACY`] of the integrals of absolute values, shared
+/// A cell is done when two orders differ by no more than `accuracy` of the integrals of absolute values, shared
 /// out by the cells of the first division; errors are sums of these differences (of the lower order: on the safe side).
-pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let (us, vs) = surface.breaks();
     // A triangle's lines do not follow the square.
@@ -45,7 +44,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, f: &impl F
     let (us, vs) = (stops(us, within.0), stops(vs, within.1));
     let mut open: Vec<Cell> =
         vs.windows(2).flat_map(|y| us.windows(2).map(move |x| Cell { x: (x[0], x[1]), y: (y[0], y[1]), depth: 0 })).collect();
-    let share = MEASURE_ACCURACY / open.len() as f64;
+    let share = accuracy / open.len() as f64;
     let first: Vec<(Sums<N>, Sums<N>)> = open.iter().map(|cell| product(surface, cell, &rules[0], f)).collect();
     let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
     let mut known: Vec<Option<Sums<N>>> = first.into_iter().map(|(value, _)| Some(value)).collect();
@@ -119,7 +118,7 @@ fn boundary(surface: &Surface) -> Vec<(Chain, f64, f64)> {
 /// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
 ///
 /// `f` gets jets with unit derivatives in the plane, their cross product the surface's normal.
-pub fn flat_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let walk = boundary(surface);
     let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
     let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
@@ -174,7 +173,7 @@ pub fn flat_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Su
         let size = round(&rules[0], *run).1;
         std::array::from_fn(|i| scale[i] + size[i])
     });
-    let share = MEASURE_ACCURACY / runs.len() as f64;
+    let share = accuracy / runs.len() as f64;
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
     let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::measure_strips::Strips;
 use crate::base::quadrature::gauss_legendre;
-use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY};
+use crate::base::tolerance::EPSILON;
 use crate::network::Chain;
 use crate::surface::quick::Quick;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
@@ -44,11 +44,12 @@ fn parts(breaks: &[f64], low: f64, high: f64) -> bool {
     breaks.partition_point(|b| *b <= low) < breaks.partition_point(|b| *b < high)
 }
 
-/// The integral of N functions of the jet over a trimmed surface, with estimated errors.
+/// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sum of
+/// absolute values.
 ///
 /// ∬ f du dv = ∮ F dv with F = ∫ f du from the middle of each loop (round a closed loop any start serves), cut where the
 /// surface is less than analytic.
-pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+pub fn trimmed_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let middle = |outline: &Vec<DVec2>| {
         let (low, high) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
         0.5 * (low + high)
@@ -136,7 +137,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, f: &impl Fn(&Jet2) ->
         (0..N).for_each(|i| scale[i] += met.size[i]);
         first.push(met);
     }
-    let share = MEASURE_ACCURACY / open.len().max(1) as f64;
+    let share = accuracy / open.len().max(1) as f64;
     let apart = |a: &Sums<N>, b: &Sums<N>| -> Sums<N> { std::array::from_fn(|i| (a[i] - b[i]).abs()) };
     let settled = |apart: &Sums<N>| (0..N).all(|i| apart[i] <= share * scale[i]);
     let mut open: Vec<(Run, Met<N>)> = open.into_iter().zip(first).collect();

@@ -1,13 +1,14 @@
 //! Shells: surfaces as one skin, connected and oriented [Koh & Park 1990, §4.3].
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use super::atoms::{Atoms, Part, atoms};
 use super::gather::Station;
-use super::glue::{preference, root};
+use super::glue::preference;
 use super::sew::Seams;
+use super::sides::{Component, Usage, components, usages};
 use super::topology::{EdgeId, Model, PatchId, Shell, SurfaceId};
 use super::trace::Track;
 use crate::base::fault::{Fault, Result, SurfaceFault};
@@ -29,46 +30,34 @@ impl Joins {
     }
 }
 
-/// One use of an atom by a surface: `true` where the surface's loop runs against the atom.
-type Usage = (SurfaceId, bool);
-
 impl Model {
-    /// A shell of surfaces: connected, oriented so that neighbours use an edge in opposite senses; free edges are a note.
+    /// A shell of surfaces, oriented so that neighbours use an edge in opposite senses; free edges are a note.
     ///
-    /// Stretches that a long side shares with several shorter ones count as joined. The first surface of the list keeps
-    /// its side. Borders up to [`Model::reach`] apart are one edge; what that moved is a note. Fails with E616 (one-sided),
-    /// E617 (three faces at an edge), E618 (not connected) or E711 (borders just beyond a stated reach).
+    /// Stretches that a long side shares with several shorter ones count as joined. A closed shell points out of the material,
+    /// in several skins where it has cavities or lies in pieces; in an open one the first surface of the list keeps its side. Borders up to [`Model::reach`] apart are one edge; what that moved is a note. Fails with E616 (one-sided),
+    /// E617 (three faces at an edge), E618 (open and not connected) or E711 (borders just beyond a stated reach).
     pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
         let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
         let near = self.reach(members.iter().copied(), request.snap.map(|s| s.0), tolerance);
         let (edges, joins) = self.joins(&members, near, network, tolerance);
         let pieces = &joins.pieces;
         let slivers = self.slivers(&members, (&edges, pieces), near);
-        let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.atoms.len()];
-        for (edge, uses) in edges.iter().zip(&pieces.of_track) {
-            for (patch, against) in &self.edges[edge.index()].users {
-                let surface = self.patches[patch.index()].surface;
-                if members.contains(&surface) && slivers.binary_search(patch).is_err() {
-                    uses.iter().for_each(|u| usages[u.atom].push((surface, *against != u.against)));
-                }
-            }
-        }
+        let usages = usages(self, (&edges, pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
         let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
         let seams = Seams { model: self, edges: &edges, joins: &joins };
         seams.refuse_gaps(request, &free)?;
         self.manifold(request, &joins, &usages)?;
-        let sides = self.orient(request, &joins, (&usages, &slivers))?;
+        let sides = self.orient(request, &joins, (&usages, &slivers), tolerance)?;
         seams.tell(request, &slivers, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.atoms[*a].length().total_cmp(&pieces.atoms[*b].length())) {
             let length = free.iter().map(|a| pieces.atoms[*a].length()).sum();
             let at = joins.middle(longest);
             sink.push(SurfaceFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
         }
-        let surfaces = request.surfaces.iter().map(|s| (*s, sides[s.index()].unwrap_or(false))).collect();
         let mut free: Vec<_> =
             free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.atoms[*a].length()))).collect();
         free.sort_by(|a, b| b.2.total_cmp(&a.2));
-        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces, near, closed: free.is_empty(), free })
+        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces: sides, near, closed: free.is_empty(), free })
     }
 
     /// Edges of some surfaces, cut into atoms; borders up to `near` apart are one.
@@ -97,7 +86,7 @@ impl Model {
     }
 
     /// Patches of some surfaces that are thinner than what was glued, ascending.
-    fn slivers(&self, members: &BTreeSet<SurfaceId>, (edges, pieces): (&[EdgeId], &Atoms), near: f64) -> Vec<PatchId> {
+    pub(super) fn slivers(&self, members: &BTreeSet<SurfaceId>, (edges, pieces): (&[EdgeId], &Atoms), near: f64) -> Vec<PatchId> {
         let mut found: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
         found.retain(|p| self.is_sliver(*p, (edges, pieces), near));
         found.sort_unstable();
@@ -120,59 +109,49 @@ impl Model {
         Ok(())
     }
 
-    /// Side of each surface of the model: `true` for the other one, `None` for surfaces outside the shell.
-    fn orient(&self, request: &ShellRequest, joins: &Joins, (usages, slivers): (&[Vec<Usage>], &[PatchId])) -> Result<Vec<Option<bool>>> {
-        let mut sides: Vec<Option<bool>> = vec![None; self.surfaces.len()];
-        let mut neighbours: Vec<Vec<(SurfaceId, bool, usize)>> = vec![Vec::new(); self.surfaces.len()];
-        let mut parent: Vec<usize> = (0..self.surfaces.len()).collect();
-        for (atom, users) in usages.iter().enumerate() {
-            if let [a, b] = users.as_slice() {
-                // Used in the same sense, one of the two must be turned.
-                let turned = a.1 == b.1;
-                neighbours[a.0.index()].push((b.0, turned, atom));
-                neighbours[b.0.index()].push((a.0, turned, atom));
-                let (ra, rb) = (root(&mut parent, a.0.index()), root(&mut parent, b.0.index()));
-                parent[ra.max(rb)] = ra.min(rb);
-            }
+    /// Each surface with its side: `true` for the other one. E616 for a skin with one side, E618 for open ones that do not hang together.
+    fn orient(
+        &self,
+        request: &ShellRequest,
+        joins: &Joins,
+        (usages, slivers): (&[Vec<Usage>], &[PatchId]),
+        tolerance: &Tolerance,
+    ) -> Result<Vec<(SurfaceId, bool)>> {
+        let whole: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| !self.is_thin(*s, slivers)).collect();
+        let mut components = components(&whole, usages);
+        if let Some(one_sided) = components.iter().find_map(|c| c.one_sided.as_ref()) {
+            let (a, b) = (self.origin_of(one_sided.faces.0), self.origin_of(one_sided.faces.1));
+            let at = joins.middle(one_sided.atom);
+            return Err(SurfaceFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
         }
-        let whole = |s: &&SurfaceId| self.patches_of(**s).any(|p| slivers.binary_search(&p).is_err());
-        let Some(&first) = request.surfaces.iter().find(whole) else {
-            return Ok(sides);
-        };
-        sides[first.index()] = Some(false);
-        let mut open = vec![first];
-        while let Some(surface) = open.pop() {
-            let own = sides[surface.index()].unwrap_or(false);
-            for &(other, turned, atom) in &neighbours[surface.index()] {
-                match sides[other.index()] {
-                    None => {
-                        sides[other.index()] = Some(own != turned);
-                        open.push(other);
-                    }
-                    Some(side) if side != (own != turned) => {
-                        let at = joins.middle(atom);
-                        let (a, b) = (self.origin_of(surface), self.origin_of(other));
-                        return Err(SurfaceFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
-                    }
-                    Some(_) => {}
+        match components.as_slice() {
+            [first, others @ ..] if !others.is_empty() => {
+                // Skins that close may lie apart or inside each other; an open one is all of its shell.
+                if let Some(apart) = others.iter().find(|c| !first.closed || !c.closed) {
+                    return Err(self.not_connected(first, apart));
                 }
+                self.turn_outwards(&mut components, tolerance);
             }
+            [only] if only.closed => self.turn_outwards(&mut components, tolerance),
+            _ => {}
         }
         // What became an edge has no side.
-        let thin = |s: SurfaceId| self.patches_of(s).all(|p| slivers.binary_search(&p).is_ok());
-        request.surfaces.iter().filter(|s| thin(**s)).for_each(|s| sides[s.index()] = Some(false));
-        match request.surfaces.iter().find(|s| sides[s.index()].is_none()) {
-            None => Ok(sides),
-            Some(apart) => Err(self.not_connected(request, &sides, *apart)),
-        }
+        let sides: BTreeMap<SurfaceId, bool> = components.into_iter().flat_map(|c| c.faces).collect();
+        Ok(request.surfaces.iter().map(|s| (*s, sides.get(s).copied().unwrap_or(false))).collect())
     }
 
-    /// E618 with where the joined part and a surface apart from it come nearest.
-    fn not_connected(&self, request: &ShellRequest, sides: &[Option<bool>], apart: SurfaceId) -> Fault {
-        let joined: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| sides[s.index()].is_some()).collect();
-        let found = self.apart(&joined, &[apart]);
-        let (a, gap, at) = found.map_or((apart, 0.0, DVec3::ZERO), |f| (f.surfaces.0, f.gap, f.at));
-        SurfaceFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(apart), gap, at }.into()
+    /// Whether nothing of a surface is left beside edges.
+    pub(super) fn is_thin(&self, surface: SurfaceId, slivers: &[PatchId]) -> bool {
+        self.patches_of(surface).all(|p| slivers.binary_search(&p).is_ok())
+    }
+
+    /// E618 with where two components come nearest.
+    fn not_connected(&self, first: &Component, apart: &Component) -> Fault {
+        let ids = |c: &Component| c.faces.iter().map(|f| f.0).collect::<Vec<_>>();
+        let (joined, apart) = (ids(first), ids(apart));
+        let found = self.apart(&joined, &apart);
+        let (a, b, gap, at) = found.map_or((joined[0], apart[0], 0.0, DVec3::ZERO), |f| (f.surfaces.0, f.surfaces.1, f.gap, f.at));
+        SurfaceFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at }.into()
     }
 }
 

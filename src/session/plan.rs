@@ -1,5 +1,7 @@
 //! From what a `mesh` declaration says to a plan for the mesher: values become surfaces, chains and points.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::base::fault::{Fault, MeshFault, Say, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -19,6 +21,15 @@ struct Finder<'s> {
     tolerance: Tolerance,
 }
 
+/// The faces of a mesh by what decides their sides.
+#[derive(Default)]
+struct Faces {
+    /// Those of no closed shell, with `true` where the other side was given.
+    loose: Vec<(SurfaceId, bool)>,
+    /// Those of closed shells.
+    closed: BTreeSet<SurfaceId>,
+}
+
 /// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
 pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(Plan, Scene), Stop> {
     let tolerance = cx.tolerance()?;
@@ -29,13 +40,15 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let finder = Finder { scene: &scene, module, tolerance };
     let mut plan = Plan::of(&spec.name, Vec::new());
     plan.origin = spec.origin;
+    let mut faces = Faces::default();
     for (value, _) in &spec.things {
-        finder.add(cx, &mut plan, value, sink)?;
+        finder.add(cx, (&mut plan, &mut faces), value, sink)?;
     }
     // Surfaces by themselves are glued as a shell of them would be.
     let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
     let near = scene.model.reach(alone.iter().copied(), None, &tolerance);
     plan.glue.extend(alone.into_iter().map(|s| (s, near)));
+    finder.turn(&mut plan, faces, near, spec, sink);
     settings(&mut plan, spec);
     for rule in &spec.rules {
         let first = plan.rules.len();
@@ -123,10 +136,30 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 impl Finder<'_> {
+    /// Gives faces that are of no closed shell the sides of the shell that they would make, and turns all where that is asked.
+    fn turn(&self, plan: &mut Plan, faces: Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) {
+        let Faces { mut loose, closed } = faces;
+        loose.retain(|(s, _)| !closed.contains(s));
+        let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
+        let sides: BTreeMap<SurfaceId, bool> =
+            self.scene.model.outward(&loose, near, &self.scene.network, &self.tolerance).into_iter().collect();
+        let flip = spec.flip.filter(|said| said.0);
+        for (surface, other) in &mut plan.surfaces {
+            *other = sides.get(surface).copied().unwrap_or(*other) != flip.is_some();
+        }
+        if let (Some((_, rule)), true) = (flip, plan.surfaces.is_empty()) {
+            sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
+        }
+    }
+
     /// Adds a thing of the `of` list.
-    fn add(&self, cx: &Cx, plan: &mut Plan, value: &Value, sink: &mut Vec<Fault>) -> Result<(), Stop> {
+    fn add(&self, cx: &Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Stop> {
         match value {
-            Value::Surface(surface) => plan.surfaces.extend(self.scene.find_all([surface])?),
+            Value::Surface(surface) => {
+                let found = self.scene.find_all([surface])?;
+                faces.loose.extend(found.iter().copied());
+                plan.surfaces.extend(found);
+            }
             Value::Shell(shell) => {
                 // Whether it is open was said where the shell is declared.
                 let mut said = Vec::new();
@@ -134,6 +167,11 @@ impl Finder<'_> {
                 for (surface, _) in &built.surfaces {
                     let near = plan.glue.entry(*surface).or_insert(built.near);
                     *near = near.max(built.near);
+                }
+                if built.closed {
+                    faces.closed.extend(built.surfaces.iter().map(|s| s.0));
+                } else {
+                    faces.loose.extend(built.surfaces.iter().copied());
                 }
                 plan.surfaces.extend(built.surfaces);
                 sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N')));

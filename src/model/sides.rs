@@ -1,0 +1,119 @@
+//! Which side of each face a skin shows: faces at an edge use it in opposite senses, and what closes points outwards.
+
+use std::collections::BTreeMap;
+
+use super::atoms::Atoms;
+use super::glue::root;
+use super::topology::{EdgeId, Model, PatchId, SurfaceId};
+use crate::base::tolerance::Tolerance;
+use crate::network::Network;
+
+/// One use of an atom by a surface: `true` where the surface's loop runs against the atom.
+pub(super) type Usage = (SurfaceId, bool);
+
+/// Two faces that cannot agree on a side, and the atom between them.
+pub(super) struct OneSided {
+    pub faces: (SurfaceId, SurfaceId),
+    pub atom: usize,
+}
+
+/// Faces that hang together by edges that two of them share.
+pub(super) struct Component {
+    /// The faces, each with `true` where its other side is shown; the first one listed shows its own.
+    pub faces: Vec<(SurfaceId, bool)>,
+    /// Every edge of them is used twice.
+    pub closed: bool,
+    /// Where it has only one side.
+    pub one_sided: Option<OneSided>,
+}
+
+/// The uses of each atom, in the order of the edges.
+pub(super) fn usages(
+    model: &Model,
+    (edges, pieces): (&[EdgeId], &Atoms),
+    is_member: impl Fn(SurfaceId, PatchId) -> bool,
+) -> Vec<Vec<Usage>> {
+    let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.atoms.len()];
+    for (edge, uses) in edges.iter().zip(&pieces.of_track) {
+        for (patch, against) in &model.edges[edge.index()].users {
+            let surface = model.patches[patch.index()].surface;
+            if is_member(surface, *patch) {
+                uses.iter().for_each(|u| usages[u.atom].push((surface, *against != u.against)));
+            }
+        }
+    }
+    usages
+}
+
+/// Components of some faces, in the order of their first ones. An atom that more than two faces use joins none of them.
+pub(super) fn components(listed: &[SurfaceId], usages: &[Vec<Usage>]) -> Vec<Component> {
+    let count = listed.iter().map(|s| s.index() + 1).max().unwrap_or(0);
+    let mut neighbours: Vec<Vec<(SurfaceId, bool, usize)>> = vec![Vec::new(); count];
+    let mut parent: Vec<usize> = (0..count).collect();
+    let mut open = vec![false; count];
+    for (atom, users) in usages.iter().enumerate() {
+        if let [a, b] = users.as_slice() {
+            // Used in the same sense, one of the two must be turned.
+            let turned = a.1 == b.1;
+            neighbours[a.0.index()].push((b.0, turned, atom));
+            neighbours[b.0.index()].push((a.0, turned, atom));
+            let (ra, rb) = (root(&mut parent, a.0.index()), root(&mut parent, b.0.index()));
+            parent[ra.max(rb)] = ra.min(rb);
+        } else {
+            users.iter().for_each(|(s, _)| open[s.index()] = true);
+        }
+    }
+    let mut found: Vec<Component> = Vec::new();
+    let mut sides: Vec<Option<bool>> = vec![None; count];
+    for &first in listed {
+        if sides[first.index()].is_some() {
+            continue;
+        }
+        let one_sided = spread(first, &neighbours, &mut sides);
+        let own = root(&mut parent, first.index());
+        let members: Vec<SurfaceId> = listed.iter().copied().filter(|s| root(&mut parent, s.index()) == own).collect();
+        let closed = members.iter().all(|s| !open[s.index()]);
+        let faces = members.into_iter().map(|s| (s, sides[s.index()].unwrap_or(false))).collect();
+        found.push(Component { faces, closed, one_sided });
+    }
+    found
+}
+
+/// Gives a side to all that hangs together with a face, which shows its own; where two faces do not agree.
+fn spread(first: SurfaceId, neighbours: &[Vec<(SurfaceId, bool, usize)>], sides: &mut [Option<bool>]) -> Option<OneSided> {
+    sides[first.index()] = Some(false);
+    let (mut open, mut one_sided) = (vec![first], None);
+    while let Some(surface) = open.pop() {
+        let own = sides[surface.index()].unwrap_or(false);
+        for &(other, turned, atom) in &neighbours[surface.index()] {
+            match sides[other.index()] {
+                None => {
+                    sides[other.index()] = Some(own != turned);
+                    open.push(other);
+                }
+                Some(side) if side != (own != turned) => {
+                    one_sided.get_or_insert(OneSided { faces: (surface, other), atom });
+                }
+                Some(_) => {}
+            }
+        }
+    }
+    one_sided
+}
+
+impl Model {
+    /// Faces of a list with the sides that they show together: those that close to a skin point out of what they enclose, out of
+    /// the material where one skin lies inside another; all others stay as they are. Borders up to `near` apart are one edge.
+    pub fn outward(&self, listed: &[(SurfaceId, bool)], near: f64, network: &Network, tolerance: &Tolerance) -> Vec<(SurfaceId, bool)> {
+        let members = listed.iter().map(|s| s.0).collect();
+        let (edges, joins) = self.joins(&members, near, network, tolerance);
+        let slivers = self.slivers(&members, (&edges, &joins.pieces), near);
+        let usages = usages(self, (&edges, &joins.pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
+        let whole: Vec<SurfaceId> = members.iter().copied().filter(|s| !self.is_thin(*s, &slivers)).collect();
+        let mut components = components(&whole, &usages);
+        components.retain(|c| c.closed && c.one_sided.is_none());
+        self.turn_outwards(&mut components, tolerance);
+        let sides: BTreeMap<SurfaceId, bool> = components.into_iter().flat_map(|c| c.faces).collect();
+        listed.iter().map(|(surface, own)| (*surface, sides.get(surface).copied().unwrap_or(*own))).collect()
+    }
+}
