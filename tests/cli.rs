@@ -190,7 +190,7 @@ fn the_json_report_has_its_keys_in_order() {
     assert_eq!(keys(&report["surfaces"][0]), "name kind flow patches edges vertices area");
     assert_eq!(
         keys(&report["meshes"][0]),
-        "name nodes triangles quads order min_angle max_angle mean_quality min_quality max_aspect area chord_error watertight hash groups"
+        "name nodes triangles quads order min_angle max_angle mean_quality min_quality max_aspect area chord_error watertight parts hash groups"
     );
     assert_eq!(keys(&report["checks"][0]), "label pass line left right");
     assert_eq!((report["checks"][0]["line"].as_u64(), report["meshes"][0]["quads"].as_u64()), (Some(10), Some(12)));

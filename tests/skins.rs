@@ -1,4 +1,4 @@
-//! Faces as one skin: which side they show.
+//! Faces as one skin: which side they show, and where they touch.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 #[path = "support/script.rs"]
@@ -203,4 +203,225 @@ fn pieces_of_which_one_is_open_are_no_shell() {
     let disk = Disk::new(None, None, &[], Outputs::Counted).unwrap();
     let outcome = script::outcome("model.loft", text.as_bytes(), &[], &disk);
     assert!(outcome.drawn(false, false).contains("E618"), "{}", outcome.drawn(false, true));
+}
+
+/// What is said about the contacts of a mesh of these declarations and the number of its parts.
+fn contacts(name: &str, text: &str) -> (Vec<String>, usize) {
+    let outcome = run(name, text);
+    let said = outcome.diagnostics.iter().filter(|d| d.code.0 == "W667").map(|d| d.message.clone()).collect();
+    (said, outcome.report.meshes[0].parts)
+}
+
+#[test]
+fn faces_that_touch_without_a_shared_border_are_told() {
+    let slab = "units m\nlet ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]\nsurface slab = plane(polyline(ring, closed: true))\n";
+    let column = "surface column = extrude(circle(center: (5, 5, 0), radius: 1), by: (0, 0, -3))\n";
+    let wall = |y0: f64, y1: f64| format!("surface wall = extrude(line((5, {y0}, 0), (5, {y1}, 0)), by: (0, 0, 3))\n");
+    let cases: [(&str, String, &str, &[&str], usize); 13] = [
+        ("column", column.to_owned(), "slab, column", &["an edge of `column` lies on `slab`"], 2),
+        ("turned", column.to_owned(), "column, slab", &["an edge of `column` lies on `slab`"], 2),
+        ("middle", wall(2.0, 8.0), "slab, wall", &["an edge of `wall` lies on `slab`", "6.00000 m long"], 2),
+        ("across", wall(0.0, 10.0), "slab, wall", &["an edge of `wall` lies on `slab`"], 1),
+        ("outside", wall(-2.0, 5.0), "slab, wall", &["an edge of `wall` lies on `slab`"], 1),
+        (
+            "crossing",
+            "surface plate = extrude(line((2, 5, -1), (8, 5, -1)), by: (0, 0, 2))\n".to_owned(),
+            "slab, plate",
+            &["`slab`", "cross without sharing nodes"],
+            2,
+        ),
+        (
+            "flush",
+            "surface plate = extrude(line((0, 5, -1), (10, 5, -1)), by: (0, 0, 2))\n".to_owned(),
+            "slab, plate",
+            &["`slab`", "`plate`"],
+            2,
+        ),
+        (
+            "pipe",
+            "surface pipe = extrude(circle(center: (5, 5, -1), radius: 1), by: (0, 0, 2))\n".to_owned(),
+            "slab, pipe",
+            &["`pipe`", "cross"],
+            2,
+        ),
+        (
+            "dome",
+            "surface ball = revolve(arc((5, 5, -2), (5, 5, 2), through: (7, 5, 0)), axis: line((5, 5, 0), (5, 5, 1)))\n".to_owned(),
+            "slab, ball",
+            &["`ball`", "cross"],
+            2,
+        ),
+        (
+            "tubes",
+            "surface a = extrude(circle(center: (0, 0, 5), start: (0, 3, 5), normal: (1, 0, 0)), by: (9, 0, 0))
+surface b = extrude(circle(center: (4, -9, 5), start: (4, -9, 7), normal: (0, 1, 0)), by: (0, 18, 0))\n"
+                .to_owned(),
+            "a, b",
+            &["`a`", "`b`", "cross"],
+            2,
+        ),
+        (
+            "cover",
+            "surface other = plane(polyline([(4, 4, 0), (14, 4, 0), (14, 14, 0), (4, 14, 0)], closed: true))\n".to_owned(),
+            "slab, other",
+            &["`slab`", "`other`", "lie on each other"],
+            2,
+        ),
+        (
+            "twice",
+            "surface other = plane(polyline(ring, closed: true))\n".to_owned(),
+            "slab, other",
+            &["`slab`", "`other`", "lie on each other"],
+            1,
+        ),
+        (
+            "corner",
+            "surface fin = plane(polyline([(5, 5, 0), (6, 5, 2), (4, 5, 2)], closed: true))\n".to_owned(),
+            "slab, fin",
+            &["an edge of `fin` meets `slab`"],
+            2,
+        ),
+    ];
+    for (name, text, list, words, parts) in cases {
+        let (said, found) = contacts(name, &format!("{slab}{text}mesh m of {list} {{ size: 0.7m }}\n"));
+        assert!(said.len() == 1 && words.iter().all(|w| said[0].contains(w)), "{name}: {said:?}");
+        assert_eq!(found, parts, "{name}");
+    }
+}
+
+#[test]
+fn faces_that_share_their_borders_or_lie_apart_are_not_told() {
+    let block = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/block.loft")).unwrap();
+    let slab = "units m\nlet ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]\nsurface slab = plane(polyline(ring, closed: true))\n";
+    let cases = [
+        ("block", block.replace("bores = [", "bores = [ ")),
+        (
+            "half",
+            format!("{slab}surface next = extrude(line((10, 2, 0), (10, 5, 0)), by: (3, 0, 1))\nmesh m of slab, next {{ size: 0.7m }}\n"),
+        ),
+        ("above", format!("{slab}surface lid = move(slab, by: (0, 0, 0.001))\nmesh m of slab, lid {{ size: 0.7m }}\n")),
+        (
+            "line",
+            format!(
+                "{slab}curve rim = circle(center: (5, 5, 0), radius: 1)\nsurface column = extrude(rim, by: (0, 0, -3))\nmesh m of slab, column, rim {{ size: 0.7m }}\n"
+            ),
+        ),
+        (
+            "asked",
+            format!(
+                "{slab}surface column = extrude(circle(center: (5, 5, 0), radius: 1), by: (0, 0, -3))\nmesh m of slab, column {{ size: 0.7m  conforming: false }}\n"
+            ),
+        ),
+    ];
+    for (name, text) in cases {
+        let (said, _) = contacts(name, &text);
+        assert!(said.is_empty(), "{name}: {said:?}");
+    }
+}
+
+/// The mesh of these declarations with `imprint: true`: conforming, without overlap or loose nodes, of so many parts.
+fn imprinted(name: &str, text: &str) -> Outcome {
+    let outcome = run(name, text);
+    let said: Vec<_> = outcome.diagnostics.iter().filter(|d| d.code.0 == "W667").map(|d| &d.message).collect();
+    assert!(said.is_empty(), "{name}: {said:?}");
+    for (_, mesh) in &outcome.meshes {
+        let mut at: Vec<_> = mesh.nodes.iter().map(|p| p.to_array().map(|x| (x * 1e6).round() as i64)).collect();
+        let all = at.len();
+        at.sort_unstable();
+        at.dedup();
+        assert_eq!(at.len(), all, "{name}: two nodes in one place");
+    }
+    outcome
+}
+
+/// Area of the elements of a face, by its set.
+fn area(mesh: &Mesh, name: &str) -> f64 {
+    let p = |n: u32| mesh.nodes[n as usize];
+    let triangle = |t: [u32; 3]| 0.5 * (p(t[1]) - p(t[0])).cross(p(t[2]) - p(t[0])).length();
+    let own = |f: &&lofting::mesh::FaceRange| f.name == name;
+    let of = |f: &lofting::mesh::FaceRange| -> f64 {
+        let quads = &mesh.quads[f.quads.start as usize..f.quads.end as usize];
+        let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+        mesh.triangles[f.triangles.start as usize..f.triangles.end as usize].iter().copied().chain(halves).map(triangle).sum()
+    };
+    mesh.faces.iter().filter(own).map(of).sum()
+}
+
+#[test]
+fn faces_that_touch_are_joined_where_that_is_asked() {
+    let slab = "units m\nlet ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]\nsurface slab = plane(polyline(ring, closed: true))\n";
+    let wall = |name: &str, from: &str, to: &str| format!("surface {name} = extrude(line({from}, {to}), by: (0, 0, 3))\n");
+    let pi = std::f64::consts::PI;
+    // Declarations, faces, edges of three elements or more along what was joined, areas of faces and how exact they are.
+    let cases: Vec<(&str, String, &str, f64, Vec<(&str, f64, f64)>)> = vec![
+        (
+            "column",
+            "surface column = extrude(circle(center: (5, 5, 0), radius: 1), by: (0, 0, -3))\n".to_owned(),
+            "slab, column",
+            2.0 * pi,
+            vec![("slab", 100.0, 1e-9), ("column", 6.0 * pi, 0.02)],
+        ),
+        ("middle", wall("wall", "(5, 2, 0)", "(5, 8, 0)"), "slab, wall", 6.0, vec![("slab", 100.0, 1e-9), ("wall", 18.0, 1e-9)]),
+        ("across", wall("wall", "(5, 0, 0)", "(5, 10, 0)"), "slab, wall", 10.0, vec![("slab", 100.0, 1e-9), ("wall", 30.0, 1e-9)]),
+        ("outside", wall("wall", "(5, -2, 0)", "(5, 5, 0)"), "slab, wall", 5.0, vec![("slab", 100.0, 1e-9), ("wall", 21.0, 1e-9)]),
+        (
+            "walls",
+            wall("one", "(2, 5, 0)", "(8, 5, 0)") + &wall("two", "(5, 2, 0)", "(5, 8, 0)"),
+            "slab, one, two",
+            15.0,
+            vec![("slab", 100.0, 1e-9), ("one", 18.0, 1e-9), ("two", 18.0, 1e-9)],
+        ),
+        (
+            "crossing",
+            "surface plate = extrude(line((2, 5, -1), (8, 5, -1)), by: (0, 0, 2))\n".to_owned(),
+            "slab, plate",
+            6.0,
+            vec![("slab", 100.0, 1e-9), ("plate", 12.0, 1e-9)],
+        ),
+        (
+            "flush",
+            "surface plate = extrude(line((0, 5, -1), (10, 5, -1)), by: (0, 0, 2))\n".to_owned(),
+            "slab, plate",
+            10.0,
+            vec![("slab", 100.0, 1e-9), ("plate", 20.0, 1e-9)],
+        ),
+        (
+            "pipe",
+            "surface pipe = extrude(circle(center: (5, 5, -1), radius: 1), by: (0, 0, 2))\n".to_owned(),
+            "slab, pipe",
+            2.0 * pi,
+            vec![("slab", 100.0, 1e-9), ("pipe", 4.0 * pi, 0.02)],
+        ),
+        (
+            "ball",
+            "surface ball = revolve(arc((5, 5, -2), (5, 5, 2), through: (7, 5, 0)), axis: line((5, 5, 0), (5, 5, 1)))\n".to_owned(),
+            "slab, ball",
+            4.0 * pi,
+            vec![("slab", 100.0, 1e-9), ("ball", 16.0 * pi, 0.05)],
+        ),
+    ];
+    for (name, text, list, seam, areas) in cases {
+        for elements in ["triangles", "quads"] {
+            let name = format!("{name}_{elements}");
+            let text = format!("{slab}{text}mesh m of {list} {{ size: 0.5m  elements: {elements}  imprint: true }}\n");
+            let outcome = imprinted(&name, &text);
+            assert_eq!(outcome.report.meshes[0].parts, 1, "{name}");
+            let mesh = &outcome.meshes[0].1;
+            let mut uses = std::collections::BTreeMap::<(u32, u32), usize>::new();
+            let corners = mesh.triangles.iter().map(|t| t.to_vec()).chain(mesh.quads.iter().map(|q| q.to_vec()));
+            for c in corners {
+                (0..c.len()).for_each(|k| {
+                    let (a, b) = (c[k], c[(k + 1) % c.len()]);
+                    *uses.entry((a.min(b), a.max(b))).or_default() += 1;
+                });
+            }
+            let length = |(a, b): &(u32, u32)| mesh.nodes[*a as usize].distance(mesh.nodes[*b as usize]);
+            let joined: f64 = uses.iter().filter(|(_, n)| **n > 2).map(|(e, _)| length(e)).sum();
+            assert!((joined / seam - 1.0).abs() < 0.02, "{name}: {joined} {seam}");
+            for (face, wanted, within) in &areas {
+                let found = area(mesh, face);
+                assert!((found / wanted - 1.0).abs() < *within, "{name}: {face} {found} {wanted}");
+            }
+        }
+    }
 }

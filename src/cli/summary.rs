@@ -144,13 +144,14 @@ fn shells(report: &Report) -> Option<Grid> {
 
 fn meshes(report: &Report) -> Option<Grid> {
     let head = ["mesh", ">nodes", ">triangles", ">quads", ">min angle", ">max angle", ">quality", ">worst", ">area", ">chord error"];
-    let mut grid = Grid::new(&[&head[..], &["watertight", "groups"]].concat());
+    let mut grid = Grid::new(&[&head[..], &["watertight", ">parts", "groups"]].concat());
     for m in &report.meshes {
         let count = |n: usize| if n == 0 { String::new() } else { n.to_string() };
         let mut row = vec![m.name.clone(), m.nodes.to_string(), count(m.triangles), count(m.quads)];
         row.extend([maybe(m.min_angle, "°"), maybe(m.max_angle, "°"), maybe(m.mean_quality, ""), maybe(m.min_quality, "")]);
         row.extend([maybe(m.area, &format!("{}2", report.units)), maybe(m.chord_error, &report.units)]);
         row.push(m.watertight.map(yes).unwrap_or_default());
+        row.push(m.parts.to_string());
         row.push(m.groups.len().to_string());
         grid.rows.push(row);
     }

@@ -149,6 +149,8 @@ codes! {
     now "E658", "meets-without-end", "unbounded planes meet in a line without end";
     now "E659", "cut-open", "a curve that should divide a surface ends inside it";
     now "E660", "keep-off", "the point to keep is in no part of the surface";
+    now "E666", "imprint-overlap", "faces that are to be joined cover each other";
+    now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";

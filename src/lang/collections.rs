@@ -131,6 +131,7 @@ impl Cx<'_> {
                         order: said(&settings, "order", |v| number(v).map(|n| n as u8)),
                         method: said(&settings, "method", method),
                         conforming: said(&settings, "conforming", truth),
+                        imprint: said(&settings, "imprint", truth),
                         flip: said(&settings, "flip", truth),
                         rules,
                         refines,

@@ -76,6 +76,8 @@ pub struct MeshSpec {
     pub method: Said<Method>,
     /// Neighbouring faces share nodes.
     pub conforming: Said<bool>,
+    /// Faces that touch without a shared border are joined.
+    pub imprint: Said<bool>,
     /// Faces show their other sides.
     pub flip: Said<bool>,
     /// `on` clauses in order of writing.

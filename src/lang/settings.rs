@@ -83,6 +83,13 @@ pub const MESH: &[Setting] = &[
     },
     Setting { key: "conforming", docs: "Neighbouring faces share nodes.", default: "true", ty: Ty::Bool },
     Setting {
+        key: "imprint",
+        docs: "Faces that touch without a shared border share nodes there: edges that lie on a face, and the curves in which faces cross, \
+               are lines of the faces' meshes. Faces that cover each other are E666.",
+        default: "false",
+        ty: Ty::Bool,
+    },
+    Setting {
         key: "flip",
         docs: "Faces show their other sides. Without it faces that close point out of what they enclose; a list of faces that stay open \
                keeps the sides that it was given.",

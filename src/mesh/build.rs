@@ -12,7 +12,7 @@ use super::nodes::Nodes;
 use super::plan::Plan;
 use super::reuse::{Known, Reuse};
 use super::sizing::Remark;
-use super::{key, sets};
+use super::{contacts, key, sets};
 use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
 use crate::base::fault::{Fault, Result};
@@ -56,7 +56,7 @@ pub struct Built {
 /// Fails as [`Outline::new`] and [`Outline::build`] do.
 pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
     let built = Outline::new(input)?.build(input, None, job)?;
-    sink.extend(built.remarks.iter().map(|remark| remark.fault(input.plan)));
+    sink.extend(built.remarks.iter().map(|remark| remark.fault(input)));
     Ok(built)
 }
 
@@ -97,7 +97,7 @@ impl Outline {
     /// Makes the mesh, with parts of others in `reuse` and its own left there.
     ///
     /// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
-    /// E217 (too many elements), E715 (turned elements).
+    /// E217 (too many elements), E715 (turned elements), E666 (faces to be joined that cover each other).
     pub fn build(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
         let known = reuse.map(|reuse| Known { reuse, surfaces: &self.surfaces });
         let mut parts: Vec<Part> = Vec::new();
@@ -108,6 +108,12 @@ impl Outline {
         if let Some((first, others)) = parts.split_first_mut() {
             others.iter().for_each(|part| first.sizing.join(&part.sizing));
             remarks = first.sizing.remarks();
+            // Faces that were asked not to share nodes touch as they were asked to.
+            if input.plan.conforming {
+                let touches = contacts::look(input, &first.layout, &first.nodes, &first.mesh);
+                contacts::refuse_overlaps(input, &touches)?;
+                remarks.extend(touches.into_iter().map(Remark::Touch));
+            }
         }
         Ok(Built { remarks, ..merge(input, parts) })
     }

@@ -1,7 +1,7 @@
 //! Curves and points of a mesh that lie inside its faces: which faces, where in (u, v), and where they cross from one patch
 //! of a surface to the next.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
@@ -18,11 +18,16 @@ use crate::surface::{Domain, Nearest, Surface, foot_within};
 pub fn place(input: &Input, layout: &mut Layout) {
     let mut on_face = vec![false; layout.pieces.atoms.len()];
     layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|s| on_face[s] = true);
-    let mut lines: Vec<usize> = layout.curves.iter().flatten().map(|u| u.atom).filter(|k| !on_face[*k]).collect();
+    let mut lines: Vec<usize> = layout.curves.iter().flatten().map(|u| u.atom).collect();
+    if input.plan.imprint.is_some() {
+        // Borders of other faces are lines of a face that they lie on.
+        lines.extend((0..on_face.len()).filter(|k| on_face[*k]));
+        lines.extend(&layout.meets);
+    }
     lines.sort_unstable();
     lines.dedup();
     let probes: Vec<[DVec3; 3]> = lines.iter().map(|k| [0.25, 0.5, 0.75].map(|f| layout.point(*k, f))).collect();
-    let points: Vec<usize> = (0..layout.points.len()).filter(|k| layout.points[*k].is_none()).collect();
+    let points: Vec<usize> = (0..layout.points.len()).collect();
     for (face, lines) in layout.creases.clone() {
         layout.faces[face].lines.extend(lines.iter().filter(|k| !on_face[**k]));
     }
@@ -37,17 +42,23 @@ pub fn place(input: &Input, layout: &mut Layout) {
         let nearest = known.entry(face.surface).or_insert_with(|| Nearest::new(surface));
         let patch = &input.model.patches[face.patch.index()];
         let holds = |p: &DVec3| on(nearest, patch, *p, input.tolerance);
-        let own: Vec<usize> = (0..lines.len()).filter(|n| near(&probes[*n]) && probes[*n].iter().all(holds)).map(|n| lines[n]).collect();
+        let around: BTreeSet<usize> = face.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).collect();
+        let candidates = (0..lines.len()).filter(|n| !around.contains(&lines[*n]));
+        let own: Vec<usize> = candidates.filter(|n| near(&probes[*n]) && probes[*n].iter().all(holds)).map(|n| lines[n]).collect();
         face.lines.extend(own);
         face.lines.sort_unstable();
         face.lines.dedup();
-        let inside = |k: &usize| near(&[input.plan.points[*k]]) && holds(&input.plan.points[*k]);
+        let atoms = &layout.pieces.atoms;
+        let ends = face.stretches().flat_map(|k| <[usize; 2]>::from(atoms[k].ends)).chain(face.sides.iter().filter_map(|s| s.pole));
+        let ends: BTreeSet<usize> = ends.collect();
+        let is_end = |k: &usize| layout.points[*k].is_some_and(|j| ends.contains(&j));
+        let inside = |k: &usize| !is_end(k) && near(&[input.plan.points[*k]]) && holds(&input.plan.points[*k]);
         face.points = points.iter().copied().filter(inside).collect();
     }
 }
 
 /// Whether a point lies on a patch.
-fn on(nearest: &Nearest, patch: &Patch, p: DVec3, tolerance: &Tolerance) -> bool {
+pub(super) fn on(nearest: &Nearest, patch: &Patch, p: DVec3, tolerance: &Tolerance) -> bool {
     let surface = nearest.surface();
     let found = nearest.at(p);
     if found.distance > tolerance.point || surface.domain() == Domain::Loop {

@@ -71,6 +71,7 @@ impl Teller<'_> {
             order,
             method,
             conforming,
+            imprint,
             // The tracks and faces of the layouts tell it.
             glue: _,
             rules,
@@ -84,7 +85,7 @@ impl Teller<'_> {
             let named = &self.input.model.surfaces[id.index()];
             (self.places.get(id), *flipped, (&named.name, self.surfaces.get(id))).tell(to);
         }
-        (curves, points).tell(to);
+        (curves, points, imprint.as_ref().map(|i| &i.0)).tell(to);
         rules.len().tell(to);
         rules.iter().for_each(|rule| self.rule(rule, to));
         (min_size.map(|s| s.0), growth.map(|g| g.0), smooth.map(|n| n.0)).tell(to);
@@ -131,10 +132,10 @@ impl Teller<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut Digester) {
-        let Layout { faces, parts, pieces, of_link, curves, points, creases } = layout;
+        let Layout { faces, parts, pieces, of_link, curves, points, creases, meets } = layout;
         faces.len().tell(to);
         faces.iter().for_each(|face| self.face(face, to));
-        (parts, pieces, (curves, points, creases)).tell(to);
+        (parts, pieces, (curves, points, (creases, meets))).tell(to);
         of_link.len().tell(to);
         for (link, uses) in of_link {
             let network = self.input.network;

@@ -98,6 +98,8 @@ pub struct Layout {
     pub curves: Vec<Vec<Use>>,
     /// Junction of each point of the plan; `None`: a node of its own.
     pub points: Vec<Option<usize>>,
+    /// Stretches of curves in which faces cross that are to be joined there.
+    pub meets: Vec<usize>,
     /// Stretches of kink lines inside trimmed faces, with the place of the face.
     pub creases: Vec<(usize, Vec<usize>)>,
 }
@@ -107,10 +109,16 @@ impl Layout {
     pub fn new(input: &Input, patches: &[(PatchId, bool)], with_lines: bool) -> Self {
         let ids: Vec<PatchId> = patches.iter().map(|p| p.0).collect();
         let edges = input.model.edges_of(&ids);
+        let imprint = input.plan.imprint.as_ref().map(|i| &i.0).filter(|_| with_lines);
         let mut parts: Vec<Part> = edges.iter().map(|e| edge_part(input, *e)).collect();
+        if imprint.is_some() {
+            edges.iter().zip(&mut parts).for_each(|(edge, part)| cut_on_others(input, (*edge, &ids), part));
+        }
         let links = if with_lines { link_parts(input, &mut parts) } else { Vec::new() };
         let alone = if with_lines { lone_parts(input, &mut parts) } else { Vec::new() };
-        for part in links.iter().map(|l| l.1).chain(alone.iter().map(|l| l.1)) {
+        let met = parts.len()..parts.len() + imprint.map_or(0, |i| i.curves.len());
+        parts.extend(imprint.into_iter().flat_map(|i| &i.curves).map(|chain| lone_part(input, chain)));
+        for part in links.iter().map(|l| l.1).chain(alone.iter().map(|l| l.1)).chain(met.clone()) {
             let part = &mut parts[part];
             part.cuts.extend(super::inside::crossings(input, &ids, &part.track));
             part.cuts.sort_by(f64::total_cmp);
@@ -140,10 +148,13 @@ impl Layout {
         if with_lines {
             anchors.extend(input.plan.points.iter().map(|p| station(*p)));
         }
+        let last = anchors.len();
+        anchors.extend(imprint.into_iter().flat_map(|i| &i.points).map(|p| station(*p)));
         let pieces = atoms(&parts, &anchors, input.tolerance);
         let of_link = by_link(input, &edges, &links, &pieces);
         let mut layout = Self { parts, pieces, of_link, ..Self::default() };
-        layout.points = layout.pieces.of_anchor[nodes..].to_vec();
+        layout.points = layout.pieces.of_anchor[nodes..last].to_vec();
+        layout.meets = met.flat_map(|part| layout.pieces.of_track[part].iter().map(|u| u.atom)).collect();
         let stretches = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.atom).collect();
         layout.creases = of_face.iter().enumerate().map(|(k, face)| (*face, stretches(creased + k))).collect();
         for (patch, flipped) in patches {
@@ -309,13 +320,27 @@ fn lone_parts(input: &Input, parts: &mut Vec<Part>) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     for (k, (_, chain)) in input.plan.curves.iter().enumerate() {
         if input.network.links_of(chain, input.tolerance).is_none() {
-            let curve = EdgeCurve::Run { chain: chain.clone(), span: (0.0, chain.length()) };
-            let cuts = chain.joints().iter().map(|f| f * chain.length()).filter(|s| *s > 0.0 && *s < chain.length()).collect();
-            parts.push(Part { track: Track::of(&curve, &[], input.network), cuts, rank: preference(&curve), near: input.tolerance.point });
+            parts.push(lone_part(input, chain));
             found.push((k, parts.len() - 1));
         }
     }
     found
+}
+
+/// A chain as a track of its own.
+fn lone_part(input: &Input, chain: &Chain) -> Part {
+    let curve = EdgeCurve::Run { chain: chain.clone(), span: (0.0, chain.length()) };
+    let cuts = chain.joints().iter().map(|f| f * chain.length()).filter(|s| *s > 0.0 && *s < chain.length()).collect();
+    Part { track: Track::of(&curve, &[], input.network), cuts, rank: preference(&curve), near: input.tolerance.point }
+}
+
+/// Cuts an edge where it runs over borders between patches of surfaces that it is no edge of.
+fn cut_on_others(input: &Input, (edge, patches): (EdgeId, &[PatchId]), part: &mut Part) {
+    let surface = |p: PatchId| input.model.patches[p.index()].surface;
+    let own: Vec<SurfaceId> = input.model.edges[edge.index()].users.iter().map(|(p, _)| surface(*p)).collect();
+    let others: Vec<PatchId> = patches.iter().copied().filter(|p| !own.contains(&surface(*p))).collect();
+    part.cuts.extend(super::inside::crossings(input, &others, &part.track));
+    part.cuts.sort_by(f64::total_cmp);
 }
 
 /// Stretches of each link, along the link.

@@ -9,7 +9,9 @@ mod blame;
 pub mod build;
 pub mod chart;
 mod chord;
-pub mod counts;
+pub mod contact_leaves;
+pub mod contacts;
+mod counts;
 mod creases;
 pub mod data;
 mod edges;
@@ -30,6 +32,7 @@ mod narrow;
 mod nodes;
 mod pace;
 mod parity;
+mod parts;
 pub mod plan;
 mod proof;
 pub mod quality;
@@ -56,4 +59,4 @@ pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
 pub use quality::Quality;
 
 /// Version of the mesher: one more whenever the same plan gives another mesh, so that golden files can name it as the cause.
-pub const VERSION: u32 = 26;
+pub const VERSION: u32 = 27;

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
+use crate::model::imprint::Imprint;
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 
@@ -174,6 +175,8 @@ pub struct Plan {
     pub method: Method,
     /// Neighbouring faces share nodes.
     pub conforming: bool,
+    /// What joins faces that touch without a shared border, with the expression that asks for it.
+    pub imprint: Option<(Imprint, Origin)>,
     /// How far apart borders of a surface and of its neighbours may be and still be one edge, model units; the tolerance for
     /// surfaces that are not listed.
     pub glue: BTreeMap<SurfaceId, f64>,
@@ -209,6 +212,7 @@ impl Plan {
             order: 1,
             method: Method::Auto,
             conforming: true,
+            imprint: None,
             glue: BTreeMap::new(),
             rules: Vec::new(),
             refines: Vec::new(),

@@ -2,6 +2,7 @@
 
 use super::build::Built;
 use super::chart::{Chart, Charts, Free, Grid, Lattice, Shape};
+use super::contacts::{Kind, Touch};
 use super::data::{FaceRange, Group, Mesh};
 use super::explain::Explanation;
 use super::faces::Frame;
@@ -84,6 +85,7 @@ impl Put for Remark {
         match self {
             Self::Unused { rule, why } => (0u8, (rule, why)).put(to),
             Self::Overridden { key, earlier, later } => (1u8, (key, (earlier, later))).put(to),
+            Self::Touch(Touch { kind, surfaces, names, length, at }) => (2u8, (kind.word(), (*surfaces, (names, (*length, *at))))).put(to),
         }
     }
 }
@@ -94,6 +96,10 @@ impl Plain for Remark {
         Some(match u8::take(from)? {
             0 => Self::Unused { rule: Plain::take(from)?, why: Plain::take(from)? },
             1 => Self::Overridden { key: Plain::take(from)?, earlier: Plain::take(from)?, later: Plain::take(from)? },
+            2 => {
+                let (kind, (surfaces, (names, (length, at)))) = Plain::take(from)?;
+                Self::Touch(Touch { kind: Kind::of_word(kind)?, surfaces, names, length, at })
+            }
             _ => return None,
         })
     }

@@ -1,6 +1,7 @@
 //! Which setting decides each stretch: rules by rank, written counts shared out, wishes of size, chord and angle.
 
 use super::build::Input;
+use super::contacts::{self, Touch};
 use super::counts::{share, steps};
 use super::edges::{Limits, least_steps, wanted_steps};
 use super::explain::Why;
@@ -14,7 +15,7 @@ use super::reuse::{Known, recalled_if_sound};
 use super::strips::Stretch;
 use super::wanted::{Wanted, least_on};
 use crate::base::digest::Digester;
-use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::fault::{Fault, MeshFault, Result, SurfaceFault, Touching};
 use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
 use crate::base::par;
@@ -460,8 +461,8 @@ impl Sizing {
     }
 }
 
-/// What is to be said about the rules of a plan, by their places in it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What is to be said about a mesh and the rules of its plan, by their places in it.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
     /// W701: a rule that decides nothing.
     Unused {
@@ -479,6 +480,8 @@ pub enum Remark {
         /// The rule that holds.
         later: usize,
     },
+    /// W667: two faces touch without sharing nodes.
+    Touch(Touch),
 }
 
 /// Settings of the whole mesh that only faces made freely know; they follow the clauses in [`Sizing::taken`].
@@ -494,7 +497,8 @@ const KEYS: [&str; 5] = ["count", "size", "bias", "elements", "method"];
 
 impl Remark {
     /// The warning, at the places of the rules.
-    pub fn fault(&self, plan: &Plan) -> Fault {
+    pub fn fault(&self, input: &Input) -> Fault {
+        let plan = input.plan;
         let clause = |n: usize| plan.refines.get(n).map_or(Origin::NONE, |r| r.origin);
         let first = plan.rules.len() + plan.refines.len();
         let setting = |n: usize| FREE_ONLY.get(n).and_then(|key| free_only_origin(plan, key)).unwrap_or(Origin::NONE);
@@ -503,7 +507,20 @@ impl Remark {
             None if rule >= first => setting(rule - first),
             None => clause(rule - plan.rules.len()),
         };
+        let surface = |place: usize| {
+            let id = plan.surfaces.get(place).map(|s| s.0);
+            id.map_or(Origin::NONE, |id| input.model.surfaces[id.index()].surface.origin())
+        };
         match self {
+            Self::Touch(Touch { kind, surfaces: (a, b), names, length, at }) => {
+                let how = match kind {
+                    contacts::Kind::Overlap => Touching::Overlap,
+                    contacts::Kind::Edge => Touching::Edge { length: *length },
+                    contacts::Kind::Crossing => Touching::Crossing,
+                };
+                let names = names.clone();
+                SurfaceFault::FacesTouch { mesh: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at }.into()
+            }
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {
                 let key = KEYS.into_iter().find(|k| k == key).unwrap_or("a setting");

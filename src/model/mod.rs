@@ -6,6 +6,7 @@ pub mod contact;
 mod feet;
 pub mod gather;
 pub mod glue;
+pub mod imprint;
 pub mod loops;
 pub mod measure;
 mod measure_quadrature;

@@ -159,6 +159,7 @@ pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, (full, reuse): (bool
         area: quality.map(|q| q.area),
         chord_error: if full { mesh.chord_error_again(tolerance, reuse) } else { None },
         watertight: quality.map(|_| mesh.is_watertight()),
+        parts: mesh.parts(),
         hash: full.then(|| format!("{:016x}", mesh.hash())),
         groups: mesh.groups.iter().map(group).collect(),
     }

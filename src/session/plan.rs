@@ -82,6 +82,17 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         }
         plan.groups.push(GroupRequest { name: group.name.to_string(), members });
     }
+    if let Some((true, origin)) = spec.imprint {
+        if !plan.conforming {
+            sink.push(MeshFault::RuleUnused { rule: origin, why: "`conforming: false` keeps faces apart".to_owned() }.into());
+        } else {
+            let mut faces: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).collect();
+            faces.sort_unstable();
+            faces.dedup();
+            let imprint = scene.model.imprint(&faces, origin, (&scene.network, &tolerance), cx.job)?;
+            plan.imprint = Some((imprint, origin));
+        }
+    }
     let scene = super::cuts::along_curves(cx, scene, &mut plan)?;
     Ok((plan, scene))
 }

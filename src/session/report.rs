@@ -152,6 +152,8 @@ pub struct MeshRow {
     pub area: Option<f64>,
     pub chord_error: Option<f64>,
     pub watertight: Option<bool>,
+    /// Parts that share no node with each other.
+    pub parts: usize,
     /// Of the connectivity with its groups, not of numbers or positions.
     pub hash: Option<String>,
     pub groups: Vec<GroupRow>,
@@ -171,6 +173,7 @@ crate::plain!(MeshRow {
     area,
     chord_error,
     watertight,
+    parts,
     hash,
     groups,
 });

@@ -203,7 +203,7 @@ impl Pipeline for Stages<'_> {
         self.found().mesh_seconds += (self.clock)() - start;
         // What the plan has to say comes first, also when the mesh fails.
         let made = made.inspect_err(|_| say_all(cx, &sink))?;
-        sink.extend(made.remarks.iter().map(|remark| remark.fault(&plan)));
+        sink.extend(made.remarks.iter().map(|remark| remark.fault(&input)));
         say_all(cx, &sink);
         self.note(made.lines.iter().map(|line| format!("mesh {}: {line}", spec.name)));
         Ok(made.mesh)

@@ -26,7 +26,7 @@ pub use edit::Edit;
 pub use files::{FileFault, Malformed};
 pub use mesh::MeshFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
-pub use surface::{NoFlow, SurfaceFault};
+pub use surface::{NoFlow, SurfaceFault, Touching};
 pub use values::ValueFault;
 
 use super::origin::Origin;

@@ -5,6 +5,20 @@ use glam::DVec3;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
+/// How two faces touch that share no edge there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Touching {
+    /// They cover each other.
+    Overlap,
+    /// An edge of the first lies on the second.
+    Edge {
+        /// Length of what lies there, model units; 0 for a point.
+        length: f64,
+    },
+    /// They cross.
+    Crossing,
+}
+
 /// Why curves span no flow, nearest to success first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoFlow {
@@ -224,6 +238,34 @@ pub enum SurfaceFault {
         /// Their largest distance.
         gap: f64,
         /// Where that is.
+        at: DVec3,
+    },
+    /// W667: faces of a mesh touch without sharing nodes.
+    FacesTouch {
+        /// The mesh.
+        mesh: Origin,
+        /// One face; its edge lies on the other one where an edge does.
+        a: Origin,
+        /// The other face.
+        b: Origin,
+        /// Their names.
+        names: (String, String),
+        /// How they touch.
+        how: Touching,
+        /// In the middle of the longest stretch.
+        at: DVec3,
+    },
+    /// E666: faces that are to be joined where they touch cover each other.
+    ImprintOverlap {
+        /// What asks for it.
+        imprint: Origin,
+        /// One face.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// Their names.
+        names: (String, String),
+        /// A place on both.
         at: DVec3,
     },
     /// E612: a hole that is not inside its outer loop.
@@ -705,6 +747,32 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
             ),
         )
         .at(says.unwrap_or(*shell), if says.is_some() { "asked for here" } else { "its faces came with borders of their own" }),
+        F::ImprintOverlap { imprint, a, b, names, at } => Report::new(
+            "E666",
+            format!("`{}` and `{}` cover each other at {}: what they share would be meshed twice", names.0, names.1, say.point(*at)),
+        )
+        .at(*imprint, "joins faces along lines")
+        .at(*a, "this face")
+        .at(*b, "and this one")
+        .help("trim one of them by the border of the other: `trim(a, by: b.edges, keep: P)`"),
+        F::FacesTouch { mesh, a, b, names, how, at } => {
+            let (one, other) = (format!("`{}`", names.0), format!("`{}`", names.1));
+            let (text, first, second) = match how {
+                Touching::Overlap => (format!("{one} and {other} lie on each other at"), "this face", "and this one"),
+                Touching::Edge { length } if *length > 0.0 => {
+                    let length = say.length(*length);
+                    (format!("an edge of {one} lies on {other} without sharing nodes, {length} long, at"), "its edge", "lies on this face")
+                }
+                Touching::Edge { .. } => {
+                    (format!("an edge of {one} meets {other} without sharing a node at"), "its edge", "meets this face")
+                }
+                Touching::Crossing => (format!("{one} and {other} cross without sharing nodes at"), "this face", "and this one"),
+            };
+            Report::new("W667", format!("{text} {}", say.point(*at)))
+                .at(*a, first)
+                .at(*b, second)
+                .at(*mesh, "they are not joined in this mesh")
+        }
         F::ShellNotOrientable { shell, a, b, at } => Report::new(
             "E616",
             format!(

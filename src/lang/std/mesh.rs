@@ -86,6 +86,8 @@ fields! {
     ///
     /// Each edge is then used by two faces, in opposite senses.
     fn watertight(of: Arc<MeshValue>) -> bool = |cx, of| Ok(cx.mesh(&of)?.is_watertight());
+    /// Number of parts of a mesh that share no node with each other.
+    fn parts(of: Arc<MeshValue>) -> usize = |cx, of| Ok(cx.mesh(&of)?.parts());
     /// Lengths of all edges, each once.
     fn edge_lengths(of: Arc<MeshValue>) -> Vec<Length> = |cx, of| Ok(cx.mesh(&of)?.edge_lengths().into_iter().map(Length).collect());
 }

@@ -125,6 +125,7 @@ pub const KINDS: &[LineKind] = &[
             length("area", 2),
             length("chord_error", 1),
             field("watertight", Kind::Word),
+            count("parts"),
             field("groups", Kind::Groups),
             field("hash", Kind::Word),
         ],

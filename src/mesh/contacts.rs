@@ -1,0 +1,379 @@
+//! Faces of a mesh that touch, cross or cover each other where they share no nodes.
+//!
+//! The elements of the finished mesh say where to look, at the cost of its borders; the surfaces say what is so. An edge counts that
+//! lies on a face with a node of the mesh, faces that cross where an element of one goes through one of the other, and faces that
+//! cover each other by a place inside one of them.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::build::Input;
+use super::contact_leaves::Leaves;
+use super::data::Mesh;
+use super::inside;
+use super::layout::Layout;
+use super::nodes::Nodes;
+use crate::base::bbox::Box3;
+use crate::base::boxtree::BoxTree;
+use crate::base::fault::{Result, SurfaceFault};
+use crate::base::par;
+use crate::model::SurfaceId;
+use crate::surface::{Nearest, SurfaceKind};
+
+/// How two faces touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// They cover each other.
+    Overlap,
+    /// An edge of the first lies on the second.
+    Edge,
+    /// They cross.
+    Crossing,
+}
+
+impl Kind {
+    /// Its number in records.
+    pub fn word(self) -> u8 {
+        self as u8
+    }
+
+    /// The kind of a number.
+    pub fn of_word(word: u8) -> Option<Self> {
+        [Self::Overlap, Self::Edge, Self::Crossing].into_iter().find(|kind| kind.word() == word)
+    }
+}
+
+/// Two surfaces of a mesh that touch without sharing nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Touch {
+    /// How.
+    pub kind: Kind,
+    /// Their places in the plan.
+    pub surfaces: (usize, usize),
+    /// Their names.
+    pub names: (String, String),
+    /// Length of the edges that lie on the other face, model units; 0 where there is none.
+    pub length: f64,
+    /// In the middle of the longest stretch.
+    pub at: DVec3,
+}
+
+/// Crossings of elements of two faces that are looked at before the faces count as apart.
+const LOOKS: usize = 8;
+/// Projections from face to face until a place on both is found.
+const ROUNDS: usize = 60;
+
+/// All of a mesh that is needed to look at its faces.
+struct Scan<'a> {
+    input: &'a Input<'a>,
+    layout: &'a Layout,
+    mesh: &'a Mesh,
+    /// Elements of each face by place.
+    leaves: Vec<Leaves>,
+    /// The faces by their boxes.
+    tree: BoxTree,
+    /// Faces that have each node of a border.
+    users: Vec<Vec<u32>>,
+    /// Nodes along each stretch.
+    along: Vec<Vec<u32>>,
+}
+
+/// A stretch of an edge on a face, nodes from and to by their places along it.
+struct Found {
+    stretch: usize,
+    face: usize,
+    nodes: Vec<usize>,
+}
+
+/// Every two surfaces of a mesh that touch, cross or cover each other without sharing nodes there, in the order of the plan.
+pub fn look(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &Mesh) -> Vec<Touch> {
+    let mut surfaces: Vec<SurfaceId> = layout.faces.iter().map(|f| f.surface).collect();
+    surfaces.dedup();
+    if surfaces.len() < 2 {
+        return Vec::new();
+    }
+    let scan = Scan::new(input, layout, nodes, mesh);
+    let mut known = Known { scan: &scan, nearest: BTreeMap::new(), touches: BTreeMap::new(), tries: BTreeMap::new() };
+    known.borders();
+    known.insides();
+    known.covered();
+    known.crossings();
+    known.touches.into_values().map(|t| t.0).collect()
+}
+
+/// E666 where faces that are to be joined cover each other: what they share would be in the mesh twice.
+pub fn refuse_overlaps(input: &Input, touches: &[Touch]) -> Result<()> {
+    let Some((_, imprint)) = &input.plan.imprint else { return Ok(()) };
+    let Some(Touch { surfaces: (a, b), names, at, .. }) = touches.iter().find(|t| t.kind == Kind::Overlap) else { return Ok(()) };
+    let origin = |place: usize| input.model.surfaces[input.plan.surfaces[place].0.index()].surface.origin();
+    let (a, b, names) = (origin(*a), origin(*b), names.clone());
+    Err(SurfaceFault::ImprintOverlap { imprint: *imprint, a, b, names, at: *at }.into())
+}
+
+impl<'a> Scan<'a> {
+    fn new(input: &'a Input<'a>, layout: &'a Layout, nodes: &Nodes, mesh: &'a Mesh) -> Self {
+        let leaves = par::map(layout.faces.len(), |f| {
+            let surface = &input.model.surfaces[layout.faces[f].surface.index()].surface;
+            let flat = surface.is_flat() || surface.kind() == SurfaceKind::Plane;
+            Leaves::new(mesh, f, flat, input.tolerance.point)
+        });
+        let boxes: Vec<Box3> = leaves.iter().map(|l| l.hull).collect();
+        let along: Vec<Vec<u32>> = (0..layout.pieces.atoms.len()).map(|k| nodes.of_stretch(layout, k, false)).collect();
+        let mut users: Vec<Vec<u32>> = vec![Vec::new(); nodes.total as usize];
+        for (f, face) in layout.faces.iter().enumerate() {
+            let poles = face.sides.iter().filter_map(|s| s.pole).map(|j| nodes.of_junction(j));
+            let points = face.points.iter().map(|k| nodes.points[*k]);
+            for n in face.stretches().flat_map(|k| along[k].iter().copied()).chain(poles).chain(points) {
+                if let Some(own) = users.get_mut(n as usize)
+                    && own.last() != Some(&(f as u32))
+                {
+                    own.push(f as u32);
+                }
+            }
+        }
+        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along }
+    }
+
+    fn p(&self, node: u32) -> DVec3 {
+        self.mesh.nodes[node as usize]
+    }
+
+    fn surface_of(&self, face: usize) -> SurfaceId {
+        self.layout.faces[face].surface
+    }
+
+    /// Whether one of some faces is of the surface of another one.
+    fn knows(&self, faces: &[u32], other: usize) -> bool {
+        faces.iter().any(|f| self.surface_of(*f as usize) == self.surface_of(other))
+    }
+}
+
+/// What has been found out.
+struct Known<'a> {
+    scan: &'a Scan<'a>,
+    nearest: BTreeMap<SurfaceId, Nearest>,
+    /// By the places of the surfaces, with the length of the longest stretch.
+    touches: BTreeMap<(usize, usize), (Touch, f64)>,
+    /// Crossings of elements that were looked at, by faces.
+    tries: BTreeMap<(usize, usize), usize>,
+}
+
+impl Known<'_> {
+    /// Whether a point lies on a face.
+    fn on(&mut self, face: usize, p: DVec3) -> bool {
+        let scan = self.scan;
+        let face = &scan.layout.faces[face];
+        let surface = &scan.input.model.surfaces[face.surface.index()].surface;
+        let nearest = self.nearest.entry(face.surface).or_insert_with(|| Nearest::new(surface));
+        inside::on(nearest, &scan.input.model.patches[face.patch.index()], p, scan.input.tolerance)
+    }
+
+    /// The point of a face's surface nearest to another one.
+    fn foot(&mut self, face: usize, p: DVec3) -> DVec3 {
+        let id = self.scan.surface_of(face);
+        let surface = &self.scan.input.model.surfaces[id.index()].surface;
+        self.nearest.entry(id).or_insert_with(|| Nearest::new(surface)).at(p).point
+    }
+
+    fn add(&mut self, (a, b): (usize, usize), kind: Kind, (length, longest): (f64, f64), at: DVec3) {
+        let scan = self.scan;
+        let (sa, sb) = (scan.surface_of(a), scan.surface_of(b));
+        let place = |s: SurfaceId| scan.input.plan.surfaces.iter().position(|x| x.0 == s).unwrap_or(0);
+        let name = |s: SurfaceId| scan.input.model.surfaces[s.index()].name.clone();
+        let key = (place(sa).min(place(sb)), place(sa).max(place(sb)));
+        let touch = Touch { kind, surfaces: (place(sa), place(sb)), names: (name(sa), name(sb)), length, at };
+        match self.touches.entry(key) {
+            std::collections::btree_map::Entry::Vacant(slot) => {
+                slot.insert((touch, longest));
+            }
+            std::collections::btree_map::Entry::Occupied(mut slot) => {
+                let (old, before) = slot.get_mut();
+                let length = old.length + length;
+                // What covers more is said first; of the same kind the longest stretch gives the place.
+                if (kind, *before) < (old.kind, longest) && kind <= old.kind {
+                    (*old, *before) = (touch, longest);
+                }
+                old.length = length;
+            }
+        }
+    }
+
+    /// Edges on faces, and edges through faces.
+    fn borders(&mut self) {
+        let scan = self.scan;
+        let used: Vec<bool> = {
+            let mut used = vec![false; scan.along.len()];
+            scan.layout.faces.iter().flat_map(|f| f.sides.iter().flat_map(|s| &s.uses)).for_each(|u| used[u.atom] = true);
+            used
+        };
+        let stretches: Vec<usize> = (0..used.len()).filter(|k| used[*k]).collect();
+        let near = par::map(stretches.len(), |n| scan.beside(stretches[n]));
+        for (n, (touched, pierced)) in near.into_iter().enumerate() {
+            for (face, candidates) in touched {
+                let nodes = candidates.into_iter().filter(|k| self.on(face, scan.p(scan.along[stretches[n]][*k]))).collect();
+                self.lies_on(&Found { stretch: stretches[n], face, nodes });
+            }
+            for (face, at) in pierced {
+                self.crosses(scan.owner(stretches[n]), face, at);
+            }
+        }
+    }
+
+    /// Takes an edge on a face.
+    fn lies_on(&mut self, found: &Found) {
+        let scan = self.scan;
+        let Some(&middle) = found.nodes.get(found.nodes.len() / 2) else { return };
+        let along = &scan.along[found.stretch];
+        let on = |k: usize| found.nodes.contains(&k) || scan.users.get(along[k] as usize).is_some_and(|u| u.contains(&(found.face as u32)));
+        let steps = (1..along.len()).filter(|k| on(k - 1) && on(*k));
+        let length: f64 = steps.map(|k| scan.p(along[k - 1]).distance(scan.p(along[k]))).sum();
+        let owner = scan.owner(found.stretch);
+        let at = scan.p(along[middle]);
+        // Beside an edge that only touches, its own face leaves the other one.
+        let beside = scan.leaves[owner].beside(scan.mesh, along[middle]);
+        let kind = match beside.map(|p| self.foot(owner, p)) {
+            Some(p) if self.on(found.face, p) => Kind::Overlap,
+            _ => Kind::Edge,
+        };
+        self.add((owner, found.face), kind, (length, length), at);
+    }
+
+    /// Takes two faces whose elements cross, if the faces themselves do near there.
+    fn crosses(&mut self, a: usize, b: usize, near: DVec3) -> bool {
+        let tries = self.tries.entry((a, b)).or_default();
+        *tries += 1;
+        if *tries > LOOKS {
+            return false;
+        }
+        let tolerance = self.scan.input.tolerance.point;
+        let mut p = near;
+        for _ in 0..ROUNDS {
+            let q = self.foot(a, p);
+            let r = self.foot(b, q);
+            let gap = q.distance(r);
+            p = r;
+            if gap <= 0.5 * tolerance {
+                break;
+            }
+        }
+        if !(self.on(a, p) && self.on(b, p)) || self.scan.is_shared(a, b, p) {
+            return false;
+        }
+        self.add((a, b), Kind::Crossing, (0.0, 0.0), p);
+        true
+    }
+
+    /// Faces that lie on each other whatever their borders do: a place inside each is looked at.
+    fn insides(&mut self) {
+        let scan = self.scan;
+        for a in 0..scan.leaves.len() {
+            let Some(p) = scan.leaves[a].place(scan.mesh) else { continue };
+            let mut near = Vec::new();
+            scan.tree.query(&Box3::of([p]), 0.0, |b| near.push(b));
+            near.retain(|b| scan.surface_of(a) != scan.surface_of(*b) && scan.leaves[*b].holds(scan.mesh, p));
+            near.sort_unstable();
+            for b in near {
+                let foot = self.foot(a, p);
+                if self.on(b, foot) {
+                    self.add((a, b), Kind::Overlap, (0.0, 0.0), foot);
+                }
+            }
+        }
+    }
+
+    /// Faces on which a border of another one lies as a line, and beside it that face itself.
+    fn covered(&mut self) {
+        let scan = self.scan;
+        for (f, face) in scan.layout.faces.iter().enumerate() {
+            for &k in &face.lines {
+                let along = &scan.along[k];
+                let middle = along[along.len() / 2];
+                let others: Vec<usize> = scan.users[middle as usize].iter().map(|n| *n as usize).collect();
+                for a in others {
+                    let own = scan.layout.faces[a].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == k));
+                    if !own || scan.surface_of(a) == scan.surface_of(f) {
+                        continue;
+                    }
+                    let beside = scan.leaves[a].beside(scan.mesh, middle).map(|p| self.foot(a, p));
+                    if beside.is_some_and(|p| self.on(f, p)) {
+                        self.add((a, f), Kind::Overlap, (0.0, 0.0), scan.p(middle));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Faces that bend and cross inside both; two planes cross where a border of one goes through the other.
+    fn crossings(&mut self) {
+        let scan = self.scan;
+        for (a, b) in scan.tree.pairs(0.0) {
+            let (a, b) = (a as usize, b as usize);
+            let place = |f: usize| scan.input.plan.surfaces.iter().position(|x| x.0 == scan.surface_of(f)).unwrap_or(0);
+            let key = (place(a).min(place(b)), place(a).max(place(b)));
+            let flat = scan.leaves[a].is_flat() && scan.leaves[b].is_flat();
+            if flat || scan.surface_of(a) == scan.surface_of(b) || self.touches.contains_key(&key) {
+                continue;
+            }
+            for at in scan.leaves[a].crossings(&scan.leaves[b], scan.mesh, LOOKS) {
+                if self.crosses(a, b, at) {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Faces beside a stretch: places of its nodes that may lie on each, and points where it goes through one.
+type Beside = (BTreeMap<usize, Vec<usize>>, Vec<(usize, DVec3)>);
+
+impl Scan<'_> {
+    /// A face that has a stretch on its border.
+    fn owner(&self, stretch: usize) -> usize {
+        let inner = |k: usize| self.users.get(self.along[stretch][k] as usize);
+        let (a, b) = (inner(0), inner(self.along[stretch].len() - 1));
+        let has = |f: &&u32| self.layout.faces[**f as usize].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch));
+        a.into_iter().chain(b).flatten().find(has).map_or(0, |f| *f as usize)
+    }
+
+    /// Whether a place lies where two faces share nodes: within an edge of the mesh from one of them.
+    fn is_shared(&self, a: usize, b: usize, p: DVec3) -> bool {
+        let both = |n: u32| self.users.get(n as usize).is_some_and(|u| u.contains(&(a as u32)) && u.contains(&(b as u32)));
+        let near = |k: usize| {
+            let along = &self.along[k];
+            let step = self.p(along[0]).distance(self.p(along[1]));
+            along.iter().any(|n| both(*n) && self.p(*n).distance(p) <= step)
+        };
+        self.layout.faces[a].stretches().any(near)
+    }
+
+    fn beside(&self, stretch: usize) -> Beside {
+        let along = &self.along[stretch];
+        let none = Vec::new();
+        let users = |n: u32| self.users.get(n as usize).unwrap_or(&none);
+        let (mut touched, mut pierced): Beside = Default::default();
+        let mut faces = Vec::new();
+        for k in 0..along.len() {
+            let p = self.p(along[k]);
+            let next = along.get(k + 1).map(|n| self.p(*n));
+            let around = Box3::of(std::iter::once(p).chain(next));
+            faces.clear();
+            self.tree.query(&around, 0.0, |f| faces.push(f));
+            faces.sort_unstable();
+            for &f in &faces {
+                let own = users(along[k]);
+                if !self.knows(own, f) && self.leaves[f].holds(self.mesh, p) {
+                    touched.entry(f).or_default().push(k);
+                }
+                let Some(q) = next else { continue };
+                if self.knows(own, f) || self.knows(users(along[k + 1]), f) {
+                    continue;
+                }
+                if let Some(at) = self.leaves[f].pierced(self.mesh, (p, q), self.input.tolerance.point) {
+                    pierced.push((f, at));
+                }
+            }
+        }
+        (touched, pierced)
+    }
+}
