@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::closest::stations;
 use super::core::{Domain, Side, Surface};
+use super::curve_extent::curve_bbox;
 use super::descent::{Local, descend};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::{BOX, EPSILON};
-use crate::network::Chain;
 
 /// The smallest box along the axes that holds the surface: no point of it stands out by more than [`BOX`] of the diagonal.
 ///
@@ -47,7 +47,7 @@ pub fn bbox(surface: &Surface) -> Box3 {
 /// The box of a trimmed surface: of its borders, and of the extreme points of what is inside, found from samples.
 fn trimmed_bbox(surface: &Surface) -> Box3 {
     let mut bounds = (0..surface.n_sides()).fold(Box3::EMPTY, |bounds, k| match (surface.side(k), surface.border_line(k)) {
-        (Side::Chain { chain, .. }, _) => bounds.union(chain_bbox(&chain)),
+        (Side::Chain { chain, .. }, _) => bounds.union(curve_bbox(&chain)),
         (_, Some((a, b))) => {
             let at = |t: f64| surface.point(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
             bounds.union(Box3::of((0..=BORDER).map(|k| at(k as f64 / BORDER as f64))))
@@ -128,28 +128,6 @@ fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
             open.extend([((u.0, mu), v), ((mu, u.1), v)]);
         } else {
             open.extend([(u, (v.0, mv)), (u, (mv, v.1))]);
-        }
-    }
-    bounds
-}
-
-/// The box of a chain by samples and Newton's method on each coordinate's slope.
-fn chain_bbox(chain: &Chain) -> Box3 {
-    let stops = stations(&super::breaks::chain_breaks(chain));
-    let mut bounds = Box3::of(stops.iter().map(|&f| chain.point(f)));
-    for w in stops.windows(2) {
-        for axis in 0..3 {
-            let slope = |f: f64| chain.jet(f).d1[axis];
-            let (mut low, mut high) = (w[0], w[1]);
-            let rising = slope(low) < 0.0;
-            if rising == (chain.jet_before(high).d1[axis] < 0.0) {
-                continue;
-            }
-            for _ in 0..50 {
-                let middle = 0.5 * (low + high);
-                if (slope(middle) < 0.0) == rising { low = middle } else { high = middle }
-            }
-            bounds = bounds.with(chain.point(low));
         }
     }
     bounds

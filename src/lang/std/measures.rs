@@ -14,7 +14,7 @@ use crate::lang::value::{MeshValue, ShellValue, Value};
 use crate::model::SurfaceId;
 use crate::model::measure::{self, Solid};
 use crate::network::Chain;
-use crate::surface::Surface;
+use crate::surface::{Surface, curve_bbox};
 use crate::{builtins, fields};
 
 /// `{min, max, size}` of a box.
@@ -36,11 +36,6 @@ fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
     let faces: Vec<(Surface, bool)> =
         built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
     Ok(measure::solid(&faces))
-}
-
-/// The smallest box of a curve: exact ends and, between them, where it turns back along an axis.
-fn box_of(chain: &Chain) -> Box3 {
-    chain.bbox()
 }
 
 builtins! {
@@ -88,13 +83,13 @@ fields! {
         Err(Stop::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
         Err(other) => Err(other),
     };
-    /// The smallest box along the axes: `{min, max, size}`.
-    fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, box_of(&of)));
-    /// The smallest box along the axes: `{min, max, size}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size}`.
+    fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, curve_bbox(&of)));
+    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size}`.
     fn bbox(of: Surface) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&[of])));
-    /// The smallest box along the axes: `{min, max, size}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size}`.
     fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&of.surfaces)));
-    /// The smallest box along the axes: `{min, max, size}`.
+    /// The smallest box along the axes that holds all nodes: `{min, max, size}`.
     fn bbox(of: Arc<MeshValue>) -> Value = |cx, of| {
         let mesh = cx.mesh(&of)?;
         Ok(record_of(cx, Box3::of(mesh.nodes.iter().copied())))
