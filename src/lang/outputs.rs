@@ -148,9 +148,11 @@ impl Cx<'_> {
             diagnostic
         });
         let side = |value: Option<&Value>| value.map(|v| self.show(v));
+        let allowed = comparison.as_ref().and_then(|c| c.allowed).map(Value::Number);
         let (left, right) = comparison.map_or((None, None), |c| (Some(c.left), Some(c.right)));
         let result = CheckResult {
             label: label_text,
+            labelled: label.is_some(),
             pass,
             file,
             span: code.span(thing),
@@ -158,6 +160,7 @@ impl Cx<'_> {
             right: side(right.as_ref()),
             left_value: left,
             right_value: right,
+            allowed,
         };
         Ok((result, failure))
     }
@@ -207,7 +210,7 @@ impl Cx<'_> {
 
     /// A report as a table: records are rows, a record is one row, anything else one cell.
     fn report(&mut self, code: Code<'_>, label: Option<ExprId>, things: &[ExprId]) -> Result<ReportTable, Stop> {
-        let title = self.label(code, label, things.first().copied())?;
+        let (title, labelled) = (self.label(code, label, things.first().copied())?, label.is_some());
         let (mut values, mut gather) = (Vec::new(), Gather::default());
         for thing in things {
             values.extend(gather.take(self.eval(code, *thing)).map(|v| (*thing, v)));
@@ -217,13 +220,13 @@ impl Cx<'_> {
             self.machine.site.expr = *thing;
             let pipeline = self.pipeline;
             if let Some(table) = pipeline.table(self, value)? {
-                return Ok(ReportTable { title, ..table });
+                return Ok(ReportTable { title, labelled, ..table });
             }
-            return Ok(self.table(title, value));
+            return Ok(ReportTable { labelled, ..self.table(title, value) });
         }
         // Several things: a row each, under their source.
         let rows = values.iter().map(|(thing, value)| vec![Value::text(&self.source(code, *thing)), value.clone()]).collect();
-        Ok(self.with_units(title, vec!["what".into(), "value".into()], rows))
+        Ok(ReportTable { labelled, ..self.with_units(title, vec!["what".into(), "value".into()], rows) })
     }
 
     fn table(&mut self, title: String, value: &Value) -> ReportTable {
@@ -308,7 +311,7 @@ impl Cx<'_> {
             }
             columns.push(Column { name, unit });
         }
-        ReportTable { title, columns, rows }
+        ReportTable { title, labelled: false, columns, rows }
     }
 }
 

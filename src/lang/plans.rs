@@ -91,6 +91,8 @@ pub struct MeshSpec {
 pub struct CheckResult {
     /// Its label, or its source text.
     pub label: String,
+    /// Whether it has a label.
+    pub labelled: bool,
     /// Whether it holds.
     pub pass: bool,
     /// Where it stands.
@@ -105,6 +107,8 @@ pub struct CheckResult {
     pub left_value: Option<Value>,
     /// Right side as a value.
     pub right_value: Option<Value>,
+    /// The difference that `within` allows.
+    pub allowed: Option<Value>,
 }
 
 /// A column of a report.
@@ -121,6 +125,8 @@ pub struct Column {
 pub struct ReportTable {
     /// Its label, or the source text of what is reported.
     pub title: String,
+    /// Whether it has a label.
+    pub labelled: bool,
     /// Columns.
     pub columns: Vec<Column>,
     /// Cells: numbers (in model units and degrees), texts, bools, `none`.

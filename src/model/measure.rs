@@ -140,7 +140,12 @@ fn center(surfaces: &[Surface]) -> DVec3 {
 }
 
 /// The integral of `f(jet, p − about)` over a surface, with its error estimate.
-fn over<const N: usize>(surface: &Surface, about: DVec3, accuracy: f64, f: &impl Fn(&Jet2, DVec3) -> [f64; N]) -> ([f64; N], [f64; N]) {
+pub(super) fn over<const N: usize>(
+    surface: &Surface,
+    about: DVec3,
+    accuracy: f64,
+    f: &impl Fn(&Jet2, DVec3) -> [f64; N],
+) -> ([f64; N], [f64; N]) {
     let at = |jet: &Jet2| f(jet, jet.p - about);
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),

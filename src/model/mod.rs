@@ -12,6 +12,7 @@ pub mod measure;
 mod measure_quadrature;
 mod measure_strips;
 mod measure_trimmed;
+pub mod moments;
 mod outwards;
 mod patches;
 mod sew;
@@ -23,6 +24,7 @@ pub mod trace;
 
 pub use contact::{Apart, Contact, Spread};
 pub use loops::Loop;
+pub use moments::Moments;
 pub use patches::Lines;
 pub use shells::ShellRequest;
 pub use stretches::{Meeting, Stretch};

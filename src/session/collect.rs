@@ -37,15 +37,27 @@ pub fn curves(network: &Network) -> Vec<CurveRow> {
     network.curves.iter().map(row).collect()
 }
 
-/// Declared chains, then the unnamed ones that surfaces stand on; chains with the same links are one.
+/// Modeling curves.
 pub fn modeling(cx: &Cx, parts: &Parts, network: &Network, tolerance: &Tolerance) -> Vec<ModelingRow> {
+    let row = |(name, links, chain): (String, usize, &Chain)| ModelingRow {
+        name,
+        links,
+        length: chain.length(),
+        kinks: chain.kinks(tolerance).len(),
+    };
+    chains(cx, parts, network, tolerance).into_iter().map(row).collect()
+}
+
+/// Declared chains, then the unnamed ones that surfaces stand on, each with how many links it runs over; chains with the same
+/// links are one.
+pub fn chains<'p>(cx: &Cx, parts: &'p Parts, network: &Network, tolerance: &Tolerance) -> Vec<(String, usize, &'p Chain)> {
     let mut seen = BTreeSet::new();
     let mut rows = Vec::new();
-    let mut add = |name: String, chain: &Chain| {
+    let mut add = |name: String, chain: &'p Chain| {
         let key = identity(chain, network, tolerance);
         let links = if key.1.is_empty() { 1 } else { key.1.len() };
         if seen.insert(key) {
-            rows.push(ModelingRow { name, links, length: chain.length(), kinks: chain.kinks(tolerance).len() });
+            rows.push((name, links, chain));
         }
     };
     parts.modeling.iter().for_each(|m| add(m.name.to_string(), &m.value));

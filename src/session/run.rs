@@ -91,8 +91,13 @@ impl Outcome {
 
 /// Runs it.
 pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
+    run_seen(task, disk, job, &mut |_| {})
+}
+
+/// Runs it and shows `look` the evaluated model before it goes.
+pub fn run_seen(task: &Task, disk: &Disk, job: &Job, look: &mut dyn FnMut(&mut Cx<'_>)) -> Outcome {
     let stages = Stages::new(task.clock);
-    Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(&mut |_| {}).0
+    Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(look).0
 }
 
 /// How a run goes that follows another one.

@@ -2,7 +2,9 @@
 
 use super::compare::Allowance;
 use super::words::{Measure, end_of_quote, number, quoted, rounded, unquoted};
+use crate::base::digest::Digester;
 use crate::lang::units::length_unit;
+use crate::session::report::Cell;
 
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,11 +32,35 @@ pub fn measure_of(unit: &str) -> Measure {
     }
 }
 
+/// Significant digits of numbers in lists inside lists.
+const INNER: usize = 17;
+
 impl Entry {
+    /// A cell of a column of this unit.
+    pub fn of(cell: &Cell, unit: &str) -> Self {
+        let numbers = |list: bool, all: Vec<f64>| Self::Numbers { list, all, unit: unit.to_owned() };
+        match cell {
+            Cell::Missing => Self::Text("-".to_owned()),
+            Cell::Bool(is) => Self::Text(is.to_string()),
+            Cell::Number(x) => numbers(false, vec![*x]),
+            Cell::Text(text) => Self::Text(text.clone()),
+            Cell::List(items) => {
+                let plain = |item: &Cell| if let Cell::Number(x) = item { Some(*x) } else { None };
+                match items.iter().map(plain).collect::<Option<Vec<f64>>>() {
+                    Some(all) if !all.is_empty() => numbers(true, all),
+                    _ => {
+                        let inside: Vec<Self> = items.iter().map(|item| Self::of(item, unit)).collect();
+                        Self::Text(format!("({})", text(&inside, INNER)))
+                    }
+                }
+            }
+        }
+    }
+
     fn text(&self, digits: usize) -> String {
         match self {
             Self::Text(text) => {
-                let odd = text.is_empty() || text != text.trim() || text.contains("  ") || text.contains(['|', '"', '\\']);
+                let odd = text.is_empty() || text != text.trim() || text.contains("  ") || text.contains(['|', '"', '\\', '`']);
                 let read = Self::parse(text);
                 if odd || text.contains(char::is_control) || text.contains("//") || read.as_ref() != Ok(self) {
                     quoted(text)
@@ -78,9 +104,84 @@ impl Entry {
                 let measure = measure_of(u);
                 a.iter().zip(b).filter_map(|(a, b)| allowance.excess(measure, *a, *b)).reduce(f64::max)
             }
+            (Self::Text(a), Self::Text(b)) => texts(a, b, allowance),
             _ => (self != other).then_some(f64::INFINITY),
         }
     }
+}
+
+/// How far apart texts are that may hold numbers: lists, and quantities of different units.
+fn texts(a: &str, b: &str, allowance: Allowance) -> Option<f64> {
+    let (one, other) = (pieces(a), pieces(b));
+    if one.len() != other.len() {
+        return Some(f64::INFINITY);
+    }
+    let apart = |(a, b): (&&str, &&str)| match (real(a), real(b)) {
+        _ if a == b => None,
+        (Some(x), Some(y)) => allowance.excess(Measure::Length(1), x, y),
+        _ => Some(f64::INFINITY),
+    };
+    one.iter().zip(&other).filter_map(apart).reduce(f64::max)
+}
+
+/// A number that may have been rounded. What is written without point and exponent may stand for one beside a real.
+fn real(piece: &str) -> Option<f64> {
+    number(piece).filter(|_| piece.starts_with(|c: char| c.is_ascii_digit() || c == '-'))
+}
+
+/// Numbers and what stands between them.
+fn pieces(text: &str) -> Vec<&str> {
+    let (mut found, mut start, mut at) = (Vec::new(), 0, 0);
+    while at < text.len() {
+        let rest = &text[at..];
+        let free = !text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '.');
+        let end = if free { number_end(rest) } else { 0 };
+        if end > 0 {
+            found.extend([&text[start..at], &rest[..end]]);
+            at += end;
+            start = at;
+        } else {
+            at += rest.chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    found.push(&text[start..]);
+    found
+}
+
+/// Bytes of the number that a text begins with; 0 without one.
+fn number_end(text: &str) -> usize {
+    let mut best = 0;
+    for (end, c) in text.char_indices().map(|(at, c)| (at + c.len_utf8(), c)) {
+        if !(c.is_ascii_digit() || matches!(c, '-' | '+' | '.' | 'e')) {
+            break;
+        }
+        if c.is_ascii_digit() && number(&text[..end]).is_some() {
+            best = end;
+        }
+    }
+    best
+}
+
+/// Many rows as one: of each column the sum of its numbers, each times one that tells its row, and a digest of its words.
+pub fn together(rows: &[Vec<Cell>]) -> Vec<Cell> {
+    let width = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let column = |c: usize| {
+        let (mut sum, mut words) = (0.0, Digester::new("words"));
+        let mut add = |weight: f64, cell: &Cell| {
+            let told = Entry::of(cell, "");
+            let mut numbers = |all: &[f64]| all.iter().enumerate().for_each(|(k, x)| sum += weight * (1.0 + k as f64) * x);
+            match &told {
+                Entry::Numbers { all, .. } => numbers(all),
+                Entry::Text(text) => pieces(text).into_iter().for_each(|piece| match real(piece) {
+                    Some(x) => numbers(&[x]),
+                    None => words = std::mem::take(&mut words).text(piece),
+                }),
+            }
+        };
+        rows.iter().enumerate().for_each(|(k, row)| add(1.0 + k as f64 / rows.len() as f64, row.get(c).unwrap_or(&Cell::Missing)));
+        Cell::List(vec![Cell::Number(sum), Cell::Text(format!("{:032x}", words.finish().0))])
+    };
+    (0..width).map(column).collect()
 }
 
 /// A row as written.

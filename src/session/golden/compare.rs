@@ -1,9 +1,12 @@
 //! Old lines against new ones: matched by kind and name, compared value by value.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::cells;
+use super::file::TOLERANCE;
 use super::line::Line;
+use super::quote::tokens;
+use super::renames::Renames;
 use super::words::{self, Kind, Measure, Value};
 
 /// How much reals may change.
@@ -22,6 +25,13 @@ pub enum Change {
     Gone(Line),
     /// It was not there.
     New(Line),
+    /// It has another name, and is otherwise as it was.
+    Renamed {
+        /// As it was.
+        old: Line,
+        /// As it is.
+        new: Line,
+    },
     /// It says something else.
     Changed {
         /// As it was.
@@ -66,28 +76,57 @@ impl Allowance {
 }
 
 /// What changed: what was there in the old order, then what is new.
-pub fn compare(old: &[Line], new: &[Line], allowance: Allowance) -> Vec<Change> {
-    let mut partner: Vec<Option<usize>> = vec![None; old.len()];
-    let mut taken = vec![false; new.len()];
-    let by_name = |line: &Line| (line.kind.clone(), line.name.clone());
+///
+/// `names` are all that the script of the new lines uses: a name inside it that is found nowhere any more may have become
+/// another one.
+pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: Allowance) -> Vec<Change> {
+    let mut pairing = Pairing { old, new, allowance, partner: vec![None; old.len()], taken: vec![false; new.len()] };
+    let mut renames = Renames::between(old, new, names);
+    let alone = || (String::new(), String::new());
+    let by_name = |line: &Line| if line.loose { alone() } else { (line.kind.clone(), line.name.clone()) };
+    let by_tokens = |line: &Line| if line.loose { (line.kind.clone(), tokens(&line.name).join(" ")) } else { alone() };
+    // What has no name is known by its values.
+    pairing.by(&by_tokens, Only::Equal);
+    pairing.known_by_values(&mut |a, b| a.loose && b.loose && a.kind == b.kind && same(a, b, allowance));
+    pairing.by(&by_name, Only::Any);
+    // What has another name now and is otherwise as it was.
+    let renamed = pairing.known_by_values(&mut |a, b| {
+        let fresh = !a.is_diagnostic() && a.kind == b.kind && same_but_name(a, b, allowance);
+        if fresh && !a.loose && !b.loose && !matches!(a.kind.as_str(), "set" | "settings" | "row") {
+            renames.note(&a.name, &b.name);
+        }
+        fresh
+    });
+    pairing.known_by_values(&mut |a, b| a.is_diagnostic() && renames.same_diagnostic(a, b));
+    pairing.by(&by_tokens, Only::Any);
+    pairing.by(&|line: &Line| if line.loose { (line.kind.clone(), String::new()) } else { alone() }, Only::Any);
     // A diagnostic whose words changed is found again by what it points at.
-    let by_place = |line: &Line| (line.kind.clone(), format!("{:?}", line.get("at").filter(|_| line.is_diagnostic())));
-    let places = |lines: &[Line], free: &dyn Fn(usize) -> bool| lines.iter().enumerate().any(|(k, l)| l.is_diagnostic() && free(k));
-    pair_up(old, new, &by_name, allowance, (&mut partner, &mut taken));
-    if places(old, &|k| partner[k].is_none()) && places(new, &|k| !taken[k]) {
-        let key = |line: &Line| if line.is_diagnostic() { by_place(line) } else { (String::new(), String::new()) };
-        pair_up(old, new, &key, allowance, (&mut partner, &mut taken));
-    }
+    let by_place = |line: &Line| match line.get("at") {
+        Some(Value::Word(at)) if line.is_diagnostic() => (line.kind.clone(), tokens(at).join(" ")),
+        _ if line.is_diagnostic() => (line.kind.clone(), String::new()),
+        _ => alone(),
+    };
+    pairing.by(&by_place, Only::Any);
+    let (partner, taken) = (pairing.partner, pairing.taken);
     let mut changes = Vec::new();
-    for (line, partner) in old.iter().zip(&partner) {
-        match partner.map(|k| &new[k]) {
-            None => changes.push(Change::Gone(line.clone())),
-            Some(other) => {
-                let moves = moves(line, other, allowance);
-                if !moves.is_empty() {
-                    changes.push(Change::Changed { old: line.clone(), new: other.clone(), moves });
-                }
+    for (k, line) in old.iter().enumerate() {
+        let Some(other) = partner[k].map(|b| &new[b]) else {
+            changes.push(Change::Gone(line.clone()));
+            continue;
+        };
+        let today = renames.of_today(line);
+        if renamed.contains(&k) {
+            if today.name != other.name || line.loose != other.loose {
+                changes.push(Change::Renamed { old: line.clone(), new: other.clone() });
             }
+            continue;
+        }
+        if line.is_diagnostic() && renames.same_diagnostic(line, other) {
+            continue;
+        }
+        let moves = moves(&today, other, allowance);
+        if !moves.is_empty() {
+            changes.push(Change::Changed { old: line.clone(), new: other.clone(), moves });
         }
     }
     changes.extend(new.iter().zip(taken).filter(|(_, taken)| !taken).map(|(line, _)| Change::New(line.clone())));
@@ -96,41 +135,100 @@ pub fn compare(old: &[Line], new: &[Line], allowance: Allowance) -> Vec<Change> 
 
 type Key = (String, String);
 
-/// Pairs lines with the same key: equal ones first, then in order. Lines with an empty key stay alone.
-fn pair_up(
-    old: &[Line],
-    new: &[Line],
-    key: &dyn Fn(&Line) -> Key,
+/// Which lines are paired.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Only {
+    /// Those that are equal.
+    Equal,
+    /// Equal ones first, then the others in order.
+    Any,
+}
+
+/// Which new line each old one is.
+struct Pairing<'l> {
+    old: &'l [Line],
+    new: &'l [Line],
     allowance: Allowance,
-    (partner, taken): (&mut [Option<usize>], &mut [bool]),
-) {
-    let mut named: BTreeMap<Key, (Vec<usize>, Vec<usize>)> = BTreeMap::new();
-    (0..old.len()).filter(|k| partner[*k].is_none()).for_each(|k| named.entry(key(&old[k])).or_default().0.push(k));
-    (0..new.len()).filter(|k| !taken[*k]).for_each(|k| named.entry(key(&new[k])).or_default().1.push(k));
-    for ((kind, _), (olds, news)) in named {
-        if kind.is_empty() {
-            continue;
-        }
-        let mut marry = |a: usize, b: usize| {
-            partner[a] = Some(b);
-            taken[b] = true;
-        };
-        let mut rest: Vec<usize> = news;
-        let mut lonely = Vec::new();
-        for a in olds {
-            match rest.iter().position(|b| moves(&old[a], &new[*b], allowance).is_empty()) {
-                Some(at) => marry(a, rest.remove(at)),
-                None => lonely.push(a),
+    partner: Vec<Option<usize>>,
+    taken: Vec<bool>,
+}
+
+impl Pairing<'_> {
+    fn marry(&mut self, a: usize, b: usize) {
+        self.partner[a] = Some(b);
+        self.taken[b] = true;
+    }
+
+    /// Pairs lines with the same key. Lines with an empty key stay alone.
+    fn by(&mut self, key: &dyn Fn(&Line) -> Key, only: Only) {
+        let mut named: BTreeMap<Key, (Vec<usize>, Vec<usize>)> = BTreeMap::new();
+        let (olds, news): (Vec<usize>, Vec<usize>) = (self.free_old(), self.free_new());
+        olds.into_iter().for_each(|k| named.entry(key(&self.old[k])).or_default().0.push(k));
+        news.into_iter().for_each(|k| named.entry(key(&self.new[k])).or_default().1.push(k));
+        for ((kind, _), (olds, mut rest)) in named {
+            if kind.is_empty() {
+                continue;
+            }
+            let mut lonely = Vec::new();
+            for a in olds {
+                match rest.iter().position(|b| same(&self.old[a], &self.new[*b], self.allowance)) {
+                    Some(at) => self.marry(a, rest.remove(at)),
+                    None => lonely.push(a),
+                }
+            }
+            if only == Only::Any {
+                lonely.into_iter().zip(rest).for_each(|(a, b)| self.marry(a, b));
             }
         }
-        lonely.into_iter().zip(rest).for_each(|(a, b)| marry(a, b));
     }
+
+    /// Pairs lines that are the same in some way; gives the old ones among them.
+    fn known_by_values(&mut self, same: &mut dyn FnMut(&Line, &Line) -> bool) -> BTreeSet<usize> {
+        let mut found = BTreeSet::new();
+        for a in self.free_old() {
+            let b = (0..self.new.len()).find(|b| !self.taken[*b] && same(&self.old[a], &self.new[*b]));
+            if let Some(b) = b {
+                self.marry(a, b);
+                found.insert(a);
+            }
+        }
+        found
+    }
+
+    fn free_old(&self) -> Vec<usize> {
+        (0..self.old.len()).filter(|k| self.partner[*k].is_none()).collect()
+    }
+
+    fn free_new(&self) -> Vec<usize> {
+        (0..self.new.len()).filter(|k| !self.taken[*k]).collect()
+    }
+}
+
+/// Whether the words that two lines of any kinds share say the same of places and lengths.
+pub fn one_thing(one: &Line, other: &Line, size: f64) -> bool {
+    let allowance = Allowance { tolerance: TOLERANCE, size };
+    let shared = words::fields_of(&one.kind).iter().filter_map(|f| Some((f.kind, one.get(f.word)?, other.get(f.word)?)));
+    shared.into_iter().all(|(kind, a, b)| excess(kind, a, b, allowance).is_none())
+}
+
+/// Whether two lines of one kind say the same, names included where they have one.
+fn same(old: &Line, new: &Line, allowance: Allowance) -> bool {
+    (old.loose && new.loose || old.name == new.name) && same_but_name(old, new, allowance)
+}
+
+/// Whether two lines of one kind say the same, whatever their names; names of groups included.
+fn same_but_name(old: &Line, new: &Line, allowance: Allowance) -> bool {
+    words::fields_of(&old.kind).iter().all(|field| match (old.get(field.word), new.get(field.word)) {
+        (None, None) => true,
+        (Some(a), Some(b)) => excess(field.kind, a, b, allowance).is_none(),
+        _ => false,
+    })
 }
 
 /// What differs between two lines of one kind.
 fn moves(old: &Line, new: &Line, allowance: Allowance) -> Vec<Move> {
     let mut found = Vec::new();
-    if old.name != new.name {
+    if old.name != new.name && !(old.loose && new.loose) {
         let word = |line: &Line| Some(Value::Word(line.name.clone()));
         found.push(Move { word: "message", kind: Kind::Word, old: word(old), new: word(new), times: None });
     }
@@ -159,6 +257,10 @@ fn excess(kind: Kind, old: &Value, new: &Value, allowance: Allowance) -> Option<
             let pairs = a.iter().flatten().zip(b.iter().flatten());
             pairs.filter_map(|(a, b)| allowance.excess(Measure::Length(1), *a, *b)).reduce(f64::max)
         }
+        (Kind::List(measure), Value::List(a, old_unit), Value::List(b, new_unit)) if old_unit == new_unit && a.len() == b.len() => {
+            a.iter().zip(b).filter_map(|(a, b)| allowance.excess(measure, *a, *b)).reduce(f64::max)
+        }
+        (Kind::Source, Value::Word(a), Value::Word(b)) => (tokens(a) != tokens(b)).then_some(f64::INFINITY),
         (Kind::Cells, Value::Cells(a), Value::Cells(b)) => cells::excess(a, b, allowance),
         (Kind::Groups, Value::Groups(a), Value::Groups(b)) => {
             let sorted = |groups: &[(String, u64)]| groups.iter().cloned().collect::<BTreeMap<_, _>>();
@@ -182,11 +284,12 @@ mod tests {
         let said = |change: &Change| match change {
             Change::Gone(line) => format!("-{}", line.name),
             Change::New(line) => format!("+{}", line.name),
+            Change::Renamed { old, new } => format!("{} = {}", old.name, new.name),
             Change::Changed { new, moves, .. } => {
                 format!("{} {}", new.name, moves.iter().map(|m| m.word).collect::<Vec<_>>().join(","))
             }
         };
-        compare(&lines(old), &lines(new), allowance).iter().map(said).collect()
+        compare(&lines(old), &lines(new), &BTreeSet::new(), allowance).iter().map(said).collect()
     }
 
     #[test]
@@ -209,7 +312,8 @@ mod tests {
 
     #[test]
     fn lines_come_and_go() {
-        assert_eq!(words_moved("surface a  area 1 m2", "surface b  area 1 m2"), ["-a", "+b"]);
+        assert_eq!(words_moved("surface a  area 1 m2", "surface b  area 1 m2"), ["a = b"]);
+        assert_eq!(words_moved("surface a  area 1 m2", "surface b  area 2 m2"), ["-a", "+b"]);
         assert_eq!(words_moved("surface a  area 1 m2", "surface a"), ["a area"]);
         assert_eq!(words_moved("mesh a  groups x:1 y:2", "mesh a  groups y:2 x:1"), Vec::<String>::new());
         assert_eq!(words_moved("mesh a  groups x:1 y:2", "mesh a  groups x:1"), ["a groups"]);

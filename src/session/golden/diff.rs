@@ -1,5 +1,6 @@
 //! What changed between two models, two goldens, or a model and a golden: the same lines, the same words as `loft test`.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,6 +8,7 @@ use super::compare::{Allowance, compare};
 use super::file::{Golden, TOLERANCE};
 use super::geometry::{self, Shape};
 use super::line::Line;
+use super::looks::{self, Looks};
 use super::section;
 use super::tell::{self, Said};
 use super::words::Value;
@@ -29,6 +31,8 @@ struct Side {
 struct Ran {
     case: Option<String>,
     lines: Vec<Line>,
+    /// Names that the script uses; none of a golden.
+    names: BTreeSet<String>,
     /// Diagonal of the model's box, model units.
     size: f64,
     units: String,
@@ -80,7 +84,7 @@ pub fn diff(old: &Path, new: &Path, clock: &(dyn Fn() -> f64 + Sync), job: &Job)
 fn between(old: &Ran, new: &Ran, tolerance: f64) -> Vec<Said> {
     let size = if new.size > 0.0 { new.size } else { old.size };
     let allowance = Allowance { tolerance, size };
-    let mut said = tell::changes(&compare(&old.lines, &new.lines, allowance), allowance);
+    let mut said = tell::changes(&compare(&old.lines, &new.lines, &new.names, allowance), allowance);
     if old.units == new.units {
         for (name, mesh) in &new.meshes {
             let Some((_, before)) = old.meshes.iter().find(|(other, _)| other == name) else { continue };
@@ -138,11 +142,13 @@ fn model(path: &Path, text: &[u8], clock: &(dyn Fn() -> f64 + Sync), job: &Job) 
     let disk = disk.map_err(|error| NoDiff::Unreadable(format!("{}: {error}", path.display())))?.seen_from_home();
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let task = Task { name: &name, text, sets: &[], strict: false, keep_going: false, full: true, picture: None, clock };
-    let outcome = guarded(|| run::run(&task, &disk, job)).map_err(NoDiff::Bug)?;
+    let mut seen = Looks::default();
+    let outcome = guarded(|| run::run_seen(&task, &disk, job, &mut |cx| seen = looks::of(cx))).map_err(NoDiff::Bug)?;
     if outcome.interrupted {
         return Err(NoDiff::Interrupted);
     }
-    let found = section::of(&outcome, "");
-    let ran = Ran { case: None, lines: found.lines, size: found.size, units: outcome.report.units, meshes: outcome.meshes };
+    let found = section::of(&outcome, seen, "");
+    let ran =
+        Ran { case: None, lines: found.lines, names: found.names, size: found.size, units: outcome.report.units, meshes: outcome.meshes };
     Ok(Side { runs: vec![ran], tolerance: TOLERANCE })
 }

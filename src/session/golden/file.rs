@@ -214,7 +214,7 @@ fn comment_at(line: &str) -> Option<usize> {
             Some('"') if c == '\\' => escaped = true,
             Some(open) if c == open => quote = None,
             Some(_) => {}
-            None if c == '"' => quote = Some(c),
+            None if matches!(c, '"' | '`') => quote = Some(c),
             None if c == '/' && before.is_whitespace() && line[at..].starts_with("//") => return Some(at),
             None => {}
         }

@@ -9,6 +9,8 @@ pub struct Line {
     pub kind: String,
     /// What it speaks of; of a diagnostic the message; empty where there is nothing to name.
     pub name: String,
+    /// It has no name: what stands there is how the script says it, and it is known by its values.
+    pub loose: bool,
     /// Words and values in the order of the table.
     pub pairs: Vec<(&'static str, Value)>,
 }
@@ -38,7 +40,11 @@ impl Line {
             out.push(' ');
             out.push_str(&self.name);
         } else if kind_of(&self.kind).is_some_and(|kind| kind.named) {
-            let name = if self.kind == "check" { words::quoted(&self.name) } else { words::label(&self.name) };
+            let name = match self.kind.as_str() {
+                _ if self.loose => format!("`{}`", self.name.replace('`', "'")),
+                "check" => words::quoted(&self.name),
+                _ => words::label(&self.name),
+            };
             out.push(' ');
             out.push_str(&name);
         }
@@ -59,6 +65,7 @@ pub fn parse_line(content: &str) -> Result<Line, String> {
     let (kind, name) = head.split_once(char::is_whitespace).map_or((head, ""), |(kind, name)| (kind, name.trim()));
     let mut line = Line { kind: kind.to_owned(), ..Line::default() };
     line.name = name_of(kind, name)?;
+    line.loose = !line.is_diagnostic() && name.starts_with('`');
     for part in fields {
         let (field, value) = pair(kind, part)?;
         if line.get(field.word).is_some() {
@@ -78,6 +85,10 @@ fn name_of(kind: &str, name: &str) -> Result<String, String> {
         (false, false) => Err(format!("`{kind}` has no name: put two blanks before each of its words")),
         (true, true) => Err(format!("expected the name of the {kind}")),
         (_, true) => Ok(String::new()),
+        _ if name.starts_with('`') => match name[1..].strip_suffix('`') {
+            Some(inside) if !inside.is_empty() => Ok(inside.to_owned()),
+            _ => Err(format!("expected the {kind} between backquotes, then two blanks")),
+        },
         _ if name.starts_with('"') => {
             unquoted(name).map_err(|_| format!("expected the name of the {kind} between quotes, then two blanks"))
         }
@@ -92,13 +103,13 @@ fn pair(kind: &str, part: &str) -> Result<(Field, Value), String> {
     let fields = words::fields_of(kind);
     let (word, text) = part.split_once(char::is_whitespace).map_or((part, ""), |(word, text)| (word, text.trim()));
     let alone = fields.iter().find(|f| f.word.is_empty());
-    if let Some(field) = alone {
-        return match part {
-            "pass" | "fail" => Ok((*field, Value::parse(field.kind, part)?)),
-            _ => Err(format!("a {kind} says `pass` or `fail`, got `{part}`")),
-        };
+    if let (Some(field), "pass" | "fail") = (alone, part) {
+        return Ok((*field, Value::parse(field.kind, part)?));
     }
-    let Some(field) = fields.iter().find(|f| f.word == word) else {
+    let Some(field) = fields.iter().find(|f| f.word == word && !word.is_empty()) else {
+        if alone.is_some() {
+            return Err(format!("a {kind} says `pass` or `fail`, got `{part}`"));
+        }
         let known: Vec<&str> = fields.iter().map(|f| f.word).collect();
         return Err(format!("`{word}` is no word of a {kind} line; its words are {}", known.join(", ")));
     };
@@ -115,6 +126,8 @@ fn parts(content: &str) -> Vec<&str> {
         let rest = &content[at..];
         if rest.starts_with('"') && (at == 0 || content[..at].ends_with(' ')) {
             at += end_of_quote(rest).unwrap_or(rest.len());
+        } else if rest.starts_with('`') && content[..at].ends_with(' ') {
+            at += rest[1..].find('`').map_or(rest.len(), |end| end + 2);
         } else if rest.starts_with("  ") || rest.starts_with('\t') {
             found.push(content[start..at].trim());
             at = content.len() - rest.trim_start().len();
@@ -154,6 +167,8 @@ mod tests {
         check("mesh fine  nodes 63  triangles 96  quads 0  min_angle 38.2 deg  groups supports:12  hash 9c1f");
         check("check \"no slivers\"  pass");
         check("check \"a  \\\"b\\\"\"  fail");
+        check("check `a.length  > 3m`  pass  left 4 m  right 3 m  within 1e-6 m");
+        check("curve `line(A, \"a  b\")`  kind line  from (0, 0, 1) m  spread (1, 2, 3, 4, 5, 6) m2");
         check("W701 `near` decides nothing  at `near A { size: 20mm }`");
         check("modeling \"a + b\"  length 4 m  links 2  kinks 0");
         check("E802 it lies outside  at `\"../x\"`  in parts/ribs.loft  more 3");

@@ -10,12 +10,14 @@ use super::copies;
 use super::discover::{State, Test};
 use super::file::{Entry, Flaw, Golden, Head, Maker, Run, Section};
 use super::line::Line;
+use super::looks::{self, Looks};
 use super::scratch::Scratch;
 use super::section::{self, Found};
 use super::tell::{self, Said};
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::io::FileError;
+use crate::lang::cx::Cx;
 use crate::session::disk::{Disk, Outputs, read_limited};
 use crate::session::guard::guarded;
 use crate::session::run::{self, Outcome, Task};
@@ -253,7 +255,9 @@ impl Model<'_> {
             picture: None,
             clock: self.settings.clock,
         };
-        let outcome: Outcome = guarded(|| run::run(&task, &disk, self.settings.job)).map_err(|bug| {
+        let mut seen = Looks::default();
+        let look = &mut |cx: &mut Cx<'_>| seen = looks::of(cx);
+        let outcome: Outcome = guarded(|| run::run_seen(&task, &disk, self.settings.job, look)).map_err(|bug| {
             let help = "please report it with the script and this text";
             CaseResult::new(&name, Verdict::Bug, format!("a bug in loft: {}", bug.what)).help(help)
         })?;
@@ -264,7 +268,7 @@ impl Model<'_> {
             return Err(CaseResult::new(&name, Verdict::Bug, bug.message.clone()).help("please report it with the script and this text"));
         }
         let hide = format!("{}{}", out.display(), std::path::MAIN_SEPARATOR);
-        let found = section::of(&outcome, &hide);
+        let found = section::of(&outcome, seen, &hide);
         Ok(Ran { found, files: copies::Written { folder: out, outputs: outcome.report.outputs } })
     }
 
@@ -299,7 +303,7 @@ impl Model<'_> {
         let tolerance = self.golden.head.tolerance();
         let allowance = Allowance { tolerance, size: ran.found.size };
         let old: Vec<Line> = section.entries.iter().map(|entry| entry.line.clone()).collect();
-        let changes = compare(&old, &ran.found.lines, allowance);
+        let changes = compare(&old, &ran.found.lines, &ran.found.names, allowance);
         let stored = Self::folder(&self.test.stored(), case);
         let files = copies::compare(&stored, &ran.files, &self.golden.head.compares);
         if changes.is_empty() && files.is_empty() {

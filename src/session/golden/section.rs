@@ -1,20 +1,21 @@
 //! What a run found, as the lines of a golden file.
 
-use super::cells::{self, Entry, measure_of};
-use super::compare::Allowance;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::cells::{Entry, measure_of, together};
+use super::compare::{Allowance, one_thing};
+use super::grow::{Growing, line, yes};
 use super::line::{Line, on_one_line};
-use super::words::{Measure, Value, unit_of};
+use super::looks::{Look, Looks, Pairs};
+use super::quote;
+use super::words::{Kind, Measure, Value, fields_of, unit_of};
 use crate::base::tolerance::ROUNDING_SHARE;
-use crate::lang::diag::{Diagnostic, Sources};
+use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::session::report::{Cell, Column, Corners, CurveRow, MeshRow, ModelingRow, Report, ShellRow, SurfaceRow, Table};
 use crate::session::run::Outcome;
 
-/// Characters of quoted source; a longer stretch is cut, with `…` for what is left out.
-const SOURCE: usize = 100;
-/// Rows of a reported table that stand in a golden; of longer ones the number is compared and the first rows are.
+/// Rows of a table that stand in a golden one by one; those of a longer one behind them stand there together.
 const ROWS: usize = 1000;
-/// Significant digits of numbers in lists inside lists, which are compared as they are written.
-const INNER: usize = 6;
 
 /// The lines of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,65 +24,87 @@ pub struct Found {
     pub lines: Vec<Line>,
     /// Diagonal of the model's box, model units; 0 when nothing has a place.
     pub size: f64,
+    /// Names that the script and its modules use.
+    pub names: BTreeSet<String>,
 }
 
-/// All that a golden holds of this run. `hide` is a folder that messages may name and a golden may not.
-pub fn of(outcome: &Outcome, hide: &str) -> Found {
+/// All that a golden holds of this run and of what was seen of its model. `hide` is a folder that messages may name and a golden
+/// may not.
+pub fn of(outcome: &Outcome, looks: Looks, hide: &str) -> Found {
     let size = outcome.report.bounds.map_or(0.0, |[a, b]| (glam::DVec3::from(b) - glam::DVec3::from(a)).length());
-    let mut lines = of_report(&outcome.report, size);
+    let mut lines = of_report(&outcome.report, looks, size);
+    lines.iter_mut().for_each(|line| clean(line, size));
     let row = |d: &Diagnostic| diagnostic(d, &outcome.sources, hide);
     lines.extend(outcome.diagnostics.iter().map(row));
-    Found { lines, size }
+    let texts = (0..).map_while(|k| outcome.sources.get(FileId::at(k)));
+    let names = texts.flat_map(|file| quote::tokens(&file.text).into_iter().filter(|t| quote::is_name(t)).map(str::to_owned)).collect();
+    Found { lines, size, names }
 }
 
-fn of_report(report: &Report, size: f64) -> Vec<Line> {
-    let make = Maker { model: &report.units, size };
+fn of_report(report: &Report, looks: Looks, size: f64) -> Vec<Line> {
+    let make = Maker { model: &report.units };
     let mut lines = Vec::new();
     if report.network.curves > 0 {
         let (n, modeling) = (&report.network, report.modeling.len());
         let counts = [("curves", n.curves), ("links", n.links), ("nodes", n.nodes), ("modeling", modeling)];
         lines.push(counts.into_iter().fold(line("network", ""), |line, (word, n)| line.count(word, n)));
     }
-    lines.extend(report.curves.iter().map(|row| make.curve(row)));
-    // A whole curve without kinks stands there already.
-    let is_curve = |m: &&ModelingRow| m.kinks == 0 && report.curves.iter().any(|c| c.name == m.name && c.links == m.links);
-    lines.extend(report.modeling.iter().filter(|row| !is_curve(row)).map(|row| make.modeling(row)));
+    // A run that failed early was not looked at.
+    let beside = |all: &[Look], k: usize| all.get(k).cloned().unwrap_or_default();
+    let looked = |made: Growing, look: Look| made.all(look.pairs).loose(look.loose);
+    lines.extend(looks.points.into_iter().map(Growing));
+    lines.extend(report.curves.iter().enumerate().map(|(k, row)| looked(make.curve(row), beside(&looks.curves, k))));
+    // A whole curve without kinks stands there already, under its name or without one.
+    let whole: Vec<Line> = lines.iter().filter(|line| line.0.kind == "curve").map(|line| line.0.clone()).collect();
+    let is_curve = |(row, line): &(&ModelingRow, Growing)| {
+        let there = |c: &Line| if line.0.loose { c.loose && one_thing(c, &line.0, size) } else { c.name == line.0.name };
+        row.kinks == 0 && whole.iter().any(|c| there(c) && c.get("links") == line.0.get("links"))
+    };
+    let modeling = report.modeling.iter().enumerate().map(|(k, row)| (row, looked(make.modeling(row), beside(&looks.modeling, k))));
+    lines.extend(modeling.filter(|found| !is_curve(found)).map(|found| found.1));
     if !report.surfaces.is_empty() {
         let t = &report.topology;
         let counts = [("patches", t.patches), ("edges", t.edges), ("vertices", t.vertices), ("shells", t.shells)];
         lines.push(counts.into_iter().fold(line("topology", ""), |line, (word, n)| line.count(word, n)));
     }
-    lines.extend(report.surfaces.iter().map(|row| make.surface(row)));
-    lines.extend(report.shells.iter().map(|row| make.shell(row)));
-    lines.extend(report.meshes.iter().map(|row| make.mesh(row)));
-    lines.extend(report.reports.iter().flat_map(|table| make.table(table)));
+    lines.extend(report.surfaces.iter().enumerate().map(|(k, row)| looked(make.surface(row), beside(&looks.surfaces, k))));
+    let by_name = |all: &BTreeMap<String, Pairs>, name: &str| all.get(name).cloned().unwrap_or_default();
+    lines.extend(report.shells.iter().map(|row| make.shell(row).all(by_name(&looks.shells, &row.name))));
+    lines.extend(looks.groups.into_iter().chain(looks.settings).map(Growing));
+    lines.extend(report.meshes.iter().map(|row| make.mesh(row, &looks.declared).all(by_name(&looks.meshes, &row.name))));
+    lines.extend(looks.sets.into_iter().map(Growing));
+    let tables = report.reports.iter().enumerate();
+    lines.extend(tables.flat_map(|(k, table)| make.table(table, !looks.labelled.get(k).copied().unwrap_or(true))));
     let check = |row: &crate::session::report::CheckRow| line("check", &row.label).word("", if row.pass { "pass" } else { "fail" });
-    lines.extend(report.checks.iter().map(check));
+    lines.extend(report.checks.iter().enumerate().map(|(k, row)| looked(check(row), beside(&looks.checks, k))));
+    lines.extend(looks.outputs.into_iter().map(Growing));
+    for (path, table) in looks.exported {
+        lines.extend(make.rows(&Table { title: path, ..table }).into_iter());
+    }
     lines.into_iter().map(|line| line.0).collect()
 }
 
-/// A line that grows word by word.
-struct Growing(Line);
-
-fn line(kind: &str, name: &str) -> Growing {
-    Growing(Line { kind: kind.to_owned(), name: name.to_owned(), pairs: Vec::new() })
-}
-
-impl Growing {
-    fn put(mut self, word: &'static str, value: Value) -> Self {
-        self.0.pairs.push((word, value));
-        self
-    }
-    fn count(self, word: &'static str, n: usize) -> Self {
-        self.put(word, Value::Count(n as u64))
-    }
-    fn word(self, word: &'static str, text: &str) -> Self {
-        self.put(word, Value::Word(text.to_owned()))
-    }
-    fn maybe(self, word: &'static str, value: Option<Value>) -> Self {
-        match value {
-            Some(value) => self.put(word, value),
-            None => self,
+/// Makes what is nothing but rounding zero.
+fn clean(line: &mut Line, size: f64) {
+    let noise = Allowance { tolerance: ROUNDING_SHARE, size };
+    let put = |x: &mut f64, measure: Measure| {
+        if x.abs() <= noise.of(measure, 0.0) {
+            *x = 0.0;
+        }
+    };
+    for (word, value) in &mut line.pairs {
+        let kind = fields_of(&line.kind).iter().find(|field| field.word == *word).map(|field| field.kind);
+        match (value, kind) {
+            (Value::Real(x, _), Some(Kind::Real(measure))) => put(x, measure),
+            (Value::List(all, _), Some(Kind::List(measure))) => all.iter_mut().for_each(|x| put(x, measure)),
+            (Value::Corners(corners, _), _) => corners.iter_mut().flatten().for_each(|x| put(x, Measure::Length(1))),
+            (Value::Cells(row), _) => row.iter_mut().for_each(|entry| {
+                if let Entry::Numbers { all, unit, .. } = entry {
+                    let measure = measure_of(unit);
+                    all.iter_mut().for_each(|x| put(x, measure));
+                }
+            }),
+            _ => {}
         }
     }
 }
@@ -89,31 +112,20 @@ impl Growing {
 /// Makes lines in a model unit.
 struct Maker<'m> {
     model: &'m str,
-    /// Diagonal of the model's box, model units.
-    size: f64,
 }
 
 impl Maker<'_> {
-    /// The number, or zero where it is nothing but rounding.
-    fn clean(&self, x: f64, measure: Measure) -> f64 {
-        let noise = Allowance { tolerance: ROUNDING_SHARE, size: self.size }.of(measure, 0.0);
-        if x.abs() <= noise { 0.0 } else { x }
-    }
-    fn real(&self, x: f64, measure: Measure) -> Value {
-        Value::Real(self.clean(x, measure), unit_of(measure, self.model))
-    }
     fn length(&self, x: Option<f64>, power: u8) -> Option<Value> {
-        x.map(|x| self.real(x, Measure::Length(power)))
+        x.map(|x| Value::Real(x, unit_of(Measure::Length(power), self.model)))
     }
     fn angle(&self, x: Option<f64>) -> Option<Value> {
-        x.map(|x| self.real(x, Measure::Angle))
+        x.map(|x| Value::Real(x, unit_of(Measure::Angle, self.model)))
     }
     fn ratio(&self, x: Option<f64>) -> Option<Value> {
-        x.map(|x| self.real(x, Measure::Ratio))
+        x.map(|x| Value::Real(x, String::new()))
     }
     fn corners(&self, corners: Option<Corners>) -> Option<Value> {
-        let clean = |p: [f64; 3]| p.map(|x| self.clean(x, Measure::Length(1)));
-        corners.map(|corners| Value::Corners(corners.map(clean), self.model.to_owned()))
+        corners.map(|corners| Value::Corners(corners, self.model.to_owned()))
     }
 
     fn curve(&self, row: &CurveRow) -> Growing {
@@ -140,43 +152,27 @@ impl Maker<'_> {
     }
 
     /// A reported table and its rows.
-    fn table(&self, table: &Table) -> Vec<Growing> {
+    fn table(&self, table: &Table, loose: bool) -> Vec<Growing> {
         let column = |c: &Column| c.unit.as_ref().map_or_else(|| c.name.clone(), |unit| format!("{} [{unit}]", c.name));
         let columns: Vec<String> = table.columns.iter().map(column).collect();
         let head = line("report", &table.title).count("rows", table.rows.len()).word("columns", &columns.join(", "));
-        let row = |(k, row): (usize, &Vec<Cell>)| {
-            let unit = |c: usize| table.columns.get(c).and_then(|c| c.unit.as_deref()).unwrap_or("");
-            let cells = row.iter().enumerate().map(|(c, cell)| self.cell(cell, unit(c))).collect();
-            line("row", &format!("{} {}", table.title, k + 1)).put("cells", Value::Cells(cells))
-        };
-        std::iter::once(head).chain(table.rows.iter().take(ROWS).enumerate().map(row)).collect()
+        std::iter::once(head).chain(self.rows(table)).map(|line| line.loose(loose)).collect()
     }
 
-    fn cell(&self, cell: &Cell, unit: &str) -> Entry {
-        let measure = measure_of(unit);
-        let numbers = |list: bool, all: Vec<f64>| {
-            let all = all.into_iter().map(|x| self.clean(x, measure)).collect();
-            Entry::Numbers { list, all, unit: unit.to_owned() }
-        };
-        match cell {
-            Cell::Missing => Entry::Text("-".to_owned()),
-            Cell::Bool(is) => Entry::Text(is.to_string()),
-            Cell::Number(x) => numbers(false, vec![*x]),
-            Cell::Text(text) => Entry::Text(text.clone()),
-            Cell::List(items) => {
-                let plain = |item: &Cell| if let Cell::Number(x) = item { Some(*x) } else { None };
-                match items.iter().map(plain).collect::<Option<Vec<f64>>>() {
-                    Some(all) if !all.is_empty() => numbers(true, all),
-                    _ => {
-                        let inside: Vec<Entry> = items.iter().map(|item| self.cell(item, unit)).collect();
-                        Entry::Text(format!("({})", cells::text(&inside, INNER)))
-                    }
-                }
-            }
+    /// The rows of a table; of a long one the first, and one that is made of all the others.
+    fn rows(&self, table: &Table) -> Vec<Growing> {
+        let unit = |c: usize| table.columns.get(c).and_then(|c| c.unit.as_deref()).unwrap_or("");
+        let cells = |row: &[Cell]| row.iter().enumerate().map(|(c, cell)| Entry::of(cell, unit(c))).collect();
+        let row = |name: String, row: &[Cell]| line("row", &format!("{} {name}", table.title)).put("cells", Value::Cells(cells(row)));
+        let (first, rest) = table.rows.split_at(table.rows.len().min(ROWS));
+        let mut made: Vec<Growing> = first.iter().enumerate().map(|(k, cells)| row((k + 1).to_string(), cells)).collect();
+        if !rest.is_empty() {
+            made.push(row("rest".to_owned(), &together(rest)));
         }
+        made
     }
 
-    fn mesh(&self, row: &MeshRow) -> Growing {
+    fn mesh(&self, row: &MeshRow, declared: &BTreeSet<String>) -> Growing {
         let made = line("mesh", &row.name).count("nodes", row.nodes).count("triangles", row.triangles).count("quads", row.quads);
         let made = made.maybe("order", (row.order != 1).then(|| Value::Count(u64::from(row.order))));
         let made = made.maybe("min_angle", self.angle(row.min_angle)).maybe("max_angle", self.angle(row.max_angle));
@@ -185,15 +181,12 @@ impl Maker<'_> {
         let made = made.maybe("chord_error", self.length(row.chord_error, 1));
         let made = made.maybe("watertight", row.watertight.map(|w| Value::Word(yes(w).to_owned())));
         let made = made.maybe("parts", (row.parts != 1).then(|| Value::Count(row.parts as u64)));
-        let mut groups: Vec<(String, u64)> = row.groups.iter().map(|g| (g.name.clone(), g.nodes as u64)).collect();
+        let mut groups: Vec<(String, u64)> =
+            row.groups.iter().filter(|g| declared.contains(&g.name)).map(|g| (g.name.clone(), g.nodes as u64)).collect();
         groups.sort();
         let made = made.maybe("groups", (!groups.is_empty()).then_some(Value::Groups(groups)));
         made.maybe("hash", row.hash.clone().map(Value::Word))
     }
-}
-
-fn yes(is: bool) -> &'static str {
-    if is { "yes" } else { "no" }
 }
 
 /// A diagnostic, which quotes the source at its foremost label instead of counting lines.
@@ -201,7 +194,7 @@ fn diagnostic(found: &Diagnostic, sources: &Sources, hide: &str) -> Line {
     let message = if hide.is_empty() { found.message.clone() } else { found.message.replace(hide, "") };
     let mut made = line(found.code.0, &with_sorted_names(&on_one_line(&message)));
     if let Some(label) = found.labels.first() {
-        made = made.word("at", &shortened(&on_one_line(sources.text(label.file, label.span))));
+        made = made.word("at", &quote::on_one_line(sources.text(label.file, label.span)));
         if label.file.index() > 0
             && let Some(file) = sources.get(label.file)
         {
@@ -212,16 +205,6 @@ fn diagnostic(found: &Diagnostic, sources: &Sources, hide: &str) -> Line {
         made = made.count("more", found.more);
     }
     made.0
-}
-
-fn shortened(text: &str) -> String {
-    let n = text.chars().count();
-    if n <= SOURCE {
-        return text.to_owned();
-    }
-    let head: String = text.chars().take(SOURCE / 2).collect();
-    let tail: String = text.chars().skip(n - SOURCE / 2).collect();
-    format!("{head}…{tail}")
 }
 
 /// Lists of names between backquotes in order of the names: a message may list them as declared.

@@ -48,9 +48,17 @@ fn one(change: &Change, allowance: Allowance) -> Vec<Said> {
     match change {
         Change::Gone(line) => vec![Said::Old(text(line)), Said::Words(format!("{} is gone", subject(line)))],
         Change::New(line) => vec![Said::New(text(line)), Said::Words(format!("{} is new", subject(line)))],
+        Change::Renamed { old, new } => {
+            let told = |line: &Line| if line.loose { format!("`{}`", line.name) } else { words::label(&line.name) };
+            vec![Said::Words(format!("{} {} is called {} now; nothing else about it changed", old.kind, told(old), told(new)))]
+        }
         Change::Changed { old, new, moves } => {
             let head = [Said::Old(text(old)), Said::New(text(new))];
-            let words = moves.iter().flat_map(|m| in_words(m, moves, allowance));
+            // Words of which none was there are those of another version of loft.
+            let fresh: Vec<&str> = moves.iter().filter(|m| m.old.is_none()).map(|m| m.word).collect();
+            let many = fresh.len() > 2;
+            let told = moves.iter().filter(|m| !(many && m.old.is_none())).flat_map(|m| in_words(m, moves, allowance));
+            let words = told.chain(many.then(|| format!("{} are new", fresh.join(", "))));
             head.into_iter().chain(words.map(|w| Said::Words(format!("{}: {w}", subject(new))))).collect()
         }
     }
@@ -68,6 +76,7 @@ fn subject(line: &Line) -> String {
     }
     match kind_of(&line.kind) {
         Some(kind) if !kind.named => line.kind.clone(),
+        _ if line.loose => format!("{} `{}`", line.kind, line.name),
         Some(kind) if !kind.spoken => line.name.clone(),
         _ if line.kind == "check" => format!("check {}", words::quoted(&line.name)),
         _ => format!("{} {}", line.kind, words::label(&line.name)),
@@ -90,6 +99,9 @@ fn in_words(m: &Move, all: &[Move], allowance: Allowance) -> Vec<String> {
         }
         (Value::Groups(a), Value::Groups(b)) => groups(a, b),
         (Value::Corners(a, unit), Value::Corners(b, new_unit)) if unit == new_unit => vec![corners(a, b, unit, m.times)],
+        (Value::List(a, unit), Value::List(b, new_unit)) if unit == new_unit && a.len() == b.len() => {
+            vec![format!("{word}, {}", list(a, b, unit, m.times))]
+        }
         (Value::Word(a), Value::Word(b)) if m.kind == Kind::Verdict => {
             let before = |w: &str| if w == "pass" { "passed" } else { "failed" };
             vec![format!("{} before, {}s now", before(a), b)]
@@ -126,6 +138,16 @@ fn corners(old: &[[f64; 3]; 2], new: &[[f64; 3]; 2], unit: &str, times: Option<f
     };
     let (a, b) = two_numbers(a, b);
     format!("box, {end} {} {a} → {b} {}{}", AXES[axis], pretty_unit(unit), times.map_or(String::new(), |t| format!(" ({})", tolerances(t))))
+}
+
+/// The number of a list that moved most, under the name of its place.
+fn list(old: &[f64], new: &[f64], unit: &str, times: Option<f64>) -> String {
+    const SQUARES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+    let moved = old.iter().zip(new).enumerate().map(|(k, (a, b))| ((b - a).abs(), k, *a, *b));
+    let Some((_, k, a, b)) = moved.reduce(|most, other| if other.0 > most.0 { other } else { most }) else { return String::new() };
+    let name = if old.len() == SQUARES.len() { SQUARES[k] } else { ["x", "y", "z"].get(k).copied().unwrap_or("") };
+    let (a, b) = two_numbers(a, b);
+    format!("{name} {a} → {b} {}{}", pretty_unit(unit), times.map_or(String::new(), |t| format!(" ({})", tolerances(t))))
 }
 
 /// `125.664 → 126.010 m² (+0.28 %, allowed 1e-9, 2.8e6 tolerances)`.
@@ -200,7 +222,7 @@ mod tests {
 
     fn said(old: &str, new: &str) -> Vec<String> {
         let allowance = Allowance { tolerance: 1e-9, size: 1.0 };
-        let found = compare(&[parse_line(old).unwrap()], &[parse_line(new).unwrap()], allowance);
+        let found = compare(&[parse_line(old).unwrap()], &[parse_line(new).unwrap()], &std::collections::BTreeSet::new(), allowance);
         let words = |said: Said| match said {
             Said::Words(text) => Some(text),
             _ => None,

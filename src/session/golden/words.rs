@@ -27,6 +27,8 @@ pub enum Kind {
     Groups,
     /// `(x, y, z) (x, y, z) unit`: two corners of a box.
     Corners,
+    /// `(x, y, z) unit`, each number compared within the tolerance.
+    List(Measure),
     /// Cells of a row of a reported table, between ` | `.
     Cells,
     /// `pass` or `fail`, standing alone.
@@ -69,11 +71,59 @@ const fn length(word: &'static str, power: u8) -> Field {
     field(word, Kind::Real(Measure::Length(power)))
 }
 
+const fn list(word: &'static str, power: u8) -> Field {
+    field(word, Kind::List(Measure::Length(power)))
+}
+
+const BOX: Field = field("box", Kind::Corners);
+/// Centre of what there is: of the length of curves, the area of surfaces, the nodes of meshes.
+const CENTROID: Field = list("centroid", 1);
+/// Mean squares about the centroid: xx, yy, zz, xy, yz, zx.
+const SPREAD: Field = list("spread", 2);
+/// Mean cubes about the centroid: xxx, yyy, zzz.
+const SKEW: Field = list("skew", 3);
+/// Area vector: area times mean normal.
+const SIDE: Field = list("side", 2);
+/// Volume between it and its centroid, negative where the normal looks at the centroid.
+const INSIDE: Field = length("inside", 3);
+
 /// All kinds of lines but diagnostics, in the order of writing.
 pub const KINDS: &[LineKind] = &[
     LineKind { word: "network", named: false, spoken: true, fields: &[count("curves"), count("links"), count("nodes"), count("modeling")] },
-    LineKind { word: "curve", named: true, spoken: false, fields: &[field("kind", Kind::Word), length("length", 1), count("links")] },
-    LineKind { word: "modeling", named: true, spoken: true, fields: &[length("length", 1), count("links"), count("kinks")] },
+    LineKind { word: "point", named: true, spoken: false, fields: &[list("at", 1)] },
+    LineKind {
+        word: "curve",
+        named: true,
+        spoken: false,
+        fields: &[
+            field("kind", Kind::Word),
+            length("length", 1),
+            count("links"),
+            list("from", 1),
+            list("to", 1),
+            BOX,
+            CENTROID,
+            SPREAD,
+            SKEW,
+            list("round", 2),
+        ],
+    },
+    LineKind {
+        word: "modeling",
+        named: true,
+        spoken: true,
+        fields: &[
+            length("length", 1),
+            count("links"),
+            count("kinks"),
+            list("from", 1),
+            list("to", 1),
+            CENTROID,
+            SPREAD,
+            SKEW,
+            list("round", 2),
+        ],
+    },
     LineKind {
         word: "topology",
         named: false,
@@ -91,7 +141,12 @@ pub const KINDS: &[LineKind] = &[
             count("edges"),
             count("vertices"),
             length("area", 2),
-            field("box", Kind::Corners),
+            BOX,
+            CENTROID,
+            SPREAD,
+            SKEW,
+            SIDE,
+            INSIDE,
         ],
     },
     LineKind {
@@ -105,9 +160,15 @@ pub const KINDS: &[LineKind] = &[
             length("volume", 3),
             length("gap", 1),
             field("angle", Kind::Real(Measure::Angle)),
-            field("box", Kind::Corners),
+            BOX,
+            CENTROID,
+            SPREAD,
+            SKEW,
+            SIDE,
+            INSIDE,
         ],
     },
+    LineKind { word: "group", named: true, spoken: true, fields: HELD },
     LineKind {
         word: "mesh",
         named: true,
@@ -126,13 +187,82 @@ pub const KINDS: &[LineKind] = &[
             length("chord_error", 1),
             field("watertight", Kind::Word),
             count("parts"),
+            BOX,
+            CENTROID,
+            SPREAD,
+            SKEW,
+            SIDE,
+            INSIDE,
             field("groups", Kind::Groups),
             field("hash", Kind::Word),
         ],
     },
+    LineKind { word: "set", named: true, spoken: true, fields: &[count("nodes"), count("elements"), BOX, CENTROID, SPREAD, SKEW, SIDE] },
+    LineKind { word: "settings", named: true, spoken: true, fields: SETTINGS },
     LineKind { word: "report", named: true, spoken: true, fields: &[count("rows"), field("columns", Kind::Word)] },
     LineKind { word: "row", named: true, spoken: true, fields: &[field("cells", Kind::Cells)] },
-    LineKind { word: "check", named: true, spoken: true, fields: &[field("", Kind::Verdict)] },
+    LineKind {
+        word: "check",
+        named: true,
+        spoken: true,
+        fields: &[field("", Kind::Verdict), field("left", Kind::Cells), field("right", Kind::Cells), field("within", Kind::Cells)],
+    },
+    LineKind { word: "export", named: true, spoken: true, fields: OUTPUT },
+    LineKind { word: "picture", named: true, spoken: true, fields: OUTPUT },
+];
+
+/// What things are where: of a group, a rule, an output.
+const HELD: &[Field] = &[count("points"), count("curves"), count("surfaces"), count("meshes"), BOX, CENTROID, SPREAD, SKEW];
+
+/// What is asked of a mesh, and of parts of it.
+const SETTINGS: &[Field] = &[
+    length("size", 1),
+    length("chord_error", 1),
+    field("angle_error", Kind::Real(Measure::Angle)),
+    length("min_size", 1),
+    field("growth", Kind::Real(Measure::Ratio)),
+    count("smooth"),
+    field("elements", Kind::Word),
+    count("order"),
+    field("method", Kind::Word),
+    field("conforming", Kind::Word),
+    count("count"),
+    field("bias", Kind::Real(Measure::Ratio)),
+    length("radius", 1),
+    count("points"),
+    count("curves"),
+    count("surfaces"),
+    count("meshes"),
+    BOX,
+    CENTROID,
+    SPREAD,
+    SKEW,
+];
+
+/// What is written, and how.
+const OUTPUT: &[Field] = &[
+    field("of", Kind::Word),
+    field("encoding", Kind::Word),
+    field("element", Kind::Word),
+    field("units", Kind::Word),
+    field("pixels", Kind::Word),
+    field("eye", Kind::List(Measure::Ratio)),
+    field("up", Kind::List(Measure::Ratio)),
+    field("view", Kind::Word),
+    field("shade", Kind::Word),
+    field("zoom", Kind::Word),
+    field("title", Kind::Word),
+    field("show", Kind::Word),
+    count("rows"),
+    field("columns", Kind::Word),
+    count("points"),
+    count("curves"),
+    count("surfaces"),
+    count("meshes"),
+    BOX,
+    CENTROID,
+    SPREAD,
+    SKEW,
 ];
 
 /// Words of a diagnostic, behind its message.
@@ -167,6 +297,8 @@ pub enum Value {
     Groups(Vec<(String, u64)>),
     /// Two corners and their unit.
     Corners([[f64; 3]; 2], String),
+    /// Numbers and their unit (empty for bare ones).
+    List(Vec<f64>, String),
     /// A row of a table.
     Cells(Vec<Entry>),
 }
@@ -179,6 +311,18 @@ pub fn unit_of(measure: Measure, model: &str) -> String {
         Measure::Angle => "deg".to_owned(),
         Measure::Ratio => String::new(),
     }
+}
+
+/// Numbers as far as the largest of them is written with so many significant digits.
+fn together(all: &[f64], digits: usize) -> Vec<String> {
+    let exponent = |x: f64| format!("{x:e}").split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    let most = exponent(all.iter().fold(0.0, |most, x| most.max(x.abs())));
+    let one = |x: &f64| match digits as i32 - (most - exponent(*x)) {
+        _ if *x == 0.0 => "0".to_owned(),
+        left if left > 0 => rounded(*x, left as usize),
+        _ => "0".to_owned(),
+    };
+    all.iter().map(one).collect()
 }
 
 /// A number with so many significant digits, or with all it has.
@@ -199,6 +343,7 @@ impl Value {
             Self::Real(x, unit) => with_unit(number(x), unit),
             Self::Groups(groups) => groups.iter().map(|(name, n)| format!("{}:{n}", label(name))).collect::<Vec<_>>().join(" "),
             Self::Cells(row) => cells::text(row, digits),
+            Self::List(all, unit) => with_unit(format!("({})", together(all, digits).join(", ")), unit),
             Self::Corners(corners, unit) => {
                 let point = |p: &[f64; 3]| format!("({})", p.iter().map(number).collect::<Vec<_>>().join(", "));
                 with_unit(format!("{} {}", point(&corners[0]), point(&corners[1])), unit)
@@ -219,6 +364,7 @@ impl Value {
             Kind::Real(measure) => real(measure, text),
             Kind::Groups => groups(text),
             Kind::Cells => cells::parse(text).map(Self::Cells),
+            Kind::List(measure) => list_of(measure, text),
             Kind::Corners => corners(text).ok_or_else(|| "two corners and a unit: `(0, 0, 0) (4, 3, 1) m`".to_owned()),
         }
     }
@@ -229,21 +375,36 @@ pub fn number(text: &str) -> Option<f64> {
     crate::base::text::parse_real(text).filter(|x| x.is_finite())
 }
 
+/// Whether a unit measures this, and what stands behind a number that does.
+fn is_unit_of(measure: Measure, unit: &str) -> (bool, String) {
+    match measure {
+        Measure::Length(power) => {
+            let tail = if power == 1 { String::new() } else { power.to_string() };
+            (unit.strip_suffix(tail.as_str()).is_some_and(|name| length_unit(name).is_some()), format!(" m{tail}"))
+        }
+        Measure::Angle => (unit == "deg", " deg".to_owned()),
+        Measure::Ratio => (unit.is_empty(), String::new()),
+    }
+}
+
 fn real(measure: Measure, text: &str) -> Result<Value, String> {
     let (value, unit) = text.split_once(' ').unwrap_or((text, ""));
     let unit = unit.trim();
-    let (known, example) = match measure {
-        Measure::Length(power) => {
-            let tail = if power == 1 { String::new() } else { power.to_string() };
-            (unit.strip_suffix(tail.as_str()).is_some_and(|name| length_unit(name).is_some()), format!("12.5 m{tail}"))
-        }
-        Measure::Angle => (unit == "deg", "12.5 deg".to_owned()),
-        Measure::Ratio => (unit.is_empty(), "0.95".to_owned()),
-    };
+    let (known, tail) = is_unit_of(measure, unit);
     match number(value) {
         Some(x) if known => Ok(Value::Real(x, unit.to_owned())),
-        _ => Err(format!("a number{} like `{example}`", if measure == Measure::Ratio { "" } else { " and its unit" })),
+        _ if measure == Measure::Ratio => Err("a number like `0.95`".to_owned()),
+        _ => Err(format!("a number and its unit like `12.5{tail}`")),
     }
+}
+
+fn list_of(measure: Measure, text: &str) -> Result<Value, String> {
+    let wanted = |tail: &str| format!("numbers in brackets{} like `(4, 3, 1){tail}`", if tail.is_empty() { "" } else { " and their unit" });
+    let (inside, unit) = text.strip_prefix('(').and_then(|t| t.split_once(')')).unwrap_or(("", ""));
+    let unit = unit.trim();
+    let (known, tail) = is_unit_of(measure, unit);
+    let all: Option<Vec<f64>> = inside.split(',').map(|x| number(x.trim())).collect();
+    all.filter(|_| known).map(|all| Value::List(all, unit.to_owned())).ok_or_else(|| wanted(&tail))
 }
 
 fn groups(text: &str) -> Result<Value, String> {
@@ -290,7 +451,8 @@ pub fn label(name: &str) -> String {
 
 /// A phrase: quoted only where it could be misread.
 fn phrase(text: &str) -> String {
-    let odd = text.is_empty() || text != text.trim() || text.contains("  ") || text.contains("//") || text.starts_with('"');
+    let odd =
+        text.is_empty() || text != text.trim() || text.contains("  ") || text.contains("//") || text.starts_with('"') || text.contains('`');
     if odd || text.contains(char::is_control) { quoted(text) } else { text.to_owned() }
 }
 
@@ -364,6 +526,11 @@ mod tests {
         check(Kind::Real(Measure::Angle), "38.2 deg");
         check(Kind::Groups, "supports:12 \"west \\\"wall\\\"\":4");
         check(Kind::Corners, "(0, -1.5, 0) (4, 1e300, 1) mm");
+        check(Kind::List(Measure::Length(2)), "(0, -1.5, 12345678901, 2, 3, 4) mm2");
+        assert_eq!(
+            Value::List(vec![1234.5, 0.001_234_5, 1e-9], "m".to_owned()).text(Kind::List(Measure::Length(1)), 8),
+            "(1234.5, 0.0012, 0) m"
+        );
         check(Kind::Source, "`near A { size: 20mm }`");
         check(Kind::Word, "degenerate trilateral closed in u");
         check(Kind::Count, "63");

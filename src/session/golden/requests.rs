@@ -1,0 +1,157 @@
+//! What a script asks for, as lines: settings of meshes, exports and pictures as declared, checks.
+
+use std::sync::Arc;
+
+use super::cells::Entry;
+use super::grow::{Growing, line, yes};
+use super::held::Held;
+use super::looks::{Look, Looks};
+use super::words::{Measure, Value, unit_of};
+use crate::base::origin::Origin;
+use crate::lang::cx::Cx;
+use crate::lang::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, Show};
+use crate::lang::units::unit_text;
+use crate::lang::value::{Dim, MeshValue, ModuleId, Value as Thing};
+use crate::session::collect;
+use crate::session::report::Table;
+
+/// Adds the lines of all that is asked for.
+pub fn all(cx: &mut Cx, looks: &mut Looks) {
+    let meshes: Vec<Arc<MeshSpec>> = cx.meshes(ModuleId::MAIN).to_vec();
+    looks.settings = meshes.iter().flat_map(|spec| settings(cx, spec)).collect();
+    let (exports, pictures) = (cx.exports(), cx.pictures());
+    looks.outputs = exports.iter().map(|spec| export(cx, looks, spec)).collect();
+    looks.exported = exports.iter().filter_map(|spec| records(cx, spec)).collect();
+    looks.outputs.extend(pictures.iter().map(|spec| picture(cx, looks, spec)).collect::<Vec<_>>());
+    looks.labelled = cx.reports().iter().map(|report| report.labelled).collect();
+    looks.checks = cx.checks().iter().map(|result| check(cx, result)).collect();
+}
+
+/// Something said, as a word of its own.
+fn word(said: &impl std::fmt::Debug) -> Value {
+    Value::Word(format!("{said:?}").to_lowercase())
+}
+
+/// The settings of a mesh, then its clauses in order of writing.
+fn settings(cx: &mut Cx, spec: &MeshSpec) -> Vec<super::line::Line> {
+    let unit = cx.unit().name;
+    let length = |x: f64| Value::Real(x, unit_of(Measure::Length(1), unit));
+    let ratio = |x: f64| Value::Real(x, String::new());
+    let count = |n: u32| Value::Count(u64::from(n));
+    let head = line("settings", &spec.name)
+        .maybe("size", spec.size.map(|s| length(s.0)))
+        .maybe("chord_error", spec.chord_error.map(|s| length(s.0)))
+        .maybe("angle_error", spec.angle_error.map(|s| Value::Real(crate::lang::units::degrees(s.0), "deg".to_owned())))
+        .maybe("min_size", spec.min_size.map(|s| length(s.0)))
+        .maybe("growth", spec.growth.map(|s| ratio(s.0)))
+        .maybe("smooth", spec.smooth.map(|s| count(s.0)))
+        .maybe("elements", spec.elements.map(|s| word(&s.0)))
+        .maybe("order", spec.order.map(|s| count(u32::from(s.0))))
+        .maybe("method", spec.method.map(|s| word(&s.0)))
+        .maybe("conforming", spec.conforming.map(|s| Value::Word(yes(s.0).to_owned())));
+    let mut made = vec![head];
+    for (k, rule) in spec.rules.iter().enumerate() {
+        let held = Held::of(cx, rule.things.iter().map(|t| &t.0));
+        let rule = line("settings", &format!("{} on {}", spec.name, k + 1))
+            .maybe("count", rule.count.map(|s| count(s.0)))
+            .maybe("size", rule.size.map(|s| length(s.0)))
+            .maybe("bias", rule.bias.map(|s| ratio(s.0)))
+            .maybe("elements", rule.elements.map(|s| word(&s.0)))
+            .maybe("method", rule.method.map(|s| word(&s.0)));
+        made.push(rule.all(held.pairs(unit)));
+    }
+    for (k, refine) in spec.refines.iter().enumerate() {
+        let mut held = Held::of(cx, refine.things.iter().map(|t| &t.0));
+        refine.boxes.iter().for_each(|b| held.add_box(*b));
+        let refine = line("settings", &format!("{} near {}", spec.name, k + 1)).put("size", length(refine.size.0));
+        let radius = spec.refines[k].radius;
+        made.push(refine.maybe("radius", radius.is_finite().then(|| length(radius))).all(held.pairs(unit)));
+    }
+    made.retain(|line| !line.0.pairs.is_empty());
+    made.into_iter().map(|line| line.0).collect()
+}
+
+/// The names of things that have one; others are told by where they are.
+fn names(cx: &Cx, looks: &Looks, things: &[(Thing, Origin)]) -> Option<Value> {
+    let named = things.iter().filter(|t| matches!(t.0, Thing::Curve(_) | Thing::Surface(_) | Thing::Shell(_) | Thing::Mesh(_)));
+    let names: Vec<String> = named.map(|t| cx.show(&t.0)).filter(|name| looks.declared.contains(name)).collect();
+    (!names.is_empty()).then(|| Value::Word(names.join(", ")))
+}
+
+fn export(cx: &mut Cx, looks: &Looks, spec: &ExportSpec) -> super::line::Line {
+    let unit = cx.unit().name;
+    let said = |word: &Option<(Arc<str>, Origin)>| word.as_ref().map(|w| Value::Word(w.0.to_string()));
+    let made: Growing = line("export", &spec.path)
+        .maybe("of", names(cx, looks, &spec.things))
+        .maybe("encoding", said(&spec.encoding))
+        .maybe("element", said(&spec.element))
+        .maybe("units", spec.units.map(|u| Value::Word(u.0.name.to_owned())));
+    let held = Held::of(cx, spec.things.iter().map(|t| &t.0).filter(|t| !is_declared_mesh(t)));
+    made.all(held.pairs(unit)).0
+}
+
+/// The table that an export of records writes.
+fn records(cx: &mut Cx, spec: &ExportSpec) -> Option<(String, Table)> {
+    let records: Vec<Thing> = spec.things.iter().filter(|t| matches!(t.0, Thing::Record(_))).map(|t| t.0.clone()).collect();
+    let table = cx.table_of(&Thing::list(records))?;
+    Some((spec.path.clone(), collect::table(&table)))
+}
+
+/// What has a line of its own already.
+fn is_declared_mesh(thing: &Thing) -> bool {
+    matches!(thing, Thing::Mesh(mesh) if matches!(**mesh, MeshValue::Declared { .. }))
+}
+
+fn picture(cx: &mut Cx, looks: &Looks, spec: &PictureSpec) -> super::line::Line {
+    let unit = cx.unit().name;
+    let direction = |d: glam::DVec3| Value::List(d.to_array().to_vec(), String::new());
+    let held = Held::of(cx, spec.things.iter().map(|t| &t.0).filter(|t| !is_declared_mesh(t)));
+    line("picture", &spec.path)
+        .maybe("of", names(cx, looks, &spec.things))
+        .word("pixels", &format!("{} x {}", spec.size.0, spec.size.1))
+        .put("eye", direction(spec.view.eye))
+        .maybe("up", spec.view.up.map(direction))
+        .maybe("view", spec.view.perspective.then(|| Value::Word("perspective".to_owned())))
+        .maybe("shade", spec.shade.as_ref().map(|s| Value::Word(s.0.to_string())))
+        .maybe("zoom", names(cx, looks, &spec.zoom))
+        .maybe("title", spec.title.as_ref().map(|t| Value::Word(t.to_string())))
+        .maybe("show", show(&spec.show))
+        .all(held.pairs(unit))
+        .0
+}
+
+/// What is switched on and off.
+fn show(show: &Show) -> Option<Value> {
+    let Show { elements, borders, network, labels, axes, ruler, legend } = *show;
+    let all = [
+        ("elements", elements),
+        ("borders", borders),
+        ("network", network),
+        ("labels", labels),
+        ("axes", axes),
+        ("ruler", ruler),
+        ("legend", legend),
+    ];
+    let said: Vec<String> = all.iter().filter_map(|(word, is)| is.map(|is| format!("{word} {}", yes(is)))).collect();
+    (!said.is_empty()).then(|| Value::Word(said.join(", ")))
+}
+
+/// Both sides of a check, and what may lie between them.
+fn check(cx: &Cx, result: &CheckResult) -> Look {
+    let side = |value: &Option<Thing>| {
+        let value = value.as_ref()?;
+        let dim = match value {
+            Thing::Number(q) => q.dim,
+            Thing::Vector(_, dim) => *dim,
+            Thing::Node(_) => Dim::LENGTH,
+            Thing::Bool(_) | Thing::Text(_) | Thing::Word(_) => Dim::NONE,
+            // What else there is to compare is told by where it is, elsewhere.
+            _ => return None,
+        };
+        Some((collect::cell(value), unit_text(dim, cx.unit())))
+    };
+    let all = [("left", &result.left_value), ("right", &result.right_value), ("within", &result.allowed)];
+    let said = all.into_iter().filter_map(|(word, value)| side(value).map(|(cell, unit)| (word, cell, unit)));
+    let pairs = said.map(|(word, cell, unit)| (word, Value::Cells(vec![Entry::of(&cell, &unit)]))).collect();
+    Look { loose: !result.labelled, pairs }
+}
