@@ -1,0 +1,404 @@
+//! Random edits of the examples: a number that changes the model fails its golden, what changes nothing does not.
+//!
+//! A few dozen edits in `cargo test`; `LOFT_EDITS` says how many, and `.ci/run` asks for 1000 of each kind. Examples that take
+//! over a second by themselves are left out: nearly all of their time goes into meshes.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use lofting::base::digest::Digester;
+use lofting::base::job::Job;
+use lofting::lang::cx::Cx;
+use lofting::lang::value::ModuleId;
+use lofting::session::disk::{Disk, Outputs};
+use lofting::session::golden::{Settings, discover, run_all};
+use lofting::session::guard::guarded;
+use lofting::session::run::{Task, run_seen};
+
+/// Seconds that an example may take.
+const LONGEST: f64 = 1.0;
+
+/// Pseudo-random numbers (SplitMix64), the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    }
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n.max(1) as u64) as usize
+    }
+    fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A folder with one example and its accepted golden.
+struct Folder {
+    path: PathBuf,
+    base: String,
+    seconds: f64,
+}
+
+impl Folder {
+    fn of(kind: &str, example: &Path) -> Self {
+        let name = example.file_stem().unwrap().to_string_lossy();
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("edits-{kind}-{name}"));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(path.join("data")).unwrap();
+        for entry in fs::read_dir("examples/data").unwrap().flatten() {
+            fs::copy(entry.path(), path.join("data").join(entry.file_name())).unwrap();
+        }
+        let mut folder = Self { path, base: fs::read_to_string(example).unwrap(), seconds: 0.0 };
+        let start = Instant::now();
+        let base = folder.base.clone();
+        folder.run(&base, true);
+        folder.seconds = start.elapsed().as_secs_f64();
+        folder
+    }
+
+    /// What the golden says about a script; empty when it passes.
+    fn run(&self, script: &str, accept: bool) -> String {
+        let model = self.path.join("model.loft");
+        fs::write(&model, script).unwrap();
+        let (job, clock) = (Job::new(), || 0.0);
+        let settings = Settings { accept, filter: None, jobs: 1, clock: &clock, job: &job };
+        let mut said = String::new();
+        run_all(&discover(&[model]).unwrap(), &settings, &mut |cases| {
+            for case in cases.iter().filter(|case| !case.verdict.is_good()) {
+                let lines: Vec<String> = case.said.iter().map(|said| said.text(false)).collect();
+                said.push_str(&format!("{}\n{}\n", case.message, lines.join("\n")));
+            }
+        });
+        said
+    }
+
+    /// All that was evaluated of a script, to the last bit: values, not what a golden makes of them.
+    fn evaluated(&self, script: &str) -> String {
+        let disk = Disk::new(Some(&self.path.join("model.loft")), None, &[], Outputs::Counted).unwrap();
+        let clock = || 0.0;
+        let task = Task {
+            name: "model.loft",
+            text: script.as_bytes(),
+            sets: &[],
+            strict: false,
+            keep_going: false,
+            full: true,
+            picture: None,
+            clock: &clock,
+        };
+        let mut found = String::new();
+        let job = Job::new();
+        let outcome = guarded(|| run_seen(&task, &disk, &job, &mut |cx| found = values(cx))).unwrap();
+        let said: Vec<String> = outcome.diagnostics.iter().map(|d| d.message.clone()).collect();
+        format!("{found}{said:?}")
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.path);
+    }
+}
+
+fn values(cx: &mut Cx) -> String {
+    let mut out = String::new();
+    let mut put = |text: String| out.push_str(&(text + "\n"));
+    if let Ok(parts) = cx.parts(ModuleId::MAIN) {
+        parts.points.iter().for_each(|p| put(format!("{:?}", p.value.to_array().map(f64::to_bits))));
+        parts.curves.iter().chain(&parts.modeling).for_each(|c| put(format!("{:?}", Digester::new("").with(&c.value).finish())));
+        parts.surfaces.iter().for_each(|s| put(format!("{:?}", Digester::new("").with(&s.value).finish())));
+    }
+    for group in cx.groups(ModuleId::MAIN).unwrap_or_default() {
+        let shown: Vec<String> = group.value.iter().map(|v| cx.show(v)).collect();
+        put(shown.join(" "));
+    }
+    for mesh in cx.meshes(ModuleId::MAIN) {
+        let numbers = (mesh.size, mesh.chord_error, mesh.angle_error, mesh.min_size, mesh.growth, mesh.smooth, mesh.order);
+        put(format!("{numbers:?} {:?} {:?} {:?}", mesh.elements, mesh.method, mesh.conforming));
+        mesh.rules.iter().for_each(|r| put(format!("{:?} {:?} {:?} {:?} {:?}", r.count, r.size, r.bias, r.elements, r.method)));
+        mesh.refines.iter().for_each(|r| put(format!("{:?} {:?} {:?}", r.boxes, r.size, r.radius)));
+    }
+    for check in cx.checks() {
+        let sides = [&check.left_value, &check.right_value, &check.allowed];
+        put(format!("{} {:?}", check.pass, sides.map(|side| side.as_ref().map(|v| cx.show(v)))));
+    }
+    for report in cx.reports() {
+        report.rows.iter().flatten().for_each(|cell| put(cx.show(cell)));
+    }
+    cx.pictures().iter().for_each(|p| put(format!("{:?} {:?} {:?} {:?}", p.view, p.size, p.title, p.show)));
+    cx.exports().iter().for_each(|e| e.things.iter().for_each(|t| put(cx.show(&t.0))));
+    out
+}
+
+/// Stretches of a script that are code: comments and texts aside, what is interpolated into texts included.
+fn code(text: &str) -> Vec<bool> {
+    let bytes = text.as_bytes();
+    let (mut is, mut at, mut quotes) = (vec![false; bytes.len()], 0, Vec::new());
+    let mut inside = false;
+    while at < bytes.len() {
+        match bytes[at] {
+            b'\\' if inside => at += 1,
+            b'"' => inside = !inside,
+            b'{' if inside => {
+                quotes.push(0);
+                inside = false;
+            }
+            b'}' if !inside && quotes.last() == Some(&0) => {
+                quotes.pop();
+                inside = true;
+            }
+            b'{' if !inside && !quotes.is_empty() => *quotes.last_mut().unwrap() += 1,
+            b'}' if !inside && !quotes.is_empty() => *quotes.last_mut().unwrap() -= 1,
+            b'/' if !inside && bytes.get(at + 1) == Some(&b'/') => {
+                while at < bytes.len() && bytes[at] != b'\n' {
+                    at += 1;
+                }
+                continue;
+            }
+            _ => is[at] = !inside,
+        }
+        at += 1;
+    }
+    is
+}
+
+fn is_word(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_' || byte >= 128
+}
+
+/// Places of numbers. The limits of a param (`in 1..9`) are none: they are tested and then forgotten.
+fn numbers(text: &str) -> Vec<(usize, usize)> {
+    let (bytes, is) = (text.as_bytes(), code(text));
+    let (mut found, mut at) = (Vec::new(), 0);
+    while at < bytes.len() {
+        let starts = is[at] && bytes[at].is_ascii_digit() && (at == 0 || !is_word(bytes[at - 1]));
+        // A digit behind `a.` or `1.` goes on with what stands there; behind `..` it begins anew.
+        let follows = at > 1 && bytes[at - 1] == b'.' && bytes[at - 2] != b'.';
+        if !starts || follows {
+            at += 1;
+            continue;
+        }
+        let digits = |mut at: usize| {
+            while at < bytes.len() && bytes[at].is_ascii_digit() {
+                at += 1;
+            }
+            at
+        };
+        let mut end = digits(at);
+        if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(u8::is_ascii_digit) {
+            end = digits(end + 1);
+        }
+        let line = text[..at].rfind('\n').map_or(0, |n| n + 1);
+        let limit = text[line..].starts_with("param ") && text[line..at].contains(" in ");
+        if !limit {
+            found.push((at, end));
+        }
+        at = end.max(at + 1);
+    }
+    found
+}
+
+/// One number is another one, by at least 1e-5 of itself.
+fn with_another_number(text: &str, random: &mut Random) -> String {
+    let all = numbers(text);
+    let (start, end) = all[random.below(all.len())];
+    let old: f64 = text[start..end].parse().unwrap();
+    let bare = !text[end..].starts_with(|c: char| c.is_alphabetic() || c == '%');
+    let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
+    let new = if bare && old.fract() == 0.0 && random.below(2) == 0 {
+        if old > 0.0 { old + sign } else { 1.0 }
+    } else {
+        let share = 10.0_f64.powf(-5.0 * random.share());
+        if old == 0.0 { share } else { old * (1.0 + sign * 0.5 * share) }
+    };
+    format!("{}{new}{}", &text[..start], &text[end..])
+}
+
+const HEADS: &[&str] = &["units", "tolerance", "snap", "use"];
+const WORDS: &[&str] = &[
+    "units",
+    "tolerance",
+    "snap",
+    "use",
+    "import",
+    "param",
+    "let",
+    "fn",
+    "point",
+    "curve",
+    "modeling",
+    "surface",
+    "shell",
+    "group",
+    "mesh",
+    "check",
+    "report",
+    "export",
+    "picture",
+];
+
+/// The declarations of a script with the comments above them; what stands above all of them first.
+fn declarations(text: &str) -> Vec<String> {
+    let mut all: Vec<String> = vec![String::new()];
+    let mut above = String::new();
+    for line in text.lines() {
+        let word = line.split(|c: char| !c.is_alphanumeric()).next().unwrap_or("");
+        if line.starts_with("//") || line.trim().is_empty() {
+            above.push_str(&format!("{line}\n"));
+        } else {
+            if WORDS.contains(&word) {
+                all.push(std::mem::take(&mut above));
+            }
+            let last = all.last_mut().unwrap();
+            last.push_str(&std::mem::take(&mut above));
+            last.push_str(&format!("{line}\n"));
+        }
+    }
+    all
+}
+
+/// The declarations in another order; the head stays where it is.
+fn shuffled(text: &str, random: &mut Random) -> String {
+    let is_head = |d: &String| {
+        let first = d.lines().find(|line| !line.starts_with("//") && !line.trim().is_empty());
+        first.is_none_or(|line| HEADS.contains(&line.split(' ').next().unwrap_or("")))
+    };
+    let (head, mut rest): (Vec<String>, Vec<String>) = declarations(text).into_iter().partition(is_head);
+    for k in (1..rest.len()).rev() {
+        rest.swap(k, random.below(k + 1));
+    }
+    head.concat() + &rest.concat()
+}
+
+/// Names of `let`s, parameters of functions and members of comprehensions, which no golden shows.
+fn inner_names(text: &str) -> Vec<String> {
+    let (bytes, is) = (text.as_bytes(), code(text));
+    let word_at = |at: usize| -> &str {
+        let end = (at..bytes.len()).find(|k| !is_word(bytes[*k])).unwrap_or(bytes.len());
+        &text[at..end]
+    };
+    let mut found: Vec<String> = Vec::new();
+    for at in (0..bytes.len()).filter(|at| is[*at] && (*at == 0 || !is_word(bytes[*at - 1]))) {
+        let rest = &text[at..];
+        for before in ["let ", "for "] {
+            if rest.starts_with(before) {
+                found.push(word_at(at + before.len()).to_owned());
+            }
+        }
+        if rest.starts_with("fn ") {
+            let (open, close) = (rest.find('(').unwrap_or(0), rest.find(')').unwrap_or(0));
+            let parameters = rest.get(open + 1..close).unwrap_or("");
+            found.extend(parameters.split(',').map(|p| p.trim().split([' ', ':', '=']).next().unwrap_or("").to_owned()));
+        }
+    }
+    // A name that is also a field, a setting or a named argument stays as it is.
+    let taken = |name: &str| text.contains(&format!("{name}:")) || text.contains(&format!(".{name}"));
+    found.retain(|name| !name.is_empty() && name.bytes().all(is_word) && !name.as_bytes()[0].is_ascii_digit() && !taken(name));
+    found.sort();
+    found.dedup();
+    found
+}
+
+fn renamed(text: &str, old: &str, new: &str) -> String {
+    let (bytes, is) = (text.as_bytes(), code(text));
+    let (mut out, mut at) = (String::new(), 0);
+    while at < text.len() {
+        let whole = text[at..].starts_with(old)
+            && is[at]
+            && (at == 0 || !is_word(bytes[at - 1]))
+            && !bytes.get(at + old.len()).is_some_and(|b| is_word(*b));
+        if whole {
+            out.push_str(new);
+            at += old.len();
+        } else {
+            let c = text[at..].chars().next().unwrap();
+            out.push(c);
+            at += c.len_utf8();
+        }
+    }
+    out
+}
+
+/// An edit without effect, and what it is.
+fn idle(text: &str, random: &mut Random) -> (&'static str, String) {
+    match random.below(4) {
+        0 => ("another order", shuffled(text, random)),
+        1 => {
+            let names = inner_names(text);
+            if names.is_empty() {
+                return ("another order", shuffled(text, random));
+            }
+            let name = &names[random.below(names.len())];
+            ("a renamed inner name", renamed(text, name, &format!("{name}_renamed")))
+        }
+        2 => {
+            let parts = declarations(text);
+            ("comments", parts.iter().map(|d| format!("// note {}\n{d}", random.below(100))).collect())
+        }
+        _ => {
+            let spread: String = declarations(text).iter().map(|d| format!("{d}\n")).collect();
+            ("another layout", if random.below(2) == 0 { spread } else { lofting::lang::fmt::format(&spread.replace(", ", ",")).text })
+        }
+    }
+}
+
+/// How many edits are tried in all.
+fn wanted() -> usize {
+    std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(22)
+}
+
+fn examples(kind: &str) -> Vec<Folder> {
+    let mut paths: Vec<PathBuf> = fs::read_dir("examples").unwrap().flatten().map(|e| e.path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "loft"));
+    paths.sort();
+    let folders = paths.iter().map(|path| Folder::of(kind, path));
+    folders.filter(|folder| folder.seconds < LONGEST).collect()
+}
+
+#[test]
+fn no_changed_number_passes() {
+    let folders = examples("numbers");
+    let mut random = Random(1);
+    let (mut passed, mut idle) = (Vec::new(), 0);
+    for k in 0..wanted() {
+        let folder = &folders[k % folders.len()];
+        let edited = with_another_number(&folder.base, &mut random);
+        if !folder.run(&edited, false).is_empty() {
+            continue;
+        }
+        // Silence is right only where no value that was evaluated is another one.
+        if folder.evaluated(&edited) == folder.evaluated(&folder.base) {
+            idle += 1;
+        } else {
+            let line = edited.lines().zip(folder.base.lines()).find(|(a, b)| a != b).map_or("", |(a, _)| a);
+            passed.push(format!("{}: {line}", folder.path.display()));
+        }
+    }
+    println!("{} edits of {} examples, {idle} without any effect", wanted(), folders.len());
+    assert!(passed.is_empty(), "{} of {} edits are not seen:\n{}", passed.len(), wanted(), passed.join("\n"));
+    assert!(idle * 5 <= wanted(), "{idle} of {} edits had no effect", wanted());
+}
+
+#[test]
+fn no_edit_without_effect_fails() {
+    let folders = examples("idle");
+    let mut random = Random(2);
+    let mut failed = Vec::new();
+    for k in 0..wanted() {
+        let folder = &folders[k % folders.len()];
+        let (what, edited) = idle(&folder.base, &mut random);
+        let said = folder.run(&edited, false);
+        if !said.is_empty() {
+            failed.push(format!("{} after {what}:\n{said}", folder.path.display()));
+        }
+    }
+    println!("{} edits of {} examples", wanted(), folders.len());
+    assert!(failed.is_empty(), "{} of {} edits fail:\n{}", failed.len(), wanted(), failed.join("\n"));
+}
