@@ -151,6 +151,7 @@ codes! {
     now "E660", "keep-off", "the point to keep is in no part of the surface";
     now "E666", "imprint-overlap", "faces that are to be joined cover each other";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
+    now "E672", "set-in-part", "a set would hold a part of a curve";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";
@@ -166,6 +167,8 @@ codes! {
     now "E716", "quadtree-too-deep", "a quadtree grows too deep";
     later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
     later "E718", "trim-folded", "a trimmed face folds over";
+    now "W728", "empty-selection", "a selection is empty";
+    now "W729", "holds-of-nothing", "a check holds of nothing";
     now "E801", "cannot-read", "a file cannot be read";
     now "E802", "outside-folders", "a path leaves the allowed folders";
     now "E803", "malformed-data", "a table or entity is malformed";

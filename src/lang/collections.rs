@@ -13,6 +13,7 @@ use super::settings::{self, Setting};
 use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
 use super::units;
 use super::value::{MeshValue, ShellValue, Value};
+use crate::base::fault::ValueFault;
 use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::mesh::{Elements, Method};
@@ -163,6 +164,7 @@ impl Cx<'_> {
                         | Value::Shell(_)
                         | Value::Curve(_)
                         | Value::Link(..)
+                        | Value::Edge(..)
                         | Value::Vector(..)
                         | Value::Node(_)
                         | Value::Vertex(..)
@@ -201,11 +203,15 @@ impl Cx<'_> {
                 )
             }),
         };
-        let (mut out, mut gather) = (Vec::new(), Gather::default());
+        let (mut out, mut gather, word) = (Vec::new(), Gather::default(), later::keyword_word(keyword));
         for &thing in things {
             let Some(value) = gather.take(self.eval(code, thing)) else { continue };
             let origin = self.origin_at(thing);
             let flat = self.flattened(code, thing, value)?;
+            // What a mesh or shell is of may well be empty in some variants of a model.
+            if flat.is_empty() && !matches!(keyword, Keyword::Shell | Keyword::Mesh) {
+                self.say(&ValueFault::NothingSelected { of: origin, keyword: word }.into());
+            }
             for value in flat {
                 if fits(&value) {
                     // A bare tuple is a point here.
@@ -217,7 +223,7 @@ impl Cx<'_> {
                     out.push((value, origin));
                     continue;
                 }
-                let (found, word) = (self.kind(&value), later::keyword_word(keyword));
+                let found = self.kind(&value);
                 let text = match keyword {
                     Keyword::Export => format!("{found} cannot be exported"),
                     _ => format!("a {word} is of {wanted}, got {found}"),

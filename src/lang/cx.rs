@@ -10,6 +10,7 @@ use super::memory::Memory;
 use super::names::Names;
 use super::origins::Origins;
 use super::plans::{MeshSpec, ReportTable};
+use super::syntax::ast::Keyword;
 use super::units::LengthUnit;
 use super::value::{MeshValue, ModuleId, Record, ShellValue, Value};
 use crate::base::bbox::Box3;
@@ -172,6 +173,12 @@ impl<'w> Cx<'w> {
     /// The origin of the call being made; entities made by a builtin carry it.
     pub fn origin(&mut self) -> Origin {
         self.machine.origin(&mut self.origins)
+    }
+
+    /// Whether a `check` is being evaluated.
+    pub fn in_check(&self) -> bool {
+        let keyword = |(module, index): &(ModuleId, u32)| self.machine.at(*module).script.declarations[*index as usize].keyword;
+        self.machine.running.last().map(keyword) == Some(Keyword::Check)
     }
 
     /// The script whose code is being run.

@@ -8,7 +8,7 @@ use super::names::Name;
 use super::table::Table;
 use crate::base::origin::Origin;
 use crate::mesh::Mesh;
-use crate::model::{EdgeId, PatchId, VertexId};
+use crate::model::{PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
 
@@ -193,7 +193,7 @@ pub enum Value {
     /// A link of a script's network.
     Link(ModuleId, LinkId),
     /// An edge of a script's surface model.
-    Edge(ModuleId, EdgeId),
+    Edge(ModuleId, Arc<SharedEdge>),
     /// A vertex of a script's surface model.
     Vertex(ModuleId, VertexId),
     /// A patch of a script's surface model.

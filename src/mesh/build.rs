@@ -97,7 +97,7 @@ impl Outline {
     /// Makes the mesh, with parts of others in `reuse` and its own left there.
     ///
     /// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
-    /// E217 (too many elements), E715 (turned elements), E666 (faces to be joined that cover each other).
+    /// E217 (too many elements), E715 (turned elements), E666 (faces to be joined that cover each other), E672 (a set in part).
     pub fn build(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
         let known = reuse.map(|reuse| Known { reuse, surfaces: &self.surfaces });
         let mut parts: Vec<Part> = Vec::new();
@@ -115,12 +115,14 @@ impl Outline {
                 remarks.extend(touches.into_iter().map(Remark::Touch));
             }
         }
-        Ok(Built { remarks, ..merge(input, parts) })
+        Ok(Built { remarks, ..merge(input, parts)? })
     }
 }
 
 /// Parts one after the other as one mesh, with its named sets.
-fn merge(input: &Input, mut parts: Vec<Part>) -> Built {
+///
+/// Fails with E672 for a set that would hold a part of what it is of.
+fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
     let mut built = Built::default();
     let mut ranges: sets::Ranges = Vec::new();
     let mut offsets = Vec::new();
@@ -142,9 +144,11 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Built {
             groups.push(sets::of_surface(input, &built.mesh, &ranges, *surface));
         }
     }
-    groups.extend(input.plan.groups.iter().map(|g| sets::of_request(input, &named, &built.mesh, &ranges, g)));
+    for request in &input.plan.groups {
+        groups.push(sets::of_request(input, &named, &built.mesh, &ranges, request)?);
+    }
     built.mesh.groups = groups;
-    built
+    Ok(built)
 }
 
 /// A twentieth of the diagonal of what is meshed.

@@ -99,7 +99,7 @@ impl Teller<'_> {
             });
         }
         groups.len().tell(to);
-        for GroupRequest { name, members } in groups {
+        for GroupRequest { name, members, origin: _ } in groups {
             (name, members.len()).tell(to);
             members.iter().for_each(|member| self.target(member, to));
         }
@@ -116,6 +116,12 @@ impl Teller<'_> {
     fn target(&self, target: &Target, to: &mut Digester) {
         match target {
             Target::Chain(chain) => self.chain(chain, to),
+            Target::Edge(courses) => {
+                (4u8, courses.len()).tell(to);
+                for course in courses {
+                    self.layouts.iter().for_each(|layout| layout.along_course(course).tell(to));
+                }
+            }
             Target::Surface(_) | Target::Patches(_) => {
                 matches!(target, Target::Surface(_)).tell(to);
                 for face in self.layouts.iter().flat_map(|l| &l.faces) {
@@ -132,7 +138,8 @@ impl Teller<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut Digester) {
-        let Layout { faces, parts, pieces, of_link, curves, points, creases, meets } = layout;
+        // Which edges its tracks are is told by the faces.
+        let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets } = layout;
         faces.len().tell(to);
         faces.iter().for_each(|face| self.face(face, to));
         (parts, pieces, (curves, points, (creases, meets))).tell(to);

@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 use super::build::Input;
-use super::plan::{Elements, Method};
+use super::plan::{Elements, Method, Target};
 use super::uneven::Uneven;
 use crate::model::atoms::{Atoms, Part, Use, atoms};
 use crate::model::gather::Station;
 use crate::model::glue::preference;
-use crate::model::{EdgeCurve, EdgeId, PatchId, SurfaceId, Trace, Track};
+use crate::model::{EdgeCurve, EdgeId, EdgePart, PatchId, SurfaceId, Trace, Track};
 use crate::network::{Chain, LinkId};
 use crate::surface::{Domain, Surface};
 
@@ -92,6 +92,8 @@ pub struct Layout {
     pub parts: Vec<Part>,
     /// Stretches; where a comment says "stretch" it is an index into `pieces.atoms`.
     pub pieces: Atoms,
+    /// The edge of each of the first tracks, ascending.
+    pub edges: Vec<EdgeId>,
     /// Stretches of each link that has some, ascending along the link: stretch, arc lengths on the link, runs against it.
     pub of_link: Vec<(LinkId, Vec<Use>)>,
     /// Stretches of each curve of the plan, along it.
@@ -152,17 +154,17 @@ impl Layout {
         anchors.extend(imprint.into_iter().flat_map(|i| &i.points).map(|p| station(*p)));
         let pieces = atoms(&parts, &anchors, input.tolerance);
         let of_link = by_link(input, &edges, &links, &pieces);
-        let mut layout = Self { parts, pieces, of_link, ..Self::default() };
+        let mut layout = Self { parts, pieces, of_link, edges, ..Self::default() };
         layout.points = layout.pieces.of_anchor[nodes..last].to_vec();
         layout.meets = met.flat_map(|part| layout.pieces.of_track[part].iter().map(|u| u.atom)).collect();
         let stretches = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.atom).collect();
         layout.creases = of_face.iter().enumerate().map(|(k, face)| (*face, stretches(creased + k))).collect();
         for (patch, flipped) in patches {
             let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
-            if input.model.is_sliver(*patch, (&edges, &layout.pieces), reach(input, std::iter::once(*patch))) {
+            if input.model.is_sliver(*patch, (&layout.edges, &layout.pieces), reach(input, std::iter::once(*patch))) {
                 continue;
             }
-            let face = layout.face(input, (*patch, *flipped), &edges, junction);
+            let face = layout.face(input, (*patch, *flipped), junction);
             layout.faces.push(face);
         }
         if with_lines {
@@ -175,20 +177,14 @@ impl Layout {
         layout
     }
 
-    fn face(
-        &self,
-        input: &Input,
-        (patch, flipped): (PatchId, bool),
-        edges: &[EdgeId],
-        junction: impl Fn(crate::model::VertexId) -> Option<usize>,
-    ) -> Face {
+    fn face(&self, input: &Input, (patch, flipped): (PatchId, bool), junction: impl Fn(crate::model::VertexId) -> Option<usize>) -> Face {
         let record = &input.model.patches[patch.index()];
         let mut sides = Vec::new();
         for side in &record.sides {
             let mut border = Border { pole: side.pole.and_then(&junction), ..Border::default() };
             let mut corner = None;
             for (edge, against) in &side.edges {
-                let Ok(part) = edges.binary_search(edge) else { continue };
+                let Ok(part) = self.edges.binary_search(edge) else { continue };
                 let length = self.parts[part].track.length();
                 border.uses.extend(oriented(&self.pieces.of_track[part], *against, length, border.length));
                 border.length += length;
@@ -218,8 +214,37 @@ impl Layout {
         }
     }
 
-    /// Stretches of a chain in its direction, `s` from its start; those of links that are in the mesh.
+    /// Stretches of a border in its direction, `s` from its start; those of edges that are in the mesh.
+    pub fn along_course(&self, course: &[EdgePart]) -> Vec<Use> {
+        let (mut uses, mut start) = (Vec::new(), 0.0);
+        for part in course {
+            let (from, to) = part.s;
+            if let Ok(track) = self.edges.binary_search(&part.edge) {
+                let inside = |u: &&Use| 0.5 * (u.s.0 + u.s.1) > from && 0.5 * (u.s.0 + u.s.1) < to;
+                let own = self.pieces.of_track[track].iter().filter(inside);
+                let own: Vec<Use> = own.map(|u| Use { s: (u.s.0 - from, u.s.1 - from), ..*u }).collect();
+                uses.extend(oriented(&own, part.against, to - from, start));
+            }
+            start += to - from;
+        }
+        uses
+    }
+
+    /// Stretches of a chain in its direction, `s` from its start: those of links that are in the mesh, and those of borders
+    /// that run along it without being links of it.
     pub fn along(&self, input: &Input, chain: &Chain) -> Vec<Use> {
+        let mut uses = self.along_links(input, chain);
+        let covered: f64 = uses.iter().map(|u| u.s.1 - u.s.0).sum();
+        if covered < chain.length() - input.tolerance.point {
+            let known: Vec<usize> = uses.iter().map(|u| u.atom).collect();
+            uses.extend(super::beside::lying_on(input, self, chain).into_iter().filter(|u| !known.contains(&u.atom)));
+            uses.sort_by(|a, b| a.s.0.total_cmp(&b.s.0).then(a.atom.cmp(&b.atom)));
+        }
+        uses
+    }
+
+    /// Stretches of the links of a chain.
+    fn along_links(&self, input: &Input, chain: &Chain) -> Vec<Use> {
         let Some(links) = input.network.links_of(chain, input.tolerance) else {
             return Vec::new();
         };
@@ -248,9 +273,17 @@ impl Layout {
         }
     }
 
-    /// Stretches that lie on a chain, in no order that means anything.
-    pub fn on(&self, input: &Input, chain: &Chain) -> Vec<usize> {
-        self.along(input, chain).iter().map(|u| u.atom).collect()
+    /// Stretches that an edge or a curve runs along, each once, in no order that means anything.
+    pub fn on(&self, input: &Input, target: &Target) -> Vec<usize> {
+        let uses = match target {
+            Target::Chain(chain) => self.along(input, chain),
+            Target::Edge(courses) => courses.iter().flat_map(|course| self.along_course(course)).collect(),
+            Target::Surface(_) | Target::Patches(_) | Target::Point(_) => Vec::new(),
+        };
+        let mut stretches: Vec<usize> = uses.iter().map(|u| u.atom).collect();
+        stretches.sort_unstable();
+        stretches.dedup();
+        stretches
     }
 
     /// Length of a stretch, model units.
@@ -261,6 +294,14 @@ impl Layout {
     /// Points of a stretch at ascending fractions of its length.
     pub fn points_along(&self, stretch: usize, fractions: &[f64]) -> Vec<DVec3> {
         fractions.iter().map(|f| self.point(stretch, *f)).collect()
+    }
+
+    /// Distance of a point from a stretch, never below the true one.
+    pub fn distance(&self, stretch: usize, p: DVec3) -> f64 {
+        let atom = &self.pieces.atoms[stretch];
+        let track = &self.parts[atom.track].track;
+        let (s, distance) = track.closest(p);
+        if s >= atom.s.0 && s <= atom.s.1 { distance } else { track.point(s.clamp(atom.s.0, atom.s.1)).distance(p) }
     }
 
     /// Point of a stretch at a fraction of its length.

@@ -5,6 +5,7 @@
 
 mod ahead;
 mod assemble;
+mod beside;
 mod blame;
 pub mod build;
 pub mod chart;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::model::imprint::Imprint;
-use crate::model::{PatchId, SurfaceId};
+use crate::model::{Course, PatchId, SurfaceId};
 use crate::network::Chain;
 
 /// Which elements a face gets.
@@ -64,6 +64,8 @@ impl Method {
 pub enum Target {
     /// A curve, chain or link.
     Chain(Chain),
+    /// An edge, by the borders that run there, each over the whole length.
+    Edge(Vec<Course>),
     /// All faces of a surface.
     Surface(SurfaceId),
     /// One face; wins over its surface. Several patches where a curve inside cuts it.
@@ -78,7 +80,7 @@ impl Target {
         match self {
             Self::Surface(s) => (*s == surface).then_some(false),
             Self::Patches(all) => all.contains(&patch).then_some(true),
-            Self::Chain(_) | Self::Point(_) => None,
+            Self::Chain(_) | Self::Edge(_) | Self::Point(_) => None,
         }
     }
 }
@@ -140,6 +142,8 @@ pub struct GroupRequest {
     pub name: String,
     /// What it holds.
     pub members: Vec<Target>,
+    /// The declaration.
+    pub origin: Origin,
 }
 
 /// All that is asked of one mesh.

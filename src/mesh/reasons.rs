@@ -7,6 +7,7 @@ use super::explain::{Decider, Tally, Why};
 use super::pace::Pace;
 use super::plan::{Place, Target};
 use crate::base::text::real;
+use crate::model::{Course, EdgePart};
 use crate::network::Chain;
 
 /// A point with three digits behind the point.
@@ -34,11 +35,26 @@ fn target(input: &Input, target: &Target) -> String {
     let surface = |id: crate::model::SurfaceId| input.model.surfaces[id.index()].name.clone();
     match target {
         Target::Chain(chain) => curve(input, chain),
+        Target::Edge(courses) => edge(input, courses),
         Target::Surface(id) => surface(*id),
         Target::Patches(all) => {
             all.first().map_or_else(|| "no face".to_owned(), |p| format!("a face of {}", surface(input.model.patches[p.index()].surface)))
         }
         Target::Point(p) => point(*p),
+    }
+}
+
+/// An edge by the surface whose border it is.
+fn edge(input: &Input, courses: &[Course]) -> String {
+    let part = courses.iter().flatten().next();
+    let of = |part: &EdgePart| input.model.edges[part.edge.index()].users.first().copied();
+    let surface = part.and_then(of).map(|(patch, _)| input.model.patches[patch.index()].surface);
+    match (part, surface) {
+        (Some(part), Some(surface)) => {
+            let at = input.model.track(part.edge, input.network).point(0.5 * (part.s.0 + part.s.1));
+            format!("an edge of {} at {}", input.model.surfaces[surface.index()].name, point(at))
+        }
+        _ => "an edge".to_owned(),
     }
 }
 

@@ -2,11 +2,13 @@
 
 use glam::DVec3;
 
+use super::beside;
 use super::build::Input;
 use super::data::{Group, Mesh};
 use super::layout::Layout;
 use super::nodes::Nodes;
 use super::plan::{GroupRequest, Target};
+use crate::base::fault::{MeshFault, Result};
 use crate::model::{PatchId, SurfaceId};
 
 /// Where the elements of a face are in the mesh: its patch and surface, triangles, quads.
@@ -62,8 +64,10 @@ fn nodes_of(mesh: &Mesh, group: &Group) -> Vec<u32> {
     seen.iter().enumerate().filter(|(_, s)| **s).map(|(n, _)| n as u32).collect()
 }
 
-/// The set of a `group`: its surfaces, the nodes along its curves with their line elements, its points.
-pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, ranges: &Ranges, request: &GroupRequest) -> Group {
+/// The set of a `group`: its surfaces, the nodes along its curves and edges with their line elements, its points.
+///
+/// Fails with E672 where a curve ends inside a stretch of a border, where no node is: its set would hold a part of it.
+pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, ranges: &Ranges, request: &GroupRequest) -> Result<Group> {
     let mut group = Group { name: request.name.clone(), ..Group::default() };
     let mut nodes = Vec::new();
     for member in &request.members {
@@ -74,34 +78,51 @@ pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, 
                 group.quads.extend(own.quads);
                 nodes.extend(own.nodes);
             }
-            Target::Chain(chain) => {
+            Target::Chain(_) | Target::Edge(_) => {
+                let mut steps: Vec<(u32, u32)> = Vec::new();
                 for (layout, of, offset) in parts {
-                    for u in layout.on(input, chain) {
-                        nodes.extend(of.of_stretch(layout, u, false).iter().map(|n| n + offset));
+                    let on = layout.on(input, member);
+                    if let Target::Chain(chain) = member
+                        && let Some(at) = beside::cut_short(input, layout, chain, &on)
+                    {
+                        return Err(
+                            MeshFault::SetInPart { group: request.origin, mesh: input.plan.origin, curve: chain.origin(), at }.into()
+                        );
+                    }
+                    for stretch in on {
+                        let along = of.of_stretch(layout, stretch, false);
+                        steps.extend(along.windows(2).map(|w| (w[0].min(w[1]) + offset, w[0].max(w[1]) + offset)));
+                        nodes.extend(along.iter().map(|n| n + offset));
                     }
                 }
-                let on: Vec<u32> = sorted(nodes.clone());
-                for (k, line) in mesh.lines.iter().enumerate() {
-                    if line.iter().all(|n| on.binary_search(n).is_ok()) && lies_on(input, chain, mesh, k) {
-                        group.lines.push(k as u32);
-                        nodes.extend(mesh.line_mids.get(k));
-                    }
-                }
+                steps.sort_unstable();
+                let is_step = |line: &[u32; 2]| steps.binary_search(&(line[0].min(line[1]), line[0].max(line[1]))).is_ok();
+                group.lines.extend(mesh.lines.iter().enumerate().filter(|(_, line)| is_step(line)).map(|(k, _)| k as u32));
+                nodes.extend(mids_of(mesh, &steps));
             }
             Target::Point(point) => nodes.extend(at_point(input, mesh, *point)),
         }
     }
     (group.lines, group.triangles, group.quads) = (sorted(group.lines), sorted(group.triangles), sorted(group.quads));
     group.nodes = sorted(nodes);
-    group
+    Ok(group)
 }
 
-/// Whether the middle of a line element is on the chain, near enough for its length.
-fn lies_on(input: &Input, chain: &crate::network::Chain, mesh: &Mesh, line: usize) -> bool {
-    let Ok(curve) = chain.to_curve() else { return false };
-    let [a, b] = mesh.lines[line].map(|n| mesh.nodes[n as usize]);
-    let on = |p: DVec3, slack: f64| crate::geometry::closest(&curve, p).distance <= slack;
-    on(a, input.tolerance.point) && on(b, input.tolerance.point) && on((a + b) * 0.5, 0.5 * a.distance(b))
+/// Mid nodes of some edges of elements, which are given by their corners, the lower one first, ascending.
+fn mids_of(mesh: &Mesh, steps: &[(u32, u32)]) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut look = |corners: &[u32], mids: &[u32]| {
+        for (k, mid) in mids.iter().enumerate() {
+            let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+            if steps.binary_search(&(a.min(b), a.max(b))).is_ok() {
+                found.push(*mid);
+            }
+        }
+    };
+    mesh.triangles.iter().zip(&mesh.triangle_mids).for_each(|(corners, mids)| look(corners, mids));
+    mesh.quads.iter().zip(&mesh.quad_mids).for_each(|(corners, mids)| look(corners, mids));
+    mesh.lines.iter().zip(&mesh.line_mids).for_each(|(corners, mid)| look(corners, &[*mid]));
+    found
 }
 
 /// Nodes at a point.

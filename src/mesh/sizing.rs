@@ -20,6 +20,7 @@ use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
+use crate::model::Course;
 use crate::model::atoms::Use;
 use crate::network::Chain;
 
@@ -117,7 +118,16 @@ impl Sizing {
         let mut bias: Vec<Option<Ruled<f64>>> = vec![None; n];
         for (index, rule) in rules.iter().enumerate() {
             match &rule.target {
-                Target::Chain(chain) => sizing.chain_rule(input, layout, (index, rule, chain), &mut division, &mut bias)?,
+                Target::Chain(chain) => {
+                    let (uses, links) = stretches_of(input, layout, chain);
+                    let rank = if links.len() == 1 && chain.whole_curve().is_none() { LINK } else { CURVE };
+                    let lines = [Lines { uses, links, rank, length: chain.length() }];
+                    sizing.line_rule((index, rule, "curve"), &lines, &mut division, &mut bias)?;
+                }
+                Target::Edge(courses) => {
+                    let lines = along_courses(layout, courses);
+                    sizing.line_rule((index, rule, "edge"), &lines, &mut division, &mut bias)?;
+                }
                 Target::Surface(_) | Target::Patches(_) => sizing.face_counts(layout, (index, rule), &mut division)?,
                 Target::Point(_) => {}
             }
@@ -306,7 +316,7 @@ impl Sizing {
             let what = match rule.target {
                 Target::Surface(_) => "surface",
                 Target::Patches(_) => "face",
-                Target::Chain(_) | Target::Point(_) => "",
+                Target::Chain(_) | Target::Edge(_) | Target::Point(_) => "",
             };
             if !what.is_empty() {
                 if !layout.faces.iter().any(|f| rule.target.faces(f.patch, f.surface).is_some()) {
@@ -323,44 +333,44 @@ impl Sizing {
         }
     }
 
-    /// A rule on a curve, chain or link.
-    fn chain_rule(
+    /// A rule on a curve, chain, link or edge, by the lines in the mesh that are it.
+    fn line_rule(
         &mut self,
-        input: &Input,
-        layout: &Layout,
-        (index, rule, chain): (usize, &Rule, &Chain),
+        (index, rule, what): (usize, &Rule, &str),
+        lines: &[Lines],
         division: &mut [Option<Ruled<Division>>],
         bias: &mut [Option<Ruled<f64>>],
     ) -> Result<()> {
-        let (uses, links) = stretches_of(input, layout, chain);
-        if uses.is_empty() {
-            self.homeless[index] = Some("that curve is on no edge of this mesh".to_owned());
+        if lines.iter().all(|line| line.uses.is_empty()) {
+            let where_to = if what == "curve" { "on no edge of this mesh" } else { "on no face of this mesh" };
+            self.homeless[index] = Some(format!("that {what} is {where_to}"));
             return Ok(());
         }
         if rule.count.is_none() && rule.size.is_none() && rule.bias.is_none() {
-            self.homeless[index] = Some("`elements` and `method` speak of faces, this is a curve".to_owned());
+            self.homeless[index] = Some(format!("`elements` and `method` speak of faces, this is {} {what}", article(what)));
             return Ok(());
         }
-        let rank = if links.len() == 1 && chain.whole_curve().is_none() { LINK } else { CURVE };
-        if let Some((count, origin)) = rule.count {
-            let shares =
-                count_shares(&uses, &links, count).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
-            for (u, n) in uses.iter().zip(shares) {
-                settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
+        for Lines { uses, links, rank, length } in lines {
+            let rank = *rank;
+            if let Some((count, origin)) = rule.count {
+                let shares =
+                    count_shares(uses, links, count).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
+                for (u, n) in uses.iter().zip(shares) {
+                    settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
+                }
+            } else if let Some((size, _)) = rule.size {
+                for u in uses {
+                    settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Size(size) }, "size", &mut self.overridden);
+                }
             }
-        } else if let Some((size, _)) = rule.size {
-            for u in &uses {
-                settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Size(size) }, "size", &mut self.overridden);
-            }
-        }
-        if let Some((b, _)) = rule.bias {
-            let total = chain.length();
-            for u in &uses {
-                // Steps that grow geometrically have a size that is linear in the length.
-                let grown = |s: f64| 1.0 + (b - 1.0) * (s / total).clamp(0.0, 1.0);
-                let local = grown(u.s.1) / grown(u.s.0);
-                let value = if u.against { 1.0 / local } else { local };
-                settle(&mut bias[u.atom], Ruled { rank, rule: index, value }, "bias", &mut self.overridden);
+            if let Some((b, _)) = rule.bias {
+                for u in uses {
+                    // Steps that grow geometrically have a size that is linear in the length.
+                    let grown = |s: f64| 1.0 + (b - 1.0) * (s / length).clamp(0.0, 1.0);
+                    let local = grown(u.s.1) / grown(u.s.0);
+                    let value = if u.against { 1.0 / local } else { local };
+                    settle(&mut bias[u.atom], Ruled { rank, rule: index, value }, "bias", &mut self.overridden);
+                }
             }
         }
         Ok(())
@@ -578,15 +588,49 @@ fn shapes(layout: &Layout) -> Vec<u32> {
     least
 }
 
-/// Stretches along a chain, and the range of them on each of its links that has some.
+/// A line that a rule speaks of, as it is in the mesh.
+struct Lines {
+    /// Its stretches along it.
+    uses: Vec<Use>,
+    /// Its links with their stretches; what is no run of links is one.
+    links: Vec<LinkRange>,
+    rank: u8,
+    /// Arc length, model units.
+    length: f64,
+}
+
+/// The article before a word.
+fn article(word: &str) -> &'static str {
+    if word.starts_with('e') { "an" } else { "a" }
+}
+
+/// The borders that an edge is in the mesh, each stretch once.
+fn along_courses(layout: &Layout, courses: &[Course]) -> Vec<Lines> {
+    let mut known: Vec<usize> = Vec::new();
+    let mut lines = Vec::new();
+    for course in courses {
+        let mut uses = layout.along_course(course);
+        uses.retain(|u| !known.contains(&u.atom));
+        known.extend(uses.iter().map(|u| u.atom));
+        let length: f64 = course.iter().map(|part| part.s.1 - part.s.0).sum();
+        if !uses.is_empty() {
+            let links = vec![LinkRange { length, uses: 0..uses.len() }];
+            lines.push(Lines { uses, links, rank: CURVE, length });
+        }
+    }
+    lines
+}
+
+/// Stretches of a chain and of its links, which hold all of them.
 fn stretches_of(input: &Input, layout: &Layout, chain: &Chain) -> (Vec<Use>, Vec<LinkRange>) {
     let uses = layout.along(input, chain);
     let Some(links) = links_of(input, chain) else {
-        return (uses, Vec::new());
+        let all = 0..uses.len();
+        return (uses, vec![LinkRange { length: chain.length(), uses: all }]);
     };
     let (mut ranges, mut start, mut from) = (Vec::new(), 0.0, 0);
-    for s in links {
-        let end = start + (s.1 - s.0);
+    for (n, s) in links.iter().enumerate() {
+        let end = if n + 1 == links.len() { f64::INFINITY } else { start + (s.1 - s.0) };
         let to = from + uses[from..].iter().take_while(|u| 0.5 * (u.s.0 + u.s.1) < end).count();
         ranges.push(LinkRange { length: s.1 - s.0, uses: from..to });
         (start, from) = (end, to);

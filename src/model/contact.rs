@@ -60,6 +60,8 @@ struct Border<'a> {
     surface: &'a Surface,
     patch: &'a Patch,
     face: PatchId,
+    /// The place of the face among those asked for.
+    rank: usize,
     edge: EdgeId,
     around: &'a Loop,
     piece: usize,
@@ -98,19 +100,54 @@ impl Border<'_> {
 }
 
 impl Model {
-    /// Stretches that faces of some surfaces share, in order of their edges; those of which `wanted` says so, told both
-    /// faces and edges. Borders up to `near` apart are shared.
+    /// Stretches that faces of some surfaces share; those of which `wanted` says so, told both faces and edges. Borders up to
+    /// `near` apart are shared. They come by the first of their faces, in the order of the list, then along its border.
     pub fn contacts(
         &self,
-        (members, near): (&BTreeSet<SurfaceId>, f64),
+        (members, near): (&[SurfaceId], f64),
         (network, tolerance): (&Network, &Tolerance),
         wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
     ) -> Vec<Contact> {
-        let (edges, joins) = self.joins(members, near, network, tolerance);
-        let faces: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
+        let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
+        let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
+        let borders = self.borders((&faces, &loops), (&edges, &joins));
+        let order = borders_in_order(&borders);
+        let found = par::map(order.len(), |n| match borders[order[n]].as_slice() {
+            [a, b] if wanted((a.face, a.edge), (b.face, b.edge)) => Some(contact(a, b, &joins, order[n])),
+            _ => None,
+        });
+        found.into_iter().flatten().collect()
+    }
+
+    /// How far the normal turns at most across each stretch that two faces share, 0 to a half turn, radians, whatever the sides
+    /// of their surfaces: an edge of each with where on it the middle of the stretch is. Otherwise as [`Model::contacts`].
+    pub fn turns(&self, (members, near): (&[SurfaceId], f64), (network, tolerance): (&Network, &Tolerance)) -> Vec<Turn> {
+        let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
+        let faces = self.faces_of(members);
+        let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
+        let borders = self.borders((&faces, &loops), (&edges, &joins));
+        let order = borders_in_order(&borders);
+        let found = par::map(order.len(), |n| match borders[order[n]].as_slice() {
+            [a, b] => most_turn(a, b).map(|turn| {
+                let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.atom == order[n]));
+                Turn { edge: a.edge, s: place.map_or(0.0, |u| 0.5 * (u.s.0 + u.s.1)), turn }
+            }),
+            _ => None,
+        });
+        found.into_iter().flatten().collect()
+    }
+
+    /// Patches of some surfaces, in the order of the list, each once.
+    fn faces_of(&self, members: &[SurfaceId]) -> Vec<PatchId> {
+        let mut seen = BTreeSet::new();
+        members.iter().filter(|s| seen.insert(**s)).flat_map(|s| self.patches_of(*s)).collect()
+    }
+
+    /// The borders on each atom.
+    fn borders<'a>(&'a self, (faces, loops): (&[PatchId], &'a [Loop]), (edges, joins): (&[EdgeId], &Joins)) -> Vec<Vec<Border<'a>>> {
         let mut borders: Vec<Vec<Border>> = joins.pieces.atoms.iter().map(|_| Vec::new()).collect();
-        for (face, around) in faces.iter().zip(&loops) {
+        for (rank, (face, around)) in faces.iter().zip(loops).enumerate() {
             let patch = &self.patches[face.index()];
             let surface = &self.surfaces[patch.surface.index()].surface;
             for (piece, entry) in around.pieces.iter().enumerate() {
@@ -120,16 +157,49 @@ impl Model {
                 for part in &joins.pieces.of_track[place] {
                     let on = |s: f64| if against { entry.length() - s * share } else { s * share };
                     let ends = if part.against { (on(part.s.1), on(part.s.0)) } else { (on(part.s.0), on(part.s.1)) };
-                    borders[part.atom].push(Border { surface, patch, face: *face, edge, around, piece, ends });
+                    borders[part.atom].push(Border { surface, patch, face: *face, rank, edge, around, piece, ends });
                 }
             }
         }
-        let found = par::map(borders.len(), |atom| match borders[atom].as_slice() {
-            [a, b] if wanted((a.face, a.edge), (b.face, b.edge)) => Some(contact(a, b, &joins, atom)),
-            _ => None,
-        });
-        found.into_iter().flatten().collect()
+        borders
     }
+}
+
+/// How far the normal turns across a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// An edge that it is a part of.
+    pub edge: EdgeId,
+    /// Arc length on that edge at the middle of the stretch, model units.
+    pub s: f64,
+    /// The largest angle, 0 to a half turn, radians.
+    pub turn: f64,
+}
+
+/// Atoms with two borders: by the first one's face, then along its border.
+fn borders_in_order(borders: &[Vec<Border>]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..borders.len()).filter(|atom| borders[*atom].len() == 2).collect();
+    let key = |atom: &usize| (borders[*atom][0].rank, borders[*atom][0].piece, borders[*atom][0].station(0.5));
+    order.sort_by(|a, b| {
+        let (a, b) = (key(a), key(b));
+        (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
+    });
+    order
+}
+
+/// The largest turn of the normal from one face to the other along a stretch; `None` where one has no normal anywhere.
+fn most_turn(a: &Border, b: &Border) -> Option<f64> {
+    let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
+    // Faces of one side run along a stretch in opposite senses.
+    let turned = (a.ends.0 < a.ends.1) == (b.ends.0 < b.ends.1);
+    let at = |k: usize| {
+        let f = k as f64 / steps as f64;
+        let (uv, p, _) = a.jet(a.station(f));
+        let (m, n) = (a.normal(uv), b.normal(b.jet(b.foot(p, b.station(f))).0));
+        let defined = m != DVec3::ZERO && n != DVec3::ZERO;
+        defined.then(|| angle_between(m, if turned { -n } else { n }))
+    };
+    (0..=steps).filter_map(at).reduce(f64::max)
 }
 
 /// Two borders that do not touch.

@@ -2,6 +2,7 @@
 
 pub mod apart;
 pub mod atoms;
+pub mod carry;
 pub mod contact;
 mod feet;
 pub mod gather;
@@ -16,6 +17,7 @@ pub mod moments;
 mod outwards;
 mod patches;
 mod sew;
+pub mod shared;
 pub mod shells;
 mod sides;
 pub mod stretches;
@@ -26,6 +28,7 @@ pub use contact::{Apart, Contact, Spread};
 pub use loops::Loop;
 pub use moments::Moments;
 pub use patches::Lines;
+pub use shared::{Course, EdgePart, SharedEdge, SharedEdges, SharedTrack};
 pub use shells::ShellRequest;
 pub use stretches::{Meeting, Stretch};
 pub use topology::{Edge, EdgeCurve, EdgeId, Model, Patch, PatchId, Shell, SurfaceId, Vertex, VertexId};

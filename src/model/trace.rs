@@ -223,6 +223,27 @@ impl Track {
         }
     }
 
+    /// Arc length and distance of the point of the track nearest to a point: by projection from the nearest of some places, so
+    /// the distance is never below the true one.
+    pub fn closest(&self, p: DVec3) -> (f64, f64) {
+        const SAMPLES: u32 = 64;
+        const ROUNDS: u32 = 20;
+        let length = self.length();
+        let places = (0..=SAMPLES).map(|k| length * f64::from(k) / f64::from(SAMPLES)).map(|s| (s, self.point(s).distance(p)));
+        let nearest = places.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, f64::INFINITY));
+        let mut best = nearest;
+        let mut s = nearest.0;
+        for _ in 0..ROUNDS {
+            let (point, tangent) = self.jet(s);
+            s = (s + (p - point).dot(tangent)).clamp(0.0, length);
+            let distance = self.point(s).distance(p);
+            if distance < best.1 {
+                best = (s, distance);
+            }
+        }
+        best
+    }
+
     /// Points at a quarter, a half and three quarters of the length; what tells two edges with the same ends apart.
     pub fn probes(&self) -> [DVec3; 3] {
         [0.25, 0.5, 0.75].map(|f| self.point(f * self.length()))

@@ -130,7 +130,7 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool)
     said.iter().filter(news).for_each(|fault| cx.say(fault));
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
     let sides: Vec<_> = built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
-    let members: std::collections::BTreeSet<_> = built.surfaces.iter().map(|(id, _)| *id).collect();
+    let members: Vec<_> = built.surfaces.iter().map(|(id, _)| *id).collect();
     let contacts = if full { scene.model.contacts((&members, built.near), (&scene.network, tolerance), |_, _| true) } else { Vec::new() };
     Ok(ShellRow {
         name: shell.name.to_string(),

@@ -6,6 +6,7 @@ use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
 use crate::mesh::Plan;
 use crate::mesh::plan::Target;
+use crate::model::carry::Stage;
 use crate::model::{Lines, Model, PatchId, SurfaceId};
 use crate::network::Chain;
 use crate::surface::{Domain, IsoLine, Nearest, Surface, chain_breaks};
@@ -41,8 +42,13 @@ pub fn along_curves(cx: &Cx, scene: Scene, plan: &mut Plan) -> Result<Scene, Sto
     let cut = Scene { model: model.into(), network: scene.network.clone() };
     let rules = plan.rules.iter_mut().map(|rule| &mut rule.target);
     for target in rules.chain(plan.groups.iter_mut().flat_map(|group| &mut group.members)) {
-        if let Target::Patches(patches) = target {
-            *patches = patches.iter().flat_map(|p| pieces(&scene.model, &cut.model, *p)).collect();
+        match target {
+            Target::Patches(patches) => *patches = patches.iter().flat_map(|p| pieces(&scene.model, &cut.model, *p)).collect(),
+            Target::Edge(courses) => {
+                let stage = Stage { model: &cut.model, network: &cut.network };
+                *courses = scene.model.carried(&scene.network, courses, stage, &Some);
+            }
+            Target::Chain(_) | Target::Surface(_) | Target::Point(_) => {}
         }
     }
     Ok(cut)

@@ -29,7 +29,7 @@ pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Output
     let losses = match spec.things.first() {
         Some(_) if matches!(extension(&spec.path).as_str(), "igs" | "iges") => cad(cx, spec, files)?,
         Some((Value::Mesh(_), _)) => mesh(cx, spec, files)?,
-        Some((Value::Curve(_), _)) => curves(cx, spec, files)?,
+        Some((Value::Curve(_) | Value::Edge(..), _)) => curves(cx, spec, files)?,
         Some((Value::Record(_), _)) => records(cx, spec, files)?,
         Some((Value::Surface(_) | Value::Shell(_), origin)) => return Err(surface(spec, *origin)),
         Some((other, origin)) => return Err(unsupported(*origin, format!("{} cannot be exported", other.ty().words()))),
@@ -126,9 +126,16 @@ fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, 
     let tolerance = cx.tolerance()?;
     let mut lines = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
-        let Value::Curve(chain) = value else {
-            return Err(unsupported(*origin, format!("{} beside curves", value.ty().words())));
+        let (chain, name) = match value {
+            Value::Curve(chain) => (chain.clone(), cx.name(chain.origin())),
+            Value::Edge(module, edge) => {
+                let chain = super::plan::chain_of(cx, *module, edge)?;
+                let name = super::plan::edge_name(cx, &chain, edge);
+                (chain, name)
+            }
+            _ => return Err(unsupported(*origin, format!("{} beside curves", value.ty().words()))),
         };
+        let chain = &chain;
         let closed = chain.is_closed(&tolerance);
         let mut points = points_along(chain, &tolerance);
         if closed {
@@ -137,7 +144,7 @@ fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, 
         if let Some(scale) = scale {
             points.iter_mut().for_each(|p| *p /= scale);
         }
-        lines.push(Polyline { name: cx.name(chain.origin()), points, closed });
+        lines.push(Polyline { name, points, closed });
     }
     let drawing = Drawing { curves: &lines, unit };
     put(spec, files, &mut |out| (format.write)(&drawing, out))
@@ -170,16 +177,23 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
     no_mesh_settings(spec)?;
     let (unit, scale) = unit_of(cx, spec);
     let tolerance = cx.tolerance()?;
+    let one = |cx: &Cx, of: Origin, shown: Shown| Thing { name: cx.name(of), group: String::new(), shown };
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
-        let one = |of: Origin, shown: Shown| Thing { name: cx.name(of), group: String::new(), shown };
         match value {
-            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => things.push(Thing { name: String::new(), ..one(*origin, Shown::Point(*p)) }),
-            Value::Curve(chain) => things.push(one(chain.origin(), Shown::Curve(chain.clone()))),
-            Value::Surface(surface) => things.push(one(surface.origin(), Shown::Surface(surface.clone()))),
+            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => {
+                things.push(Thing { name: String::new(), ..one(cx, *origin, Shown::Point(*p)) })
+            }
+            Value::Curve(chain) => things.push(one(cx, chain.origin(), Shown::Curve(chain.clone()))),
+            Value::Edge(module, edge) => {
+                let chain = super::plan::chain_of(cx, *module, edge)?;
+                let name = super::plan::edge_name(cx, &chain, edge);
+                things.push(Thing { name, group: String::new(), shown: Shown::Curve(chain) });
+            }
+            Value::Surface(surface) => things.push(one(cx, surface.origin(), Shown::Surface(surface.clone()))),
             Value::Shell(shell) => {
                 let surfaces = shell.surfaces.iter();
-                let group = |s: &Surface| Thing { group: shell.name.to_string(), ..one(s.origin(), Shown::Surface(s.clone())) };
+                let group = |s: &Surface| Thing { group: shell.name.to_string(), ..one(cx, s.origin(), Shown::Surface(s.clone())) };
                 things.extend(surfaces.map(group));
             }
             other => {

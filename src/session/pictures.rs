@@ -50,7 +50,7 @@ pub(super) struct Things {
     /// Curves, links and edges with their names.
     pub curves: Vec<(String, Chain)>,
     /// Edges that no curve carries.
-    pub edges: Vec<(Scene, crate::model::EdgeId)>,
+    pub edges: Vec<(Scene, std::sync::Arc<crate::model::SharedEdge>)>,
     /// Points with their names, empty where they have none.
     pub points: Vec<(String, DVec3)>,
     /// A whole network.
@@ -193,7 +193,7 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
                 let network = cx.network(*module)?;
                 things.curves.push((names::of_link(&network, *link), network.link_chain(*link)));
             }
-            Value::Edge(module, edge) => things.edges.push((own(cx, *module)?, *edge)),
+            Value::Edge(module, edge) => things.edges.push((own(cx, *module)?, edge.clone())),
             Value::Vertex(module, vertex) => {
                 let point = cx.model(*module)?.vertices[vertex.index()].point;
                 things.points.push((String::new(), point));
@@ -231,7 +231,7 @@ fn outline(things: &Things, scene: &Scene) -> Vec<DVec3> {
         network.curves.iter().for_each(|c| along(&Chain::of_curve(&c.curve)));
     }
     for (scene, edge) in &things.edges {
-        let track = scene.model.track(*edge, &scene.network);
+        let Some(track) = scene.model.shared_track(edge, &scene.network) else { continue };
         out.extend((0..LOOKS).map(|k| track.point(track.length() * k as f64 / (LOOKS - 1) as f64)));
     }
     out.extend(things.points.iter().map(|p| p.1));
@@ -277,7 +277,7 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
         sheet.name = named.name.clone();
         drawing.sheets.push(sheet);
         for edge in scene.model.edges_of(&[*id]) {
-            add_edge(&mut drawing, scene, edge, stage);
+            add_edge(&mut drawing, scene, &scene.model.whole_edge(edge), stage);
         }
     }
     let borders = spec.show.borders.unwrap_or(true);
@@ -294,7 +294,7 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
     for (_, chain) in &things.curves {
         drawing.lines.push(Line { kind: Kind::Curve, points: lines::chain(chain, fine, &stage.tolerance) });
     }
-    things.edges.iter().for_each(|(scene, edge)| add_edge(&mut drawing, scene, *edge, stage));
+    things.edges.iter().for_each(|(scene, edge)| add_edge(&mut drawing, scene, edge, stage));
     drawing.marks.extend(things.points.iter().map(|(_, at)| Mark { at: *at, node: false }));
     if let Some(network) = stage.network(spec, things) {
         add_network(&mut drawing, network, stage);
@@ -310,9 +310,10 @@ fn drawn_as_surface(mesh: &Mesh, stage: &Stage, drawn: &BTreeSet<SurfaceId>) -> 
     mesh.faces.iter().any(|face| drawn.iter().any(|id| name(id) == face.name))
 }
 
-fn add_edge(drawing: &mut Drawing, scene: &Scene, edge: crate::model::EdgeId, stage: &Stage) {
-    let track = scene.model.track(edge, &scene.network);
-    drawing.lines.push(Line { kind: Kind::Border, points: lines::track(&track, (0.0, track.length()), stage.fine) });
+fn add_edge(drawing: &mut Drawing, scene: &Scene, edge: &crate::model::SharedEdge, stage: &Stage) {
+    let Some(track) = scene.model.shared_track(edge, &scene.network) else { return };
+    let (whole, s) = track.whole();
+    drawing.lines.push(Line { kind: Kind::Border, points: lines::track(whole, s, stage.fine) });
 }
 
 /// Links and nodes of the whole network.

@@ -11,7 +11,9 @@ use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, Value};
 use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
-use crate::model::SurfaceId;
+use crate::model::carry::Stage;
+use crate::model::{Model, SharedEdge, SurfaceId};
+use crate::network::Chain;
 use crate::surface::Surface;
 
 /// Finds what the values of a mesh stand for.
@@ -53,7 +55,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     for rule in &spec.rules {
         let first = plan.rules.len();
         for (value, _) in &rule.things {
-            for target in finder.targets(value)? {
+            for target in finder.targets(cx, value)? {
                 plan.rules.push(rule_on(rule, target));
             }
         }
@@ -62,11 +64,16 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     for refine in &spec.refines {
         let mut at: Vec<Place> = refine.boxes.iter().copied().map(Place::Box).collect();
         for (value, _) in &refine.things {
-            for target in finder.targets(value)? {
-                match target {
-                    Target::Chain(chain) => at.push(Place::Chain(chain)),
-                    Target::Point(p) => at.push(Place::Point(p)),
-                    Target::Surface(_) | Target::Patches(_) => {}
+            match value {
+                Value::Edge(module, edge) => at.push(Place::Chain(chain_of(cx, *module, edge)?)),
+                _ => {
+                    for target in finder.targets(cx, value)? {
+                        match target {
+                            Target::Chain(chain) => at.push(Place::Chain(chain)),
+                            Target::Point(p) => at.push(Place::Point(p)),
+                            Target::Edge(_) | Target::Surface(_) | Target::Patches(_) => {}
+                        }
+                    }
                 }
             }
         }
@@ -77,10 +84,10 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         for value in &group.value {
             // What the mesh does not hold is no part of its groups.
             if surfaces_of(value).iter().all(|s| scene.find(s).is_some()) {
-                members.extend(finder.targets(value)?);
+                members.extend(finder.targets(cx, value)?);
             }
         }
-        plan.groups.push(GroupRequest { name: group.name.to_string(), members });
+        plan.groups.push(GroupRequest { name: group.name.to_string(), members, origin: group.origin });
     }
     if let Some((true, origin)) = spec.imprint {
         if !plan.conforming {
@@ -113,7 +120,7 @@ fn settings(plan: &mut Plan, spec: &MeshSpec) {
 /// W701 for settings that say nothing about what their rule speaks of: steps of a face, elements of a curve.
 fn idle_settings(spec: &RuleSpec, rules: &[Rule], sink: &mut Vec<Fault>) {
     let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_) | Target::Patches(_)));
-    let curves = rules.iter().any(|rule| matches!(rule.target, Target::Chain(_)));
+    let curves = rules.iter().any(|rule| matches!(rule.target, Target::Chain(_) | Target::Edge(_)));
     // A count on faces is for each of their sides.
     let of_curves = [("bias", spec.bias.map(|s| s.1))];
     let of_faces = [("elements", spec.elements.map(|s| s.1)), ("method", spec.method.map(|s| s.1))];
@@ -164,7 +171,7 @@ impl Finder<'_> {
     }
 
     /// Adds a thing of the `of` list.
-    fn add(&self, cx: &Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Stop> {
+    fn add(&self, cx: &mut Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Stop> {
         match value {
             Value::Surface(surface) => {
                 let found = self.scene.find_all([surface])?;
@@ -189,12 +196,17 @@ impl Finder<'_> {
             }
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),
             Value::Node(p) | Value::Vector(p, _) => plan.points.push(*p),
-            Value::Link(..) | Value::Edge(..) | Value::Vertex(..) => {
-                for target in self.targets(value)? {
+            Value::Edge(module, edge) => {
+                let chain = chain_of(cx, *module, edge)?;
+                let name = edge_name(cx, &chain, edge);
+                plan.curves.push((name, chain));
+            }
+            Value::Link(..) | Value::Vertex(..) => {
+                for target in self.targets(cx, value)? {
                     match target {
                         Target::Chain(chain) => plan.curves.push((cx.name(chain.origin()), chain)),
                         Target::Point(p) => plan.points.push(p),
-                        Target::Surface(_) | Target::Patches(_) => {}
+                        Target::Edge(_) | Target::Surface(_) | Target::Patches(_) => {}
                     }
                 }
             }
@@ -204,10 +216,10 @@ impl Finder<'_> {
     }
 
     /// What a rule or a group speaks of.
-    fn targets(&self, value: &Value) -> Result<Vec<Target>, Stop> {
+    fn targets(&self, cx: &mut Cx, value: &Value) -> Result<Vec<Target>, Stop> {
         Ok(match value {
-            // Entities are numbered in the model of their own script.
-            Value::Link(of, _) | Value::Edge(of, _) | Value::Vertex(of, _) | Value::Patch(of, _) if *of != self.module => {
+            // Links are numbered in the network of their own script.
+            Value::Link(of, _) if *of != self.module => {
                 let what = format!("{} of a module in a mesh or group of another script", value.ty().words());
                 return Err(ValueFault::NotInThisVersion { what }.into());
             }
@@ -215,18 +227,42 @@ impl Finder<'_> {
             Value::Shell(shell) => self.scene.find_all(&shell.surfaces)?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
             Value::Curve(chain) => vec![Target::Chain(chain.clone())],
             Value::Link(_, link) => vec![Target::Chain(self.scene.network.link_chain(*link))],
-            Value::Edge(_, edge) => {
-                let edge = &self.scene.model.edges[edge.index()];
-                let chain = self.scene.edge_chain(edge, &self.tolerance)?;
-                let later = || ValueFault::NotInThisVersion { what: "a rule or group on an edge inside a surface".to_owned() };
-                vec![Target::Chain(chain.ok_or_else(later)?)]
+            Value::Edge(module, edge) => {
+                let (model, network) = (cx.model(*module)?, cx.network(*module)?);
+                let place = |id: SurfaceId| self.place(&model, id);
+                let stage = Stage { model: &self.scene.model, network: &self.scene.network };
+                vec![Target::Edge(model.carried(&network, &edge.courses, stage, &place))]
             }
-            Value::Patch(_, patch) => vec![Target::Patches(vec![*patch])],
-            Value::Vertex(_, vertex) => vec![Target::Point(self.scene.model.vertices[vertex.index()].point)],
+            Value::Patch(module, patch) => {
+                let model = cx.model(*module)?;
+                let own = model.patches[patch.index()].surface;
+                let rank = model.patches_of(own).position(|p| p == *patch).unwrap_or(0);
+                let there = self.place(&model, own).and_then(|id| self.scene.model.patches_of(id).nth(rank));
+                vec![Target::Patches(there.into_iter().collect())]
+            }
+            Value::Vertex(module, vertex) => vec![Target::Point(cx.model(*module)?.vertices[vertex.index()].point)],
             Value::Node(p) | Value::Vector(p, _) => vec![Target::Point(*p)],
             other => return Err(wrong(other)),
         })
     }
+
+    /// A surface of another model in the scene; its other side has its edges and patches elsewhere and does not count.
+    fn place(&self, model: &Model, id: SurfaceId) -> Option<SurfaceId> {
+        self.scene.find(&model.surfaces[id.index()].surface).filter(|(_, flipped)| !flipped).map(|found| found.0)
+    }
+}
+
+/// The name of an edge in files: that of the surface or curve that it lies on, and its number.
+pub(super) fn edge_name(cx: &Cx, chain: &Chain, edge: &SharedEdge) -> String {
+    format!("{}_edge_{}", cx.name(chain.origin()), edge.told.index() + 1)
+}
+
+/// The curve along an edge.
+pub(super) fn chain_of(cx: &mut Cx, module: ModuleId, edge: &SharedEdge) -> Result<Chain, Stop> {
+    let tolerance = cx.tolerance()?;
+    let scene = Scene { model: cx.model(module)?, network: cx.network(module)? };
+    let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
+    Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
 }
 
 fn wrong(value: &Value) -> Stop {

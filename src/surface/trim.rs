@@ -233,7 +233,7 @@ impl Surface {
     }
 
     /// The whole surface below a trimmed one, without names for its borders; any other as it is.
-    pub(super) fn untrimmed(&self) -> Self {
+    pub fn untrimmed(&self) -> Self {
         let parts = self.parts();
         let Some(trim) = &parts.trim else { return self.clone() };
         let sides = if trim.ground == Domain::Triangle { 3 } else { 4 };

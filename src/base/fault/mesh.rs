@@ -15,6 +15,17 @@ pub enum MeshFault {
         /// Why, in words: "`south` is on no face of this mesh".
         why: String,
     },
+    /// E672: a curve of a group runs along a border for a part of it only and ends where no node is.
+    SetInPart {
+        /// The group.
+        group: Origin,
+        /// The mesh.
+        mesh: Origin,
+        /// The curve.
+        curve: Origin,
+        /// The middle of that border.
+        at: DVec3,
+    },
     /// E217: more elements than a mesh may have.
     TooMany {
         /// What asks for so many, the size where it is written.
@@ -270,6 +281,13 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
             .at(*rule, "has no effect")
             .help("remove it")
             .edit(Subject::Entity(*rule), Edit::DropRule(None)),
+        F::SetInPart { group, mesh, curve, at } => {
+            let (set, curve) = (say.quoted(*group, "a group"), say.quoted(*curve, "a curve"));
+            Report::new("E672", format!("{set} would hold a part of {curve} only: it ends inside a border at {}", say.point(*at)))
+                .at(*group, "this group")
+                .at(*mesh, "has no node where the curve ends")
+                .help(format!("list {curve} in the mesh too, so that its ends become nodes"))
+        }
         F::TooMany { of, name, elements, limit } => {
             Report::new("E217", format!("the mesh `{name}` of {} elements is too much", many(*elements)))
                 .at(*of, "asked for here")
@@ -473,6 +491,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         }
         // Answered by the table above; listed so that a new fault cannot be forgotten.
         F::RuleUnused { .. }
+        | F::SetInPart { .. }
         | F::TooMany { .. }
         | F::TooManySteps { .. }
         | F::CountsDiffer { .. }

@@ -59,6 +59,22 @@ pub enum ValueFault {
         /// Middles of the edges that lie there.
         places: Vec<DVec3>,
     },
+    /// W728: a list without members where things are selected.
+    NothingSelected {
+        /// The expression.
+        of: Origin,
+        /// What they are selected for: "group", "picture".
+        keyword: &'static str,
+    },
+    /// W729: `all` or `any` of no condition inside a check.
+    OfNothing {
+        /// The call.
+        of: Origin,
+        /// The function.
+        function: &'static str,
+        /// What it gives.
+        result: bool,
+    },
     /// E211: a value of the wrong kind inside a list that may hold several kinds.
     WrongKind {
         /// Parameter name.
@@ -135,6 +151,14 @@ impl Describe for ValueFault {
                 };
                 let report = Report::new("E215", message).label(Subject::Call, "asked for here");
                 places.iter().take(4).fold(report, |r, p| r.note(format!("one has its middle at {}", say.point(*p))))
+            }
+            Self::NothingSelected { of, keyword } => Report::new("W728", format!("this selects nothing for the {keyword}"))
+                .at(*of, "an empty list")
+                .help("`report` what it selects from, or remove it"),
+            Self::OfNothing { of, function, result } => {
+                Report::new("W729", format!("`{function}` of no condition is {result}: this check looks at nothing"))
+                    .at(*of, "an empty list")
+                    .help("check that there is something first: `check len(list) > 0`")
             }
             Self::WrongKind { argument, wanted, found } => {
                 Report::new("E211", format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())

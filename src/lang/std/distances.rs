@@ -32,8 +32,8 @@ fn figure(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Figure, S
         Value::Edge(module, edge) => {
             let tolerance = cx.tolerance()?;
             let scene = Scene { model: cx.model(module)?, network: cx.network(module)? };
-            let later = || ValueFault::NotInThisVersion { what: "an edge inside a surface as a curve".to_owned() };
-            Figure::Curve(scene.edge_chain(&scene.model.edges[edge.index()], &tolerance)?.ok_or_else(later)?)
+            let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
+            Figure::Curve(scene.shared_chain(&edge, &tolerance)?.ok_or_else(later)?)
         }
         Value::Surface(s) => Figure::Faces(vec![s]),
         Value::Shell(s) => Figure::Faces(s.surfaces.clone()),

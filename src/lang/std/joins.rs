@@ -1,8 +1,7 @@
 //! How faces join along the edges they share.
 
-use std::collections::BTreeSet;
-
 use super::kinds::{EdgeOf, Faces};
+use super::topology::on_track;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Say, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
@@ -10,7 +9,7 @@ use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Length};
 use crate::lang::value::Value;
-use crate::model::{Contact, SurfaceId};
+use crate::model::{Contact, EdgeId, SurfaceId};
 use crate::surface::Surface;
 use crate::{builtins, fields};
 
@@ -19,7 +18,7 @@ fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolera
     let places = |list: &[Surface]| Ok::<_, Stop>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
     let ours = places(a)?;
     let theirs = b.map(places).transpose()?;
-    let members: BTreeSet<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
+    let members: Vec<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
     let of = |face: crate::model::PatchId| scene.model.patches[face.index()].surface;
     let contacts = scene.model.contacts((&members, near), (&scene.network, tolerance), |one, other| match &theirs {
         None => true,
@@ -67,27 +66,37 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
 }
 
 /// The stretches along which an edge of the model joins two faces.
-fn along(cx: &mut Cx, edge: EdgeOf) -> Result<Vec<Contact>, Stop> {
+fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Stop> {
     let tolerance = cx.tolerance()?;
     let (model, network) = (cx.model(edge.0)?, cx.network(edge.0)?);
     const SAMPLES: u32 = 32;
-    let (track, length) = (model.track(edge.1, &network), model.edges[edge.1.index()].length);
+    let Some(track) = model.shared_track(&edge.1, &network) else { return Ok(Vec::new()) };
+    let length = track.length();
     let around = Box3::of((0..=SAMPLES).map(|k| track.point(length * f64::from(k) / f64::from(SAMPLES))));
     // No point of the edge is farther from a sample than half a step.
     let reach = tolerance.point + length / f64::from(SAMPLES);
     let near = |n: &usize| model.surfaces[*n].surface.hull().touches(&around, reach);
-    let members = (0..model.surfaces.len()).filter(near).map(SurfaceId::at).collect();
-    Ok(model.contacts((&members, tolerance.point), (&network, &tolerance), |a, b| a.1 == edge.1 || b.1 == edge.1))
+    let own: Vec<SurfaceId> = edge.1.faces.iter().map(|face| model.patches[face.index()].surface).collect();
+    // What a shell glued is one over its distance, faces beside it are not asked.
+    let glued = edge.1.courses.len() > 1;
+    let members: Vec<SurfaceId> = if glued { own } else { (0..model.surfaces.len()).filter(near).map(SurfaceId::at).collect() };
+    let reach = if glued { edge.1.near } else { tolerance.point };
+    let on = |at: EdgeId| edge.1.courses.iter().flatten().any(|part| part.edge == at);
+    let mut found = model.contacts((&members, reach), (&network, &tolerance), |a, b| on(a.1) || on(b.1));
+    // Of a long border that several shorter ones meet, what lies beside this edge.
+    found.retain(|contact| on_track(|s| track.jet(s), length, contact.middle) <= reach.max(tolerance.point));
+    Ok(found)
 }
 
 builtins! {
     /// How the faces of two surfaces join along the edges they share.
     ///
-    /// One record for each stretch that they share.     /// `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
+    /// One record for each stretch that they share: by the faces of the first list, then along the border of each. `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
     /// 0 to 90 degrees whatever their sides; of each the least, the largest, the mean and the place of the largest. They are
     /// taken at 200 or more equally spaced points and refined round the extremes. `c0` says that the gap stays within
     /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are told.
-    /// Faces that share no edge are E618; `within:` takes borders that are so far apart for shared ones.
+    /// Of a shell these are its edges between two faces, glued as the shell glues them. Faces that share no edge are E618;
+    /// `within:` takes borders that are so far apart for shared ones.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
@@ -101,20 +110,30 @@ builtins! {
         a: Faces,
         /// What it joins; left out, the inner edges of `a` are told.
         b: Option<Faces>,
-        /// Largest distance of borders that count as shared; the model's tolerance when left out.
+        /// Largest distance of borders that count as shared; when left out that of the shell, else the model's tolerance.
         within: Option<Length>,
     ) -> Vec<Value> = |cx, a, b, within| {
         let (module, tolerance) = (cx.module(), cx.tolerance()?);
-        let near = match within {
-            None => tolerance.point,
-            Some(d) if d.0 >= tolerance.point => d.0,
+        let stated = match within {
+            None => None,
+            Some(d) if d.0 >= tolerance.point => Some(d.0),
             Some(d) => {
                 let (found, range) = (cx.length(d.0), format!("at least the tolerance, {}", cx.length(tolerance.point)));
                 return Err(ValueFault::OutsideRange { argument: "within", found, range }.into());
             }
         };
-        let (a, b) = (a.surfaces(), b.map(Faces::surfaces));
+        let glued = a.has_shell() || b.as_ref().is_some_and(Faces::has_shell);
+        let snap = a.snap().into_iter().chain(b.as_ref().and_then(Faces::snap)).reduce(f64::max);
+        let (a, b) = (a.surfaces(), b.map(|b| b.surfaces()));
         let scene = Scene::of(cx, module, a.iter().chain(b.iter().flatten()))?;
+        let near = match stated {
+            Some(near) => near,
+            None if glued => {
+                let places = scene.find_all(a.iter().chain(b.iter().flatten()))?;
+                scene.model.reach(places.into_iter().map(|place| place.0), snap, &tolerance)
+            }
+            None => tolerance.point,
+        };
         let contacts = shared(&scene, (&a, b.as_deref()), (near, &tolerance))?;
         Ok(contacts.iter().map(|contact| record_of(cx, &scene, contact, &tolerance)).collect())
     };
@@ -124,11 +143,11 @@ fields! {
     /// How far the borders of the faces at an edge are apart at most.
     ///
     /// `none` where only one face is.
-    fn gap(of: EdgeOf) -> Option<Length> = |cx, of| Ok(along(cx, of)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length));
+    fn gap(of: EdgeOf) -> Option<Length> = |cx, of| Ok(along(cx, &of)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length));
     /// Largest angle between the normals of the faces at an edge.
     ///
     /// From 0 to 90 degrees, whatever their sides; `none` where only one face is.
     fn angle(of: EdgeOf) -> Option<Angle> = |cx, of| {
-        Ok(along(cx, of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
+        Ok(along(cx, &of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
     };
 }

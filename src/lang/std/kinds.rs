@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::lang::types::{FromValue, IntoValue, Ty};
 use crate::lang::value::{MeshValue, ModuleId, Plane, ShellValue, Value};
-use crate::model::{EdgeId, PatchId, VertexId};
+use crate::model::{PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
 
@@ -62,6 +62,20 @@ one_of! {
 }
 
 one_of! {
+    /// What edges may lie on.
+    Carrier {
+        /// A curve.
+        Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+        /// A shell.
+        Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
+        /// An unbounded plane.
+        Plane(Arc<Plane>) = Ty::Plane, Value::Plane(p) => Self::Plane(p);
+    }
+}
+
+one_of! {
     /// What is trimmed.
     Trimmed {
         /// A surface.
@@ -101,16 +115,35 @@ one_of! {
 
 impl Faces {
     /// The surfaces they lie on, in order.
-    pub fn surfaces(self) -> Vec<Surface> {
-        let of = |value: Value| match value {
-            Value::Surface(s) => vec![s],
+    pub fn surfaces(&self) -> Vec<Surface> {
+        let of = |value: &Value| match value {
+            Value::Surface(s) => vec![s.clone()],
             Value::Shell(s) => s.surfaces.clone(),
             _ => Vec::new(),
         };
         match self {
-            Self::Surface(s) => vec![s],
+            Self::Surface(s) => vec![s.clone()],
             Self::Shell(s) => s.surfaces.clone(),
-            Self::Several(values) => values.into_iter().flat_map(of).collect(),
+            Self::Several(values) => values.iter().flat_map(of).collect(),
+        }
+    }
+
+    /// Whether a shell is among them.
+    pub fn has_shell(&self) -> bool {
+        match self {
+            Self::Surface(_) => false,
+            Self::Shell(_) => true,
+            Self::Several(values) => values.iter().any(|value| matches!(value, Value::Shell(_))),
+        }
+    }
+
+    /// The distance within which shells among them say that edges are glued, model units: the largest.
+    pub fn snap(&self) -> Option<f64> {
+        let of = |value: &Value| if let Value::Shell(s) = value { s.snap.map(|snap| snap.0) } else { None };
+        match self {
+            Self::Surface(_) => None,
+            Self::Shell(s) => s.snap.map(|snap| snap.0),
+            Self::Several(values) => values.iter().filter_map(of).reduce(f64::max),
         }
     }
 }
@@ -165,12 +198,31 @@ macro_rules! entity {
 entity! {
     /// A link of a script's network.
     LinkOf = Link(LinkId);
-    /// An edge of a script's surface model.
-    EdgeOf = Edge(EdgeId);
     /// A vertex of a script's surface model.
     VertexOf = Vertex(VertexId);
     /// A patch of a script's surface model.
     PatchOf = Patch(PatchId);
     /// The network of a script.
     NetworkOf = Network();
+}
+
+/// An edge of a script's surface model.
+#[derive(Clone, Debug)]
+pub struct EdgeOf(pub ModuleId, pub Arc<SharedEdge>);
+
+impl FromValue for EdgeOf {
+    const TY: Ty = Ty::Edge;
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Edge(module, edge) => Some(Self(module, edge)),
+            _ => None,
+        }
+    }
+}
+
+impl IntoValue for EdgeOf {
+    const TY: Ty = Ty::Edge;
+    fn into_value(self) -> Value {
+        Value::Edge(self.0, self.1)
+    }
 }

@@ -29,6 +29,14 @@ fn order(a: &Value, b: &Value) -> Option<Ordering> {
     }
 }
 
+/// W729 for no conditions inside a check.
+fn of_some(cx: &mut Cx, function: &'static str, conditions: &[bool], result: bool) {
+    if conditions.is_empty() && cx.in_check() {
+        let of = cx.origin();
+        cx.say(&ValueFault::OfNothing { of, function, result }.into());
+    }
+}
+
 /// What the members are sorted by: themselves, a field, or a list of the same length.
 fn keys(cx: &mut Cx, list: &[Value], key: &Value) -> Result<Vec<Value>, Stop> {
     match key {
@@ -183,7 +191,7 @@ builtins! {
         }
     };
 
-    /// Whether all members are true; true for an empty list.
+    /// Whether all members are true; true for an empty list, of which a `check` warns.
     ///
     /// ```loft
     /// let a = all([for i in 0..3: i < 3]) // => true
@@ -191,9 +199,12 @@ builtins! {
     fn all(
         /// Conditions, or lists of them.
         conditions: Rest<bool>,
-    ) -> bool = |_, conditions| Ok(conditions.0.iter().all(|c| *c));
+    ) -> bool = |cx, conditions| {
+        of_some(cx, "all", &conditions.0, true);
+        Ok(conditions.0.iter().all(|c| *c))
+    };
 
-    /// Whether any member is true; false for an empty list.
+    /// Whether any member is true; false for an empty list, of which a `check` warns.
     ///
     /// ```loft
     /// let a = any([for i in 0..3: i == 2]) // => true
@@ -201,7 +212,10 @@ builtins! {
     fn any(
         /// Conditions, or lists of them.
         conditions: Rest<bool>,
-    ) -> bool = |_, conditions| Ok(conditions.0.iter().any(|c| *c));
+    ) -> bool = |cx, conditions| {
+        of_some(cx, "any", &conditions.0, false);
+        Ok(conditions.0.iter().any(|c| *c))
+    };
 
     /// Members of several lists side by side, as long as the shortest.
     ///

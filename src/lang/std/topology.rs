@@ -4,17 +4,20 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::kinds::{EdgeKey, EdgeOf, PatchOf, VertexOf};
+use super::kinds::{Carrier, EdgeKey, EdgeOf, Faces, PatchOf, VertexOf};
 use super::surfaces::checked_uv;
+use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
 use crate::base::origin::Origin;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
-use crate::lang::types::{Direction, Length, Point};
+use crate::lang::types::{Angle, Direction, Length, Point};
 use crate::lang::value::{ModuleId, ShellValue, Value};
-use crate::model::{EdgeId, Model, PatchId, VertexId};
+use crate::model::contact::Turn;
+use crate::model::{EdgeId, Model, PatchId, SharedEdges, SharedTrack, SurfaceId};
 use crate::network::Chain;
-use crate::surface::{IsoLine, Surface};
+use crate::surface::plane::unbounded;
+use crate::surface::{IsoLine, Nearest, Surface};
 use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
@@ -31,9 +34,15 @@ fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(ModuleId, Arc<Model>, V
     Ok((module, model, patches))
 }
 
+/// An edge of the model as a value.
+fn whole(module: ModuleId, model: &Model, edge: EdgeId) -> EdgeOf {
+    EdgeOf(module, Arc::new(model.whole_edge(edge)))
+}
+
+/// Edges of some surfaces, along the border of each patch.
 fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Stop> {
     let (module, model, patches) = patches(cx, surfaces)?;
-    Ok(model.edges_of(&patches).into_iter().map(|edge| EdgeOf(module, edge)).collect())
+    Ok(model.edges_along(&patches).into_iter().map(|edge| whole(module, &model, edge)).collect())
 }
 
 fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Stop> {
@@ -44,14 +53,120 @@ fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Stop> {
 /// Edges of each patch's loop in order.
 fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Stop> {
     let (module, model, patches) = patches(cx, surfaces)?;
-    let of_patch = |patch: &PatchId| model.loop_of(*patch).pieces.iter().filter_map(|p| p.edge).map(|(e, _)| EdgeOf(module, e)).collect();
+    let of_patch = |patch: &PatchId| model.border_of(*patch).into_iter().map(|(e, _)| whole(module, &model, e)).collect();
     Ok(patches.iter().map(of_patch).collect())
 }
 
+/// The edges of a shell, as values in the order of its skin, and the skin.
+fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Stop> {
+    let (surfaces, stated) = (faces.surfaces(), faces.snap());
+    let (module, model, _) = patches(cx, &surfaces)?;
+    let (tolerance, network) = (cx.tolerance()?, cx.network(module)?);
+    let scene = Scene { model, network };
+    let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
+    let near = scene.model.reach(places.iter().copied(), stated, &tolerance);
+    let skin = scene.model.shared_edges(&places, near, (&scene.network, &tolerance));
+    Ok((skin.edges.iter().map(|edge| EdgeOf(module, Arc::new(edge.clone()))).collect(), skin))
+}
+
+/// Some edges of a skin by their places.
+fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
+    places.iter().map(|k| all[*k].clone()).collect()
+}
+
+/// Edges at which faces turn by more than an angle, radians.
+fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Stop> {
+    let (all, _) = skin(cx, faces)?;
+    let Some(module) = all.first().map(|edge| edge.0) else { return Ok(all) };
+    let (model, network, tolerance) = (cx.model(module)?, cx.network(module)?, cx.tolerance()?);
+    let scene = Scene { model, network };
+    let surfaces = faces.surfaces();
+    let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
+    let near = scene.model.reach(places.iter().copied(), faces.snap(), &tolerance);
+    let turns = scene.model.turns((&places, near), (&scene.network, &tolerance));
+    let on = |edge: &EdgeOf, turn: &Turn| {
+        edge.1.courses.iter().flatten().any(|part| part.edge == turn.edge && part.s.0 <= turn.s && turn.s <= part.s.1)
+    };
+    let turns = |edge: &EdgeOf| turns.iter().any(|turn| turn.turn > angle && on(edge, turn));
+    Ok(all.into_iter().filter(turns).collect())
+}
+
+/// Shares of an edge at which it is looked at.
+const LOOKS: u32 = 16;
+
+/// Places along an edge, its ends among them.
+fn places_along(track: &SharedTrack) -> impl Iterator<Item = DVec3> + '_ {
+    (0..=LOOKS).map(|k| track.point(track.length() * f64::from(k) / f64::from(LOOKS)))
+}
+
+/// Those of some edges that are wanted, told the geometry and the length of each.
+fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&SharedTrack, f64) -> bool) -> Result<Vec<EdgeOf>, Stop> {
+    let (mut found, mut open) = (Vec::new(), edges);
+    open.reverse();
+    while let Some(value) = open.pop() {
+        match value {
+            Value::List(items) => open.extend(items.iter().rev().cloned()),
+            Value::Edge(module, edge) => {
+                let (model, network) = (cx.model(module)?, cx.network(module)?);
+                let track = model.shared_track(&edge, &network);
+                if track.is_some_and(|track| wanted(&track, track.length())) {
+                    found.push(EdgeOf(module, edge));
+                }
+            }
+            other => {
+                return Err(ValueFault::WrongKind { argument: "edges", wanted: "edges", found: cx.kind(&other) }.into());
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// What edges may lie on, ready for many points.
+enum Feet {
+    Curve(Chain),
+    Surfaces(Vec<Nearest>),
+}
+
+impl Feet {
+    fn distance(&self, p: DVec3) -> f64 {
+        match self {
+            Self::Curve(chain) => chain.closest(p).2,
+            Self::Surfaces(all) => all.iter().map(|nearest| nearest.at(p).distance).fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+impl Carrier {
+    fn feet(&self, cx: &mut Cx) -> Result<Feet, Stop> {
+        let of = |surfaces: &[Surface]| Feet::Surfaces(surfaces.iter().map(Nearest::new).collect());
+        Ok(match self {
+            Self::Curve(chain) => Feet::Curve(chain.clone()),
+            Self::Surface(surface) => of(std::slice::from_ref(surface)),
+            Self::Shell(shell) => of(&shell.surfaces),
+            Self::Plane(plane) => of(&[unbounded(plane.at, plane.normal, cx.origin())?]),
+        })
+    }
+}
+
+/// The box that a record with the points `min` and `max` is.
+fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Stop> {
+    let (min, max) = (cx.names.intern("min"), cx.names.intern("max"));
+    let point = |value: Option<&Value>| match value {
+        Some(Value::Vector(p, _) | Value::Node(p)) => Some(*p),
+        _ => None,
+    };
+    let ends = if let Value::Record(record) = value { [min, max].map(|key| point(record.get(key))) } else { [None, None] };
+    match ends {
+        [Some(a), Some(b)] => Ok(Box3::of([a, b])),
+        _ => Err(ValueFault::WrongKind { argument: "of", wanted: "a box", found: cx.kind(value) }.into()),
+    }
+}
+
 /// The geometry of an edge at the middle of its length.
-fn middle(cx: &mut Cx, edge: EdgeOf) -> Result<DVec3, Stop> {
+fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
     let (model, network) = (cx.model(edge.0)?, cx.network(edge.0)?);
-    Ok(model.track(edge.1, &network).point(0.5 * model.edges[edge.1.index()].length))
+    let track = model.shared_track(&edge.1, &network).ok_or(Stop::Bug("an edge without geometry"))?;
+    Ok(track.point(0.5 * track.length()))
 }
 
 /// The one edge of some surfaces that lies on a curve or at a point.
@@ -70,7 +185,7 @@ fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, S
     };
     let found: Vec<EdgeId> = model.edges_of(&patches).into_iter().filter(lies).collect();
     match found.as_slice() {
-        [one] => Ok(EdgeOf(module, *one)),
+        [one] => Ok(whole(module, &model, *one)),
         _ => {
             let of = surfaces.first().map_or(Origin::NONE, Surface::origin);
             let places = found.iter().map(|e| model.track(*e, &network).point(0.5 * model.edges[e.index()].length)).collect();
@@ -80,7 +195,7 @@ fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, S
 }
 
 /// Distance of a point from a track of this length, by projection from the nearest of some samples.
-fn on_track(jet: impl Fn(f64) -> (DVec3, DVec3), length: f64, p: DVec3) -> f64 {
+pub(super) fn on_track(jet: impl Fn(f64) -> (DVec3, DVec3), length: f64, p: DVec3) -> f64 {
     const SAMPLES: u32 = 64;
     const ROUNDS: u32 = 20;
     let stations = (0..=SAMPLES).map(|k| length * f64::from(k) / f64::from(SAMPLES));
@@ -96,8 +211,8 @@ fn on_track(jet: impl Fn(f64) -> (DVec3, DVec3), length: f64, p: DVec3) -> f64 {
 fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
     let tolerance = cx.tolerance()?;
     let scene = Scene { model: cx.model(edge.0)?, network: cx.network(edge.0)? };
-    let later = || ValueFault::NotInThisVersion { what: "an edge inside a surface as a curve".to_owned() };
-    Ok(scene.edge_chain(&scene.model.edges[edge.1.index()], &tolerance)?.ok_or_else(later)?)
+    let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
+    Ok(scene.shared_chain(&edge.1, &tolerance)?.ok_or_else(later)?)
 }
 
 /// The line of constant u or v.
@@ -127,6 +242,85 @@ builtins! {
         /// A curve it lies on, or a point of it.
         on: EdgeKey,
     ) -> EdgeOf = |cx, of, on| edge_of(cx, &[of], &on);
+
+    /// Edges at which the faces of surfaces or shells turn by more than an angle.
+    ///
+    /// It is the angle between the normals of the two faces on one side, 0 where they go on smoothly, 180 degrees where they
+    /// fold back; the largest along the edge counts, at 200 or more places. Free edges are none (`.rims`).
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
+    /// shell s of wall, slab
+    /// let corner = s.creases(angle: 30deg)[0].length // => 4000mm
+    /// ```
+    fn creases(
+        /// A surface, a shell, or several.
+        of: Faces,
+        /// How far the normal turns at least.
+        angle: Angle,
+    ) -> Vec<EdgeOf> = |cx, of, angle| creases(cx, &of, angle.0);
+
+    /// Those of some edges that lie on a plane, surface, shell or curve.
+    ///
+    /// An edge lies on it where its ends and 15 places between them do, within the tolerance.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let top = wall.edges.on(plane(at: (0, 0, 3m), normal: (0, 0, 1)))[0].length // => 4000mm
+    /// ```
+    fn on(
+        /// Edges; lists of them flatten.
+        edges: Vec<Value>,
+        /// A plane, surface, shell or curve.
+        carrier: Carrier,
+    ) -> Vec<EdgeOf> = |cx, edges, carrier| {
+        let tolerance = cx.tolerance()?;
+        let feet = carrier.feet(cx)?;
+        chosen(cx, edges, |track, _| places_along(track).all(|p| feet.distance(p) <= tolerance.point))
+    };
+
+    /// Those of some edges that lie inside a box along the axes, its border included.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let low = wall.edges.inside(box((0, 0, 0), (4m, 0, 1m)))[0].length // => 4000mm
+    /// ```
+    fn inside(
+        /// Edges; lists of them flatten.
+        edges: Vec<Value>,
+        /// A box, as `box` and `bbox` give it.
+        of: Value,
+    ) -> Vec<EdgeOf> = |cx, edges, of| {
+        let (tolerance, around) = (cx.tolerance()?, corners(cx, &of)?);
+        chosen(cx, edges, |track, _| places_along(track).all(|p| around.touches(&Box3::of([p]), tolerance.point)))
+    };
+
+    /// Those of some edges whose length is between two lengths.
+    ///
+    /// Both bounds count within the tolerance.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let long = len(wall.edges.by_length(least: 3.5m)) // => 2
+    /// ```
+    fn by_length(
+        /// Edges; lists of them flatten.
+        edges: Vec<Value>,
+        /// The least length.
+        least: Option<Length>,
+        /// The largest length.
+        most: Option<Length>,
+    ) -> Vec<EdgeOf> = |cx, edges, least, most| {
+        if least.is_none() && most.is_none() {
+            let (what, example) = ("`least:` or `most:`", "edges.by_length(least: 1m)");
+            return Err(ValueFault::Missing { function: "by_length", what, example }.into());
+        }
+        let tolerance = cx.tolerance()?;
+        let (least, most) = (least.map_or(0.0, |l| l.0), most.map_or(f64::INFINITY, |l| l.0));
+        chosen(cx, edges, |_, length| length >= least - tolerance.point && length <= most + tolerance.point)
+    };
 
     /// The line of constant u or v of a surface, as a curve.
     ///
@@ -216,7 +410,7 @@ fields! {
         let (module, _, patches) = patches(cx, &[of])?;
         Ok(patches.into_iter().map(|p| PatchOf(module, p)).collect())
     };
-    /// The edges of a surface: the borders of its patches.
+    /// The edges of a surface, patch by patch along the border of each.
     fn edges(of: Surface) -> Vec<EdgeOf> = |cx, of| edges(cx, &[of]);
     /// The vertices of a surface: the corners of its patches.
     fn vertices(of: Surface) -> Vec<VertexOf> = |cx, of| vertices(cx, &[of]);
@@ -227,12 +421,36 @@ fields! {
         let (module, _, patches) = patches(cx, &of.surfaces)?;
         Ok(patches.into_iter().map(|p| PatchOf(module, p)).collect())
     };
-    /// The edges of a shell.
-    fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| edges(cx, &of.surfaces);
-    /// The vertices of a shell.
-    fn vertices(of: Arc<ShellValue>) -> Vec<VertexOf> = |cx, of| vertices(cx, &of.surfaces);
+    /// The edges of a shell, as they are after its faces were glued.
+    ///
+    /// They come by the faces of the shell as listed, then along the border of each face; where a long border meets several
+    /// shorter ones, each of these is an edge. `.faces` are the faces of the shell on it, one at a free edge.
+    fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| Ok(skin(cx, &Faces::Shell(of))?.0);
+    /// The vertices of a shell: the ends of its edges.
+    fn vertices(of: Arc<ShellValue>) -> Vec<VertexOf> = |cx, of| {
+        let mut found: Vec<VertexOf> = Vec::new();
+        for edge in skin(cx, &Faces::Shell(of))?.0 {
+            for vertex in [edge.1.ends.0, edge.1.ends.1] {
+                if found.iter().all(|v| v.1 != vertex) {
+                    found.push(VertexOf(edge.0, vertex));
+                }
+            }
+        }
+        Ok(found)
+    };
     /// For each face of a shell the edges around it, in order.
-    fn loops(of: Arc<ShellValue>) -> Vec<Vec<EdgeOf>> = |cx, of| loops(cx, &of.surfaces);
+    fn loops(of: Arc<ShellValue>) -> Vec<Vec<EdgeOf>> = |cx, of| {
+        let (all, skin) = skin(cx, &Faces::Shell(of))?;
+        Ok(skin.borders.iter().map(|(_, around)| picked(&all, around)).collect())
+    };
+    /// The free edges of a surface, a shell or a list of them, loop by loop.
+    ///
+    /// A tube has two rims of one edge each, a closed shell none. The first loop begins with the first free edge (`.edges`
+    /// says in which order they come), the next one with the first that is left.
+    fn rims(of: Faces) -> Vec<Vec<EdgeOf>> = |cx, of| {
+        let (all, skin) = skin(cx, &of)?;
+        Ok(skin.rims().iter().map(|around| picked(&all, around)).collect())
+    };
     /// Whether no edge of a shell is free.
     fn closed(of: Arc<ShellValue>) -> bool = |cx, of| {
         let (module, tolerance) = (cx.module(), cx.tolerance()?);
@@ -242,7 +460,7 @@ fields! {
     /// The edges around a patch, in order.
     fn edges(of: PatchOf) -> Vec<EdgeOf> = |cx, of| {
         let model = cx.model(of.0)?;
-        Ok(model.loop_of(of.1).pieces.iter().filter_map(|p| p.edge).map(|(e, _)| EdgeOf(of.0, e)).collect())
+        Ok(model.border_of(of.1).into_iter().map(|(e, _)| whole(of.0, &model, e)).collect())
     };
     /// The corners of a patch.
     fn vertices(of: PatchOf) -> Vec<VertexOf> = |cx, of| {
@@ -254,25 +472,20 @@ fields! {
         Ok(model.surfaces[model.patches[of.1.index()].surface.index()].surface.clone())
     };
     /// Arc length of an edge.
-    fn length(of: EdgeOf) -> Length = |cx, of| Ok(Length(cx.model(of.0)?.edges[of.1.index()].length));
+    fn length(of: EdgeOf) -> Length = |_, of| Ok(Length(of.1.length()));
     /// The patches on both sides of an edge.
-    fn faces(of: EdgeOf) -> Vec<PatchOf> = |cx, of| {
-        Ok(cx.model(of.0)?.edges[of.1.index()].users.iter().map(|(p, _)| PatchOf(of.0, *p)).collect())
-    };
+    fn faces(of: EdgeOf) -> Vec<PatchOf> = |_, of| Ok(of.1.faces.iter().map(|p| PatchOf(of.0, *p)).collect());
     /// The two ends of an edge.
-    fn vertices(of: EdgeOf) -> Vec<VertexOf> = |cx, of| {
-        let (a, b): (VertexId, VertexId) = cx.model(of.0)?.edges[of.1.index()].vertices;
-        Ok(vec![VertexOf(of.0, a), VertexOf(of.0, b)])
-    };
+    fn vertices(of: EdgeOf) -> Vec<VertexOf> = |_, of| Ok([of.1.ends.0, of.1.ends.1].map(|v| VertexOf(of.0, v)).to_vec());
     /// The point halfway along an edge.
-    fn mid(of: EdgeOf) -> Point = |cx, of| Ok(Point(middle(cx, of)?));
+    fn mid(of: EdgeOf) -> Point = |cx, of| Ok(Point(middle(cx, &of)?));
     /// The curve that an edge lies on.
     fn curve(of: EdgeOf) -> Chain = |cx, of| curve_of(cx, of);
     /// The edges that end in a vertex.
     fn edges(of: VertexOf) -> Vec<EdgeOf> = |cx, of| {
         let model = cx.model(of.0)?;
         let ends = |e: &usize| model.edges[*e].vertices.0 == of.1 || model.edges[*e].vertices.1 == of.1;
-        Ok((0..model.edges.len()).filter(ends).map(|e| EdgeOf(of.0, EdgeId::at(e))).collect())
+        Ok((0..model.edges.len()).filter(ends).map(|e| whole(of.0, &model, EdgeId::at(e))).collect())
     };
     /// Where a vertex is.
     fn point(of: VertexOf) -> Value = |cx, of| Ok(Value::point(cx.model(of.0)?.vertices[of.1.index()].point));

@@ -100,8 +100,12 @@ impl Fit<'_> {
     /// The shortest steps that are written for a curve.
     fn of_edges(&self) -> Option<Origin> {
         let rules = self.made.input.plan.rules.iter().filter_map(|rule| {
-            let Target::Chain(chain) = &rule.target else { return None };
-            let by_count = rule.count.map(|(n, of)| (chain.length() / f64::from(n), of));
+            let length = match &rule.target {
+                Target::Chain(chain) => chain.length(),
+                Target::Edge(courses) => courses.first()?.iter().map(|part| part.s.1 - part.s.0).sum(),
+                Target::Surface(_) | Target::Patches(_) | Target::Point(_) => return None,
+            };
+            let by_count = rule.count.map(|(n, of)| (length / f64::from(n), of));
             by_count.or(rule.size)
         });
         rules.min_by(|a, b| a.0.total_cmp(&b.0)).map(|rule| rule.1)
