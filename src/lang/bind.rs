@@ -140,14 +140,8 @@ impl Cx<'_> {
     /// One argument among the rest: a thing, or lists of things.
     fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, (list, of): (Ty, Ty), name: &str) -> Result<Value, Stop> {
         let value = if let Value::Table(t) = value { Value::List(t.rows.clone()) } else { value };
-        match &value {
-            Value::List(items) if items.iter().any(|v| matches!(v, Value::List(_) | Value::Range(..))) => {
-                let flat = self.flattened(code, id, value)?;
-                self.fit_expr(code, id, Value::list(flat), list, &quoted(name))
-            }
-            Value::List(_) | Value::Range(..) => self.fit_expr(code, id, value, list, &quoted(name)),
-            _ => self.fit_expr(code, id, value, of, &quoted(name)),
-        }
+        let ty = if matches!(value, Value::List(_) | Value::Range(..)) { list } else { of };
+        self.fit_expr(code, id, value, ty, &quoted(name))
     }
 
     /// All rest arguments as one flat list; a single list is kept as it is.

@@ -90,7 +90,7 @@ impl Cx<'_> {
             (Ty::Curve | Ty::Axis, Value::Curve(_)) => Ok(None),
             (Ty::Curve | Ty::Axis, Value::Link(..)) => Ok(Some(Value::Curve(self.as_chain(value.clone())?))),
             (Ty::List(of) | Ty::Rest(of), Value::Table(t)) => self.fit(&Value::List(t.rows.clone()), Ty::List(of), module),
-            (Ty::List(of) | Ty::Rest(of), v) if v.len().is_some() => self.fit_list(v, *of, module),
+            (Ty::List(of) | Ty::Rest(of), v) => self.fit_things(v, *of, module),
             (wanted, v) => ok(plain(wanted, v)),
         }
     }
@@ -111,36 +111,57 @@ impl Cx<'_> {
         Err(first.unwrap_or(Misfit::Kind))
     }
 
+    /// A list; where a list of things is wanted one thing is a list of one.
+    fn fit_things(&mut self, value: &Value, of: Ty, module: ModuleId) -> Result<Option<Value>, Misfit> {
+        let one = |v: Value| Some(Value::list(vec![v]));
+        match (of.is_thing(), value.len().is_some()) {
+            // A row of a table is a record and a list.
+            (true, true) if !matches!(value, Value::Record(_)) => self.fit_list(value, of, module),
+            (true, many) => match self.fit(value, of, module) {
+                Ok(fitted) => Ok(one(fitted.unwrap_or_else(|| value.clone()))),
+                Err(Misfit::Stop(stop)) => Err(Misfit::Stop(stop)),
+                Err(_) if many => self.fit_list(value, of, module),
+                Err(misfit) => Err(misfit),
+            },
+            (false, true) => self.fit_list(value, of, module),
+            (false, false) => Err(Misfit::Kind),
+        }
+    }
+
+    /// The members of a list as this type; where they are things lists inside it flatten.
     fn fit_list(&mut self, list: &Value, of: Ty, module: ModuleId) -> Result<Option<Value>, Misfit> {
-        let member = |i: usize, v: &Value, m: Misfit| match m {
-            Misfit::Stop(stop) => Misfit::Stop(stop),
-            other => Misfit::Member(i, Box::new(v.clone()), Box::new(other)),
-        };
-        let Value::List(items) = list else {
-            let mut out = Vec::new();
-            for i in 0..list.len().unwrap_or(0) {
-                let item = list.item(i).unwrap_or_default();
-                out.push(match self.fit(&item, of, module) {
-                    Ok(fitted) => fitted.unwrap_or(item),
-                    Err(m) => return Err(member(i, &item, m)),
-                });
-            }
-            return Ok(Some(Value::list(out)));
-        };
-        if of == Ty::Any {
+        if of == Ty::Any && matches!(list, Value::List(_)) {
             return Ok(None);
         }
+        let n = list.len().unwrap_or(0);
         // A list is copied only from the first member that changes.
-        let mut changed: Option<Vec<Value>> = None;
-        for (i, item) in items.iter().enumerate() {
-            let fitted = self.fit(item, of, module).map_err(|m| member(i, item, m))?;
-            match (&mut changed, fitted) {
-                (None, None) => {}
-                (None, Some(new)) => {
-                    let mut out = items[..i].to_vec();
-                    out.push(new);
-                    changed = Some(out);
+        let mut changed = (!matches!(list, Value::List(_))).then(|| Vec::with_capacity(n));
+        for i in 0..n {
+            let held;
+            let item = match list {
+                Value::List(items) => &items[i],
+                other => {
+                    held = other.item(i).unwrap_or_default();
+                    &held
                 }
+            };
+            // A row of a net is written as a list.
+            let fits = if of.is_list() && item.len().is_none() { Err(Misfit::Kind) } else { self.fit(item, of, module) };
+            let (fitted, nested) = match fits {
+                Ok(fitted) => (fitted, false),
+                Err(Misfit::Stop(stop)) => return Err(Misfit::Stop(stop)),
+                Err(_) if of.is_thing() && item.len().is_some() && !is_coordinates(item, of) => {
+                    let inner = self.fit_list(item, of, module).map_err(|m| member(i, item, m))?;
+                    (Some(inner.unwrap_or_else(|| item.clone())), true)
+                }
+                Err(misfit) => return Err(member(i, item, misfit)),
+            };
+            if changed.is_none() && fitted.is_some() {
+                changed = Some((0..i).filter_map(|k| list.item(k)).collect());
+            }
+            match (&mut changed, fitted) {
+                (None, _) => {}
+                (Some(out), Some(inner)) if nested => out.extend((0..inner.len().unwrap_or(0)).filter_map(|k| inner.item(k))),
                 (Some(out), fitted) => out.push(fitted.unwrap_or_else(|| item.clone())),
             }
         }
@@ -189,13 +210,16 @@ impl Cx<'_> {
         let wanted = ty.words();
         if let Misfit::Member(i, item, inner) = misfit {
             // A list written out is blamed at its member.
-            let (place, of) = match (code.expr(id), ty) {
-                (Expr::List(items), Ty::List(of) | Ty::Rest(of)) => (items.get(*i).copied(), of),
-                (_, Ty::List(of) | Ty::Rest(of)) => (None, of),
-                _ => (None, &Ty::Any),
-            };
-            if let Some(place) = place {
-                return self.misfit(code, place, item, *of, &format!("member {i} of {subject}"), inner);
+            let of = ty.member();
+            if let Expr::List(items) = code.expr(id)
+                && let Some(place) = items.get(*i)
+            {
+                let nested = of.is_thing() && matches!(**inner, Misfit::Member(..));
+                let ty = if nested { ty } else { of };
+                return self.misfit(code, *place, item, ty, &format!("member {i} of {subject}"), inner);
+            }
+            if let Misfit::Member(..) = &**inner {
+                return self.misfit(code, id, item, if of.is_thing() { ty } else { of }, &format!("member {i} of {subject}"), inner);
             }
             let found = self.kind(item);
             let text = format!("{subject} is {wanted}, got {found} at place {i}");
@@ -288,6 +312,20 @@ impl Cx<'_> {
             _ => self.eval(code, id),
         }
     }
+}
+
+/// Why a list does not fit: its i-th member.
+fn member(i: usize, item: &Value, misfit: Misfit) -> Misfit {
+    match misfit {
+        Misfit::Stop(stop) => Misfit::Stop(stop),
+        other => Misfit::Member(i, Box::new(item.clone()), Box::new(other)),
+    }
+}
+
+/// Whether a list of numbers stands where points are wanted: `[0, 0, 0]` is no list of points.
+fn is_coordinates(item: &Value, of: Ty) -> bool {
+    let numbers = || (0..item.len().unwrap_or(0)).all(|k| matches!(item.item(k), Some(Value::Number(_))));
+    matches!(of, Ty::Point | Ty::Node | Ty::Vector | Ty::Direction) && matches!(item.len(), Some(2 | 3)) && numbers()
 }
 
 /// Dimension that a literal 0 takes where this type is wanted.

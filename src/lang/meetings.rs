@@ -2,7 +2,7 @@
 
 use super::cx::{Cx, Stop};
 use super::eval::Code;
-use super::std::kinds::{Cutters, Meeting};
+use super::std::kinds::{Cutter, Meeting};
 use super::syntax::ast::{Expr, ExprId};
 use super::types::{FromValue, Ty};
 use super::value::{Dim, Value};
@@ -82,30 +82,25 @@ pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
 const MESH: &str = "`meet` of a mesh";
 
 /// The curves by which things cut a surface: curves themselves, of surfaces those in which they meet it.
-pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Cutters) -> Result<Vec<Chain>, Stop> {
-    let values = match by {
-        Cutters::Curve(chain) => vec![Value::Curve(chain)],
-        Cutters::Surface(surface) => vec![Value::Surface(surface)],
-        Cutters::Shell(shell) => vec![Value::Shell(shell)],
-        Cutters::Plane(plane) => vec![Value::Plane(plane)],
-        Cutters::Several(values) => values,
-    };
+pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result<Vec<Chain>, Stop> {
     let tolerance = cx.tolerance()?;
     let mut chains = Vec::new();
-    for value in values {
-        match Meeting::from_value(plain(cx, &value)?) {
-            Some(Meeting::Curve(chain)) => chains.push(chain),
-            Some(other) => {
-                let faces = faces(&other)?.ok_or(Stop::Bug("a mesh does not cut"))?;
-                let found = surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
-                if found.is_empty() {
-                    let b = faces.first().map_or(Origin::NONE, Surface::origin);
-                    return Err(Fault::from(CutFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());
-                }
-                chains.extend(found);
+    for cutter in by {
+        let faces = match cutter {
+            Cutter::Curve(chain) => {
+                chains.push(chain);
+                continue;
             }
-            None => return Err(Stop::Bug("a cutter was not coerced to its type")),
+            Cutter::Surface(surface) => vec![surface],
+            Cutter::Shell(shell) => shell.surfaces.clone(),
+            Cutter::Plane(p) => vec![plane::unbounded(p.at, p.normal, Origin::NONE)?],
+        };
+        let found = surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
+        if found.is_empty() {
+            let b = faces.first().map_or(Origin::NONE, Surface::origin);
+            return Err(Fault::from(CutFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());
         }
+        chains.extend(found);
     }
     Ok(chains)
 }

@@ -75,7 +75,7 @@ pub enum Ty {
     Module,
     /// The network of a script.
     Network,
-    /// A list of these; a range is a list of whole numbers.
+    /// A list of these; a range is a list of whole numbers. See [`Ty::is_thing`] for what a list of things takes.
     List(&'static Ty),
     /// All remaining positional arguments, nested lists flattened.
     Rest(&'static Ty),
@@ -152,6 +152,32 @@ impl Ty {
                 let words = other.words();
                 words.split_once(' ').map_or(words.clone(), |(_, rest)| rest.to_owned())
             }
+        }
+    }
+
+    /// Whether it is a list of some kind.
+    pub fn is_list(self) -> bool {
+        matches!(self, Self::List(_) | Self::Rest(_))
+    }
+
+    /// What a list of this type holds; anything for what is no list.
+    pub fn member(self) -> Self {
+        match self {
+            Self::List(of) | Self::Rest(of) => *of,
+            Self::Optional(of) => of.member(),
+            Self::OneOf(of) => of.iter().map(|t| t.member()).find(|t| *t != Self::Any).unwrap_or(Self::Any),
+            _ => Self::Any,
+        }
+    }
+
+    /// Whether a list of these is a list of things: one of them counts as a list of one, and lists inside it flatten.
+    /// Lists of lists (nets) and lists of anything keep their rows.
+    pub fn is_thing(self) -> bool {
+        match self {
+            Self::Any | Self::List(_) | Self::Rest(_) => false,
+            Self::Optional(of) => of.is_thing(),
+            Self::OneOf(of) => of.iter().all(|t| t.is_thing()),
+            _ => true,
         }
     }
 
@@ -504,20 +530,6 @@ impl<T: FromValue> FromValue for Rest<T> {
     const TY: Ty = Ty::Rest(&T::TY);
     fn from_value(value: Value) -> Option<Self> {
         Vec::from_value(value).map(Self)
-    }
-}
-
-/// Curves that close together: one, or a list.
-#[derive(Clone, Debug)]
-pub struct Ring(pub Vec<Chain>);
-
-impl FromValue for Ring {
-    const TY: Ty = Ty::OneOf(&[Ty::Curve, Ty::List(&Ty::Curve)]);
-    fn from_value(value: Value) -> Option<Self> {
-        match value {
-            Value::Curve(chain) => Some(Self(vec![chain])),
-            list => Vec::from_value(list).map(Self),
-        }
     }
 }
 

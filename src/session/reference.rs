@@ -104,6 +104,7 @@ pub fn manual() -> String {
     units(&mut out);
     let names: Vec<String> = TYPE_NAMES.iter().map(|name| format!("`{name}`")).collect();
     out.push_str(&format!("\n## Types\n\nIn `fn` and `param`: {}; `[length]` is a list of lengths.\n", names.join(", ")));
+    out.push_str(LISTS);
     let row = |(what, value): &(&str, f64)| vec![what.trim().trim_end_matches('.').to_owned(), plain(*value)];
     table(&mut out, "## Limits", &["", "at most"], limits::ALL.iter().map(row).collect());
     out.push_str("\n## Functions\n");
@@ -113,6 +114,13 @@ pub fn manual() -> String {
     members(&mut out);
     out
 }
+
+/// What is taken where lists are wanted; said once for all functions and clauses.
+const LISTS: &str = "
+Where a list of things is wanted (`[curve]`, `curve…`, the things of `of`, `on`, `near` and of outputs), one thing is a list of one, and \
+lists and families inside a list flatten: `holes: shaft`, `holes: [inner, bolts]`, `u: [west, ribs, east]`. Nets (`[[point]]`) and lists \
+of anything (`[any]`) keep their rows.
+";
 
 /// A heading with a table; bars in cells are escaped.
 fn table(out: &mut String, title: &str, head: &[&str], rows: Vec<Vec<String>>) {

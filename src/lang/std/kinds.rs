@@ -87,7 +87,7 @@ one_of! {
 
 one_of! {
     /// What cuts a surface.
-    Cutters {
+    Cutter {
         /// A curve.
         Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
         /// A surface.
@@ -96,24 +96,26 @@ one_of! {
         Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
         /// An unbounded plane.
         Plane(Arc<Plane>) = Ty::Plane, Value::Plane(p) => Self::Plane(p);
-        /// Several.
-        Several(Vec<Value>) = Ty::List(&Ty::OneOf(&[Ty::Curve, Ty::Surface, Ty::Shell, Ty::Plane])), Value::List(items) => Self::Several(items.to_vec());
     }
 }
 
-one_of! {
-    /// Faces that may join: of a surface, a shell, or several of them.
-    Faces {
-        /// A surface.
-        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
-        /// A shell.
-        Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
-        /// Several.
-        Several(Vec<Value>) = Ty::List(&Ty::OneOf(&[Ty::Surface, Ty::Shell])), Value::List(items) => Self::Several(items.to_vec());
+/// Faces of surfaces and shells.
+#[derive(Clone, Debug)]
+pub struct Faces(Vec<Value>);
+
+impl FromValue for Faces {
+    const TY: Ty = Ty::List(&Ty::OneOf(&[Ty::Surface, Ty::Shell]));
+    fn from_value(value: Value) -> Option<Self> {
+        Vec::from_value(value).map(Self)
     }
 }
 
 impl Faces {
+    /// Those of one shell.
+    pub fn of_shell(shell: Arc<ShellValue>) -> Self {
+        Self(vec![Value::Shell(shell)])
+    }
+
     /// The surfaces they lie on, in order.
     pub fn surfaces(&self) -> Vec<Surface> {
         let of = |value: &Value| match value {
@@ -121,30 +123,18 @@ impl Faces {
             Value::Shell(s) => s.surfaces.clone(),
             _ => Vec::new(),
         };
-        match self {
-            Self::Surface(s) => vec![s.clone()],
-            Self::Shell(s) => s.surfaces.clone(),
-            Self::Several(values) => values.iter().flat_map(of).collect(),
-        }
+        self.0.iter().flat_map(of).collect()
     }
 
     /// Whether a shell is among them.
     pub fn has_shell(&self) -> bool {
-        match self {
-            Self::Surface(_) => false,
-            Self::Shell(_) => true,
-            Self::Several(values) => values.iter().any(|value| matches!(value, Value::Shell(_))),
-        }
+        self.0.iter().any(|value| matches!(value, Value::Shell(_)))
     }
 
     /// The distance within which shells among them say that edges are glued, model units: the largest.
     pub fn snap(&self) -> Option<f64> {
         let of = |value: &Value| if let Value::Shell(s) = value { s.snap.map(|snap| snap.0) } else { None };
-        match self {
-            Self::Surface(_) => None,
-            Self::Shell(s) => s.snap.map(|snap| snap.0),
-            Self::Several(values) => values.iter().filter_map(of).reduce(f64::max),
-        }
+        self.0.iter().filter_map(of).reduce(f64::max)
     }
 }
 

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::curves::unit;
-use super::kinds::{Cutters, Trimmed};
+use super::kinds::{Cutter, Trimmed};
 use super::transforms::axis_line;
 use crate::base::fault::{Fault, ValueFault};
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::types::{Angle, Axis, Direction, Length, Point, Rest, Ring};
+use crate::lang::types::{Angle, Axis, Direction, Length, Point, Rest};
 use crate::lang::value::{Plane, Value};
 use crate::network::{self, Chain, ChainFlow};
 use crate::surface::coons::{self, Grid, Method, Settings};
@@ -281,11 +281,11 @@ builtins! {
         /// The surface that is trimmed; of an unbounded plane, the part inside `outer:`.
         s: Trimmed,
         /// Curves of the outer loop.
-        outer: Option<Ring>,
-        /// A curve, or a list of curves, for each hole.
-        holes: Option<Vec<Ring>>,
-        /// A curve, surface, shell or plane that cuts, or a list of them.
-        by: Option<Cutters>,
+        outer: Option<Vec<Chain>>,
+        /// Curves of the holes: a closed one is a hole, others are put together where they close.
+        holes: Option<Vec<Chain>>,
+        /// Curves, surfaces, shells or planes that cut.
+        by: Option<Vec<Cutter>>,
         /// A point of the part that stays.
         keep: Option<Point>,
         /// Whether x and y of the curves of loops are u and v of the surface; of an unbounded plane, lengths from its point.
@@ -300,8 +300,8 @@ builtins! {
             }
             Trimmed::Plane(p) => plane::unbounded(p.at, p.normal, cx.origin())?,
         };
-        let mut outer = outer.map(|ring| ring.0).unwrap_or_default();
-        let mut holes: Vec<Vec<Chain>> = holes.unwrap_or_default().into_iter().map(|ring| ring.0).collect();
+        let mut outer = outer.unwrap_or_default();
+        let mut holes = network::rings(&holes.unwrap_or_default(), &tolerance);
         if uv {
             for chain in outer.iter_mut().chain(holes.iter_mut().flatten()) {
                 *chain = Chain::of_curve(&carried(&s, chain, Way::Parameters, chain.origin(), &tolerance)?);

@@ -425,11 +425,11 @@ fields! {
     ///
     /// They come by the faces of the shell as listed, then along the border of each face; where a long border meets several
     /// shorter ones, each of these is an edge. `.faces` are the faces of the shell on it, one at a free edge.
-    fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| Ok(skin(cx, &Faces::Shell(of))?.0);
+    fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| Ok(skin(cx, &Faces::of_shell(of))?.0);
     /// The vertices of a shell: the ends of its edges.
     fn vertices(of: Arc<ShellValue>) -> Vec<VertexOf> = |cx, of| {
         let mut found: Vec<VertexOf> = Vec::new();
-        for edge in skin(cx, &Faces::Shell(of))?.0 {
+        for edge in skin(cx, &Faces::of_shell(of))?.0 {
             for vertex in [edge.1.ends.0, edge.1.ends.1] {
                 if found.iter().all(|v| v.1 != vertex) {
                     found.push(VertexOf(edge.0, vertex));
@@ -440,7 +440,7 @@ fields! {
     };
     /// For each face of a shell the edges around it, in order.
     fn loops(of: Arc<ShellValue>) -> Vec<Vec<EdgeOf>> = |cx, of| {
-        let (all, skin) = skin(cx, &Faces::Shell(of))?;
+        let (all, skin) = skin(cx, &Faces::of_shell(of))?;
         Ok(skin.borders.iter().map(|(_, around)| picked(&all, around)).collect())
     };
     /// The free edges of a surface, a shell or a list of them, loop by loop.
