@@ -267,6 +267,41 @@ fn mended(path: &Path, text: &str, whole: bool) -> (Vec<String>, Vec<String>) {
     (offered, wrong)
 }
 
+/// Every code that the sources name is in the table, and so is every page.
+#[test]
+fn every_code_is_in_the_table() {
+    fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+        for path in fs::read_dir(folder).expect("a folder of sources").flatten().map(|e| e.path()) {
+            if path.is_dir() { sources(&path, found) } else { found.push(path) }
+        }
+    }
+    let known = |code: &str| lofting::lang::codes::CODES.iter().any(|c| c.code == code);
+    let mut files = Vec::new();
+    sources(Path::new("src"), &mut files);
+    files.sort();
+    let mut named: Vec<String> = Vec::new();
+    for path in files {
+        let text = fs::read_to_string(&path).expect("a source can be read");
+        // What tests make up does not count.
+        let text = text.split("#[cfg(test)]").next().unwrap_or("");
+        for piece in text.split('"').skip(1).filter(|p| p.len() == 4 && p.is_ascii()) {
+            if ["E", "W", "N"].contains(&&piece[..1]) && piece[1..].bytes().all(|b| b.is_ascii_digit()) {
+                assert!(known(piece), "{} names {piece}", path.display());
+                named.push(piece.to_owned());
+            }
+        }
+    }
+    for path in scripts("docs/codes", "md") {
+        let code = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        assert!(known(&code), "{} is a page without a code", path.display());
+    }
+    for info in lofting::lang::codes::CODES {
+        // E902 is what `loft test` says of a golden, in other words.
+        let times = named.iter().filter(|n| *n == info.code).count() + usize::from(info.code == "E902");
+        assert!(times > usize::from(info.since.is_some()), "{} is in the table and never reported", info.code);
+    }
+}
+
 #[test]
 fn announcements_are_read() {
     let text = "let a = b // error: E201 \"b\" E202 \"c d\"\n// error below: E101 \"x\"\nlet y\nlet z // W220 \"no\"\n";

@@ -1,5 +1,6 @@
 //! The report of a run for people: aligned tables on standard output.
 
+use crate::base::text::columns as width;
 use crate::base::tolerance::Tolerance;
 use crate::session::report::{Cases, Cell, Report, Table};
 
@@ -38,10 +39,6 @@ impl Grid {
             out.push('\n');
         }
     }
-}
-
-fn width(text: &str) -> usize {
-    text.chars().count()
 }
 
 fn dim(text: &str, color: bool) -> String {

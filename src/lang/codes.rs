@@ -182,6 +182,7 @@ codes! {
     now "E811", "file-too-large", "a file is too large";
     now "E901", "check-failed", "a check failed";
     now "E902", "golden-differs", "a golden differs";
+    now "E903", "raised", "the script itself says that something is wrong";
     now "E999", "bug", "a bug in loft";
 }
 

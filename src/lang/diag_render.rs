@@ -168,7 +168,7 @@ fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usiz
     let corner = if number == 0 { '╭' } else { '├' };
     text.push_str(&format!("{pad}{}\n", paint.frame(&format!("{corner}─[{}:{}:{}]", source.name, place.line, place.column))));
     for row in &rows {
-        for (n, line) in drawn(row).iter().enumerate() {
+        for (n, line) in drawn_in_tiers(row).iter().enumerate() {
             let (number, bar) = if n == 0 { ((row.index + 1).to_string(), '│') } else { (String::new(), '·') };
             let gutter = paint.frame(&format!("{number:>width$} {bar}"));
             let line = if n == 0 { line.clone() } else { paint.label(line) };
@@ -228,6 +228,29 @@ fn cut(row: &mut Row) {
         *to = (*to).min(ahead) - back + before.len();
     }
     row.text = format!("{before}{}{behind}", &row.text[back..ahead]);
+}
+
+/// A line and the marks under it. Marks that cover each other stand under one another, the narrowest first.
+fn drawn_in_tiers(row: &Row) -> Vec<String> {
+    let mut tiers: Vec<Vec<Mark>> = Vec::new();
+    let mut marks: Vec<&Mark> = row.labels.iter().collect();
+    marks.sort_by_key(|(from, to, _)| (to - from, *from));
+    for mark in marks {
+        let free = |tier: &Vec<Mark>| tier.iter().all(|other| mark.1 <= other.0 || other.1 <= mark.0);
+        // Never above a narrower one that it covers.
+        let first = tiers.iter().rposition(|tier| !free(tier)).map_or(0, |k| k + 1);
+        match tiers.get_mut(first) {
+            Some(tier) => tier.push(mark.clone()),
+            None => tiers.push(vec![mark.clone()]),
+        }
+    }
+    let mut lines: Vec<String> = Vec::new();
+    for mut labels in tiers {
+        labels.sort_by_key(|&(from, to, _)| (from, to));
+        let drawn = drawn(&Row { index: row.index, text: row.text.clone(), labels });
+        lines.extend(drawn.into_iter().skip(usize::from(!lines.is_empty())));
+    }
+    lines
 }
 
 /// A line and the marks under it, as miette draws them; a single label stands behind its mark.
@@ -391,6 +414,26 @@ E101 × this `(` is never closed
         assert_eq!(lines[1], "   ╭─[hall.loft:1:12]");
         assert_eq!(lines[3], "   ·              ──┬──  ──┬──");
         assert!(lines[4].ends_with("╰── second") && lines[5].ends_with("╰── first"), "{shown}");
+    }
+
+    #[test]
+    fn a_label_inside_another_stands_above_it() {
+        let text = "check roof.area == 4m2 within 1um\n";
+        let found = Diagnostic::new("E901", "check failed", FileId(0), at(6, 33), "differs").label(FileId(0), at(6, 15), "3m2");
+        let expected = "\
+E901 × check failed
+   ╭─[hall.loft:1:7]
+ 1 │ check roof.area == 4m2 within 1um
+   ·       ────┬──── 3m2
+   ·       ─────────────┬───────────── differs
+   ╰────
+";
+        assert_eq!(render(&found, &sources(text), false), expected);
+        let third = found.label(FileId(0), at(19, 22), "wanted");
+        assert!(
+            render(&third, &sources(text), false)
+                .contains("   ·           │         ╰── wanted\n   ·           ╰── 3m2\n   ·       ─────────────┬───────────── differs\n")
+        );
     }
 
     #[test]
