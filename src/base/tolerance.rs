@@ -56,6 +56,9 @@ pub const MISMATCH: f64 = 3.0;
 /// Curvature, as a share of the larger one, that a downhill step assumes where the function bends the other way.
 pub const LEAST_CURVATURE: f64 = 1e-3;
 
+/// Ends that `snap` moves by at most this share of their curve's length: a measurement is good to better than a hundredth, and
+/// a curve that moves further is another one.
+pub const SNAP_SHARE: f64 = 0.01;
 /// Share of the tolerance to which places found by computing are told.
 const TOLD: f64 = 1e-3;
 /// Most decimals of a place that is told.

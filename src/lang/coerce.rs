@@ -239,14 +239,15 @@ impl Cx<'_> {
             Misfit::Bare => {
                 let source = self.source(code, id);
                 let draft = self.error(code, "E211", format!("{subject} is {wanted}, got a bare number"), span, "the unit is missing");
-                let unit = match ty {
-                    Ty::Quantity(dim) => units::unit_text(dim, draft.unit()),
-                    _ => "deg".into(),
+                let bare = if let Value::Number(q) = value { q.value } else { 0.0 };
+                let meant = units::meant_units(bare, zero_dim(ty).unwrap_or(Dim::ANGLE), draft.unit());
+                let typed: Vec<String> = match code.expr(id) {
+                    Expr::Number(_) => meant.iter().map(|unit| format!("{source}{unit}")).collect(),
+                    _ => meant.iter().map(|unit| format!("({source}) * 1{unit}")).collect(),
                 };
-                match code.expr(id) {
-                    Expr::Number(_) => draft.help(format!("`{source}{unit}`")).put(span, format!("{source}{unit}")).stop(),
-                    _ => draft.help(format!("`({source}) * 1{unit}`")).put(span, format!("({source}) * 1{unit}")).stop(),
-                }
+                let help: Vec<String> = typed.iter().map(|t| format!("`{t}`")).collect();
+                let draft = draft.help(help.join(" or "));
+                typed.into_iter().fold(draft, |draft, text| draft.put(span, text)).stop()
             }
             _ => {
                 let found = self.kind(value);

@@ -290,23 +290,29 @@ impl Cx<'_> {
     #[cold]
     fn bare_beside(&mut self, at: At<'_>, x: Quantity, y: Quantity) -> Stop {
         let (bare, other, dim) = if x.dim.is_none() { (at.a, at.b, y.dim) } else { (at.b, at.a, x.dim) };
-        let unit = super::units::unit_text(dim, self.machine.at(at.code.module).unit);
+        let value = if x.dim.is_none() { x.value } else { y.value };
         let text = self.source(at.code, bare);
-        let typed = match at.code.expr(bare) {
+        let typed = |unit: &String| match at.code.expr(bare) {
             Expr::Number(_) => format!("{text}{unit}"),
             Expr::Name(_) | Expr::Field { .. } | Expr::Index { .. } | Expr::Call { .. } => format!("{text} * 1{unit}"),
             _ => format!("({text}) * 1{unit}"),
         };
         let (a, b) = (self.source(at.code, at.a), self.source(at.code, at.b));
-        let (a, b) = if bare == at.a { (typed, b) } else { (a, typed) };
         let within = if matches!(at.op, Binary::Equal | Binary::NotEqual) && !self.machine.in_within { " within 0.1%" } else { "" };
+        let whole = |unit: &String| {
+            let (a, b) = if bare == at.a { (typed(unit), b.clone()) } else { (a.clone(), typed(unit)) };
+            format!("{a} {} {b}{within}", symbol(at.op))
+        };
+        let meant = super::units::meant_units(value, dim, self.machine.at(at.code.module).unit);
+        let ways: Vec<String> = meant.iter().map(whole).collect();
+        let help: Vec<String> = ways.iter().map(|way| format!("`{way}`")).collect();
         let words = dim_words(dim);
-        self.error(at.code, "E212", format!("a bare number beside {words}"), at.op_span, format!("`{}` needs one dimension", symbol(at.op)))
+        let draft = self
+            .error(at.code, "E212", format!("a bare number beside {words}"), at.op_span, format!("`{}` needs one dimension", symbol(at.op)))
             .and(at.code.span(bare), "a bare number")
             .and(at.code.span(other), words)
-            .help(format!("`{a} {} {b}{within}`", symbol(at.op)))
-            .put(at.code.span(at.id), format!("{a} {} {b}{within}", symbol(at.op)))
-            .stop()
+            .help(help.join(" or "));
+        ways.into_iter().fold(draft, |draft, way| draft.put(at.code.span(at.id), way)).stop()
     }
 
     fn same_vectors(&mut self, at: At<'_>, a: (DVec3, Dim), b: (DVec3, Dim)) -> Result<(DVec3, DVec3, Dim), Stop> {

@@ -164,6 +164,26 @@ pub fn quantity_text(q: Quantity, model: LengthUnit) -> String {
     format!("{}{}", number_text(q.value), unit_text(q.dim, model))
 }
 
+/// The units that a bare number may have meant where this dimension is wanted, the likelier first. An angle is in radians when
+/// its digits are those of a simple share of pi, else in degrees.
+pub fn meant_units(value: f64, dim: Dim, unit: LengthUnit) -> Vec<String> {
+    match dim {
+        Dim::ANGLE if is_share_of_pi(value) => vec!["rad".into(), "deg".into()],
+        Dim::ANGLE => vec!["deg".into(), "rad".into()],
+        dim => vec![unit_text(dim, unit)],
+    }
+}
+
+/// Whether a number with three digits or more is k/12 or k/8 of pi, up to two turns, as far as its digits go: 1.57, 2.0944, 3.1416.
+fn is_share_of_pi(value: f64) -> bool {
+    let text = number_text(value.abs());
+    let Some((whole, decimals)) = text.split_once('.') else { return false };
+    let digits = whole.trim_start_matches('0').len() + decimals.len();
+    let places = decimals.len();
+    let alike = |share: f64| format!("{share:.places$}") == text;
+    digits >= 3 && !text.contains('e') && (1..=96).any(|k| (k % 2 == 0 || k % 3 == 0) && alike(f64::from(k) * std::f64::consts::PI / 24.0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use super::cluster::cluster;
 use crate::base::fault::{CurveEnd, Fault, NetworkFault, Result};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{SNAP_SHARE, Tolerance};
 
 /// An end that `snap` looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct SnapEnd {
     pub end: CurveEnd,
     /// Whether the curve can be rebuilt with this end elsewhere (it is built from points).
     pub movable: bool,
+    /// Length of the curve, model units.
+    pub length: f64,
 }
 
 /// An end that goes elsewhere.
@@ -26,14 +28,14 @@ pub struct Move {
     pub to: DVec3,
 }
 
-/// Whether `snap` may be offered for a gap between ends of curves, the `shorter` of which has this length: it is offered
-/// with up to 2.5 times the gap, and must not draw both ends of one curve together.
+/// Whether `snap` may be offered for a gap between ends of curves, the `shorter` of which has this length: it joins ends that
+/// were measured twice, and leaves curves what they are ([`SNAP_SHARE`]).
 pub fn may_snap(gap: f64, shorter: f64) -> bool {
-    gap * 2.5 < shorter
+    gap <= SNAP_SHARE * shorter
 }
 
 /// Moves that bring ends closer than `distance` together: to the end among them that cannot move, else to the declared
-/// point, else to their mean. Each move is noted in `sink` (N513); two ends that cannot move are E511.
+/// point, else to their mean. Each move is noted in `sink` (N513, W223 where it is large against the curve); two ends that cannot move are E511.
 ///
 /// `asked` is the expression that says the distance. Independent of the order of ends.
 pub fn snap(
@@ -77,7 +79,7 @@ pub fn snap(
         moves
             .iter()
             .filter(|m| m.to.distance(all[m.end]) > tolerance.rounding)
-            .map(|m| NetworkFault::Snapped { end: ends[m.end].end, to: m.to }.into()),
+            .map(|m| NetworkFault::Snapped { end: ends[m.end].end, to: m.to, length: ends[m.end].length, asked }.into()),
     );
     Ok(moves)
 }
@@ -94,7 +96,7 @@ mod tests {
     use super::*;
 
     fn end(x: f64, movable: bool) -> SnapEnd {
-        SnapEnd { end: CurveEnd { of: Origin::NONE, last: false, at: DVec3::new(x, 0.0, 0.0) }, movable }
+        SnapEnd { end: CurveEnd { of: Origin::NONE, last: false, at: DVec3::new(x, 0.0, 0.0) }, movable, length: 10.0 }
     }
 
     fn moved(ends: &[SnapEnd], points: &[f64]) -> Result<Vec<(usize, f64)>> {
@@ -103,6 +105,12 @@ mod tests {
         let moves = snap(ends, &points, (0.5, Origin::NONE), &Tolerance::new(1e-6, 10.0), &mut sink)?;
         assert_eq!(sink.len(), moves.len());
         Ok(moves.into_iter().map(|m| (m.end, m.to.x)).collect())
+    }
+
+    #[test]
+    fn snap_is_offered_for_gaps_small_against_the_curves() {
+        assert!(may_snap(0.3, 4000.0) && may_snap(40.0, 4000.0));
+        assert!(!may_snap(1000.0, 4000.0) && !may_snap(1.0, 2.0));
     }
 
     #[test]

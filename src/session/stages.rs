@@ -126,8 +126,9 @@ impl Pipeline for Stages<'_> {
         for (k, declared) in parts.curves.iter().enumerate() {
             let Some(curve) = declared.value.whole_curve().filter(|c| !c.is_closed(&tolerance)) else { continue };
             let movable = curve.has_movable_ends(&tolerance);
+            let length = declared.value.length();
             for (last, at) in [(false, curve.start()), (true, curve.end())] {
-                ends.push(SnapEnd { end: CurveEnd { of: declared.origin, last, at }, movable });
+                ends.push(SnapEnd { end: CurveEnd { of: declared.origin, last, at }, movable, length });
                 owners.push(k);
             }
         }

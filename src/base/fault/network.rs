@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::math;
 use crate::base::origin::Origin;
+use crate::base::tolerance::SNAP_SHARE;
 
 /// What can go wrong with networks and chains, or deserves a word. Lengths and points are in model units.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,12 +156,16 @@ pub enum NetworkFault {
         /// Its length.
         length: f64,
     },
-    /// N513: an end was moved by `snap`.
+    /// N513: an end was moved by `snap`; W223 when that is a large share of its curve.
     Snapped {
         /// The curve and the end before the move.
         end: CurveEnd,
         /// Where it went.
         to: DVec3,
+        /// Length of its curve, model units.
+        length: f64,
+        /// The expression that says the distance.
+        asked: Origin,
     },
     /// W514: an end misses a curve by little more than the tolerance.
     NearMiss {
@@ -327,18 +332,7 @@ impl Describe for NetworkFault {
             )
             .at(*other, "runs over it")
             .at(*owner, "owns it"),
-            Self::Snapped { end, to } => Report::new(
-                "N513",
-                format!(
-                    "the {} of {} moved by {} from {} to {}",
-                    if end.last { "end" } else { "start" },
-                    say.quoted(end.of, "a curve"),
-                    say.length(end.at.distance(*to)),
-                    say.point(end.at),
-                    say.point(*to)
-                ),
-            )
-            .at(end.of, end.verb()),
+            Self::Snapped { end, to, length, asked } => snapped(end, (*to, *length), *asked, say),
             Self::NearMiss { end, other, nearest, other_end, tolerance } => near_miss(end, (*other, *nearest, *other_end), *tolerance, say),
             Self::NoLength { of, at, length, tolerance } => Report::new(
                 "E401",
@@ -353,6 +347,33 @@ impl Describe for NetworkFault {
             .at(*of, "has no length"),
         }
     }
+}
+
+fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn Say) -> Report {
+    let moved = end.at.distance(to);
+    let far = moved > SNAP_SHARE * length;
+    let words = format!(
+        "the {} of {} moved by {}{} from {} to {}",
+        if end.last { "end" } else { "start" },
+        say.quoted(end.of, "a curve"),
+        say.length(moved),
+        if far { format!(", {} % of its length,", rounded(100.0 * moved / length)) } else { String::new() },
+        say.point(end.at),
+        say.point(to)
+    );
+    let report = Report::new(if far { "W223" } else { "N513" }, words).at(end.of, end.verb());
+    if !far {
+        return report;
+    }
+    report
+        .at(asked, "ends closer than this are joined")
+        .help(format!("end it where it belongs, or declare a `snap` below {}", typed(say, moved)))
+        .note(format!("`snap` is for ends measured twice; more than {} % of the curve makes another curve of it", 100.0 * SNAP_SHARE))
+}
+
+/// A number of two digits, or a whole one.
+fn rounded(x: f64) -> String {
+    if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") }
 }
 
 fn tolerance_note(tolerance: f64, say: &dyn Say) -> String {

@@ -241,9 +241,29 @@ impl Failure<'_> {
         if !self.slice(gap).chars().all(|c| c == ' ' || c == '\t') {
             return None;
         }
-        let help = format!("a unit stands right behind its number: `{}{unit}`", self.text(number));
-        let report = self.as_found(stop).help(help);
-        Some(if self.parses_with(gap, "") { report.put(gap, "") } else { report })
+        let (unit, behind) = self.unit_from(stop.at)?;
+        let typed = format!("{}{unit}", self.text(number));
+        let report = self.as_found(stop).help(format!("a unit stands right behind its number: `{typed}`"));
+        let stretch = self.tokens.stretch(number, behind - 1);
+        Some(if self.parses_with(stretch, &typed) { report.put(stretch, typed) } else { report })
+    }
+
+    /// The unit that begins at a token, written as it must be, and the token behind it: `kg / m^3` is `kg/m3`.
+    fn unit_from(&self, first: usize) -> Option<(String, usize)> {
+        let plain = |at: usize| {
+            let word = (self.kind(at) == Some(Kind::Name)).then(|| self.text(at)).filter(|word| is_unit(word))?;
+            let power = (self.kind(at + 1) == Some(Kind::Caret) && self.kind(at + 2) == Some(Kind::Number)).then(|| self.text(at + 2));
+            match power.map(|power| format!("{word}{power}")).filter(|unit| is_unit(unit)) {
+                Some(unit) => Some((unit, at + 3)),
+                None => Some((word.to_owned(), at + 1)),
+            }
+        };
+        let (above, end) = plain(first)?;
+        let below = (self.kind(end) == Some(Kind::Slash)).then(|| plain(end + 1)).flatten();
+        match below.map(|(below, end)| (format!("{above}/{below}"), end)).filter(|(unit, _)| is_unit(unit)) {
+            Some(quotient) => Some(quotient),
+            None => Some((above, end)),
+        }
     }
 
     /// What was expected and what stands there.

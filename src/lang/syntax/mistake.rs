@@ -101,11 +101,12 @@ impl Mistake {
         }
     }
 
-    /// Whether `2m^2` may be meant as `2m2`: a plain length with the exponent 2 or 3.
+    /// Whether `2m^2` may be meant as `2m2`: a length, alone or below a `/`, with the exponent 2 or 3.
     pub fn is_meant_otherwise(&self, source: &str) -> bool {
         let Self::UnitPower { span, power } = self else { return false };
         let text = |span: Span| &source[span.start as usize..span.end as usize];
-        number::LENGTHS.contains(&number::split_unit(text(*span)).1) && matches!(text(*power), "2" | "3")
+        let unit = number::split_unit(text(*span)).1;
+        number::LENGTHS.contains(&unit.rsplit('/').next().unwrap_or(unit)) && matches!(text(*power), "2" | "3")
     }
 
     /// The foremost place.
