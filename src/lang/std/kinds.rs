@@ -36,12 +36,12 @@ one_of! {
 }
 
 one_of! {
-    /// Points to choose from, or a curve that has many.
-    PointsOrCurve {
+    /// Things to choose from, or a curve that has many points.
+    ThingsOrCurve {
         /// A curve.
         Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
-        /// A list of points.
-        Points(Vec<Value>) = Ty::List(&Ty::Point), Value::List(items) => Self::Points(items.to_vec());
+        /// A list of points, curves or surfaces.
+        Things(Vec<Value>) = Ty::List(&Ty::OneOf(&[Ty::Point, Ty::Curve, Ty::Surface])), Value::List(items) => Self::Things(items.to_vec());
     }
 }
 

@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-use super::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, PointsOrCurve};
+use super::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
 use crate::base::fault::ValueFault;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Length, Node, Point, Station};
 use crate::lang::value::Value;
 use crate::network::{Chain, LinkId};
+use crate::surface::Nearest;
 use crate::{builtins, fields};
 
 /// Fraction of a curve at a fraction or length; both must lie on the curve.
@@ -72,31 +73,37 @@ builtins! {
         b: Meeting,
     ) -> Vec<Value> = |cx, a, b| crate::lang::meetings::meet_all(cx, &a, &b);
 
-    /// The nearest of several points, or the nearest point of a curve.
+    /// The nearest of several things, or the nearest point of one curve.
     ///
+    /// Of a list of points, curves or surfaces it gives the member, of two equally near the first.
     /// ```loft
     /// curve a = circle(center: (0, 0, 0), radius: 1m)
     /// curve b = line((-2m, 0, 0), (2m, 0, 0))
     /// let east = nearest(meet(a, b), (1m, 0, 0))
     /// let top = nearest(a, (0, 3m, 0)) // => (0mm, 1000mm, 0mm)
+    /// let far = nearest([a, b], (0, 3m, 0)).closed // => true
     /// ```
     fn nearest(
-        /// Points or nodes to choose from, or a curve.
-        of: PointsOrCurve,
+        /// Points, nodes, curves or surfaces to choose from, or one curve.
+        of: ThingsOrCurve,
         /// Where it should be near.
         to: Point,
     ) -> Value = |_, of, to| match of {
-        PointsOrCurve::Curve(chain) => Ok(Value::point(chain.closest(to.0).1)),
-        PointsOrCurve::Points(values) => {
+        ThingsOrCurve::Curve(chain) => Ok(Value::point(chain.closest(to.0).1)),
+        ThingsOrCurve::Things(values) => {
             let mut best: Option<(f64, Value)> = None;
             for value in values {
-                let (Value::Node(p) | Value::Vector(p, _)) = value else { continue };
-                let distance = p.distance_squared(to.0);
+                let distance = match &value {
+                    Value::Node(p) | Value::Vector(p, _) => p.distance(to.0),
+                    Value::Curve(chain) => chain.closest(to.0).2,
+                    Value::Surface(surface) => Nearest::new(surface).at(to.0).distance,
+                    _ => continue,
+                };
                 if best.as_ref().is_none_or(|(least, _)| distance < *least) {
                     best = Some((distance, value));
                 }
             }
-            let empty = || ValueFault::OutsideRange { argument: "of", found: "an empty list".to_owned(), range: "at least one point".to_owned() };
+            let empty = || ValueFault::OutsideRange { argument: "of", found: "an empty list".to_owned(), range: "at least one thing".to_owned() };
             best.map(|(_, value)| value).ok_or_else(|| empty().into())
         }
     };

@@ -134,17 +134,22 @@ builtins! {
         Ok(Quantity::new(of.0.iter().fold(f64::NEG_INFINITY, |a, q| a.max(q.value)), dim))
     };
 
-    /// Sum of numbers or quantities; 0 of an empty list.
+    /// Sum of numbers or quantities.
     ///
+    /// Of an empty list it is the bare number 0; where a list of quantities may be empty, `start: 0mm` says what they are.
     /// ```loft
     /// let a = sum([for i in 0..5: i * 1mm]) // => 10mm
+    /// let b = sum([for i in 0..5 if i > 9: i * 1mm], start: 0mm) // => 0mm
     /// ```
     fn sum(
         /// Numbers or quantities of one dimension, or lists of them.
         of: Rest<Quantity>,
-    ) -> Quantity = |_, of| {
-        let dim = one_dim(&of.0, "of")?;
-        Ok(Quantity::new(of.0.iter().map(|q| q.value).sum(), dim))
+        /// What is added to.
+        start: Option<Quantity>,
+    ) -> Quantity = |_, of, start| {
+        let all: Vec<Quantity> = start.into_iter().chain(of.0).collect();
+        let dim = one_dim(&all, "of")?;
+        Ok(Quantity::new(all.iter().map(|q| q.value).sum(), dim))
     };
 
     /// Arithmetic mean of numbers or quantities.

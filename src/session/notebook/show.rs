@@ -10,7 +10,9 @@ use crate::session::live::Depth;
 
 impl Notebook {
     fn symbol(&self, name: &str) -> Result<usize, Answer> {
-        match self.symbols.iter().position(|s| s.name.as_deref() == Some(name)) {
+        // A member of a family stands in the family's declaration.
+        let base = name.split('[').next().unwrap_or(name).trim();
+        match self.symbols.iter().position(|s| s.name.as_deref() == Some(base)) {
             Some(found) => Ok(found),
             None => {
                 let names = self.symbols.iter().filter_map(|s| s.name.as_deref());
@@ -62,6 +64,12 @@ impl Notebook {
     }
 
     pub(super) fn why(&mut self, name: &str) -> Answer {
+        if name.contains('[') {
+            let member = self.ask(name);
+            if member.failed {
+                return member;
+            }
+        }
         let found = match self.symbol(name) {
             Ok(found) => found,
             Err(answer) => return answer,
