@@ -228,6 +228,59 @@ fn fixes_of_broken_scripts_mend_them() {
     assert!(fixes > 90, "{fixes} fixes were offered");
 }
 
+/// Help that shows code and replaces nothing: the code is an example, or something to add whose place is the user's to choose.
+const EXAMPLES: &[(&str, &str)] = &[
+    // Signatures.
+    ("E301", "`"),
+    ("E302", "`"),
+    // What is to be chosen.
+    ("E509", "`meet(a, b)` lists"),
+    ("E603", "take the run with one of the two meetings"),
+    ("E622", "leave that stretch out"),
+    ("E658", "bound one of them"),
+    ("E666", "trim one of them by the border of the other"),
+    ("E201", "for example"),
+    // General forms, and two units in one value, which mend each other only together.
+    ("E102", "functions need no import"),
+    ("E102", "what is allowed is written"),
+    ("E102", "a ratio has its `%` glued"),
+    ("E102", "a unit stands right behind its number: `8mm`"),
+];
+
+/// Whether a stretch in backquotes of a help is code to be typed: nothing in it is left open, and it is not a name of the script.
+fn is_typed(code: &str, script: &str) -> bool {
+    let words = code.trim_end_matches(':');
+    !code.contains('…') && !script.contains(words) && code.chars().any(|c| c.is_ascii_digit() || matches!(c, '(' | '[' | '{' | '+' | '='))
+}
+
+/// Every help that shows code which may stand in the place of something has it as a fix, so that the tests above type it.
+#[test]
+fn help_that_shows_code_is_a_fix() {
+    let mut wrong = Vec::new();
+    let mut texts: Vec<(PathBuf, String)> = Vec::new();
+    for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
+        let page = fs::read_to_string(format!("docs/codes/{}.md", info.code)).expect("a page can be read");
+        texts.push((folder_of_page(info.code, &page).with_file_name("help.loft"), fences(&page, "loft")[0].to_owned()));
+    }
+    texts.extend(
+        scripts("tests/broken", "loft").into_iter().map(|p| (p.clone(), fs::read_to_string(p).expect("a broken script can be read"))),
+    );
+    for (path, text) in &texts {
+        // The words that a script announces are not the script.
+        let script: String = text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+        for report in reports(path, text).0.iter().filter(|r| r.fixes.is_empty() && r.severity() == Severity::Error) {
+            let help = report.help.clone().unwrap_or_default();
+            let shown = help.split('`').skip(1).step_by(2).find(|code| is_typed(code, &script));
+            if let Some(code) = shown.filter(|_| !EXAMPLES.iter().any(|(c, begins)| *c == report.code.0 && help.starts_with(begins))) {
+                wrong.push(format!("{}: {} shows `{code}` and replaces nothing: {help}", path.display(), report.code.0));
+            }
+        }
+    }
+    wrong.sort();
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// Applies each fix that is offered for a script, alone; the codes that had one, and what is wrong afterwards.
 fn mended(path: &Path, text: &str, whole: bool) -> (Vec<String>, Vec<String>) {
     let key = |d: &Diagnostic| (d.code.0, d.message.clone());

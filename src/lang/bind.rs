@@ -1,8 +1,10 @@
 //! Arguments to parameters: positions, names, defaults, types; what is missing, too much or misspelled.
 
+use super::coerce::axis_of_word;
 use super::cx::{Cx, Stop};
+use super::elsewhere::meant;
 use super::eval::{Code, Gather};
-use super::names::nearest;
+use super::lookalikes;
 use super::std::{Args, Builtin};
 use super::syntax::ast::{Arg, Expr, ExprId, Span};
 use super::types::Ty;
@@ -51,7 +53,7 @@ impl Cx<'_> {
             let result = match (place, arg.name) {
                 (None, Some((name, span))) => {
                     let text = self.names.text(name).to_owned();
-                    Err(self.no_argument(code, signature, &text, span))
+                    Err(self.no_argument(code, signature, &text, (span, arg.value)))
                 }
                 (None, None) => Err(self.too_many(code, signature, arg.value)),
                 (Some(k), _) => {
@@ -91,20 +93,21 @@ impl Cx<'_> {
             };
             given |= 1;
             match param.ty {
-                Ty::Rest(inner) => rest.extend(gather.take(self.fit_rest(code, of, value, (param.ty, *inner), builtin.name))),
-                ty => values[0] = gather.take(self.fit_expr(code, of, value, ty, &quoted(param.name))).unwrap_or_default(),
+                Ty::Rest(inner) => rest.extend(gather.take(self.fit_rest(code, of, value, (param.ty, *inner), &positional(builtin, 0)))),
+                ty => values[0] = gather.take(self.fit_expr(code, of, value, ty, &positional(builtin, 0))).unwrap_or_default(),
             }
         }
         for (arg, &k) in args.iter().zip(&places) {
             let param = &builtin.params[k];
             given |= 1 << k.min(63);
+            let subject = || if arg.name.is_some() { quoted(param.name) } else { positional(builtin, k) };
             match param.ty {
                 Ty::Rest(inner) => {
                     let value = self.eval(code, arg.value);
-                    let value = value.and_then(|v| self.fit_rest(code, arg.value, v, (param.ty, *inner), param.name));
+                    let value = value.and_then(|v| self.fit_rest(code, arg.value, v, (param.ty, *inner), &subject()));
                     rest.extend(gather.take(value));
                 }
-                ty => values[k] = gather.take(self.eval_param(code, arg.value, ty, param.name)).unwrap_or_default(),
+                ty => values[k] = gather.take(self.eval_param(code, arg.value, ty, &subject)).unwrap_or_default(),
             }
         }
         gather.done()?;
@@ -124,24 +127,31 @@ impl Cx<'_> {
 
     /// Like [`Cx::eval_as`] without building texts on the way that all is well.
     #[inline]
-    fn eval_param(&mut self, code: Code<'_>, id: ExprId, ty: Ty, name: &'static str) -> Result<Value, Stop> {
+    fn eval_param(&mut self, code: Code<'_>, id: ExprId, ty: Ty, subject: &dyn Fn() -> String) -> Result<Value, Stop> {
         if ty.choices().is_some() {
-            return self.eval_as(code, id, ty, &quoted(name));
+            return self.eval_as(code, id, ty, &subject());
+        }
+        if let (Ty::Direction | Ty::Axis | Ty::Optional(Ty::Direction | Ty::Axis), Expr::Name(name)) = (ty, code.expr(id))
+            && let Some(direction) = axis_of_word(self.names.text(*name)).filter(|_| !self.is_bound(code.module, *name))
+        {
+            let text = format!("`{}` is not defined", self.names.text(*name));
+            let draft = self.error(code, "E201", text, code.span(id), "a direction is written with three numbers");
+            return Err(draft.ways(code.span(id), &[direction.to_owned()]).stop());
         }
         let value = self.eval(code, id)?;
         match (ty, &value) {
             (Ty::Any | Ty::Measure, Value::Number(_)) | (Ty::Point, Value::Vector(_, super::value::Dim::LENGTH)) => Ok(value),
             (Ty::Quantity(dim), Value::Number(q)) if q.dim == dim => Ok(value),
             (Ty::Curve, Value::Curve(_)) | (Ty::Surface, Value::Surface(_)) => Ok(value),
-            _ => self.fit_expr(code, id, value, ty, &quoted(name)),
+            _ => self.fit_expr(code, id, value, ty, &subject()),
         }
     }
 
     /// One argument among the rest: a thing, or lists of things.
-    fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, (list, of): (Ty, Ty), name: &str) -> Result<Value, Stop> {
+    fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, (list, of): (Ty, Ty), subject: &str) -> Result<Value, Stop> {
         let value = if let Value::Table(t) = value { Value::List(t.rows.clone()) } else { value };
         let ty = if matches!(value, Value::List(_) | Value::Range(..)) { list } else { of };
-        self.fit_expr(code, id, value, ty, &quoted(name))
+        self.fit_expr(code, id, value, ty, subject)
     }
 
     /// All rest arguments as one flat list; a single list is kept as it is.
@@ -200,12 +210,19 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn no_argument(&mut self, code: Code<'_>, signature: &Signature<'_>, name: &str, span: Span) -> Stop {
-        let near = nearest(name, signature.params.iter().copied()).map(str::to_owned);
+    fn no_argument(&mut self, code: Code<'_>, signature: &Signature<'_>, name: &str, (span, value): (Span, ExprId)) -> Stop {
+        let near = meant(name, signature.params.iter().copied()).map(str::to_owned);
         let text = format!("`{}` has no argument `{name}`", signature.name);
+        if matches!(name, "d" | "diameter") && signature.params.contains(&"radius") {
+            let half = format!("radius: {} / 2", self.source(code, value));
+            let whole = Span { start: span.start, end: code.span(value).end };
+            return self.error(code, "E303", text, span, "no such argument").ways(whole, &[half]).stop();
+        }
         match near {
             Some(near) => {
-                self.error(code, "E303", text, span, format!("did you mean `{near}`?")).help(format!("`{near}:`")).put(span, near).stop()
+                let alike = lookalikes::difference(name, &near);
+                let draft = self.error(code, "E303", text, span, format!("did you mean `{near}`?")).notes(alike);
+                draft.help(format!("`{near}:`")).put(span, near).stop()
             }
             None => self.error(code, "E303", text, span, "no such argument").help(format!("`{}`", signature.shown)).stop(),
         }
@@ -247,6 +264,18 @@ impl Cx<'_> {
             }
         }
         blame
+    }
+}
+
+/// An argument that the user gave by its place: "the second argument of `ruled`".
+pub(super) fn positional(builtin: &Builtin, k: usize) -> String {
+    const PLACES: [&str; 6] = ["first", "second", "third", "fourth", "fifth", "sixth"];
+    match builtin.params.get(k) {
+        Some(param) if matches!(param.ty, Ty::Rest(_)) => format!("an argument of `{}`", builtin.name),
+        _ if builtin.params.len() == 1 => format!("the argument of `{}`", builtin.name),
+        // The one that goes by its name in other messages as well.
+        Some(param) if param.name == "by" => format!("`by`, the {} argument of `{}`,", PLACES.get(k).unwrap_or(&"last"), builtin.name),
+        _ => format!("the {} argument of `{}`", PLACES.get(k).unwrap_or(&"last"), builtin.name),
     }
 }
 

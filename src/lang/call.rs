@@ -1,12 +1,15 @@
 //! Calls, fields and indexing.
 
-use super::bind::{Signature, call_name};
+use super::bind::{Signature, call_name, positional};
 use super::coerce::accepts;
 use super::cx::{Cx, Stop};
+use super::diag::Diagnostic;
+use super::elsewhere::meant;
 use super::eval::{Code, Frame, Gather, Site, Word};
 use super::later;
+use super::lookalikes;
 use super::module::State;
-use super::names::{Name, nearest};
+use super::names::Name;
 use super::room::LIST_COST;
 use super::std::{self, Builtin};
 use super::syntax::ast::{Arg, DeclarationKind, Expr, ExprId, FnParam, Keyword, Span};
@@ -77,7 +80,7 @@ impl Cx<'_> {
             Some(function) => self.run(code, id, function, first, args),
             None => match first {
                 Some(value) if has_fields => Err(self.no_field(code, &value, name, name_span)),
-                _ => Err(self.no_function(code, name, name_span)),
+                _ => Err(self.no_function(code, id, name, name_span)),
             },
         }
     }
@@ -103,7 +106,7 @@ impl Cx<'_> {
 
     /// Binds, calls a builtin, and shows its faults at the arguments.
     fn run(&mut self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: Option<Value>, args: &[Arg]) -> Result<Value, Stop> {
-        let has_first = first.is_some();
+        let before = first.clone();
         let values = self.bind(code, id, builtin, first, args)?;
         self.machine.site.expr = id;
         match (builtin.call)(self, values) {
@@ -121,13 +124,50 @@ impl Cx<'_> {
             }
             Err(Stop::Fault(crate::base::fault::Fault::Interrupted)) => Err(crate::base::fault::Fault::Interrupted.into()),
             Err(Stop::Fault(fault)) => {
-                let blame = self.blame(code, id, builtin, has_first, args);
+                let blame = self.blame(code, id, builtin, before.is_some(), args);
                 let diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
+                let of_value = matches!(fault, crate::base::fault::Fault::Value(_));
+                let diagnostic = self.by_place(code, (diagnostic, of_value), (builtin, before.as_ref(), args));
                 self.sink.push(diagnostic);
                 Err(Stop::Failed)
             }
             Err(other) => Err(other),
         }
+    }
+
+    /// A fault of a call in the words of the one who wrote it: arguments without a name go by their place, a field that things
+    /// of other kinds have is offered under its own name, and a value outside its range comes with what it was made of.
+    #[cold]
+    fn by_place(
+        &self,
+        code: Code<'_>,
+        (mut diagnostic, of_value): (Diagnostic, bool),
+        (builtin, first, args): (&'static Builtin, Option<&Value>, &[Arg]),
+    ) -> Diagnostic {
+        let named = |name: &str| args.iter().any(|a| a.name.is_some_and(|(n, _)| self.names.text(n) == name));
+        let spoken = builtin.params.iter().position(|p| diagnostic.message.starts_with(&format!("`{}` ", p.name)));
+        if let Some(k) = spoken.filter(|k| of_value && !named(builtin.params[*k].name)) {
+            let name = builtin.params[k].name;
+            diagnostic.message = diagnostic.message.replacen(&format!("`{name}`"), &positional(builtin, k), 1);
+        }
+        if matches!(diagnostic.code.0, "E306" | "E401" | "E405" | "E407" | "E411" | "E412")
+            && let Some(span) = diagnostic.labels.first().map(|l| l.span)
+        {
+            let notes = self.came_from(code, span);
+            diagnostic.notes.extend(notes);
+        }
+        if let (Some(value), true, "E211") = (first, args.is_empty(), diagnostic.code.0) {
+            let fields =
+                std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, value))).map(|f| f.name).collect::<Vec<_>>();
+            let near = super::elsewhere::ours(builtin.name, fields.into_iter()).map(str::to_owned);
+            let label = diagnostic.labels.first().map(|l| l.span.end);
+            if let (Some(near), Some(end)) = (near, label) {
+                let start = end + 1;
+                let field = Span { start, end: start + builtin.name.len() as u32 };
+                diagnostic = diagnostic.help(format!("`.{near}`")).put(field, near);
+            }
+        }
+        diagnostic
     }
 
     fn finite_result(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Value, Stop> {
@@ -312,7 +352,7 @@ impl Cx<'_> {
                     return Err(draft.help(format!("call it: `{label}.{text}(…)`")).stop());
                 }
                 let names: Vec<String> = self.machine.at(module).names().map(|n| self.names.text(n).to_owned()).collect();
-                let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
+                let near = meant(&text, names.iter().map(String::as_str)).map(str::to_owned);
                 let draft = self.error(code, "E214", format!("`{label}` declares no `{text}`"), span, "not in that script");
                 Err(match near {
                     Some(near) => draft.help(format!("`{label}.{near}`")).put(span, near).stop(),
@@ -334,8 +374,9 @@ impl Cx<'_> {
             Value::Record(r) => r.keys.iter().map(|k| self.names.text(*k).to_owned()).collect(),
             _ => std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, value))).map(|f| f.name.to_owned()).collect(),
         };
-        let near = nearest(&text, fields.iter().map(String::as_str)).map(str::to_owned);
-        let draft = self.error(code, "E214", format!("{kind} has no `{text}`"), span, "no such field");
+        let near = meant(&text, fields.iter().map(String::as_str)).map(str::to_owned);
+        let alike = near.as_deref().and_then(|near| lookalikes::difference(&text, near));
+        let draft = self.error(code, "E214", format!("{kind} has no `{text}`"), span, "no such field").notes(alike);
         match near {
             Some(near) => draft.help(format!("`.{near}`")).put(span, near).stop(),
             None if fields.is_empty() || fields.len() > 24 => draft.stop(),
@@ -366,7 +407,13 @@ impl Cx<'_> {
         }
         let Some(n) = value.len() else {
             let found = self.kind(&value);
-            return Err(self.error(code, "E211", format!("{found} has no members to index"), code.span(of), found).stop());
+            let axis = match (&value, code.expr(index)) {
+                (Value::Vector(..) | Value::Node(_) | Value::Vertex(..), Expr::Number(k)) => ["x", "y", "z"].get(*k as usize),
+                _ => None,
+            };
+            let typed: Vec<String> = axis.map(|axis| format!("{}.{axis}", self.source(code, of))).into_iter().collect();
+            let draft = self.error(code, "E211", format!("{found} has no members to index"), code.span(of), found);
+            return Err(if typed.is_empty() { draft.stop() } else { draft.ways(code.span(id), &typed).stop() });
         };
         match code.expr(index) {
             Expr::Slice { from, to } => {
@@ -405,7 +452,7 @@ impl Cx<'_> {
         if let Some(value) = self.names.find(key).and_then(|name| record.get(name)) {
             return Ok(value.clone());
         }
-        let near = nearest(key, record.keys.iter().map(|name| self.names.text(*name))).map(str::to_owned);
+        let near = super::names::nearest(key, record.keys.iter().map(|name| self.names.text(*name))).map(str::to_owned);
         let draft = self.error(code, "E214", format!("there is no \"{key}\""), code.span(index), "no such name");
         Err(match near {
             Some(near) => draft.help(format!("[\"{near}\"]")).stop(),

@@ -230,7 +230,7 @@ impl Cx<'_> {
             Misfit::NotWhole => {
                 let found = self.show_inside(value);
                 let wanted = if ty.words().contains("count") { "a whole number, 0 or more" } else { "a whole number" };
-                self.error(code, "E306", format!("{subject} is {wanted}, got {found}"), span, "not one").stop()
+                self.error(code, "E306", format!("{subject} is {wanted}, got {found}"), span, "not one").came_from(code).stop()
             }
             Misfit::Choice => {
                 let (word, words) = (self.show(value), ty.choices().unwrap_or(&[]));
@@ -255,10 +255,16 @@ impl Cx<'_> {
                 let text = format!("{subject} is {wanted}, got {found}");
                 let help = match (ty, value) {
                     (Ty::Choice(_), Value::Text(t)) => Some((format!("a word stands bare: `{t}`"), Some(t.to_string()))),
-                    (Ty::Curve | Ty::Surface, Value::List(_)) => Some(("take one member: `[i]`".to_owned(), None)),
+                    (Ty::Curve | Ty::Surface, Value::List(_)) => {
+                        Some((format!("take one member, for example `{}[0]`", self.source(code, id)), None))
+                    }
                     _ => None,
                 };
+                let ways = self.as_vectors(code, id, (value, ty), subject);
                 let draft = self.error(code, "E211", text, span, label);
+                if !ways.is_empty() {
+                    return draft.ways(span, &ways).stop();
+                }
                 match help {
                     Some((help, Some(word))) => draft.help(help).put(span, word).stop(),
                     Some((help, None)) => draft.help(help).stop(),
@@ -268,10 +274,39 @@ impl Cx<'_> {
         }
     }
 
+    /// What may have been meant where a point or direction is wanted: `[0, 0, 0]` is a list, `"Z"` and `2m` are none either.
+    fn as_vectors(&self, code: Code<'_>, id: ExprId, (value, ty): (&Value, Ty), subject: &str) -> Vec<String> {
+        let axis = matches!(ty, Ty::Direction | Ty::Axis | Ty::Vector);
+        if !axis && !matches!(ty, Ty::Point | Ty::Node) {
+            return Vec::new();
+        }
+        let source = self.source(code, id);
+        let n = value.len().unwrap_or(0);
+        match value {
+            Value::Text(word) | Value::Word(word) if axis => axis_of_word(word).into_iter().map(str::to_owned).collect(),
+            Value::List(_) | Value::Record(_) if is_coordinates(value, Ty::Point) => match code.expr(id) {
+                Expr::List(items) => {
+                    let items: Vec<String> = items.iter().map(|i| self.source(code, *i)).collect();
+                    vec![format!("({})", items.join(", "))]
+                }
+                Expr::Name(_) | Expr::Field { .. } | Expr::Index { .. } => {
+                    let items: Vec<String> = (0..n).map(|k| format!("{source}[{k}]")).collect();
+                    vec![format!("({})", items.join(", "))]
+                }
+                _ => Vec::new(),
+            },
+            // A way to go, as `extrude` and `move` take it.
+            Value::Number(q) if q.dim == Dim::LENGTH && subject.starts_with("`by`") => {
+                vec![format!("(0, 0, {source})"), format!("({source}, 0, 0)"), format!("(0, {source}, 0)")]
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// E213: a word that is none of those allowed.
     #[cold]
     pub(super) fn no_choice(&mut self, code: Code<'_>, id: ExprId, word: &str, words: &[&str], subject: &str) -> Stop {
-        let near = super::names::nearest(word, words.iter().copied()).map(str::to_owned);
+        let near = super::elsewhere::meant(word, words.iter().copied()).map(str::to_owned);
         let list = words.join(", ");
         let draft = self.error(code, "E213", format!("{subject} is one of {list}, got `{word}`"), code.span(id), "no such choice");
         match near {
@@ -327,6 +362,16 @@ fn member(i: usize, item: &Value, misfit: Misfit) -> Misfit {
 fn is_coordinates(item: &Value, of: Ty) -> bool {
     let numbers = || (0..item.len().unwrap_or(0)).all(|k| matches!(item.item(k), Some(Value::Number(_))));
     matches!(of, Ty::Point | Ty::Node | Ty::Vector | Ty::Direction) && matches!(item.len(), Some(2 | 3)) && numbers()
+}
+
+/// `Z` and `z` as the direction that they name.
+pub(super) fn axis_of_word(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "x" | "X" => "(1, 0, 0)",
+        "y" | "Y" => "(0, 1, 0)",
+        "z" | "Z" => "(0, 0, 1)",
+        _ => return None,
+    })
 }
 
 /// Dimension that a literal 0 takes where this type is wanted.

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::cx::{Cx, Stop};
+use super::elsewhere::meant;
 use super::eval::{Code, Gather};
 use super::faults::member_name;
 use super::later;
+use super::lookalikes;
 use super::module::bound;
-use super::names::nearest;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::settings::{self, Setting};
 use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
@@ -278,8 +279,8 @@ impl Cx<'_> {
             "radius" if x < 0.0 => "0 or more",
             _ => return Ok(value),
         };
-        let found = self.show(&value);
-        Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).stop())
+        let found = if let Value::Number(q) = &value { units::told(*q, self.unit) } else { self.show(&value) };
+        Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).came_from(code).stop())
     }
 
     #[cold]
@@ -291,11 +292,12 @@ impl Cx<'_> {
 
     #[cold]
     fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Stop {
-        let near = nearest(key, table.iter().map(|s| s.key)).map(str::to_owned);
+        let near = meant(key, table.iter().map(|s| s.key)).map(str::to_owned);
         let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("a {word}") });
         let label = near.as_ref().map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
         let keys: Vec<&str> = table.iter().map(|s| s.key).collect();
-        let draft = self.error(code, "E303", text, span, label).puts(span, near);
+        let alike = near.as_deref().and_then(|near| lookalikes::difference(key, near));
+        let draft = self.error(code, "E303", text, span, label).puts(span, near).notes(alike);
         if keys.is_empty() { draft.stop() } else { draft.note(format!("it takes {}", keys.join(", "))).stop() }
     }
 

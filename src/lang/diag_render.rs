@@ -34,7 +34,7 @@ pub fn render_all(found: &[Diagnostic], sources: &Sources, colours: bool) -> Str
     let mut distinct: Vec<(&Diagnostic, Vec<&Diagnostic>)> = Vec::new();
     let mut seen = std::collections::BTreeMap::new();
     for diagnostic in sorted {
-        let at = *seen.entry((diagnostic.code, diagnostic.message.as_str())).or_insert(distinct.len());
+        let at = *seen.entry((diagnostic.code, diagnostic.message.as_str(), diagnostic.help.as_deref())).or_insert(distinct.len());
         match distinct.get_mut(at) {
             Some((_, same)) => same.push(diagnostic),
             None => distinct.push((diagnostic, Vec::new())),

@@ -87,6 +87,28 @@ impl Draft<'_, '_> {
         self
     }
 
+    /// With a note where there is one.
+    pub fn notes(self, text: Option<String>) -> Self {
+        match text {
+            Some(text) => self.note(text),
+            None => self,
+        }
+    }
+
+    /// With these ways of typing it, all of them help.
+    pub fn ways(self, span: Span, ways: &[String]) -> Self {
+        let help: Vec<String> = ways.iter().map(|way| format!("`{way}`")).collect();
+        let draft = self.help(help.join(" or "));
+        ways.iter().fold(draft, |draft, way| draft.put(span, way))
+    }
+
+    /// With where the numbers of the value at the foremost label come from.
+    pub fn came_from(mut self, code: Code<'_>) -> Self {
+        let label = self.diagnostic.labels.first().map(|l| l.span);
+        self.diagnostic.notes.extend(label.into_iter().flat_map(|span| self.cx.came_from(code, span)));
+        self
+    }
+
     /// One more label in the same file.
     pub fn and(mut self, span: Span, text: impl Into<String>) -> Self {
         let file = self.diagnostic.labels.first().map_or(FileId(0), |l| l.file);

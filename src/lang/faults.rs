@@ -35,7 +35,8 @@ impl Say for Cx<'_> {
     }
 
     fn length(&self, length: f64) -> String {
-        format!("{} {}", self.decimals(length), self.unit().name)
+        let (text, unit) = super::units::told_length(length, self.unit());
+        format!("{text} {}", unit.name)
     }
 
     fn point(&self, p: DVec3) -> String {
@@ -62,7 +63,7 @@ pub(super) fn member_name(name: &str, member: [u32; 2]) -> String {
 }
 
 impl Cx<'_> {
-    /// A length with as many decimals as the tolerance has, or three significant digits where that would show zero.
+    /// A coordinate with as many decimals as the tolerance has, or three significant digits where that would show zero.
     fn decimals(&self, x: f64) -> String {
         let point = self.tolerance.map_or(1e-3_f64, |t| t.point);
         let places = (-crate::base::math::log10(point)).ceil().clamp(0.0, 9.0) as usize;

@@ -1,9 +1,12 @@
 //! Words of later versions: known, and refused by one error instead of being taken for a mistake.
 
 use super::cx::{Cx, Stop};
+use super::elsewhere::{instead, meant};
 use super::eval::Code;
+use super::lookalikes;
 use super::names::{Name, nearest};
-use super::syntax::ast::{ExprId, Keyword, Span};
+use super::syntax::ast::{Arg, Expr, ExprId, Keyword, Span};
+use super::syntax::foreign::{PRINTS, range};
 use super::value::{ModuleId, Value};
 use super::{module::bound, std};
 
@@ -58,13 +61,14 @@ impl Cx<'_> {
             None => "no such name".to_owned(),
         };
         let used = near.is_none() && self.files.resolve(&self.machine.at(code.module).path, &format!("{text}.loft")).is_ok();
-        let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, label).puts(span, near);
+        let alike = near.as_deref().and_then(|near| lookalikes::difference(&text, near));
+        let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, label).puts(span, near).notes(alike);
         Err(if used { draft.used(span, &text).stop() } else { draft.stop() })
     }
 
     /// E201 or E230: a function that is none.
     #[cold]
-    pub(super) fn no_function(&mut self, code: Code<'_>, name: Name, span: Span) -> Stop {
+    pub(super) fn no_function(&mut self, code: Code<'_>, id: ExprId, name: Name, span: Span) -> Stop {
         let text = self.names.text(name).to_owned();
         if is_function(&text) {
             return self.not_yet(code, &format!("`{text}`"), span);
@@ -78,7 +82,9 @@ impl Cx<'_> {
                 keyword => keyword_word(keyword),
             };
             let message = format!("`{text}` is a {word}, not a function");
-            return self.error(code, "E201", message, span, "cannot be called").stop();
+            let typed = self.not_called(code, id, &text);
+            let draft = self.error(code, "E201", message, span, "cannot be called");
+            return if typed.is_empty() { draft.stop() } else { draft.ways(code.span(id), &typed).stop() };
         }
         let mut names: Vec<String> = std::builtins().chain(std::fields()).map(|b| b.name.to_owned()).collect();
         let module = self.machine.at(code.module);
@@ -95,9 +101,48 @@ impl Cx<'_> {
             let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
             return draft.help("`report` puts a value into the report; in a session an expression is shown by typing it").stop();
         }
-        let near = nearest(&text, names.iter().map(String::as_str)).map(str::to_owned);
+        let args = if let Expr::Call { args, of: None, .. } = code.expr(id) { args.as_slice() } else { &[] };
+        let sources: Vec<String> = args.iter().map(|a: &Arg| self.source(code, a.value)).collect();
+        let typed = match (text.as_str(), sources.as_slice()) {
+            ("range", items) => range(&items.iter().map(String::as_str).collect::<Vec<_>>()),
+            ("pow", [a, b]) => {
+                let part = |text: &str| {
+                    if text.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.')) {
+                        text.to_owned()
+                    } else {
+                        format!("({text})")
+                    }
+                };
+                Some(format!("{} ^ {}", part(a), part(b)))
+            }
+            _ => None,
+        };
+        if let Some(typed) = typed {
+            let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
+            return draft.ways(code.span(id), &[typed]).stop();
+        }
+        if let Some(other) = instead(&text).filter(|_| !names.contains(&text)) {
+            let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
+            return draft.help(format!("for example `{other}`")).stop();
+        }
+        let near = meant(&text, names.iter().map(String::as_str)).map(str::to_owned);
         let label = near.as_ref().map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
-        self.error(code, "E201", format!("there is no function `{text}`"), span, label).puts(span, near).stop()
+        let alike = near.as_deref().and_then(|near| lookalikes::difference(&text, near));
+        self.error(code, "E201", format!("there is no function `{text}`"), span, label).puts(span, near).notes(alike).stop()
+    }
+
+    /// What may have been meant by calling a thing: its settings in braces, or a member of it.
+    fn not_called(&self, code: Code<'_>, id: ExprId, text: &str) -> Vec<String> {
+        let Expr::Call { args, .. } = code.expr(id) else { return Vec::new() };
+        let declaration = &self.machine.at(code.module).script.declarations[code.declaration as usize];
+        let takes = matches!(declaration.keyword, Keyword::Mesh | Keyword::Shell | Keyword::Export | Keyword::Picture);
+        let setting = |a: &Arg| a.name.map(|(name, _)| format!("{}: {}", self.names.text(name), self.source(code, a.value)));
+        let settings: Vec<String> = args.iter().filter_map(setting).collect();
+        match args.as_slice() {
+            [one] if one.name.is_none() => vec![format!("{text}[{}]", self.source(code, one.value))],
+            some if takes && settings.len() == some.len() => vec![format!("{text} {{ {} }}", settings.join("  "))],
+            _ => Vec::new(),
+        }
     }
 
     /// The nearest name in sight, with keyword and line when it is declared.
@@ -111,7 +156,8 @@ impl Cx<'_> {
             .filter(|d| d.keyword != Keyword::Fn)
             .filter_map(|d| bound(d).map(|b| (self.names.text(b.name), b.span.start, keyword_word(d.keyword))))
             .collect();
-        let near = nearest(text, locals.chain(declared.iter().map(|d| d.0)))?;
+        let words = ["true", "false", "none", "pi"].into_iter().filter(|w| w.eq_ignore_ascii_case(text));
+        let near = nearest(text, words.chain(locals).chain(declared.iter().map(|d| d.0)))?;
         let place = declared.iter().find(|d| d.0 == near).map(|d| (d.2, self.sources.place(m.file, d.1).map_or(1, |p| p.line)));
         Some((near.to_owned(), place))
     }
@@ -127,9 +173,6 @@ impl Cx<'_> {
         })
     }
 }
-
-/// What other languages call showing a value.
-const PRINTS: [&str; 6] = ["print", "println", "printf", "echo", "puts", "show"];
 
 /// Whether a bare name is a word of some choice of the language.
 fn is_word(name: &str) -> bool {

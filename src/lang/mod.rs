@@ -2,6 +2,7 @@
 
 mod bind;
 mod call;
+mod came_from;
 mod circles;
 pub mod codes;
 mod coerce;
@@ -11,6 +12,7 @@ mod declare;
 pub mod diag;
 pub mod diag_render;
 mod drafts;
+mod elsewhere;
 pub mod eval;
 mod expr;
 mod faults;
@@ -20,6 +22,7 @@ mod imports;
 mod keys;
 mod later;
 mod load;
+mod lookalikes;
 mod meetings;
 pub mod memory;
 mod module;

@@ -143,7 +143,7 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
     best.map(|(_, candidate)| candidate)
 }
 
-/// Twice the number of letters inserted, deleted, replaced or swapped with their neighbour; a change of case costs one.
+/// Twice the number of letters inserted, deleted, replaced or swapped with their neighbour; a change of case, or of a letter for one of another script that looks like it, costs one.
 fn distance(a: &[char], b: &[char]) -> usize {
     let width = b.len() + 1;
     let (mut two_back, mut back) = (vec![0; width], (0..width).map(|j| 2 * j).collect::<Vec<usize>>());
@@ -153,7 +153,7 @@ fn distance(a: &[char], b: &[char]) -> usize {
             let (x, y) = (a[i - 1], b[j - 1]);
             let change = match x == y {
                 true => 0,
-                false if x.to_lowercase().eq(y.to_lowercase()) => 1,
+                false if x.to_lowercase().eq(y.to_lowercase()) || super::lookalikes::alike(x, y) => 1,
                 false => 2,
             };
             row[j] = (back[j] + 2).min(row[j - 1] + 2).min(back[j - 1] + change);

@@ -304,6 +304,13 @@ impl Cx<'_> {
             format!("{a} {} {b}{within}", symbol(at.op))
         };
         let meant = super::units::meant_units(value, dim, self.machine.at(at.code.module).unit);
+        if let Some((call, unit)) = self.empty_sum(at.code, bare, value).zip(meant.first()) {
+            let typed = format!("{}, start: 0{unit})", call.1.trim_end_matches(')'));
+            let draft =
+                self.error(at.code, "E212", format!("a bare number beside {}", dim_words(dim)), at.op_span, "one dimension is needed");
+            let draft = draft.and(at.code.span(bare), "the sum of an empty list is a bare 0").and(at.code.span(other), dim_words(dim));
+            return draft.ways(call.0, &[typed]).stop();
+        }
         let ways: Vec<String> = meant.iter().map(whole).collect();
         let help: Vec<String> = ways.iter().map(|way| format!("`{way}`")).collect();
         let words = dim_words(dim);
@@ -313,6 +320,30 @@ impl Cx<'_> {
             .and(at.code.span(other), words)
             .help(help.join(" or "));
         ways.into_iter().fold(draft, |draft, way| draft.put(at.code.span(at.id), way)).stop()
+    }
+
+    /// Where the sum of an empty list was made, and its text: the operand itself, or what the name that it is was declared as.
+    fn empty_sum(&self, code: Code<'_>, id: ExprId, value: f64) -> Option<(Span, String)> {
+        let is_sum = |nodes: &[super::syntax::ast::Node], id: ExprId| match &nodes[id.index()].expr {
+            Expr::Call { name, args, .. } => self.names.text(*name) == "sum" && args.iter().all(|a| a.name.is_none()),
+            _ => false,
+        };
+        if value != 0.0 {
+            return None;
+        }
+        if is_sum(code.nodes, id) {
+            return Some((code.span(id), self.source(code, id)));
+        }
+        let Expr::Name(name) = code.expr(id) else { return None };
+        let module = self.machine.at(code.module);
+        let declaration = &module.script.declarations[module.find(*name)? as usize];
+        match &declaration.kind {
+            super::syntax::ast::DeclarationKind::Value { value, .. } if is_sum(&declaration.nodes, *value) => {
+                let span = declaration.nodes[value.index()].span;
+                Some((span, self.sources.text(module.file, span).to_owned()))
+            }
+            _ => None,
+        }
     }
 
     fn same_vectors(&mut self, at: At<'_>, a: (DVec3, Dim), b: (DVec3, Dim)) -> Result<(DVec3, DVec3, Dim), Stop> {
@@ -343,7 +374,24 @@ impl Cx<'_> {
             _ => format!("{a} and {b} cannot be compared"),
         };
         let (sa, sb) = (at.code.span(at.a), at.code.span(at.b));
-        self.error(at.code, "E211", doing, at.op_span, format!("`{}` here", symbol(at.op))).and(sb, b).and(sa, a).stop()
+        let cell = [left, right].into_iter().find_map(|v| if let Value::Text(text) = v { self.cell_of(text) } else { None });
+        let ways = self.along_axes(at, left, right);
+        let draft = self.error(at.code, "E211", doing, at.op_span, format!("`{}` here", symbol(at.op))).and(sb, b).and(sa, a).notes(cell);
+        if ways.is_empty() { draft.stop() } else { draft.ways(at.code.span(at.id), &ways).stop() }
+    }
+
+    /// `A + 2m` as a step along each axis.
+    fn along_axes(&self, at: At<'_>, left: &Value, right: &Value) -> Vec<String> {
+        let point = matches!(left, Value::Vector(_, Dim::LENGTH) | Value::Node(_) | Value::Vertex(..));
+        let length = matches!(right, Value::Number(q) if q.dim == Dim::LENGTH);
+        if !point || !length || !matches!(at.op, Binary::Plus | Binary::Minus) {
+            return Vec::new();
+        }
+        let (a, b) = (self.source(at.code, at.a), self.source(at.code, at.b));
+        ["({b}, 0, 0)", "(0, {b}, 0)", "(0, 0, {b})"]
+            .iter()
+            .map(|way| format!("{a} {} {}", symbol(at.op), way.replace("{b}", &b)))
+            .collect()
     }
 
     #[inline]

@@ -164,6 +164,45 @@ pub fn quantity_text(q: Quantity, model: LengthUnit) -> String {
     format!("{}{}", number_text(q.value), unit_text(q.dim, model))
 }
 
+/// A length in model units as messages tell it: three digits, in the model's unit where that takes at most four places before
+/// the dot and one zero behind it, else in the metric unit that engineers would take: `0.3 mm`, never `0.000300 m`.
+pub fn told_length(x: f64, model: LengthUnit) -> (String, LengthUnit) {
+    let metric = |name: &str| LENGTHS.iter().find(|u| u.name == name);
+    let fits = |x: f64| x == 0.0 || !x.is_finite() || (0.1..1e4).contains(&x.abs());
+    let is_metric = !matches!(model.name, "in" | "ft");
+    // Up to a whole number of the larger unit, down to a tenth of the smaller one.
+    let least = if x.abs() < 1.0 { 0.1 } else { 1.0 };
+    let other = ["km", "m", "mm", "um"].into_iter().filter_map(metric).find(|u| convert(x, model, **u, 1).abs() >= least).or(metric("um"));
+    let unit = match other {
+        Some(other) if is_metric && !fits(x) => *other,
+        _ => model,
+    };
+    (three_digits(convert(x, model, unit, 1)), unit)
+}
+
+/// A number with three digits, all those before the dot, and no zeros at its end.
+fn three_digits(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return number_text(x);
+    }
+    let size = crate::base::math::log10(x.abs()).floor();
+    if !(-4.0..15.0).contains(&size) {
+        return format!("{x:.2e}");
+    }
+    let places = (2.0 - size).max(0.0) as usize;
+    let text = format!("{x:.places$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A quantity as messages tell it: a length with three digits, anything else as it is.
+pub fn told(q: Quantity, model: LengthUnit) -> String {
+    if q.dim != Dim::LENGTH {
+        return quantity_text(q, model);
+    }
+    let (text, unit) = told_length(q.value, model);
+    format!("{text}{}", unit.name)
+}
+
 /// The units that a bare number may have meant where this dimension is wanted, the likelier first. An angle is in radians when
 /// its digits are those of a simple share of pi, else in degrees.
 pub fn meant_units(value: f64, dim: Dim, unit: LengthUnit) -> Vec<String> {
@@ -180,12 +219,34 @@ fn is_share_of_pi(value: f64) -> bool {
     let Some((whole, decimals)) = text.split_once('.') else { return false };
     let digits = whole.trim_start_matches('0').len() + decimals.len();
     let places = decimals.len();
-    let alike = |share: f64| format!("{share:.places$}") == text;
+    // The last digits of a computed value are rounding.
+    const COMPUTED: usize = 12;
+    let shown = places.min(COMPUTED);
+    let rounded = format!("{:.shown$}", value.abs());
+    let alike = |share: f64| format!("{share:.shown$}") == rounded;
     digits >= 3 && !text.contains('e') && (1..=96).any(|k| (k % 2 == 0 || k % 3 == 0) && alike(f64::from(k) * std::f64::consts::PI / 24.0))
 }
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn lengths_are_told_in_three_digits() {
+        let told = |x: f64, unit: &str| super::told(super::Quantity::new(x, super::Dim::LENGTH), super::length_unit(unit).unwrap());
+        assert_eq!(told(0.0003, "m"), "0.3mm");
+        assert_eq!(told(0.3, "mm"), "0.3mm");
+        assert_eq!([told(5000.0, "mm"), told(1234.567, "mm"), told(25_000.0, "mm")], ["5000mm", "1235mm", "25m"]);
+        assert_eq!([told(-1e-3, "mm"), told(0.0, "m"), told(0.31, "in"), told(4.0 / 3.0, "cm")], ["-1um", "0m", "0.31in", "1.33cm"]);
+    }
+
+    #[test]
+    fn shares_of_pi_are_radians() {
+        let radians = [1.5708, 3.14, 0.785, 2.094, 6.2832, std::f64::consts::FRAC_PI_3];
+        assert!(
+            radians.iter().all(|x| super::is_share_of_pi(*x))
+                && ![45.0, 1.5, 30.0, 0.5, 22.5, 2.25].iter().any(|x| super::is_share_of_pi(*x))
+        );
+    }
+
     use super::*;
 
     fn check(value: f64, unit: &str, model: &str, expected: &str) {

@@ -55,7 +55,13 @@ impl Failure<'_> {
         let stop = Stop { at, wanted: positives };
         let special = self.let_without_in(&stop).or_else(|| self.bracket_on_its_line(&stop)).or_else(|| self.reserved_word(&stop));
         let special = special.or_else(|| self.equals(&stop)).or_else(|| self.colon(&stop)).or_else(|| self.unit_apart(&stop));
-        special.unwrap_or_else(|| self.general(&stop))
+        special.unwrap_or_else(|| {
+            let refusal = super::foreign::Refusal { source: self.source, tokens: self.tokens, base: self.base, end: self.end, at };
+            match refusal.meant() {
+                Some(meant) => super::foreign::say(self.found(&stop), Some(meant)),
+                None => self.general(&stop),
+            }
+        })
     }
 
     fn text(&self, token: usize) -> &str {
@@ -272,14 +278,18 @@ impl Failure<'_> {
         self.e102(format!("expected {wanted}, found `{found}`"), stop.at, &format!("expected {wanted}"))
     }
 
-    fn general(&self, stop: &Stop<'_>) -> Diagnostic {
+    /// What was expected, where something else stands or nothing does.
+    fn found(&self, stop: &Stop<'_>) -> Diagnostic {
+        if stop.at < self.end {
+            return self.as_found(stop);
+        }
         let wanted = words(stop.wanted);
+        self.e102(format!("expected {wanted}, but the declaration ends here"), stop.at, &format!("{wanted} is missing"))
+    }
+
+    fn general(&self, stop: &Stop<'_>) -> Diagnostic {
         let place = self.place(stop.at);
-        let report = if stop.at < self.end {
-            self.as_found(stop)
-        } else {
-            self.e102(format!("expected {wanted}, but the declaration ends here"), stop.at, &format!("{wanted} is missing"))
-        };
+        let report = self.found(stop);
         if let Some(help) = self.usual(stop) {
             // The whole declaration, where nothing is left to be filled in.
             let whole = self.tokens.stretch(self.base, self.end - 1);

@@ -351,7 +351,9 @@ fn no_keyword(source: &str, file: FileId, at: Span, next: Option<Span>, binds: b
             .help(format!("let {word} = …, or `point`, `curve`, `surface` for what belongs to the model"))
             .put(Span { start: at.start, end: at.start }, "let ");
     }
-    let report = Diagnostic::new("E106", format!("`{word}` is not a keyword"), file, at, "no declaration starts with this");
+    let message =
+        if matches!(word, "if" | "for") { format!("no declaration starts with `{word}`") } else { format!("`{word}` is not a keyword") };
+    let report = Diagnostic::new("E106", message, file, at, "no declaration starts with this");
     let two = next.map(|n| source[at.start as usize..n.end as usize].split_whitespace().collect::<Vec<_>>().join(" "));
     let words = || openers().into_iter().map(KeywordDoc::written);
     let found = two.as_deref().filter(|t| t.ends_with(" curve")).and_then(|t| nearest(t, words())).or_else(|| nearest(word, words()));

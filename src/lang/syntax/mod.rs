@@ -11,6 +11,7 @@ pub mod ast;
 mod climb;
 mod expected;
 pub mod fixes;
+pub(in crate::lang) mod foreign;
 pub mod keywords;
 mod matching;
 mod mistake;
@@ -256,7 +257,10 @@ impl Parser<'_> {
         if !piece.broken || kinds[0] == Kind::Name {
             let next = (end > base + 1).then(|| self.tokens.span(base + 1));
             let mistake = Mistake::NoKeyword { span: self.tokens.span(base), next, binds: kinds.get(1) == Some(&Kind::Equals) };
-            self.found.push(mistake.diagnose(self.source, self.file));
+            let report = mistake.diagnose(self.source, self.file);
+            let refusal = foreign::Refusal { source: self.source, tokens: self.tokens, base, end, at: base };
+            let meant = if kinds.get(1) == Some(&Kind::Equals) { None } else { refusal.meant() };
+            self.found.push(foreign::say(report, meant));
         }
         let bound = match kinds {
             [Kind::Name, Kind::Equals, ..] => Some(base),

@@ -108,6 +108,10 @@ impl Splitter<'_> {
         if inside {
             return kind == Kind::Name && self.kind(at + 1) == Some(Kind::Name) && self.kind(at + 2) == Some(Kind::Equals);
         }
+        // A statement of other languages, behind a declaration that is whole.
+        if kind == Kind::If || kind == Kind::For && self.tokens.kinds[self.start..at].contains(&Kind::Equals) {
+            return true;
+        }
         matches!(kind, Kind::Name | Kind::Number | Kind::Quantity | Kind::Text | Kind::TextHead | Kind::True | Kind::False | Kind::None)
     }
 
