@@ -70,6 +70,8 @@ pub enum Exit {
     Bug = 3,
     /// Stopped by Ctrl-C.
     Interrupted = 130,
+    /// All is well, but whoever read standard output has gone: what the system says of programs that end by this.
+    ClosedPipe = 141,
 }
 
 impl From<Exit> for ExitCode {
@@ -102,16 +104,20 @@ pub fn main() -> ExitCode {
     let matches = match command_line().try_get_matches() {
         Ok(matches) => matches,
         Err(error) => {
-            // Help and version come this way as well. Where the terminal is gone there is nobody to tell.
-            let _ = error.print();
-            return if error.use_stderr() { Exit::Usage.into() } else { Exit::Fine.into() };
+            // Help and version come this way as well.
+            let printed = error.print();
+            if error.use_stderr() {
+                return Exit::Usage.into();
+            }
+            terminal::lose(printed);
+            return Terminal::new("auto").end(Exit::Fine).into();
         }
     };
     let terminal = Terminal::new(matches.get_one::<String>("color").map_or("auto", String::as_str));
     interrupt::keep_panics_quiet();
     let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
     match COMMANDS.iter().copied().flatten().find(|c| c.name == name) {
-        Some(command) => (command.run)(arguments, &terminal).into(),
+        Some(command) => terminal.end((command.run)(arguments, &terminal)).into(),
         None => Exit::Usage.into(),
     }
 }

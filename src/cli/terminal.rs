@@ -1,6 +1,13 @@
 //! Standard output and standard error: who writes where, and in which colours.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
+
+use super::Exit;
+use crate::session::disk::plain;
+
+/// The first text that standard output did not take.
+static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
 
 /// Where a command prints.
 #[derive(Clone, Copy, Debug)]
@@ -26,10 +33,25 @@ impl Terminal {
         Self { color_out: color(out), color_err: color(err), watched: err }
     }
 
-    /// Prints on standard output. A reader that has gone (`loft doc | head`) is no failure.
+    /// Prints on standard output; what that does not take is told by [`Terminal::end`].
     pub fn print(&self, text: &str) {
         let mut out = io::stdout().lock();
-        let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        lose(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+    }
+
+    /// How the program ends: a text that standard output did not take is an error of a run without others. A full disk
+    /// is told; a reader that has gone (`loft doc | head`) knows.
+    pub fn end(&self, exit: Exit) -> Exit {
+        let lost = LOST.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let status = match lost {
+            None => return exit,
+            Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Exit::ClosedPipe,
+            Some(error) => {
+                self.tell(&format!("loft: cannot write to standard output: {}\n", plain(&error)));
+                Exit::Errors
+            }
+        };
+        if exit == Exit::Fine { status } else { exit }
     }
 
     /// Prints on standard error.
@@ -38,8 +60,15 @@ impl Terminal {
     }
 
     /// Says on standard error what is wrong with the command line.
-    pub fn wrong_usage(&self, text: &str) -> super::Exit {
+    pub fn wrong_usage(&self, text: &str) -> Exit {
         self.tell(&format!("loft: {text}\n"));
-        super::Exit::Usage
+        Exit::Usage
+    }
+}
+
+/// Remembers that standard output did not take a text.
+pub fn lose(written: io::Result<()>) {
+    if let Err(error) = written {
+        LOST.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
     }
 }
