@@ -45,6 +45,8 @@ limits! {
     pub const CACHE_BYTES: u64 = 4 << 30;
     /// Reports of one code that one declaration or stage says one by one; further ones are counted.
     pub const REPORTS_OF_A_KIND: usize = 1_000;
+    /// Reports that the JSON of a run tells in full for one that stands for them on a screen; further ones are counted.
+    pub const REPORTS_TOLD: usize = 100_000;
     /// Reports printed in full in one run.
     pub const REPORTS_SHOWN: usize = 20;
 }

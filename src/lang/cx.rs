@@ -134,6 +134,8 @@ pub struct Cx<'w> {
     pub(super) tolerance: Option<Tolerance>,
     pub(super) seen: Box3,
     pub(super) sink: Vec<Diagnostic>,
+    /// Every report is kept in its own words, also where a screen shows one for many.
+    pub whole: bool,
     pub(super) machine: Machine,
     /// What earlier runs found; `None` in a run that keeps nothing.
     pub(super) memory: Option<Memory>,
@@ -153,6 +155,7 @@ impl<'w> Cx<'w> {
             tolerance: None,
             seen: Box3::EMPTY,
             sink: Vec::new(),
+            whole: false,
             machine: Machine::default(),
             memory: None,
         }
@@ -197,7 +200,7 @@ impl<'w> Cx<'w> {
         let mut diagnostic = self.diagnose(fault);
         diagnostic.more = more;
         match self.sink.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
-            Some(found) => found.more += 1 + more,
+            Some(found) => found.fold(diagnostic, self.whole),
             None => self.keep(diagnostic),
         }
     }
@@ -206,7 +209,7 @@ impl<'w> Cx<'w> {
         let of_this = |d: &&mut Diagnostic| d.code == diagnostic.code;
         let kept = if self.sink.len() < REPORTS_OF_A_KIND { 0 } else { self.sink.iter_mut().filter(of_this).count() };
         match self.sink.iter_mut().rev().find(of_this) {
-            Some(last) if kept >= REPORTS_OF_A_KIND => last.more += 1 + diagnostic.more,
+            Some(last) if kept >= REPORTS_OF_A_KIND => last.fold(diagnostic, self.whole),
             _ => self.sink.push(diagnostic),
         }
     }

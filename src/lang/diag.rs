@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::base::fault::{Code, Describe, Edit, Fault, Report, Say, Severity, Subject};
+use crate::base::limits::REPORTS_TOLD;
 use crate::lang::syntax::ast::Span;
 use crate::lang::syntax::fixes::Fix;
 
@@ -39,6 +40,8 @@ pub struct Diagnostic {
     pub fixes: Vec<Fix>,
     /// How many further reports like it this one stands for.
     pub more: usize,
+    /// Those of them that say something else, where all are wanted; equal ones and what is beyond the limit are only counted.
+    pub folded: Vec<Diagnostic>,
 }
 
 impl Diagnostic {
@@ -52,12 +55,22 @@ impl Diagnostic {
             notes: Vec::new(),
             fixes: Vec::new(),
             more: 0,
+            folded: Vec::new(),
         }
     }
 
     /// A report that no place in a script belongs to.
     pub fn without_place(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), fixes: Vec::new(), more: 0 }
+        Self {
+            code: Code(code),
+            message: message.into(),
+            labels: Vec::new(),
+            help: None,
+            notes: Vec::new(),
+            fixes: Vec::new(),
+            more: 0,
+            folded: Vec::new(),
+        }
     }
 
     /// The one bridge from the kernel: `find` turns subjects into places, `say` speaks of entities and quantities as
@@ -83,7 +96,7 @@ impl Diagnostic {
         if labels.is_empty() {
             labels.extend(find(Subject::Call).map(|(file, span)| Label { file, span, text: "here".to_owned() }));
         }
-        Self { code, message, labels, help, notes, fixes, more: 0 }
+        Self { code, message, labels, help, notes, fixes, more: 0, folded: Vec::new() }
     }
 
     /// With one more label.
@@ -112,6 +125,10 @@ impl Diagnostic {
 
     /// The same with all its places moved.
     pub fn moved(&self, place: impl Fn(FileId, Span) -> (FileId, Span)) -> Self {
+        self.moved_by(&place)
+    }
+
+    fn moved_by(&self, place: &dyn Fn(FileId, Span) -> (FileId, Span)) -> Self {
         let mut moved = self.clone();
         for label in &mut moved.labels {
             (label.file, label.span) = place(label.file, label.span);
@@ -119,7 +136,30 @@ impl Diagnostic {
         for fix in &mut moved.fixes {
             (fix.file, fix.span) = place(fix.file, fix.span);
         }
+        moved.folded = self.folded.iter().map(|d| d.moved_by(place)).collect();
         moved
+    }
+
+    /// Stands for another report as well; `whole`: keeps its words where they differ.
+    pub fn fold(&mut self, mut other: Self, whole: bool) {
+        self.more += 1 + other.more;
+        if !whole {
+            return;
+        }
+        let inner = std::mem::take(&mut other.folded);
+        other.more -= inner.iter().map(|d| 1 + d.more).sum::<usize>().min(other.more);
+        for report in std::iter::once(other).chain(inner) {
+            let again = self.folded.last().map_or_else(|| self.says_the_same(&report), |last| last.says_the_same(&report));
+            if !again && self.folded.len() < REPORTS_TOLD {
+                self.folded.push(report);
+            } else if let Some(last) = self.folded.last_mut().filter(|_| again) {
+                last.more += 1 + report.more;
+            }
+        }
+    }
+
+    fn says_the_same(&self, other: &Self) -> bool {
+        self.is_like(other) && self.message == other.message && self.help == other.help && self.notes == other.notes
     }
 
     /// With a further line.

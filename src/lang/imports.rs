@@ -28,6 +28,9 @@ const REPAIRS_SAID: usize = 5;
 /// Endings that can be imported.
 const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl", "igs", "iges"];
 
+/// Endings of tables, which may have a header.
+const TABLES: &[&str] = &["csv", "dat", "txt"];
+
 /// One file being imported.
 pub(super) struct File<'f> {
     path: &'f str,
@@ -57,7 +60,7 @@ impl Cx<'_> {
         if !ENDINGS.contains(&ending.as_str()) {
             return Err(FileFault::NoSuchFormat { of: origin, path: written, known: ENDINGS.to_vec() }.into());
         }
-        let (header, unit) = self.import_args(code, args)?;
+        let (header, unit) = self.import_args(code, args, &ending)?;
         let from = self.machine.at(code.module).path.clone();
         let resolved = self.files.resolve(&from, &written).map_err(|e| file_fault(e, &written, origin))?;
         let bytes = self.files.read(&resolved, limits::DATA_BYTES).map_err(|e| file_fault(e, &written, origin))?;
@@ -86,13 +89,22 @@ impl Cx<'_> {
         }
     }
 
-    fn import_args(&mut self, code: Code<'_>, args: &[Arg]) -> Result<(Option<bool>, Option<LengthUnit>), Stop> {
+    /// `header:` and `unit:`; E303 for one that files of this ending have no use for.
+    fn import_args(&mut self, code: Code<'_>, args: &[Arg], ending: &str) -> Result<(Option<bool>, Option<LengthUnit>), Stop> {
         let shown = "import \"…\" (header: true, unit: m)".to_owned();
         let signature = Signature { name: "import", params: vec!["header", "unit"], rest: None, shown };
         let places = self.match_args(code, &signature, 0, args)?;
         let (mut header, mut unit, mut gather) = (None, None, Gather::default());
         for (arg, k) in args.iter().zip(places) {
             let (ty, subject) = if k == 0 { (Ty::Bool, "`header`") } else { (Ty::Choice(FILE_UNITS), "`unit`") };
+            let idle = if k == 0 { !TABLES.contains(&ending) } else { ending == "json" };
+            if idle {
+                let text = format!("{subject} says nothing about a {ending} file");
+                let draft = self.error(code, "E303", text, code.span(arg.value), "no such argument here");
+                let of = if k == 0 { "tables: .csv .dat .txt" } else { "files of lengths, which are bare numbers in them" };
+                gather.take::<()>(Err(draft.note(format!("it is for {of}")).stop()));
+                continue;
+            }
             match gather.take(self.eval_as(code, arg.value, ty, subject)) {
                 Some(Value::Bool(b)) => header = Some(b),
                 Some(Value::Word(w)) => unit = units::length_unit(&w),
@@ -103,8 +115,9 @@ impl Cx<'_> {
     }
 
     pub(super) fn repaired(&mut self, file: &File, repairs: Vec<Malformed>) {
-        let more = repairs.len().saturating_sub(REPAIRS_SAID);
-        for mut at in repairs.into_iter().take(REPAIRS_SAID) {
+        let said = if self.whole { repairs.len() } else { REPAIRS_SAID };
+        let more = repairs.len().saturating_sub(said);
+        for mut at in repairs.into_iter().take(said) {
             if more > 0 && at.what.is_empty() {
                 at.what = "repaired".to_owned();
             }

@@ -172,7 +172,7 @@ impl Cx<'_> {
                 }
             }
             match out.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
-                Some(found) => found.more += 1 + diagnostic.more,
+                Some(found) => found.fold(diagnostic, self.whole),
                 None => out.push(diagnostic),
             }
         }

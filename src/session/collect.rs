@@ -211,8 +211,14 @@ pub fn cell(value: &Value) -> Cell {
     }
 }
 
-/// A diagnostic with places as editors count; where it stands for further ones, a row behind it says how many.
+/// A diagnostic with places as editors count, and behind it those that it stands for where they were kept.
 pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> Vec<DiagnosticRow> {
+    let told: usize = found.folded.iter().map(|d| 1 + d.more).sum();
+    let first = diagnostic_row(found, 1 + found.more.saturating_sub(told), sources);
+    std::iter::once(first).chain(found.folded.iter().map(|d| diagnostic_row(d, 1 + d.more, sources))).collect()
+}
+
+fn diagnostic_row(found: &Diagnostic, count: usize, sources: &Sources) -> DiagnosticRow {
     let label = |label: &crate::lang::diag::Label| {
         let place = sources.place(label.file, label.span.start);
         LabelRow {
@@ -223,7 +229,7 @@ pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> Vec<DiagnosticRow> {
             text: label.text.clone(),
         }
     };
-    let row = DiagnosticRow {
+    DiagnosticRow {
         code: found.code.0,
         severity: match found.severity() {
             Severity::Error => "error",
@@ -232,12 +238,10 @@ pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> Vec<DiagnosticRow> {
         },
         message: found.message.clone(),
         help: found.help.clone(),
+        notes: found.notes.clone(),
         labels: found.labels.iter().map(label).collect(),
-        count: 1,
-    };
-    let message = format!("{} more like this one: {}", found.more, found.message);
-    let counted = (found.more > 0).then(|| DiagnosticRow { message, count: found.more, ..row.clone() });
-    std::iter::once(row).chain(counted).collect()
+        count,
+    }
 }
 
 /// What was found of each surface: its flow, the curves along u and v in order, poles and which way it closes.

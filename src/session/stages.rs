@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::base::fault::{CurveEnd, Fault, Say};
 use crate::base::job::Job;
-use crate::base::limits::REPORTS_OF_A_KIND;
+use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
@@ -260,12 +260,13 @@ fn say_all(cx: &mut Cx, sink: &[Fault]) {
         })
         .collect();
     let mut said = vec![0; kinds.len()];
+    let most = if cx.whole { REPORTS_TOLD } else { REPORTS_OF_A_KIND };
     for (fault, kind) in sink.iter().zip(kind_of) {
         said[kind] += 1;
-        let rest = kinds[kind].1.saturating_sub(REPORTS_OF_A_KIND);
+        let rest = kinds[kind].1.saturating_sub(most);
         match said[kind] {
-            REPORTS_OF_A_KIND => cx.say_counted(fault, rest),
-            n if n < REPORTS_OF_A_KIND => cx.say(fault),
+            n if n == most => cx.say_counted(fault, rest),
+            n if n < most => cx.say(fault),
             _ => {}
         }
     }
