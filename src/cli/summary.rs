@@ -95,7 +95,7 @@ pub fn text(report: &Report, tolerance: Option<f64>, color: bool) -> String {
     }
     if !report.outputs.is_empty() {
         out.push('\n');
-        report.outputs.iter().for_each(|o| out.push_str(&format!("wrote {}  {}\n", o.path, bytes(o.bytes))));
+        report.outputs.iter().for_each(|o| out.push_str(&format!("wrote {}  {}\n", o.place, bytes(o.bytes))));
     }
     out
 }

@@ -181,6 +181,8 @@ codes! {
     now "E809", "modules-cycle", "modules import each other";
     now "W810", "entity-skipped", "an entity of a file was skipped or repaired";
     now "E811", "file-too-large", "a file is too large";
+    now "E812", "one-file-twice", "several outputs are one file";
+    now "E813", "output-over-input", "an output would replace a file that is read";
     now "E901", "check-failed", "a check failed";
     now "E902", "golden-differs", "a golden differs";
     now "E903", "raised", "the script itself says that something is wrong";

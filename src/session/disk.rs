@@ -1,10 +1,10 @@
 //! Files on the disk: where scripts and data may be read from and outputs may go.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::similar::similar_names;
 use super::staging::{Counted, Staging};
@@ -36,6 +36,8 @@ pub struct Disk {
     outputs: Outputs,
     staging: Staging,
     unsaved: Unsaved,
+    /// Files that were read, links resolved.
+    read: Mutex<BTreeSet<PathBuf>>,
 }
 
 impl Disk {
@@ -53,7 +55,7 @@ impl Disk {
             roots.push(path.canonicalize().map_err(|error| io::Error::new(error.kind(), format!("--allow {}: {error}", path.display())))?);
         }
         let out = std::path::absolute(out.unwrap_or(&home))?;
-        Ok(Self { home, shown_home, roots, out, outputs, staging: Staging::default(), unsaved: Unsaved::default() })
+        Ok(Self { home, shown_home, roots, out, outputs, staging: Staging::default(), unsaved: Unsaved::default(), read: Mutex::default() })
     }
 
     /// The same folders with texts that are not saved.
@@ -71,6 +73,7 @@ impl Disk {
             outputs: self.outputs,
             staging: Staging::default(),
             unsaved: self.unsaved.clone(),
+            read: Mutex::default(),
         }
     }
 
@@ -101,6 +104,27 @@ impl Disk {
             Ok(inside) => self.shown_home.join(inside).to_string_lossy().into_owned(),
             Err(_) => resolved.to_owned(),
         }
+    }
+
+    /// What tells the file of an output from all others: its real folder and its name, letter case aside, since many
+    /// systems do not tell that apart; `None` where it may not stand.
+    pub fn file_of(&self, path: &str) -> Option<String> {
+        self.place(path).ok().map(|place| same_file(&place))
+    }
+
+    /// The files that were read, told apart as [`Disk::file_of`] does.
+    pub fn files_read(&self) -> BTreeSet<String> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|path| same_file(path)).collect()
+    }
+
+    /// Where an output stands, for people: as seen from the working directory, in full where it is not below that.
+    pub fn told_place(&self, path: &str) -> String {
+        let place = normal_form(&self.out.join(path)).unwrap_or_else(|| self.out.join(path));
+        let here = std::env::current_dir().unwrap_or_default();
+        let below = place.strip_prefix(&here).ok().map(Path::to_owned);
+        // The folder of the script has its links resolved, the working directory may be named with some.
+        let below = below.or_else(|| place.strip_prefix(here.canonicalize().ok()?).ok().map(Path::to_owned));
+        below.unwrap_or(place).to_string_lossy().into_owned()
     }
 
     /// Where an output may stand: inside the output folder, links resolved.
@@ -146,6 +170,7 @@ impl Files for Disk {
     }
 
     fn read(&self, resolved: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(PathBuf::from(resolved));
         match self.unsaved.get(Path::new(resolved)) {
             Some(text) if text.len() as u64 > limit => Err(FileError::TooLarge(text.len() as u64)),
             Some(text) => Ok(text.as_bytes().to_vec()),
@@ -218,11 +243,17 @@ pub fn words(error: &FileError) -> String {
 }
 
 /// The system's words without its number, in lower case.
-pub(super) fn plain(error: &io::Error) -> String {
+pub fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     let text = text.split(" (os error").next().unwrap_or_default();
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// A name that is equal for two paths to one file: its folder without links, letter case aside.
+pub(super) fn same_file(path: &Path) -> String {
+    let folder = path.parent().map(existing_part).unwrap_or_default();
+    folder.join(path.file_name().unwrap_or_default()).to_string_lossy().to_lowercase()
 }
 
 /// The path without `.` and `..`; `None` when it climbs above the root.

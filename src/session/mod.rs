@@ -14,6 +14,7 @@ pub mod notebook;
 mod picture_names;
 mod picture_paths;
 pub mod pictures;
+mod places;
 mod plan;
 pub mod reference;
 pub mod report;

@@ -19,7 +19,7 @@ use crate::base::tolerance::Tolerance;
 use crate::draw::picture::{FORMATS, Format, Picture, Settings};
 use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
 use crate::geometry::Curve;
-use crate::io::{FileError, Files, extension, no_format};
+use crate::io::{FileError, Files, Sort, ending_for};
 use crate::lang::cx::{Cx, Sound, Stop};
 use crate::lang::diag::Diagnostic;
 use crate::lang::plans::{PictureSpec, Show};
@@ -118,9 +118,9 @@ fn unsupported(of: Origin, what: &str, help: &str) -> Stop {
 }
 
 fn format_of(spec: &PictureSpec) -> Result<Format, Stop> {
-    let ending = extension(&spec.path);
+    let ending = ending_for(spec.path_origin, &spec.path, Sort::Pictures)?;
     let known = FORMATS.iter().find(|(name, _)| *name == ending);
-    Ok(known.ok_or_else(|| no_format(spec.path_origin, &spec.path, FORMATS.iter().map(|f| f.0).collect()))?.1)
+    Ok(known.ok_or(Stop::Bug("an ending of pictures without a format"))?.1)
 }
 
 fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
@@ -146,7 +146,7 @@ fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
 fn put(spec: &PictureSpec, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>, files: &dyn Files) -> Result<OutputRow, Stop> {
     let (of, path) = (spec.path_origin, spec.path.clone());
     match files.write(&spec.path, fill) {
-        Ok(bytes) => Ok(OutputRow { path, bytes, unit: "" }),
+        Ok(bytes) => Ok(OutputRow { path, bytes, ..OutputRow::default() }),
         Err(FileError::Outside) => Err(FileFault::Outside { of, path }.into()),
         Err(FileError::Other(why)) => Err(FileFault::CannotWrite { of, path, why }.into()),
         Err(_) => Err(FileFault::CannotWrite { of, path, why: "the system refuses it".to_owned() }.into()),

@@ -39,6 +39,8 @@ pub struct Report {
     pub reports: Vec<Table>,
     /// Files written, by path inside the output folder.
     pub outputs: Vec<OutputRow>,
+    /// Names of the model that stand otherwise in one of the files.
+    pub renamed: Vec<RenamedRow>,
     /// Everything said about the script.
     pub diagnostics: Vec<DiagnosticRow>,
     /// Seconds; the only part that may differ between two runs.
@@ -262,6 +264,26 @@ pub struct OutputRow {
     /// Name of the unit of its lengths; empty where it holds none.
     #[serde(skip)]
     pub unit: &'static str,
+    /// Where it stands: as seen from the working directory, or in full where it is not below that.
+    #[serde(skip)]
+    pub place: String,
+    /// Names that stand otherwise in it.
+    #[serde(skip)]
+    pub renamed: Vec<RenamedRow>,
+    /// Names that every mesh has and that are not in it, in words.
+    #[serde(skip)]
+    pub unnamed: Vec<String>,
+}
+
+/// A name of the model that a format had to change.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RenamedRow {
+    /// Path of the output, as in `outputs`.
+    pub path: String,
+    /// Name in the model.
+    pub from: String,
+    /// Name in the file.
+    pub to: String,
 }
 
 /// A diagnostic.
@@ -275,10 +297,11 @@ pub struct DiagnosticRow {
     pub message: String,
     /// Something that can be typed.
     pub help: Option<String>,
+    /// Further lines, such as what was not built.
+    pub notes: Vec<String>,
     /// Places, the foremost first.
     pub labels: Vec<LabelRow>,
-    /// How many reports the row stands for: 1, or what its message counts.
-    #[serde(skip)]
+    /// How often it was said in these words at these places.
     pub count: usize,
 }
 

@@ -140,13 +140,28 @@ struct Run<'r> {
     said: Option<Diagnostic>,
     /// The flow found for each surface, a line each.
     flows: Vec<String>,
+    /// What the files do without, a line each.
+    unnamed: Vec<String>,
     light: bool,
 }
 
 impl<'r> Run<'r> {
-    fn new(task: &'r Task<'r>, cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> Self {
+    fn new(task: &'r Task<'r>, mut cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> Self {
         let report = Report { loft: VERSION, model: task.name.to_owned(), ..Report::default() };
-        Self { cx, stages, task, disk, report, meshes: Vec::new(), bug: None, said: None, flows: Vec::new(), light: false }
+        cx.whole = task.full;
+        Self {
+            cx,
+            stages,
+            task,
+            disk,
+            report,
+            meshes: Vec::new(),
+            bug: None,
+            said: None,
+            flows: Vec::new(),
+            unnamed: Vec::new(),
+            light: false,
+        }
     }
 
     /// From the text to the end; `look` is shown what was evaluated.
@@ -185,6 +200,9 @@ impl<'r> Run<'r> {
         self.cx.leave();
         self.collect();
         let evaluated = clock();
+        if self.task.picture.is_none() {
+            super::places::one_file_each(&mut self.cx, self.disk, &self.disk.script_name(self.task.name));
+        }
         if let Some(wanted) = self.task.picture {
             self.picture(wanted);
         } else if !self.light && (self.is_sound() || self.task.keep_going) {
@@ -298,10 +316,11 @@ impl<'r> Run<'r> {
     }
 
     fn written(&mut self, row: Result<OutputRow, Stop>) {
-        if let Some(row) = self.take(row)
-            && self.disk.outputs() == Outputs::Written
-        {
-            self.report.outputs.retain(|old: &OutputRow| old.path != row.path);
+        let Some(mut row) = self.take(row) else { return };
+        self.report.renamed.append(&mut row.renamed);
+        self.unnamed.extend(row.unnamed.drain(..).map(|what| format!("\"{}\" does without {what}", row.path)));
+        if self.disk.outputs() == Outputs::Written {
+            row.place = self.disk.told_place(&row.path);
             self.report.outputs.push(row);
         }
     }
@@ -345,10 +364,12 @@ impl<'r> Run<'r> {
                 diagnostics.push(Diagnostic::without_place("E808", format!("cannot write {error}")));
                 ok = false;
                 self.report.outputs.clear();
+                self.report.renamed.clear();
             }
         } else {
             self.disk.staging().discard();
             self.report.outputs.clear();
+            self.report.renamed.clear();
         }
         let bug = diagnostics.iter().any(|d| d.code.0 == "E999") && !interrupted;
         self.report.ok = ok;
@@ -363,7 +384,7 @@ impl<'r> Run<'r> {
             meshes: self.meshes,
             diagnostics,
             sources,
-            notes: self.flows.into_iter().chain(self.stages.notes()).collect(),
+            notes: self.flows.into_iter().chain(self.stages.notes()).chain(self.unnamed).collect(),
             tolerance,
             interrupted,
             bug,

@@ -102,16 +102,30 @@ pub enum FileFault {
         /// What is missing from the file.
         what: String,
     },
-    /// W807: a set has another name in the file.
+    /// W807: sets have other names in the file.
     Renamed {
         /// The export.
         of: Origin,
         /// As written.
         path: String,
-        /// Name in the model.
-        from: String,
-        /// Name in the file.
-        to: String,
+        /// Names in the model and in the file, at least one pair.
+        names: Vec<(String, String)>,
+    },
+    /// E812: several outputs are one file.
+    SameFile {
+        /// The outputs with their paths as written, at least two. One place that says several stands once.
+        outputs: Vec<(Origin, String)>,
+        /// How many members of one family write it, where it is one.
+        members: Option<usize>,
+    },
+    /// E813: an output stands where something is read from.
+    OverInput {
+        /// The output.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// What is read there, in words.
+        what: String,
     },
     /// E808: the system does not let us write.
     CannotWrite {
@@ -224,15 +238,44 @@ impl FileFault {
             Self::LeftOut { of, path, what } => {
                 Report::new("W806", format!("\"{path}\" cannot hold {what}")).at(*of, "left out of this file")
             }
-            Self::Renamed { of, path, from, to } => {
-                Report::new("W807", format!("set `{from}` is called `{to}` in \"{path}\"")).at(*of, "written here")
+            Self::Renamed { of, path, names } => {
+                let called = names.iter().map(|(from, to)| format!("`{from}` is called `{to}`")).collect::<Vec<_>>().join(", ");
+                Report::new("W807", format!("{called} in \"{path}\"")).at(*of, "written here")
             }
+            Self::SameFile { outputs, members } => same_file(outputs, *members),
+            Self::OverInput { of, path, what } => Report::new("E813", format!("\"{path}\" is {what}, which this would replace"))
+                .at(*of, "written here")
+                .help("give the output another name"),
             Self::CannotWrite { of, path, why } => {
                 Report::new("E808", format!("cannot write \"{path}\": {why}")).at(*of, "to be written here")
             }
             _ => Report::new("E801", "cannot read a file"),
         }
     }
+}
+
+/// Several outputs that are one file.
+fn same_file(outputs: &[(Origin, String)], members: Option<usize>) -> Report {
+    let first = outputs.first().map_or("", |(_, path)| path.as_str());
+    if let Some(members) = members {
+        let message = format!("{members} outputs of this family are one file, \"{first}\"");
+        let place = outputs.first().map_or(Origin::NONE, |(of, _)| *of);
+        return Report::new("E812", message)
+            .at(place, "the same for several members")
+            .help("put what tells them apart into the name, as in \"part_{i}.inp\"");
+    }
+    let other = outputs.iter().map(|(_, path)| path.as_str()).find(|path| *path != first);
+    let message = match other {
+        Some(other) if other.to_lowercase() == first.to_lowercase() => {
+            format!("\"{first}\" and \"{other}\" are one file where capital and small letters are not told apart")
+        }
+        Some(other) => format!("\"{first}\" and \"{other}\" are one file"),
+        None => format!("{} outputs are one file, \"{first}\"", outputs.len()),
+    };
+    let report = Report::new("E812", message).help("give each output a name of its own");
+    let labels = outputs.iter().rev().enumerate();
+    let last = outputs.len().saturating_sub(1);
+    labels.fold(report, |report, (k, (of, _))| report.at(*of, if k == last { "written here first" } else { "would replace it" }))
 }
 
 fn article(name: &str) -> &'static str {

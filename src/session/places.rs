@@ -1,0 +1,52 @@
+//! Where outputs stand: each in a file of its own, and none over a file that the script reads.
+
+use std::path::Path;
+
+use super::disk::{Disk, same_file};
+use crate::base::fault::FileFault;
+use crate::base::origin::Origin;
+use crate::lang::cx::Cx;
+
+/// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a
+/// module or a file that it imports. `script` is the resolved name of the script.
+pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) {
+    let exports = cx.exports().into_iter().map(|spec| (spec.path_origin, spec.path));
+    let pictures = cx.pictures().into_iter().map(|spec| (spec.path_origin, spec.path));
+    let outputs: Vec<(Origin, String)> = exports.chain(pictures).collect();
+    let mut files: Vec<(String, Vec<(Origin, String)>)> = Vec::new();
+    for (of, path) in outputs {
+        // What may not be written at all is told when it is tried.
+        let Some(file) = disk.file_of(&path) else { continue };
+        match files.iter_mut().find(|known| known.0 == file) {
+            Some((_, same)) => same.push((of, path)),
+            None => files.push((file, vec![(of, path)])),
+        }
+    }
+    let (script, read) = (same_file(Path::new(script)), disk.files_read());
+    for (file, same) in files {
+        if let Some((of, path)) = same.first() {
+            let what =
+                if file == script { Some("the script itself") } else { read.contains(&file).then_some("a file that this script reads") };
+            if let Some(what) = what {
+                cx.say(&FileFault::OverInput { of: *of, path: path.clone(), what: what.to_owned() }.into());
+            }
+        }
+        if same.len() > 1 {
+            let fault = several(cx, same);
+            cx.say(&fault.into());
+        }
+    }
+}
+
+/// The fault for outputs that are one file: of a family when one place of the script says all of them.
+fn several(cx: &Cx, same: Vec<(Origin, String)>) -> FileFault {
+    let count = same.len();
+    let mut outputs: Vec<(Origin, String)> = Vec::new();
+    for (of, path) in same {
+        if !outputs.iter().any(|(known, _)| cx.span_of(*known) == cx.span_of(of)) {
+            outputs.push((of, path));
+        }
+    }
+    let members = (outputs.len() == 1).then_some(count);
+    FileFault::SameFile { outputs, members }
+}
