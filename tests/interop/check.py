@@ -11,6 +11,10 @@ import subprocess
 import sys
 import traceback
 
+import jsonschema
+
+import members
+import orders
 import read_back
 import solve
 
@@ -74,6 +78,36 @@ def check_model(tally, loft, work, elements, order):
             tally.check(f"{label} {name} by {reader_label}", reader)
 
 
+def check_orders(tally, loft, work, elements, order):
+    """The model whose elements bend: lengths and areas by the shape functions of other programs."""
+    label = f"curved {elements} {order}"
+    folder = os.path.join(work, label.replace(" ", "_"))
+    settings = ["--set", f"kind={elements}", "--set", f"degree={order}"]
+    report = {}
+    tally.check(f"{label}: run", lambda: report.update(run_loft(loft, os.path.join(HERE, "models", "curved.loft"), folder, *settings)))
+    if not report:
+        return
+    # The foot is meshed with as many steps as the wall has columns.
+    rows = next(group for group in report["meshes"][0]["groups"] if group["name"] == "wall")
+    cells = rows["elements"] if elements == "quads" else rows["elements"] // 2
+    steps = round(cells / round(1 / 0.2))
+    for name, check in orders.checks(folder, int(order), steps):
+        tally.check(f"{label} {name}", check)
+
+
+def check_reports(tally, loft, root):
+    """The report of every example against the schema, by a program that knows all of JSON Schema."""
+    with open(os.path.join(root, "docs", "report.schema.json"), encoding="utf-8") as file:
+        schema = json.load(file)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    models = sorted(glob.glob(os.path.join(root, "examples", "*.loft")))
+    for model in models:
+        done = subprocess.run([loft, "check", model, "--json"], capture_output=True, text=True)
+        tally.check(f"report of {os.path.basename(model)}", lambda: jsonschema.validate(json.loads(done.stdout), schema))
+    done = subprocess.run([loft, "check", *models[:2], "--json"], capture_output=True, text=True)
+    tally.check("report of two models", lambda: jsonschema.validate(json.loads(done.stdout), schema))
+
+
 def main():
     loft, work, decks = (os.path.abspath(path) for path in sys.argv[1:4])
     tally = Tally()
@@ -88,8 +122,10 @@ def main():
     for elements in ["triangles", "quads"]:
         for order in ["1", "2"]:
             check_model(tally, loft, work, elements, order)
-    for case in solve.CASES:
+            check_orders(tally, loft, work, elements, order)
+    for case in solve.CASES + members.CASES:
         tally.check(f"CalculiX: {case.name}", lambda: case.run(lambda *a: run_loft(loft, *a), work))
+    check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
     print(f"{tally.passed} passed, {tally.failed} failed")
     return 1 if tally.failed else 0
 

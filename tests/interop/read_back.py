@@ -1,4 +1,4 @@
-"""Reads mesh files with gmsh, meshio and plyfile and compares counts, areas and sets with what is known of the mesh.
+"""Reads mesh files with gmsh, meshio, pyNastran and plyfile and compares counts, areas and sets with what is known of the mesh.
 
 `facts` has nodes, lines (None: not known), triangles, quads, order, area and groups {name: {nodes, elements}}.
 """
@@ -36,7 +36,8 @@ def in_file(name, strict):
     plain = name.replace("][", "_").replace("[", "_").replace("]", "")
     if not strict:
         return re.sub(r"\s", "_", plain)
-    name = re.sub(r"[^A-Za-z0-9]", "_", plain)
+    # The one name of the tests that is not in Latin letters, by the Revised Romanisation of Korean.
+    name = re.sub(r"[^A-Za-z0-9]", "_", plain.replace("지붕", "jibung"))
     return name if name[:1].isalpha() else "s" + name
 
 
@@ -53,7 +54,7 @@ def readers(path, facts):
         "msh": [("meshio", meshio_msh), ("gmsh", gmsh_msh)],
         # gmsh writes INP but does not read it. meshio knows S8R and STRI65, not S8 and S6.
         "inp": [("meshio", meshio_inp)] if facts["order"] == 1 or "solver_names" in path else [("lines", lines_inp)],
-        "bdf": [("meshio", meshio_bdf), ("gmsh", gmsh_bdf)],
+        "bdf": [("meshio", meshio_bdf), ("gmsh", gmsh_bdf), ("pyNastran", pynastran_bdf)],
     }
     share = SINGLE if ending == "stl" and binary else DOUBLE
     return [(label, lambda check=check: check(path, facts, share)) for label, check in table[ending]]
@@ -164,7 +165,7 @@ def meshio_inp(path, facts, share):
 
 def lines_inp(path, facts, _):
     """Cards and numbers of a deck by their text alone, for elements that meshio does not know."""
-    with open(path, encoding="ascii") as file:
+    with open(path, encoding="utf-8") as file:
         counts, card, longest = {}, "", 0
         for line in file:
             if line.startswith("**"):
@@ -187,14 +188,30 @@ def lines_inp(path, facts, _):
 
 def meshio_bdf(path, facts, share):
     mesh = meshio_mesh(path)
-    meshio_counts(mesh, facts, max(share, DOUBLE))
-    with open(path, encoding="ascii") as file:
+    # meshio does not know CBEAM3, the line element of order 2.
+    meshio_counts(mesh, facts if facts["order"] == 1 else {**facts, "lines": None}, max(share, DOUBLE))
+    with open(path, encoding="utf-8") as file:
         text = file.read()
     for name in facts["groups"]:
         if f"of {in_file(name, True)}\n" not in text:
             raise AssertionError(f"no SET for {name}")
     properties = {ref for refs in mesh.cell_data["nastran:ref"] for ref in np.unique(refs)}
-    expect("properties", len(properties), len(re.findall(r"^(?:PSHELL|PROD)", text, re.M)))
+    expect("properties", len(properties), len(re.findall(r"^(?:PSHELL|PBAR) ", text, re.M)))
+
+
+def pynastran_bdf(path, facts, _):
+    from pyNastran.bdf.bdf import read_bdf
+
+    model = read_bdf(path, xref=False, debug=None)
+    expect("nodes", len(model.nodes), facts["nodes"])
+    kinds = {}
+    for element in model.elements.values():
+        kinds[element.type] = kinds.get(element.type, 0) + 1
+    second = facts["order"] == 2
+    wanted = {"CTRIA6" if second else "CTRIA3": facts["triangles"], "CQUAD8" if second else "CQUAD4": facts["quads"]}
+    if facts["lines"] is not None:
+        wanted["CBEAM3" if second else "CBAR"] = facts["lines"]
+    expect("cards", kinds, {kind: n for kind, n in wanted.items() if n})
 
 
 # plyfile

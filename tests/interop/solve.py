@@ -61,15 +61,16 @@ SHEET = """*INCLUDE, INPUT={deck}
 0.1
 *SHELL SECTION, ELSET=right_1, MATERIAL=steel
 0.1
-*SOLID SECTION, ELSET=rim, MATERIAL=steel
-0.01
+*BEAM SECTION, ELSET=rim, MATERIAL=steel, SECTION=RECT
+0.1, 0.1
+0., 0., 1.
 *BOUNDARY
 rim_lines, 1, 6
 *STEP
 *STATIC
 *DLOAD
 left, P, 1000.
-s___all, P, 10.
+jibung_all, P, 10.
 *NODE PRINT, NSET=corners
 U
 *END STEP
@@ -87,7 +88,7 @@ def calculix(folder):
 
 
 def takes_every_set(deck, work):
-    """The sheet of `cargo test --test io`, with shells, trusses and all its sets in use: two corners held, two moved."""
+    """The sheet of `cargo test --test io`, with shells, beams and all its sets in use: two corners held, two moved."""
     folder = os.path.join(work, "solve_" + os.path.basename(deck).replace(".", "_"))
     os.makedirs(folder, exist_ok=True)
     shutil.copy(deck, os.path.join(folder, "sheet.inp"))
@@ -101,7 +102,7 @@ def takes_every_set(deck, work):
 def node_set(deck, name):
     """Nodes of a set of a deck."""
     nodes, inside = set(), False
-    with open(deck, encoding="ascii") as file:
+    with open(deck, encoding="utf-8") as file:
         for line in file:
             if line.startswith("*"):
                 inside = line.strip().upper() == f"*NSET, NSET={name}".upper()
@@ -112,7 +113,7 @@ def node_set(deck, name):
 
 def element_sets(deck):
     """Sets that the element cards of a deck fill, one per surface."""
-    with open(deck, encoding="ascii") as file:
+    with open(deck, encoding="utf-8") as file:
         cards = [line.strip() for line in file if line.startswith("*ELEMENT")]
     return sorted({card.rsplit("ELSET=", 1)[1] for card in cards if "ELSET=" in card})
 
