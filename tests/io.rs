@@ -10,7 +10,7 @@ use lofting::base::math;
 use lofting::base::origin::Origin;
 use lofting::base::par;
 use lofting::base::triangulate::newell;
-use lofting::io::deck::{Deck, Encoding, FORMATS, Format, Loss, Options, format_for};
+use lofting::io::deck::{Deck, Encoding, FORMATS, Format, Loss, Options, Renamed, format_for};
 use lofting::io::{json, obj_read, stl_read, table};
 use lofting::mesh::{FaceRange, Group, Mesh};
 use proptest::prelude::*;
@@ -109,19 +109,27 @@ fn deck_of_a_solver_word_by_word() {
     let mut mesh = sheet(2, 1, true, 1);
     mesh.nodes[0] = DVec3::new(-0.0, -0.001_234_567_890_123_456_7, 1e-7);
     let (text, losses) = text_of("a.inp", &mesh);
-    let expected = "** sheet: made by loft, lengths in mm\n*NODE\n1, 0, -.001234567890123457, 1e-7\n2, 1, 0, 0.644217687237691\n";
-    assert!(text.starts_with(expected), "{text}");
+    let expected = "*NODE\n1, 0, -.001234567890123457, 1e-7\n2, 1, 0, 0.644217687237691\n";
+    assert!(text.starts_with("** sheet: made by loft, lengths in mm\n") && text.contains(expected), "{text}");
     for part in [
-        "*ELEMENT, TYPE=T3D2, ELSET=rim\n1, 1, 2\n2, 2, 3\n",
+        "** set right_1: right[1]\n** set jibung_all: 지붕 all\n*NODE",
+        "*ELEMENT, TYPE=B31, ELSET=rim\n1, 1, 2\n2, 2, 3\n",
         "*ELEMENT, TYPE=S4, ELSET=left\n3, 1, 2, 5, 4\n*ELEMENT, TYPE=S4, ELSET=right_1\n4, 2, 3, 6, 5\n",
         "*NSET, NSET=left\n1, 2, 4, 5\n",
-        "*ELSET, ELSET=s___all\n3, 4\n",
+        "*ELSET, ELSET=jibung_all\n3, 4\n",
         "*ELSET, ELSET=rim_lines\n1, 2\n*NSET, NSET=rim_lines\n1, 2, 3\n",
         "*NSET, NSET=corners\n1, 3, 4, 6\n",
     ] {
         assert!(text.contains(part), "{part}\n{text}");
     }
-    assert_eq!(losses, [Loss::Renamed("지붕 all".into(), "s___all".into())]);
+    let renamed = |from: &str, to: &str, family| Loss::Renamed(Renamed { from: from.into(), to: to.into(), family });
+    assert_eq!(losses, [renamed("right[1]", "right_1", true), renamed("지붕 all", "jibung_all", false)]);
+    // Of a line of three nodes the middle one stands second, in no other format.
+    let mesh = sheet(2, 1, true, 2);
+    let mid = mesh.line_mids[0] + 1;
+    assert!(text_of("a.inp", &mesh).0.contains(&format!("*ELEMENT, TYPE=B32, ELSET=rim\n1, 1, {mid}, 2\n")));
+    assert!(text_of("a.bdf", &mesh).0.contains(&format!("CBEAM3  1       1       1       2       {mid:<8}0.0     0.0     1.0\n")));
+    assert!(text_of("a.vtu", &mesh).0.contains(&format!("\n0 1 {} \n", mid - 1)));
 }
 
 #[test]
@@ -131,13 +139,13 @@ fn bulk_data_word_by_word() {
         "SOL 101\nCEND\n$ SET 1: elements of left\nSET 1 = 3\n$ SET 2: nodes of left\nSET 2 = 1, 2, 4, 5\n",
         "$ PSHELL 2: left\nPSHELL  2       1\n",
         "GRID*   2                               1.0             0.0             *\n*       .644217687237691\n",
-        "CROD    1       1       1       2\n",
+        "$ PBEAM3 1: rim, to be written with its section\n",
         "CQUAD8  3       2       1       2       5       4       7       9       +\n+       10      11\n",
         "ENDDATA\n",
     ] {
         assert!(text.contains(part), "{part}\n{text}");
     }
-    assert_eq!(losses.len(), 2);
+    assert!(losses.iter().all(|loss| matches!(loss, Loss::Renamed(_))), "{losses:?}");
     let (text, _) = text_of("a.nas", &sheet(30, 20, false, 1));
     assert!(text.contains("SET 1 = 31 THRU 630\n") && text.lines().all(|line| line.len() <= 73));
 }
@@ -149,7 +157,9 @@ fn settings_that_do_not_fit_are_errors() {
         let fault = named(path).check(Origin::NONE, &Deck { mesh: &mesh, unit: "mm", options: &options });
         fault.err().map(|fault| lofting::base::fault::Fault::from(fault).to_string())
     };
-    let element = |name: &str| Options { elements: vec![name.into()], ..Options::default() };
+    let elements =
+        |names: &[&str]| Options { elements: names.iter().map(|name| ((*name).into(), Origin::NONE)).collect(), ..Options::default() };
+    let element = |name: &str| elements(&[name]);
     assert_eq!(check("a.inp", element("s4r")), None);
     assert_eq!(
         check("a.inp", element("S8R")).unwrap(),
@@ -157,6 +167,16 @@ fn settings_that_do_not_fit_are_errors() {
     );
     assert_eq!(check("a.inp", element("HEX")).unwrap(), "INP has no element `HEX`");
     assert_eq!(check("a.stl", element("S4R")).unwrap(), "STL has no element names, got `element: S4R`");
+    assert_eq!(check("a.inp", elements(&["S4R", "T3D2"])), None);
+    assert_eq!(check("a.bdf", elements(&["CQUADR", "CROD"])), None);
+    assert_eq!(
+        check("a.inp", elements(&["S4R", "B31", "S4"])).unwrap(),
+        "`S4R` and `S4` are both for 4-node quads, which can be only one of them"
+    );
+    assert_eq!(check("a.inp", elements(&["S4", "S4"])).unwrap(), "`S4` is named twice in `element:`");
+    let (bytes, _) = write(named("a.inp"), &mesh, &elements(&["T3D2", "S4R"]));
+    let text = String::from_utf8(bytes).unwrap();
+    assert!(text.contains("TYPE=T3D2, ELSET=rim") && text.contains("TYPE=S4R, ELSET=left"), "{text}");
     let binary = Options { encoding: Some(Encoding::Binary), ..Options::default() };
     assert_eq!(check("a.obj", binary).unwrap(), "OBJ has no binary encoding");
     let (bytes, _) = write(named("a.inp"), &mesh, &element("S4R"));
@@ -170,14 +190,28 @@ fn settings_that_do_not_fit_are_errors() {
 #[test]
 fn what_a_format_cannot_hold_is_said() {
     let mesh = sheet(4, 2, true, 2);
+    let declared: Vec<String> = mesh.groups.iter().skip(2).map(|group| group.name.clone()).collect();
     let count = |path: &str, encoding| {
-        let options = Options { encoding: Some(encoding), ..Options::default() };
+        let options = Options { encoding: Some(encoding), groups: declared.clone(), ..Options::default() };
         write(named(path), &mesh, &options).1.iter().filter(|loss| matches!(loss, Loss::LeftOut(_))).count()
     };
     // Mid nodes, line elements, sets; text STL and OBJ keep part of the sets.
     assert_eq!((count("a.stl", Encoding::Binary), count("a.stl", Encoding::Text)), (3, 3));
     assert_eq!((count("a.ply", Encoding::Binary), count("a.obj", Encoding::Text)), (2, 2));
     assert_eq!((count("a.vtu", Encoding::Binary), count("a.msh", Encoding::Text), count("a.inp", Encoding::Text)), (0, 0, 0));
+    // The names of surfaces are lost without a warning.
+    let mut plain = sheet(4, 2, true, 1);
+    plain.groups.truncate(2);
+    plain.lines.clear();
+    for path in ["a.stl", "a.ply"] {
+        let losses = write(named(path), &plain, &Options::default()).1;
+        assert_eq!(losses, [Loss::Unnamed("the names of the sets `left`, `right[1]`".into())], "{path}");
+    }
+    // Nastran's cards of two nodes leave out mid nodes, which is said.
+    let rods = Options { elements: vec![("CROD".into(), Origin::NONE)], ..Options::default() };
+    let (text, losses) = write(named("a.bdf"), &mesh, &rods);
+    assert!(losses.contains(&Loss::LeftOut("the mid nodes of line elements of order 2".into())));
+    assert!(String::from_utf8(text).unwrap().contains("CROD    1       1       1       2\n"));
 }
 
 /// Sum of the areas of triangles and quads, a quad as its two triangles.
@@ -411,4 +445,18 @@ fn survive(bytes: &[u8], header: Option<bool>) {
     }
     let _ = stl_read::read(bytes, "x");
     std::io::sink().flush().unwrap();
+}
+
+/// The guide's table of formats says of each what the format says of itself.
+#[test]
+fn the_guide_lists_what_each_format_holds() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/files.md")).unwrap();
+    for format in FORMATS {
+        let endings: Vec<String> = format.extensions.iter().map(|ending| format!("`.{ending}`")).collect();
+        let word = |encoding: &Encoding| if *encoding == Encoding::Text { "text" } else { "binary" };
+        let others = format.encodings.iter().filter(|other| **other != format.encoding);
+        let encodings: Vec<&str> = std::iter::once(&format.encoding).chain(others).map(word).collect();
+        let row = format!("| {} | meshes | {} | {} |", endings.join(" "), format.holds, encodings.join(", "));
+        assert!(page.contains(&row), "{row}");
+    }
 }

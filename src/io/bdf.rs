@@ -1,9 +1,9 @@
-//! Nastran bulk data: `GRID*` in large fields, `CTRIA3 CQUAD4 CTRIA6 CQUAD8`, line elements as `CROD`, a property per
-//! surface, `SET` cards in the case control for every set.
+//! Nastran bulk data: `GRID*` in large fields, `CTRIA3 CQUAD4 CTRIA6 CQUAD8`, line elements as beams (`CBAR`, of order 2
+//! `CBEAM3`), a property per surface and curve, `SET` cards in the case control for every set.
 //!
 //! A large field has 16 characters, so a number that is longer is rounded to fit. Sets have numbers in Nastran: the
 //! comment above each says its name. Thickness, area and material are not ours: the properties name material 1 and
-//! leave the rest to the analyst.
+//! leave the rest to the analyst; one that may not be left open is a comment with its number.
 
 use std::io::{self, Write};
 
@@ -21,7 +21,10 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Text,
     encodings: &[Encoding::Text],
     elements: &[
+        ("CBAR", Shape::Line2),
+        ("CBEAM", Shape::Line2),
         ("CROD", Shape::Line2),
+        ("CBEAM3", Shape::Line3),
         ("CTRIA3", Shape::Triangle3),
         ("CTRIAR", Shape::Triangle3),
         ("CTRIA6", Shape::Triangle6),
@@ -30,6 +33,7 @@ pub const FORMAT: Format = Format {
         ("CSHEAR", Shape::Quad4),
         ("CQUAD8", Shape::Quad8),
     ],
+    holds: "nodes, elements of order 1 and 2, a property per surface and curve, sets of elements and nodes",
     write,
 };
 
@@ -38,11 +42,29 @@ const LARGEST: usize = 99_999_999;
 /// Longest line of the case control.
 const CASE_LINE: usize = 72;
 
-/// Elements of one surface or curve, with the number of its property.
+/// Cards with the card of their properties, and whether that may leave out what the analyst has to say.
+const PROPERTIES: &[(&str, &str, bool)] =
+    &[("CBAR", "PBAR", true), ("CBEAM", "PBEAM", false), ("CROD", "PROD", false), ("CBEAM3", "PBEAM3", false), ("CSHEAR", "PSHEAR", false)];
+/// The property of all other cards.
+const SHELL: (&str, bool) = ("PSHELL", true);
+/// The direction of z is that of a beam's first plane, unless a part of its curve runs within 15° of it: its cosine.
+const STEEP: f64 = 0.965_925_826_289_068_3;
+
+/// Elements of one surface or curve, with their card and the number of their property.
 struct Section {
     kind: Kind,
+    card: &'static str,
     property: u64,
+    /// Direction in the first plane of the beams, for cards that have one.
+    upright: Option<[f64; 3]>,
     elements: std::ops::Range<usize>,
+}
+
+impl Section {
+    /// Whether mid nodes of lines have no place on its card.
+    fn drops_mids(&self, mesh: &Mesh) -> bool {
+        self.kind == Kind::Line && mesh.order == 2 && self.card != "CBEAM3"
+    }
 }
 
 fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
@@ -51,12 +73,14 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     if mesh.nodes.len().max(elements) > LARGEST {
         return Err(io::Error::other(format!("Nastran numbers nodes and elements up to {LARGEST}")));
     }
-    let mut names = Names::new(Naming::Strict);
+    let mut names = Names::of_mesh(Naming::Strict, mesh);
     let groups: Vec<String> = mesh.groups.iter().map(|group| names.give(&group.name)).collect();
-    writeln!(out, "$ {}: made by loft, lengths in {}\nSOL 101\nCEND", ascii(&mesh.name), deck.unit)?;
+    let properties = properties(deck, &groups, &mut names);
+    let renamed = names.comments("$");
+    writeln!(out, "$ {}: made by loft, lengths in {}\n{renamed}SOL 101\nCEND", ascii(&mesh.name), deck.unit)?;
     write_sets(mesh, &groups, out)?;
     writeln!(out, "BEGIN BULK")?;
-    let sections = write_properties(mesh, &groups, &mut names, out)?;
+    let sections = write_properties(deck, &properties, out)?;
     write_records(out, mesh.nodes.len(), |i, text| {
         let [x, y, z] = deck.node(i);
         text.extend_from_slice(b"GRID*   ");
@@ -67,54 +91,104 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
         push_field(text, z, Field::Nastran(16));
         text.push(b'\n');
     })?;
-    let shapes = Shape::of_order(mesh.order);
     for section in &sections {
-        let shape = if section.kind == Kind::Line { Shape::Line2 } else { shapes[section.kind as usize] };
-        let card = FORMAT.element_name(deck.options, shape);
         let first = section.kind.first_number(mesh);
         write_records(out, section.elements.len(), |i, text| {
             let element = section.elements.start + i;
-            push_card(mesh, card, section, (element, first + element as u64), text);
+            push_card(mesh, section, (element, first + element as u64), text);
         })?;
     }
     writeln!(out, "ENDDATA")?;
     let mut losses = names.losses;
-    if !mesh.line_mids.is_empty() {
+    if sections.iter().any(|section| section.drops_mids(mesh)) {
         losses.push(Loss::LeftOut("the mid nodes of line elements of order 2".to_owned()));
     }
     Ok(losses)
 }
 
-/// One property per surface and curve, in order of their elements.
-fn write_properties(mesh: &Mesh, groups: &[String], names: &mut Names, out: &mut dyn Write) -> io::Result<Vec<Section>> {
-    let mut properties: Vec<(Option<String>, bool)> = Vec::new();
+/// The card of a kind's elements.
+fn card(deck: &Deck, kind: Kind) -> &'static str {
+    FORMAT.element_name(deck.options, Shape::of_order(deck.mesh.order)[kind as usize])
+}
+
+/// The property card of an element card, and whether it may stay open.
+fn property_of(card: &str) -> (&'static str, bool) {
+    PROPERTIES.iter().find(|known| known.0 == card).map_or(SHELL, |known| (known.1, known.2))
+}
+
+/// A property: of which surface or curve, its card, and its name in the file.
+struct Property {
+    of: Option<String>,
+    card: &'static str,
+    name: String,
+}
+
+/// One property per surface and curve and kind of card, in order of their elements.
+fn properties(deck: &Deck, groups: &[String], names: &mut Names) -> Vec<Property> {
+    let mesh = deck.mesh;
+    let mut properties: Vec<Property> = Vec::new();
+    for kind in KINDS {
+        let (card, _) = property_of(card(deck, kind));
+        for run in runs(mesh, kind) {
+            if properties.iter().any(|known| known.card == card && known.of == run.name) {
+                continue;
+            }
+            let known = properties.iter().find(|known| known.of == run.name).map(|known| known.name.clone());
+            let name = known.unwrap_or_else(|| match &run.name {
+                None => "elements of no surface".to_owned(),
+                Some(name) => match mesh.groups.iter().position(|group| group.name == *name) {
+                    Some(g) => groups[g].clone(),
+                    None => names.give(name),
+                },
+            });
+            properties.push(Property { of: run.name, card, name });
+        }
+    }
+    properties
+}
+
+/// Writes the properties; gives what elements go by each.
+fn write_properties(deck: &Deck, properties: &[Property], out: &mut dyn Write) -> io::Result<Vec<Section>> {
+    for (k, Property { card, name, .. }) in properties.iter().enumerate() {
+        let number = k + 1;
+        match PROPERTIES.iter().any(|known| known.1 == *card && !known.2) {
+            true => writeln!(out, "$ {card} {number}: {name}, to be written with its section")?,
+            false => writeln!(out, "$ {card} {number}: {name}\n{card:8}{number:<8}1")?,
+        }
+    }
     let mut sections = Vec::new();
     for kind in KINDS {
-        for run in runs(mesh, kind) {
-            let key = (run.name, kind == Kind::Line);
-            let place = properties.iter().position(|known| *known == key).unwrap_or(properties.len());
-            if place == properties.len() {
-                let name = match &key.0 {
-                    None => "elements of no surface".to_owned(),
-                    Some(name) => match mesh.groups.iter().position(|group| group.name == *name) {
-                        Some(g) => groups[g].clone(),
-                        None => names.give(name),
-                    },
-                };
-                let card = if key.1 { "PROD" } else { "PSHELL" };
-                writeln!(out, "$ {card} {}: {name}\n{card:8}{:<8}1", place + 1, place + 1)?;
-                properties.push(key);
-            }
-            sections.push(Section { kind, property: place as u64 + 1, elements: run.elements });
+        let card = card(deck, kind);
+        for run in runs(deck.mesh, kind) {
+            let of = properties.iter().position(|known| known.card == property_of(card).0 && known.of == run.name);
+            let upright = matches!(card, "CBAR" | "CBEAM" | "CBEAM3").then(|| upright(deck, run.elements.clone()));
+            sections.push(Section { kind, card, property: of.unwrap_or(0) as u64 + 1, upright, elements: run.elements });
         }
     }
     Ok(sections)
 }
 
+/// The axis that beams along a curve take for their first plane: z, and where a part of them runs along it, the axis that
+/// all of them stand furthest from.
+fn upright(deck: &Deck, lines: std::ops::Range<usize>) -> [f64; 3] {
+    let mesh = deck.mesh;
+    let mut along = [0.0_f64; 3];
+    for [a, b] in &mesh.lines[lines] {
+        let run = (mesh.nodes[*b as usize] - mesh.nodes[*a as usize]).normalize_or_zero().abs().to_array();
+        along.iter_mut().zip(run).for_each(|(most, share)| *most = most.max(share));
+    }
+    let mut best = 2;
+    if along[2] > STEEP {
+        best = if along[1] <= along[0] { 1 } else { 0 };
+        best = if along[2] < along[best] { 2 } else { best };
+    }
+    std::array::from_fn(|axis| if axis == best { 1.0 } else { 0.0 })
+}
+
 /// An element: eight fields on a line, the rest on a continuation.
-fn push_card(mesh: &Mesh, card: &str, section: &Section, (element, number): (usize, u64), text: &mut Vec<u8>) {
-    text.extend_from_slice(card.as_bytes());
-    text.resize(text.len() + 8 - card.len(), b' ');
+fn push_card(mesh: &Mesh, section: &Section, (element, number): (usize, u64), text: &mut Vec<u8>) {
+    text.extend_from_slice(section.card.as_bytes());
+    text.resize(text.len() + 8 - section.card.len(), b' ');
     push_count_padded(text, number, 8);
     push_count_padded(text, section.property, 8);
     let mut field = 2;
@@ -126,8 +200,11 @@ fn push_card(mesh: &Mesh, card: &str, section: &Section, (element, number): (usi
         field += 1;
     };
     match section.kind {
-        Kind::Line => mesh.lines[element].iter().for_each(|node| push(*node)),
+        Kind::Line if section.drops_mids(mesh) => mesh.lines[element].iter().for_each(|node| push(*node)),
         kind => kind.nodes(mesh, element, &mut push),
+    }
+    for x in section.upright.into_iter().flatten() {
+        text.extend_from_slice(if x == 0.0 { b"0.0     " } else { b"1.0     " });
     }
     while text.last() == Some(&b' ') {
         text.pop();

@@ -4,7 +4,8 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 
-use super::deck::{Loss, extension, no_format};
+use super::deck::Loss;
+use super::endings::{Sort, ending_for};
 use super::sets::{Names, Naming};
 use crate::base::bbox::Box3;
 use crate::base::fault::FileFault;
@@ -46,11 +47,10 @@ pub const CURVE_FORMATS: &[CurveFormat] = &[
     CurveFormat { name: "obj", write: write_obj },
 ];
 
-/// The format for curves that a path's ending chooses, or E804 (E230 for one of a later version).
+/// The format for curves that a path's ending chooses; E804 or E805 where it chooses none, E230 for one of a later version.
 pub fn curve_format_for(of: Origin, path: &str) -> Result<&'static CurveFormat, FileFault> {
-    let ending = extension(path);
-    let known = || CURVE_FORMATS.iter().map(|format| format.name).collect();
-    CURVE_FORMATS.iter().find(|format| format.name == ending).ok_or_else(|| no_format(of, path, known()))
+    let ending = ending_for(of, path, Sort::Curves)?;
+    CURVE_FORMATS.iter().find(|format| format.name == ending).ok_or_else(|| super::endings::misfit(of, path, Sort::Curves))
 }
 
 /// One line per point: `curve,x [mm],y [mm],z [mm]`; a closed curve ends where it began.
@@ -175,17 +175,19 @@ mod tests {
         assert_eq!(csv, "curve,x [mm],y [mm],z [mm]\nribs[1],0,0,0\nribs[1],2,0,0\nribs[1],2,1.5,0\nribs[1],0,0,0\n");
         let (obj, losses) = written("obj", 0.25);
         assert_eq!(obj, "# made by loft, lengths in mm\no ribs_1\nv 0 0 0\nv 2 0 0\nv 2 1.5 0.25\nl 1 2 3 1\n");
-        assert!(losses.is_empty());
+        let family = |losses: &[Loss]| matches!(losses, [Loss::Renamed(renamed)] if renamed.family);
+        assert!(family(&losses));
         let (svg, losses) = written("svg", 0.0);
-        assert!(losses.is_empty());
+        assert!(family(&losses));
         let path = "<path id=\"ribs_1\" d=\"M0 0 L2 0 L2 -1.5 Z\"";
         assert!(svg.contains(path) && svg.contains("width=\"2.05mm\" height=\"1.55mm\" viewBox=\"-0.025 -1.525 2.05 1.55\""), "{svg}");
-        assert_eq!(written("svg", 1.0).1.len(), 1);
+        assert_eq!(written("svg", 1.0).1.len(), 2);
     }
 
     #[test]
     fn other_endings_say_what_there_is() {
         assert!(matches!(curve_format_for(Origin::NONE, "a.stp"), Err(FileFault::LaterFormat { format: "STEP", .. })));
-        assert!(matches!(curve_format_for(Origin::NONE, "a.png"), Err(FileFault::NoSuchFormat { .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.xyz"), Err(FileFault::NoSuchFormat { .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.inp"), Err(FileFault::Unsupported { .. })));
     }
 }

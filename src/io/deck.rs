@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::endings::{Sort, ending_for, misfit};
 use super::{bdf, inp, msh, obj, ply, stl, vtu};
 use crate::base::fault::{Edit, FileFault};
 use crate::base::origin::Origin;
@@ -21,8 +22,12 @@ pub enum Encoding {
 pub struct Options {
     /// `None`: the format's default.
     pub encoding: Option<Encoding>,
-    /// Element names of a deck (`S4R`, or `[S3R, S4R]`); each replaces the default of the shape it has.
-    pub elements: Vec<String>,
+    /// Element names of a deck (`S4R`, or `[S3R, S4R, B31]`) with the places that say them; each replaces the default of the shape it
+    /// is for.
+    pub elements: Vec<(String, Origin)>,
+    /// Names of the groups that the script declares. A format without names loses these by a warning, while the sets that every
+    /// mesh has by itself, one per surface and shell, are a word for those who ask.
+    pub groups: Vec<String>,
     /// Model units in one unit of the file; `None` when the file is in model units.
     pub units_per_file_unit: Option<f64>,
 }
@@ -53,23 +58,44 @@ impl Deck<'_> {
     }
 }
 
-/// What a format could not hold; becomes a warning at the `export`.
+/// What a format could not hold as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Loss {
-    /// Something was left out: what, in words.
+    /// Something was left out that was asked for: what, in words. A warning.
     LeftOut(String),
-    /// A set was renamed: from, to.
-    Renamed(String, String),
+    /// Names that every mesh has are not in the file: which, in words. Told when asked.
+    Unnamed(String),
+    /// A set has another name in the file.
+    Renamed(Renamed),
+}
+
+/// A name that stands otherwise in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Renamed {
+    /// Name in the model.
+    pub from: String,
+    /// Name in the file.
+    pub to: String,
+    /// Only the brackets of a family went, as in `ribs[3]`, `ribs_3`: this is so in every format and no warning.
+    pub family: bool,
 }
 
 impl Loss {
-    /// The warning for the export `of` to `path` (as written).
-    pub fn fault(self, of: Origin, path: &str) -> FileFault {
-        let path = path.to_owned();
-        match self {
-            Self::LeftOut(what) => FileFault::LeftOut { of, path, what },
-            Self::Renamed(from, to) => FileFault::Renamed { of, path, from, to },
+    /// The warnings for the export `of` to `path` (as written): one for each thing left out, one for all new names.
+    pub fn faults(losses: &[Self], of: Origin, path: &str) -> Vec<FileFault> {
+        let mut faults = Vec::new();
+        let mut names = Vec::new();
+        for loss in losses {
+            match loss {
+                Self::LeftOut(what) => faults.push(FileFault::LeftOut { of, path: path.to_owned(), what: what.clone() }),
+                Self::Renamed(renamed) if !renamed.family => names.push((renamed.from.clone(), renamed.to.clone())),
+                Self::Renamed(_) | Self::Unnamed(_) => {}
+            }
         }
+        if !names.is_empty() {
+            faults.push(FileFault::Renamed { of, path: path.to_owned(), names });
+        }
+        faults
     }
 }
 
@@ -121,6 +147,8 @@ pub struct Format {
     pub encodings: &'static [Encoding],
     /// Element names of a deck with their shapes, the default of each shape first; empty where `element:` means nothing.
     pub elements: &'static [(&'static str, Shape)],
+    /// What of a mesh is kept in the file, in a few words: for the guide.
+    pub holds: &'static str,
     /// Writes a deck.
     pub write: fn(&Deck, &mut dyn Write) -> io::Result<Vec<Loss>>,
 }
@@ -153,31 +181,16 @@ pub const ELEMENT_NAMES: [&str; element_count()] = {
     names
 };
 
-/// Formats of a later version, by ending.
-const LATER: &[(&str, &str)] = &[("glb", "glTF"), ("gltf", "glTF"), ("stp", "STEP"), ("step", "STEP"), ("html", "HTML")];
-
 /// The ending of a path in lower case, without its dot.
 pub fn extension(path: &str) -> String {
     let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
     name.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default()
 }
 
-/// The mesh format that a path's ending chooses, or E804 (E230 for one of a later version).
+/// The mesh format that a path's ending chooses; E804 or E805 where it chooses none, E230 for one of a later version.
 pub fn format_for(of: Origin, path: &str) -> Result<&'static Format, FileFault> {
-    let ending = extension(path);
-    FORMATS
-        .iter()
-        .find(|format| format.extensions.contains(&ending.as_str()))
-        .ok_or_else(|| no_format(of, path, FORMATS.iter().flat_map(|format| format.extensions.iter().copied()).collect()))
-}
-
-/// The fault for an ending that is none of `known`.
-pub fn no_format(of: Origin, path: &str, known: Vec<&'static str>) -> FileFault {
-    let ending = extension(path);
-    match LATER.iter().find(|(name, _)| *name == ending) {
-        Some((_, format)) => FileFault::LaterFormat { of, format },
-        None => FileFault::NoSuchFormat { of, path: path.to_owned(), known },
-    }
+    let ending = ending_for(of, path, Sort::Meshes)?;
+    FORMATS.iter().find(|format| format.extensions.contains(&ending.as_str())).ok_or_else(|| misfit(of, path, Sort::Meshes))
 }
 
 impl Format {
@@ -198,42 +211,73 @@ impl Format {
                 edits: vec![Edit::Set("encoding", has.to_owned())],
             });
         }
-        deck.options.elements.iter().try_for_each(|name| self.element_shape(of, deck, name))
+        if self.name == "stl" && deck.mesh.triangles.is_empty() && deck.mesh.quads.is_empty() && !deck.mesh.nodes.is_empty() {
+            let what = format!("STL holds triangles, and `{}` has none", deck.mesh.name);
+            let help = Some("write its lines as .obj, .vtu or .msh".to_owned());
+            return Err(FileFault::Unsupported { of, what, help, edits: Vec::new() });
+        }
+        let mut taken: Vec<(Shape, &str)> = Vec::new();
+        for (name, of) in &deck.options.elements {
+            let shape = self.element_shape(*of, deck, name)?;
+            if let Some((_, other)) = taken.iter().find(|(known, _)| *known == shape) {
+                let what = match other.eq_ignore_ascii_case(name) {
+                    true => format!("`{name}` is named twice in `element:`"),
+                    false => format!("`{other}` and `{name}` are both for {}, which can be only one of them", shape.words()),
+                };
+                let help = Some(format!("remove `{other}` or `{name}`"));
+                return Err(FileFault::Unsupported { of: *of, what, help, edits: Vec::new() });
+            }
+            taken.push((shape, name));
+        }
+        Ok(())
     }
 
-    /// Checks one `element:`: known to the format, and of a shape that the mesh has.
-    fn element_shape(&self, of: Origin, deck: &Deck, name: &str) -> Result<(), FileFault> {
+    /// Shapes that a mesh has.
+    fn present(mesh: &Mesh) -> Vec<Shape> {
+        let counts = [mesh.lines.len(), mesh.triangles.len(), mesh.quads.len()];
+        Shape::of_order(mesh.order).into_iter().zip(counts).filter(|(_, n)| *n > 0).map(|(shape, _)| shape).collect()
+    }
+
+    /// Whether elements of a name's shape may stand for those of another.
+    fn stands_for(&self, named: Shape, meshed: Shape) -> bool {
+        named == meshed || self.name == "bdf" && (named, meshed) == (Shape::Line2, Shape::Line3)
+    }
+
+    /// The shape of the mesh that one name of `element:` is for; E805 for a name that the format does not know or the mesh has
+    /// no elements for.
+    fn element_shape(&self, of: Origin, deck: &Deck, name: &str) -> Result<Shape, FileFault> {
         if self.elements.is_empty() {
             let what = format!("{} has no element names, got `element: {name}`", self.name.to_uppercase());
-            return Err(FileFault::Unsupported { of, what, help: None, edits: Vec::new() });
+            let help = Some("remove `element:`".to_owned());
+            return Err(FileFault::Unsupported { of, what, help, edits: vec![Edit::DropSetting] });
         }
-        let shapes = Shape::of_order(deck.mesh.order);
-        let counts = [deck.mesh.lines.len(), deck.mesh.triangles.len(), deck.mesh.quads.len()];
-        let present: Vec<Shape> = shapes.iter().zip(counts).filter(|(_, n)| *n > 0).map(|(shape, _)| *shape).collect();
-        let fitting = |shape: Option<Shape>| {
-            let names = self.elements.iter().filter(|(_, s)| shape.map_or(present.contains(s), |one| *s == one)).map(|(n, _)| *n);
-            let names: Vec<&str> = names.collect();
-            let edits = names.iter().map(|name| Edit::Set("element", (*name).to_owned())).collect();
+        let present = Self::present(deck.mesh);
+        let fitting = || {
+            let fits = |shape: &Shape| present.iter().any(|meshed| self.stands_for(*shape, *meshed));
+            let names: Vec<&str> = self.elements.iter().filter(|(_, shape)| fits(shape)).map(|(name, _)| *name).collect();
+            let edits = names.iter().map(|name| Edit::Put((*name).to_owned())).collect();
             (Some(format!("use one of {}", names.join(" "))), edits)
         };
         let Some((_, shape)) = self.elements.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) else {
             let what = format!("{} has no element `{name}`", self.name.to_uppercase());
-            let (help, edits) = fitting(None);
+            let (help, edits) = fitting();
             return Err(FileFault::Unsupported { of, what, help, edits });
         };
-        if present.contains(shape) {
-            return Ok(());
+        if let Some(meshed) = present.iter().find(|meshed| self.stands_for(*shape, **meshed)) {
+            return Ok(*meshed);
         }
         let has = present.iter().map(|shape| shape.words()).collect::<Vec<_>>().join(" and ");
+        let has = if has.is_empty() { "no elements".to_owned() } else { has };
         let what = format!("`element: {name}` is for {}, but `{}` has {has}", shape.words(), deck.mesh.name);
-        let (help, edits) = fitting(None);
+        let (help, edits) = fitting();
         Err(FileFault::Unsupported { of, what, help, edits })
     }
 
     /// The name for elements of a shape: the one asked for, else the default.
     pub fn element_name(&self, options: &Options, shape: Shape) -> &'static str {
-        let of_shape = || self.elements.iter().filter(|(_, s)| *s == shape).map(|(name, _)| *name);
-        let asked = of_shape().find(|name| options.elements.iter().any(|asked| asked.eq_ignore_ascii_case(name)));
-        asked.or_else(|| of_shape().next()).unwrap_or("")
+        let asked =
+            options.elements.iter().filter_map(|(asked, _)| self.elements.iter().find(|(name, _)| asked.eq_ignore_ascii_case(name)));
+        let asked = asked.filter(|(_, named)| self.stands_for(*named, shape)).map(|(name, _)| *name).next();
+        asked.or_else(|| self.elements.iter().find(|(_, s)| *s == shape).map(|(name, _)| *name)).unwrap_or("")
     }
 }

@@ -1,15 +1,17 @@
 //! Abaqus and CalculiX input: nodes, elements with a set per surface, node and element sets per group.
 //!
-//! Both solvers read at most 20 characters of a number, so one that is longer is rounded to fit. Line elements are
-//! trusses (`T3D2`, `T3D3`) unless `element: B31` or another name is asked for. Materials, sections, supports and steps
-//! are not ours: include the file from a deck that has them.
+//! Both solvers read at most 20 characters of a number, so one that is longer is rounded to fit. Line elements are beams
+//! (`B31`, `B32`) unless `element: T3D2` or another name is asked for: a frame of trusses between rigid joints is a
+//! mechanism. Of a line of three nodes the middle one stands second. Materials, sections, supports and steps are not
+//! ours: include the file from a deck that has them.
 
 use std::io::{self, Write};
 
 use super::blocks::write_records;
 use super::deck::{Deck, Encoding, Format, Loss, Shape};
-use super::sets::{KINDS, Names, Naming, element_numbers, runs};
+use super::sets::{KINDS, Kind, Names, Naming, element_numbers, runs};
 use crate::base::text::{Field, push_count, push_field};
+use crate::mesh::Mesh;
 
 /// Text only.
 pub const FORMAT: Format = Format {
@@ -18,12 +20,13 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Text,
     encodings: &[Encoding::Text],
     elements: &[
-        ("T3D2", Shape::Line2),
         ("B31", Shape::Line2),
+        ("B31R", Shape::Line2),
         ("B33", Shape::Line2),
-        ("T3D3", Shape::Line3),
+        ("T3D2", Shape::Line2),
         ("B32", Shape::Line3),
         ("B32R", Shape::Line3),
+        ("T3D3", Shape::Line3),
         ("S3", Shape::Triangle3),
         ("S3R", Shape::Triangle3),
         ("S3RS", Shape::Triangle3),
@@ -68,6 +71,7 @@ pub const FORMAT: Format = Format {
         ("CAX8R", Shape::Quad8),
         ("DS8", Shape::Quad8),
     ],
+    holds: "nodes, elements of order 1 and 2, a set per surface, shell and group",
     write,
 };
 
@@ -78,7 +82,7 @@ const ON_A_LINE: usize = 10;
 
 fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let mesh = deck.mesh;
-    let mut names = Names::new(Naming::Strict);
+    let mut names = Names::of_mesh(Naming::Strict, mesh);
     let groups: Vec<String> = mesh.groups.iter().map(|group| names.give(&group.name)).collect();
     let mut own: Vec<(String, String)> = Vec::new();
     for face in &mesh.faces {
@@ -88,7 +92,8 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
         }
     }
 
-    writeln!(out, "** {}: made by loft, lengths in {}\n*NODE", ascii(&mesh.name), deck.unit)?;
+    let renamed = names.comments("**");
+    writeln!(out, "** {}: made by loft, lengths in {}\n{renamed}*NODE", ascii(&mesh.name), deck.unit)?;
     write_records(out, mesh.nodes.len(), |i, text| {
         push_count(text, i as u64 + 1);
         for x in deck.node(i) {
@@ -107,7 +112,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
             let first = kind.first_number(mesh) + run.elements.start as u64;
             write_records(out, run.elements.len(), |i, text| {
                 push_count(text, first + i as u64);
-                kind.nodes(mesh, run.elements.start + i, |node| {
+                nodes(kind, mesh, run.elements.start + i, |node| {
                     text.extend_from_slice(b", ");
                     push_count(text, u64::from(node) + 1);
                 });
@@ -125,6 +130,17 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
         }
     }
     Ok(names.losses)
+}
+
+/// Nodes of an element in the order of the solvers: corners and then mid nodes, but of a line end, middle, end.
+fn nodes(kind: Kind, mesh: &Mesh, index: usize, mut each: impl FnMut(u32)) {
+    match (kind, mesh.line_mids.get(index)) {
+        (Kind::Line, Some(mid)) => {
+            let [start, end] = mesh.lines[index];
+            [start, *mid, end].into_iter().for_each(each);
+        }
+        _ => kind.nodes(mesh, index, &mut each),
+    }
 }
 
 fn write_set(out: &mut dyn Write, head: &str, numbers: &[u64]) -> io::Result<()> {

@@ -20,6 +20,7 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Text,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    holds: "nodes, elements of order 1 and 2, a physical group per surface, shell and group",
     write,
 };
 

@@ -4,13 +4,20 @@ use std::io::{self, Write};
 
 use super::blocks::write_records;
 use super::deck::{Deck, Encoding, Format, Loss};
-use super::sets::{KINDS, Kind, Naming, Part, left_out, listed, parts, sets};
+use super::sets::{KINDS, Kind, Naming, Part, left_out, names_lost, parts, sets};
 use crate::base::text::{push_count, push_real};
 use crate::mesh::Mesh;
 
 /// Text only.
-pub const FORMAT: Format =
-    Format { name: "obj", extensions: &["obj"], encoding: Encoding::Text, encodings: &[Encoding::Text], elements: &[], write };
+pub const FORMAT: Format = Format {
+    name: "obj",
+    extensions: &["obj"],
+    encoding: Encoding::Text,
+    encodings: &[Encoding::Text],
+    elements: &[],
+    holds: "nodes, polygons, lines and points of order 1, a group per surface, shell and group of elements",
+    write,
+};
 
 fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let mesh = deck.mesh;
@@ -29,12 +36,6 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let all: Vec<Part> = KINDS.iter().flat_map(|kind| parts(mesh, *kind)).collect();
     for part in &all {
         let mut names: Vec<&str> = part.sets.iter().map(|s| sets[*s].name.as_str()).collect();
-        let face = part.face.map(|f| mesh.faces[f].name.as_str());
-        if let Some(own) = face
-            && !part.sets.iter().any(|s| sets[*s].group.name == own)
-        {
-            names.insert(0, own);
-        }
         if names.is_empty() {
             names.push("default");
         }
@@ -49,12 +50,8 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
             text.push(b'\n');
         })?;
     }
-    losses.extend(left_out(mesh, false, false));
-    let nodes_only = sets.iter().filter(|set| set.group.dimension() == 0).map(|set| set.group.name.as_str());
-    let nodes_only: Vec<&str> = nodes_only.collect();
-    if !nodes_only.is_empty() {
-        losses.push(Loss::LeftOut(format!("the node sets {}", listed(nodes_only))));
-    }
+    losses.extend(left_out(mesh, false));
+    losses.extend(names_lost(mesh, deck.options, "the node sets", |group| group.dimension() == 0));
     Ok(losses)
 }
 

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::blocks::{write_fixed, write_records};
 use super::deck::{Deck, Encoding, Format, Loss};
 use super::obj::corner_count;
-use super::sets::left_out;
+use super::sets::{left_out, names_lost};
 use crate::base::text::{push_count, push_real};
 
 /// Binary (little endian) by default.
@@ -15,6 +15,7 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Binary,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    holds: "nodes, triangles, quads and lines of order 1",
     write,
 };
 
@@ -38,7 +39,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     } else {
         write_binary(deck, corners, out)?;
     }
-    Ok(left_out(mesh, true, false))
+    Ok(left_out(mesh, false).into_iter().chain(names_lost(mesh, deck.options, "the sets", |_| true)).collect())
 }
 
 fn write_text(deck: &Deck, corners: usize, out: &mut dyn Write) -> io::Result<()> {

@@ -1,9 +1,11 @@
 //! Sets of a mesh as a file names them, and who belongs to which.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::deck::Loss;
+use super::deck::{Loss, Options, Renamed};
+use super::romanize::in_ascii;
 use crate::mesh::{FaceRange, Group, Mesh};
 
 /// Which names a format takes.
@@ -11,7 +13,7 @@ use crate::mesh::{FaceRange, Group, Mesh};
 pub enum Naming {
     /// Any text without blanks and quotes.
     Free,
-    /// ASCII letters, digits and `_`, a letter first, at most 80, case ignored (INP, BDF).
+    /// ASCII letters, digits and `_`, a letter first, at most 80, case ignored (INP, BDF); other scripts in Latin letters.
     Strict,
 }
 
@@ -20,23 +22,61 @@ pub struct Set<'a> {
     /// Name in the file, unique there.
     pub name: String,
     /// What it holds.
-    pub group: &'a Group,
+    pub group: Cow<'a, Group>,
 }
 
 /// Longest name of a strict format.
 const LONGEST: usize = 80;
 
-/// All sets of a mesh in order, with unique names, and each renaming that the model's author should hear of.
+/// All sets of a mesh in order, then one for each range that has none (the line elements of a curve), with unique names and
+/// each renaming that the model's author should hear of.
 pub fn sets(mesh: &Mesh, naming: Naming) -> (Vec<Set<'_>>, Vec<Loss>) {
-    let mut names = Names::new(naming);
-    let sets = mesh.groups.iter().map(|group| Set { name: names.give(&group.name), group }).collect();
+    let mut names = Names::of_mesh(naming, mesh);
+    let mut sets: Vec<Set> = mesh.groups.iter().map(|group| Set { name: names.give(&group.name), group: Cow::Borrowed(group) }).collect();
+    for name in own_names(mesh) {
+        let group = of_ranges(mesh, name);
+        sets.push(Set { name: names.give(name), group: Cow::Owned(group) });
+    }
     (sets, names.losses)
+}
+
+/// Names of ranges that no group has, in order.
+fn own_names(mesh: &Mesh) -> Vec<&str> {
+    let mut own: Vec<&str> = Vec::new();
+    for face in &mesh.faces {
+        if !own.contains(&face.name.as_str()) && !mesh.groups.iter().any(|group| group.name == face.name) {
+            own.push(&face.name);
+        }
+    }
+    own
+}
+
+/// The set of the ranges of a name.
+fn of_ranges(mesh: &Mesh, name: &str) -> Group {
+    let mut group = Group { name: name.to_owned(), ..Group::default() };
+    let mut nodes = BTreeSet::new();
+    for face in mesh.faces.iter().filter(|face| face.name == name) {
+        group.lines.extend(face.lines.clone());
+        group.triangles.extend(face.triangles.clone());
+        group.quads.extend(face.quads.clone());
+    }
+    for kind in KINDS {
+        for element in kind.of_group(&group) {
+            kind.nodes(mesh, *element as usize, |node| {
+                nodes.insert(node);
+            });
+        }
+    }
+    group.nodes = nodes.into_iter().collect();
+    group
 }
 
 /// Gives each name of the model one name in the file.
 pub struct Names {
     naming: Naming,
     taken: BTreeSet<String>,
+    /// Names that need no change, by what tells them apart in the file: no other name gets one of these.
+    kept: BTreeMap<String, String>,
     /// Renamings so far.
     pub losses: Vec<Loss>,
 }
@@ -44,33 +84,65 @@ pub struct Names {
 impl Names {
     /// No names yet.
     pub fn new(naming: Naming) -> Self {
-        Self { naming, taken: BTreeSet::new(), losses: Vec::new() }
+        Self { naming, taken: BTreeSet::new(), kept: BTreeMap::new(), losses: Vec::new() }
     }
 
-    /// A unique name in the file; `ribs[3]` becomes `ribs_3` everywhere and is not reported.
-    pub fn give(&mut self, name: &str) -> String {
+    /// Names that will be given for the sets and ranges of a mesh: those that the file can have as they are stay so.
+    pub fn of_mesh(naming: Naming, mesh: &Mesh) -> Self {
+        let mut names = Self::new(naming);
+        for name in mesh.groups.iter().map(|group| &group.name).chain(mesh.faces.iter().map(|face| &face.name)) {
+            if names.wanted(name) == *name {
+                names.kept.entry(names.key(name)).or_insert_with(|| name.clone());
+            }
+        }
+        names
+    }
+
+    /// The name as the file could have it, whatever others there are.
+    fn wanted(&self, name: &str) -> String {
         let plain = plain(name);
         let mut wanted: String = match self.naming {
             Naming::Free => plain.chars().map(|c| if c.is_whitespace() || c.is_control() || c == '"' { '_' } else { c }).collect(),
-            Naming::Strict => plain.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).take(LONGEST).collect(),
+            Naming::Strict => in_ascii(&plain).chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).take(LONGEST).collect(),
         };
         if wanted.is_empty() || (self.naming == Naming::Strict && !wanted.starts_with(|c: char| c.is_ascii_alphabetic())) {
             wanted.insert(0, 's');
             wanted = wanted.chars().take(LONGEST).collect();
         }
+        wanted
+    }
+
+    /// Whether a name of the file is left for this name of the model.
+    fn is_free(&self, given: &str, name: &str) -> bool {
+        let key = self.key(given);
+        !self.taken.contains(&key) && self.kept.get(&key).is_none_or(|owner| owner == name)
+    }
+
+    /// A unique name in the file; `ribs[3]` becomes `ribs_3` everywhere.
+    pub fn give(&mut self, name: &str) -> String {
+        let (plain, wanted) = (plain(name), self.wanted(name));
         let mut given = wanted.clone();
         let mut k = 2;
-        while self.taken.contains(&self.key(&given)) {
+        while !self.is_free(&given, name) {
             let suffix = format!("_{k}");
             let room = if self.naming == Naming::Strict { LONGEST - suffix.len() } else { usize::MAX };
             given = wanted.chars().take(room).chain(suffix.chars()).collect();
             k += 1;
         }
         self.taken.insert(self.key(&given));
-        if given != plain {
-            self.losses.push(Loss::Renamed(name.to_owned(), given.clone()));
+        if given != name {
+            self.losses.push(Loss::Renamed(Renamed { from: name.to_owned(), to: given.clone(), family: given == plain }));
         }
         given
+    }
+
+    /// Lines for a comment of the file, each behind `mark`: which sets have other names in the model.
+    pub fn comments(&self, mark: &str) -> String {
+        let renamed = |loss: &Loss| match loss {
+            Loss::Renamed(renamed) => Some(format!("{mark} set {}: {}\n", renamed.to, in_comment(&renamed.from))),
+            _ => None,
+        };
+        self.losses.iter().filter_map(renamed).collect()
     }
 
     fn key(&self, name: &str) -> String {
@@ -83,13 +155,22 @@ fn plain(name: &str) -> String {
     name.replace("][", "_").replace('[', "_").replace(']', "")
 }
 
+/// A name of the model in a comment: whole but for what would end the line, and cut where it is very long.
+fn in_comment(name: &str) -> String {
+    let one_line: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if one_line.chars().count() <= LONGEST {
+        return one_line;
+    }
+    one_line.chars().take(LONGEST).chain("…".chars()).collect()
+}
+
 /// Names in backquotes with commas.
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// The loss of a format that keeps faces only: line elements, and groups when it has no place for them.
-pub fn left_out(mesh: &Mesh, sets: bool, lines: bool) -> Vec<Loss> {
+/// The losses of a format that keeps corner nodes and faces: mid nodes, and line elements and points where it has no place for them.
+pub fn left_out(mesh: &Mesh, lines: bool) -> Vec<Loss> {
     let mut losses = Vec::new();
     if mesh.order == 2 {
         losses.push(Loss::LeftOut("the mid nodes of elements of order 2".to_owned()));
@@ -97,9 +178,24 @@ pub fn left_out(mesh: &Mesh, sets: bool, lines: bool) -> Vec<Loss> {
     if lines && !mesh.lines.is_empty() {
         losses.push(Loss::LeftOut(format!("the {} line elements", mesh.lines.len())));
     }
-    // One surface without groups loses nothing but its name.
-    if sets && mesh.groups.len() > 1 {
-        losses.push(Loss::LeftOut(format!("the sets {}", listed(mesh.groups.iter().map(|group| group.name.as_str())))));
+    if lines && !mesh.points.is_empty() {
+        losses.push(Loss::LeftOut(format!("the {} points", mesh.points.len())));
+    }
+    losses
+}
+
+/// The losses of a format that does not keep the names of these sets, called `words`: a warning for groups that the script declares, a word
+/// for the sets of surfaces and shells, none for a mesh of one surface.
+pub fn names_lost(mesh: &Mesh, options: &Options, words: &str, lost: impl Fn(&Group) -> bool) -> Vec<Loss> {
+    let lost: Vec<&str> = mesh.groups.iter().filter(|group| lost(group)).map(|group| group.name.as_str()).collect();
+    let declared = |name: &str| options.groups.iter().any(|group| group == name);
+    let (asked, own): (Vec<&str>, Vec<&str>) = lost.into_iter().partition(|name| declared(name));
+    let mut losses = Vec::new();
+    if !asked.is_empty() {
+        losses.push(Loss::LeftOut(format!("{words} {}", listed(asked))));
+    }
+    if own.len() > 1 {
+        losses.push(Loss::Unnamed(format!("the names of the sets {}", listed(own))));
     }
     losses
 }
@@ -213,7 +309,7 @@ pub struct Part {
     pub kind: Kind,
     /// Index of the range in `mesh.faces`, or `None` for elements outside all of them.
     pub face: Option<usize>,
-    /// Sets (indices into `mesh.groups`), ascending.
+    /// Sets, as indices into those of [`sets`], ascending.
     pub sets: Vec<usize>,
     /// Elements, ascending.
     pub elements: Vec<u32>,
@@ -254,6 +350,11 @@ pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
                 classes.len() as u32 - 1
             });
         }
+    }
+    let own = own_names(mesh);
+    for (face, sets) in &mut classes {
+        let name = mesh.faces.get(*face as usize).map(|face| face.name.as_str());
+        sets.extend(own.iter().position(|own| Some(*own) == name).map(|k| mesh.groups.len() + k));
     }
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); classes.len()];
     for (element, class) in class_of.iter().enumerate() {
@@ -312,12 +413,21 @@ mod tests {
     fn names_in_a_strict_deck() {
         let mut names = Names::new(Naming::Strict);
         assert_eq!(names.give("ribs[3]"), "ribs_3");
-        assert!(names.losses.is_empty());
+        assert!(matches!(names.losses.as_slice(), [Loss::Renamed(Renamed { family: true, .. })]));
         assert_eq!(names.give("Ribs_3"), "Ribs_3_2");
-        assert_eq!(names.give("지붕"), "s__");
+        assert_eq!(names.give("지붕"), "jibung");
+        assert_eq!(names.give("벽 north"), "byeok_north");
+        assert_eq!(names.give("3d"), "s3d");
+        assert_eq!(names.comments("**").lines().nth(2), Some("** set jibung: 지붕"));
         assert_eq!(names.give(&"x".repeat(90)).len(), 80);
         assert_eq!(names.give(&"x".repeat(91)), format!("{}_2", "x".repeat(78)));
-        assert_eq!(names.losses.len(), 4);
+        assert_eq!(names.losses.len(), 7);
+        assert!(names.comments("$").lines().all(|line| line.starts_with("$ set ") && line.chars().count() < 180));
         assert_eq!(Names::new(Naming::Free).give("지붕"), "지붕");
+        // A name that needs no change keeps its own, whoever comes first.
+        let group = |name: &str| Group { name: name.into(), ..Group::default() };
+        let mesh = Mesh { groups: ["지붕", "jibung", "Jibung"].map(group).to_vec(), ..Mesh::default() };
+        let given: Vec<String> = sets(&mesh, Naming::Strict).0.into_iter().map(|set| set.name).collect();
+        assert_eq!(given, ["jibung_2", "jibung", "Jibung_3"]);
     }
 }

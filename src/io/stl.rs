@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::blocks::{write_fixed, write_records};
 use super::deck::{Deck, Encoding, Format, Loss};
-use super::sets::{Names, Naming, left_out, listed};
+use super::sets::{Names, Naming, left_out, names_lost};
 use crate::base::text::{push_real, push_single};
 use crate::mesh::{FaceRange, Mesh};
 
@@ -17,6 +17,7 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Binary,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    holds: "triangles, quads as two of them; text: a name per surface",
     write,
 };
 
@@ -24,7 +25,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let mesh = deck.mesh;
     if deck.is_text(FORMAT.encoding) {
         let losses = write_text(deck, out)?;
-        return Ok(losses.into_iter().chain(left_out(mesh, false, true)).collect());
+        return Ok(losses.into_iter().chain(left_out(mesh, true)).collect());
     }
     let mut header = [b' '; 80];
     // The first word must not be `solid`: some readers take that for text.
@@ -43,7 +44,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
             facet(deck, b, second);
         }
     })?;
-    Ok(left_out(mesh, true, true))
+    Ok(left_out(mesh, true).into_iter().chain(names_lost(mesh, deck.options, "the sets", |_| true)).collect())
 }
 
 /// The two triangles of a quad, cut from its first corner to its third: those by which areas and errors are measured.
@@ -110,11 +111,7 @@ fn write_text(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
         writeln!(out, "endsolid {name}")?;
     }
     let mut losses = names.losses;
-    let others: Vec<&str> =
-        mesh.groups.iter().map(|group| group.name.as_str()).filter(|group| !surfaces.iter().any(|(name, _)| name == group)).collect();
-    if !others.is_empty() {
-        losses.push(Loss::LeftOut(format!("the sets {}", listed(others))));
-    }
+    losses.extend(names_lost(mesh, deck.options, "the sets", |group| !surfaces.iter().any(|(name, _)| *name == group.name)));
     Ok(losses)
 }
 

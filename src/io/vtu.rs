@@ -19,6 +19,7 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Binary,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    holds: "nodes, elements of order 1 and 2, an array per surface, shell and group",
     write,
 };
 
@@ -172,7 +173,7 @@ impl Grid<'_> {
         let mut flags = vec![0; self.cells];
         for kind in KINDS {
             let first = kind.first_number(self.mesh) as usize - 1;
-            for element in kind.of_group(set.group) {
+            for element in kind.of_group(&set.group) {
                 flags[first + *element as usize] = 1;
             }
         }

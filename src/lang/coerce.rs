@@ -345,6 +345,10 @@ impl Cx<'_> {
                 let value = self.eval(code, *value)?;
                 self.with_local(*name, value, |cx| cx.eval_choice(code, *body, words, subject))
             }
+            Expr::List(items) => {
+                let items = items.iter().map(|item| self.eval_choice(code, *item, words, subject));
+                items.collect::<Result<Vec<_>, _>>().map(Value::list)
+            }
             _ => self.eval(code, id),
         }
     }

@@ -12,6 +12,7 @@ use super::settings;
 use super::syntax::ast::{self, Declaration, DeclarationKind, Expr, ExprId, Keyword};
 use super::units;
 use super::value::{Dim, ModuleId, Quantity, Value};
+use crate::base::origin::Origin;
 
 impl Cx<'_> {
     pub(super) fn output(&mut self, code: Code<'_>, declaration: &Declaration) -> Result<Value, Stop> {
@@ -76,7 +77,8 @@ impl Cx<'_> {
         let mut gather = Gather::default();
         let things = gather.take(self.things(code, things, Keyword::Export));
         let path = gather.take(self.path(code, to));
-        let settings = gather.take(self.settings(code, "export", settings::EXPORT, settings));
+        let written = settings;
+        let settings = gather.take(self.settings(code, "export", settings::EXPORT, written));
         gather.done()?;
         let origin = self.own_origin(code, member);
         let settings = settings.unwrap_or_default();
@@ -90,10 +92,32 @@ impl Cx<'_> {
         let (path, path_origin) = path.unwrap_or_default();
         let units = word("units").and_then(|(w, origin)| units::length_unit(&w).map(|u| (u, origin)));
         let things = things.unwrap_or_default();
-        Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), element: word("element"), units, origin })
+        let elements = find(&settings, "element").map_or_else(Vec::new, |said| self.elements(code, written, &said.value, said.origin));
+        Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), elements, units, origin })
     }
 
-    pub(super) fn path(&mut self, code: Code<'_>, to: Option<ExprId>) -> Result<(String, crate::base::origin::Origin), Stop> {
+    /// The words of `element:`; those of a list written out have their own places.
+    fn elements(&mut self, code: Code<'_>, written: &[ast::Setting], said: &Value, whole: Origin) -> Vec<(Arc<str>, Origin)> {
+        let setting = written.iter().find(|setting| self.names.text(setting.key) == "element");
+        let items: &[ExprId] = match setting.map(|setting| code.expr(setting.value)) {
+            Some(Expr::List(items)) => items,
+            _ => &[],
+        };
+        let values = match said {
+            Value::List(values) => values.as_slice(),
+            one => std::slice::from_ref(one),
+        };
+        let mut elements = Vec::with_capacity(values.len());
+        for (k, value) in values.iter().enumerate() {
+            if let Value::Word(word) = value {
+                let place = items.get(k).map_or(whole, |item| self.origin_at(*item));
+                elements.push((word.clone(), place));
+            }
+        }
+        elements
+    }
+
+    pub(super) fn path(&mut self, code: Code<'_>, to: Option<ExprId>) -> Result<(String, Origin), Stop> {
         let Some(to) = to else { return Err(Stop::Bug("an export without a path")) };
         match self.eval(code, to)? {
             Value::Text(t) => Ok((t.to_string(), self.origin_at(to))),

@@ -144,8 +144,8 @@ pub struct ExportSpec {
     pub path_origin: Origin,
     /// `encoding:` as a word.
     pub encoding: Said<Arc<str>>,
-    /// `element:` as a word or text.
-    pub element: Said<Arc<str>>,
+    /// The words of `element:`, each with its place.
+    pub elements: Vec<(Arc<str>, Origin)>,
     /// `units:` of the file.
     pub units: Said<super::units::LengthUnit>,
     /// The declaration.

@@ -11,7 +11,7 @@ pub const METHODS: &[&str] = &["auto", "mapped", "quadtree", "delaunay", "isolin
 pub const ENCODINGS: &[&str] = &["binary", "text"];
 /// Words of `units:` of an export.
 pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "in", "ft"];
-/// Shell elements of decks.
+/// Elements of decks.
 pub const DECK_ELEMENTS: &[&str] = &crate::io::ELEMENT_NAMES;
 
 /// Words of `shade:`.
@@ -147,7 +147,12 @@ pub const SHELL: &[Setting] = &[
 /// `export x to "…" { … }`.
 pub const EXPORT: &[Setting] = &[
     Setting { key: "encoding", docs: "Binary or text.", default: "by format", ty: Ty::Choice(ENCODINGS) },
-    Setting { key: "element", docs: "Element name of a deck.", default: "", ty: Ty::Choice(DECK_ELEMENTS) },
+    Setting {
+        key: "element",
+        docs: "Element name of a deck, or a list with one for each kind of element that the mesh has: `[S8R, B32]`.",
+        default: "by format",
+        ty: Ty::OneOf(&[Ty::Choice(DECK_ELEMENTS), Ty::List(&Ty::Choice(DECK_ELEMENTS))]),
+    },
     Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS) },
 ];
 

@@ -123,6 +123,7 @@ impl Ty {
             Self::List(Self::Any) => "a list".into(),
             Self::List(of) | Self::Rest(of) => format!("a list of {}", plural(&of.words())),
             Self::Optional(of) => format!("{} or none", of.words()),
+            Self::OneOf([one, Self::List(many)]) if one == *many => format!("{}, or a list of them", one.words()),
             Self::OneOf(of) => {
                 let words: Vec<String> = of.iter().map(|t| t.words()).collect();
                 words.join(" or ")
@@ -143,6 +144,7 @@ impl Ty {
             Self::List(of) => format!("[{}]", of.signature()),
             Self::Rest(of) => format!("{}…", of.signature()),
             Self::Optional(of) => of.signature(),
+            Self::OneOf([one, Self::List(many)]) if one == *many => format!("{}, or a list", one.signature()),
             Self::OneOf(of) => {
                 let words: Vec<String> = of.iter().map(|t| t.signature()).collect();
                 words.join("|")

@@ -4,10 +4,11 @@ use std::io::Write;
 
 use glam::DVec3;
 
-use super::report::OutputRow;
+use super::report::{OutputRow, RenamedRow};
 use crate::base::fault::{Edit, FileFault, Say};
 use crate::base::origin::Origin;
 use crate::io::curves::{Drawing, Polyline, curve_format_for};
+use crate::io::endings::{Sort, misfit};
 use crate::io::iges;
 use crate::io::iges::write::{Scale, Shown, Thing};
 use crate::io::json::{self, Json};
@@ -15,7 +16,7 @@ use crate::io::table::{self, Cell, Table};
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::ExportSpec;
-use crate::lang::value::{Dim, Record, Value};
+use crate::lang::value::{Dim, ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
 
@@ -26,18 +27,42 @@ const LOOKS: usize = 64;
 
 /// Writes one output; gives its row, and warnings about what the format cannot hold go to the sink of `cx`.
 pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
-    let losses = match spec.things.first() {
-        Some(_) if matches!(extension(&spec.path).as_str(), "igs" | "iges") => cad(cx, spec, files)?,
-        Some((Value::Mesh(_), _)) => mesh(cx, spec, files)?,
-        Some((Value::Curve(_) | Value::Edge(..), _)) => curves(cx, spec, files)?,
-        Some((Value::Record(_), _)) => records(cx, spec, files)?,
-        Some((Value::Surface(_) | Value::Shell(_), origin)) => return Err(surface(spec, *origin)),
-        Some((other, origin)) => return Err(unsupported(*origin, format!("{} cannot be exported", other.ty().words()))),
-        None => return Err(unsupported(spec.origin, "there is nothing to export".to_owned())),
+    let Some((first, origin)) = spec.things.first() else {
+        return Err(unsupported(spec.origin, "there is nothing to export".to_owned()));
     };
-    let (bytes, losses) = losses;
-    losses.into_iter().for_each(|loss| cx.say(&loss.fault(spec.path_origin, &spec.path).into()));
-    Ok(OutputRow { path: spec.path.clone(), bytes, unit: unit_of(cx, spec).0 })
+    let Some(sort) = sort_of(first) else {
+        return Err(unsupported(*origin, format!("{} cannot be exported", first.ty().words())));
+    };
+    let (bytes, losses) = match (extension(&spec.path).as_str(), sort) {
+        ("igs" | "iges", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => cad(cx, spec, files)?,
+        (_, Sort::Meshes) => mesh(cx, spec, files)?,
+        (_, Sort::Curves) => curves(cx, spec, files)?,
+        (_, Sort::Records) => records(cx, spec, files)?,
+        _ => return Err(misfit(spec.path_origin, &spec.path, sort).into()),
+    };
+    Loss::faults(&losses, spec.path_origin, &spec.path).into_iter().for_each(|fault| cx.say(&fault.into()));
+    let mut row = OutputRow { path: spec.path.clone(), bytes, unit: unit_of(cx, spec).0, ..OutputRow::default() };
+    for loss in losses {
+        match loss {
+            Loss::Renamed(names) => row.renamed.push(RenamedRow { path: row.path.clone(), from: names.from, to: names.to }),
+            Loss::Unnamed(what) => row.unnamed.push(what),
+            Loss::LeftOut(_) => {}
+        }
+    }
+    Ok(row)
+}
+
+/// What sort of thing a value is for a file; `None` for what goes into none.
+fn sort_of(value: &Value) -> Option<Sort> {
+    Some(match value {
+        Value::Mesh(_) => Sort::Meshes,
+        Value::Curve(_) | Value::Edge(..) => Sort::Curves,
+        Value::Surface(_) => Sort::Surfaces,
+        Value::Shell(_) => Sort::Shells,
+        Value::Vector(_, Dim::LENGTH) | Value::Node(_) => Sort::Points,
+        Value::Record(_) => Sort::Records,
+        _ => return None,
+    })
 }
 
 /// Size of a file and what it could not hold.
@@ -46,18 +71,6 @@ type Written = (u64, Vec<Loss>);
 fn unsupported(of: Origin, what: String) -> Stop {
     let help = Some("export meshes, curves, or a list of records".to_owned());
     FileFault::Unsupported { of, what, help, edits: Vec::new() }.into()
-}
-
-/// A surface in a format for meshes.
-fn surface(spec: &ExportSpec, of: Origin) -> Stop {
-    match format_for(spec.path_origin, &spec.path) {
-        Ok(format) => {
-            let what = format!("{} holds meshes, not surfaces", format.name);
-            let help = "export a mesh of it (`mesh fine of …`), or write the surface itself as IGES: \"….igs\"".to_owned();
-            FileFault::Unsupported { of, what, help: Some(help), edits: Vec::new() }.into()
-        }
-        Err(fault) => fault.into(),
-    }
 }
 
 /// Writes through `fill`; a failure names the path.
@@ -94,8 +107,9 @@ fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, St
     let mesh = cx.mesh(value)?;
     let (unit, units_per_file_unit) = unit_of(cx, spec);
     let encoding = spec.encoding.as_ref().map(|(word, _)| if **word == *"binary" { Encoding::Binary } else { Encoding::Text });
-    let elements = spec.element.iter().map(|(word, _)| word.to_string()).collect();
-    let options = Options { encoding, elements, units_per_file_unit };
+    let elements = spec.elements.iter().map(|(word, place)| (word.to_string(), *place)).collect();
+    let groups = cx.groups(ModuleId::MAIN)?.iter().map(|group| group.name.to_string()).collect();
+    let options = Options { encoding, elements, groups, units_per_file_unit };
     let deck = Deck { mesh: &mesh, unit, options: &options };
     format.check(spec.path_origin, &deck)?;
     put(spec, files, &mut |out| (format.write)(&deck, out))
@@ -109,7 +123,7 @@ fn one_thing(spec: &ExportSpec) -> Stop {
 
 /// Settings that mean something for meshes only.
 fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
-    let said = spec.encoding.as_ref().map(|s| ("encoding", s.1)).or(spec.element.as_ref().map(|s| ("element", s.1)));
+    let said = spec.encoding.as_ref().map(|s| ("encoding", s.1)).or(spec.elements.first().map(|s| ("element", s.1)));
     match said {
         Some((key, of)) => {
             let what = format!("`{key}:` is for meshes");
@@ -231,7 +245,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
             let table = csv_table(cx, &rows);
             put(spec, files, &mut |out| table::write_csv(&table, out).map(|()| Vec::new()))
         }
-        _ => Err(crate::io::no_format(spec.path_origin, &spec.path, vec!["csv", "json"]).into()),
+        _ => Err(misfit(spec.path_origin, &spec.path, Sort::Records).into()),
     }
 }
 

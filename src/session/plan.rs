@@ -79,6 +79,12 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         }
         plan.refines.push(Refine { at, size: refine.size, radius: refine.radius, origin: refine.origin });
     }
+    let shells = spec.things.iter().filter_map(|(value, _)| if let Value::Shell(shell) = value { Some((shell, value)) } else { None });
+    for (shell, value) in shells {
+        if !shell.name.is_empty() && !plan.groups.iter().any(|group| *group.name == *shell.name) {
+            plan.groups.push(GroupRequest { name: shell.name.to_string(), members: finder.targets(value)? });
+        }
+    }
     for group in &cx.groups(module)? {
         let mut members = Vec::new();
         for value in &group.value {

@@ -1,11 +1,14 @@
 //! Entities on their way into a file: numbered, laid out in 80 columns.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use glam::DVec3;
 
 use super::lines::{CONTENT, DATA};
 use crate::base::text::push_real;
+use crate::io::deck::{Loss, Renamed};
+use crate::io::romanize::in_ascii;
 
 /// Dependence and use of an entity, as the status field has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +98,7 @@ pub fn real(x: f64) -> String {
 
 /// `5Hround`; empty for nothing. Characters that are not plain become `_`.
 pub fn counted(text: &str) -> String {
-    let plain: String = text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect();
+    let plain: String = text.chars().map(|c| if is_sign(c) { c } else { '_' }).collect();
     if plain.is_empty() { plain } else { format!("{}H{plain}", plain.len()) }
 }
 
@@ -110,12 +113,21 @@ struct Entity {
     properties: Vec<u32>,
 }
 
+/// Whether names of a file may have a character.
+fn is_sign(c: char) -> bool {
+    c.is_ascii_graphic() || c == ' '
+}
+
+fn is_written(name: &str) -> bool {
+    name.chars().all(is_sign)
+}
+
 /// A file in the making.
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
     entities: Vec<Entity>,
-    /// A name has characters that the format does not.
-    respelled: bool,
+    /// Names in the file with those in the model.
+    names: BTreeMap<String, String>,
 }
 
 impl Sheet {
@@ -136,10 +148,22 @@ impl Sheet {
         }
     }
 
+    /// Keeps the names of ASCII characters for those who have them.
+    pub fn keep<'a>(&mut self, names: impl Iterator<Item = &'a str>) {
+        self.names.extend(names.filter(|name| is_written(name)).map(|name| (name.to_owned(), name.to_owned())));
+    }
+
     /// Gives an entity a name.
     pub fn name(&mut self, d: u32, name: &str) {
-        self.respelled |= counted(name) != format!("{}H{name}", name.len());
-        let property = self.add(406, 15, Role::Definition, Values::new().int(1).text(name));
+        let ascii: String = in_ascii(name).chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect();
+        let mut given = ascii.clone();
+        let mut k = 2;
+        while self.names.get(&given).is_some_and(|known| known != name) {
+            given = format!("{ascii}_{k}");
+            k += 1;
+        }
+        let property = self.add(406, 15, Role::Definition, Values::new().int(1).text(&given));
+        self.names.insert(given, name.to_owned());
         if let Some(entity) = self.at(d) {
             entity.properties.push(property);
         }
@@ -152,9 +176,10 @@ impl Sheet {
         }
     }
 
-    /// Whether all names are written as they are.
-    pub fn is_plain(&self) -> bool {
-        !self.respelled
+    /// Names that stand otherwise in the file.
+    pub fn renamed(&self) -> Vec<Loss> {
+        let other = self.names.iter().filter(|(given, name)| given != name);
+        other.map(|(given, name)| Loss::Renamed(Renamed { from: name.clone(), to: given.clone(), family: false })).collect()
     }
 
     /// Largest coordinate of all points that stand by themselves in the entities.

@@ -72,6 +72,7 @@ const UNITS: &[(&str, i64, &str)] =
 /// Makes the file of things; fails for a thing that the format or the tolerance cannot hold, with its name.
 pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
     let mut maker = Maker { sheet: Sheet::default(), scale };
+    maker.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
     let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
     for thing in things {
         let made = match &thing.shown {
@@ -123,8 +124,7 @@ pub fn write(sheet: &Sheet, name: &str, scale: &Scale, out: &mut dyn Write) -> i
     ]);
     global.extend([String::new(), String::new(), plain("11"), plain("0"), plain(date)]);
     sheet.write(&global, out)?;
-    let lost = || Loss::LeftOut("characters of names beyond ASCII".to_owned());
-    Ok(if sheet.is_plain() { Vec::new() } else { vec![lost()] })
+    Ok(sheet.renamed())
 }
 
 struct Maker<'s> {
