@@ -180,7 +180,7 @@ fn outputs_that_are_one_file_are_an_error_before_anything_is_written() {
         let file = format!("{name}.loft");
         fs::write(folder.path(&file), format!("{head}{outputs}")).unwrap();
         let before = folder.files();
-        for command in [&["run"][..], &["check"], &["run", "--json"]] {
+        for command in [&["run"][..], &["check"], &["run", "--json"], &["run", "--keep-going"]] {
             let run = folder.loft(&[command, &[file.as_str()]].concat());
             assert_eq!(run.status, 1, "{name}");
             assert!(run.err.contains(&format!("{code} ×")) && run.err.contains(words), "{name}: {}", run.err);
@@ -207,13 +207,14 @@ fn outputs_that_are_one_file_are_an_error_before_anything_is_written() {
 #[test]
 fn a_text_that_standard_output_does_not_take_is_an_error() {
     let folder = Folder::new("full").with("plate.loft", PLATE).with("other.loft", PLATE.replace("4m in", "5m in"));
+    let folder = folder.with("wide.loft", "let  x=1\n");
     assert_eq!(folder.loft(&["test", "--accept", "plate.loft"]).status, 0);
     let commands: &[&[&str]] = &[
         &["run", "plate.loft"],
         &["run", "plate.loft", "--json"],
         &["check", "plate.loft", "other.loft", "--json"],
         &["fmt", "-"],
-        &["fmt", "--check", "plate.loft"],
+        &["fmt", "--check", "wide.loft"],
         &["doc"],
         &["doc", "line"],
         &["doc", "--markdown"],
@@ -629,4 +630,26 @@ fn diff_says_what_changed() {
         assert_eq!(folder.loft(&["diff", a, b]).status, 2, "{a} {b}");
     }
     assert_eq!(folder.names().len(), 6, "nothing else is written");
+}
+
+/// Every unit that a file may be asked for in can be written, and is that unit.
+#[test]
+fn files_are_written_and_read_in_any_unit() {
+    let folder = Folder::new("units");
+    for (word, metres) in [("um", 1e-6), ("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("km", 1e3), ("inch", 0.0254), ("ft", 0.3048)] {
+        let script = format!(
+            "units m\ncurve s = line((0, 0), (3, 0))\ncurve n = line((0, 1), (3, 1))\nsurface p = ruled(s, n)\n\
+             mesh m of p {{ size: 1m }}\nexport m to \"p.obj\" {{ units: {word} }}\n"
+        );
+        let again = format!("units m\nimport \"p.obj\" (unit: {word}) as p\ncheck area(p.mesh) == 3m2 within 1e-9%\n");
+        let folder_of = |name: &str, text: &str| fs::write(folder.path(name), text).unwrap();
+        folder_of("write.loft", &script);
+        folder_of("read.loft", &again);
+        let run = folder.loft(&["run", "write.loft"]);
+        assert_eq!((run.status, run.err.as_str()), (0, ""), "{word}");
+        let text = String::from_utf8(folder.read("p.obj")).unwrap();
+        let largest = text.lines().filter_map(|line| line.strip_prefix("v ")?.split(' ').next()?.parse::<f64>().ok()).fold(0.0, f64::max);
+        assert!((largest * metres - 3.0).abs() < 1e-9, "{word}: {largest}");
+        assert_eq!(folder.loft(&["check", "read.loft"]).status, 0, "{word}");
+    }
 }

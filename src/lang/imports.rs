@@ -107,7 +107,7 @@ impl Cx<'_> {
             }
             match gather.take(self.eval_as(code, arg.value, ty, subject)) {
                 Some(Value::Bool(b)) => header = Some(b),
-                Some(Value::Word(w)) => unit = units::length_unit(&w),
+                Some(Value::Word(w)) => unit = units::file_unit(&w),
                 _ => {}
             }
         }

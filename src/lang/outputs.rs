@@ -90,7 +90,7 @@ impl Cx<'_> {
             None => None,
         };
         let (path, path_origin) = path.unwrap_or_default();
-        let units = word("units").and_then(|(w, origin)| units::length_unit(&w).map(|u| (u, origin)));
+        let units = word("units").and_then(|(w, origin)| units::file_unit(&w).map(|u| (u, origin)));
         let things = things.unwrap_or_default();
         let elements = find(&settings, "element").map_or_else(Vec::new, |said| self.elements(code, written, &said.value, said.origin));
         Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), elements, units, origin })

@@ -10,7 +10,7 @@ pub const METHODS: &[&str] = &["auto", "mapped", "quadtree", "delaunay", "isolin
 /// Words of `encoding:`.
 pub const ENCODINGS: &[&str] = &["binary", "text"];
 /// Words of `units:` of an export.
-pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "in", "ft"];
+pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "inch", "ft"];
 /// Elements of decks.
 pub const DECK_ELEMENTS: &[&str] = &crate::io::ELEMENT_NAMES;
 

@@ -53,6 +53,11 @@ pub fn length_unit(name: &str) -> Option<LengthUnit> {
     LENGTHS.iter().copied().find(|u| u.name == name)
 }
 
+/// The unit of a word of `units:` or `unit:`; `in` is a keyword, so that inches are `inch` there.
+pub fn file_unit(word: &str) -> Option<LengthUnit> {
+    length_unit(if word == "inch" { "in" } else { word })
+}
+
 /// Degrees of an angle in radians.
 pub fn degrees(radians: f64) -> f64 {
     radians * 180.0 / std::f64::consts::PI

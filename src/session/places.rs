@@ -1,5 +1,6 @@
 //! Where outputs stand: each in a file of its own, and none over a file that the script reads.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::disk::{Disk, same_file};
@@ -8,8 +9,9 @@ use crate::base::origin::Origin;
 use crate::lang::cx::Cx;
 
 /// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a
-/// module or a file that it imports. `script` is the resolved name of the script.
-pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) {
+/// module or a file that it imports; gives the files in question, as [`Disk::file_of`] tells them apart: none of them is
+/// written. `script` is the resolved name of the script.
+pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) -> BTreeSet<String> {
     let exports = cx.exports().into_iter().map(|spec| (spec.path_origin, spec.path));
     let pictures = cx.pictures().into_iter().map(|spec| (spec.path_origin, spec.path));
     let outputs: Vec<(Origin, String)> = exports.chain(pictures).collect();
@@ -22,6 +24,7 @@ pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) {
             None => files.push((file, vec![(of, path)])),
         }
     }
+    let mut barred = BTreeSet::new();
     let (script, read) = (same_file(Path::new(script)), disk.files_read());
     for (file, same) in files {
         if let Some((of, path)) = same.first() {
@@ -29,13 +32,16 @@ pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) {
                 if file == script { Some("the script itself") } else { read.contains(&file).then_some("a file that this script reads") };
             if let Some(what) = what {
                 cx.say(&FileFault::OverInput { of: *of, path: path.clone(), what: what.to_owned() }.into());
+                barred.insert(file.clone());
             }
         }
         if same.len() > 1 {
             let fault = several(cx, same);
             cx.say(&fault.into());
+            barred.insert(file);
         }
     }
+    barred
 }
 
 /// The fault for outputs that are one file: of a family when one place of the script says all of them.

@@ -1,5 +1,6 @@
 //! One run of a model: from text to report and files.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::collect;
@@ -142,6 +143,8 @@ struct Run<'r> {
     flows: Vec<String>,
     /// What the files do without, a line each.
     unnamed: Vec<String>,
+    /// Files that outputs of the script may not write.
+    barred: BTreeSet<String>,
     light: bool,
 }
 
@@ -160,6 +163,7 @@ impl<'r> Run<'r> {
             said: None,
             flows: Vec::new(),
             unnamed: Vec::new(),
+            barred: BTreeSet::new(),
             light: false,
         }
     }
@@ -201,7 +205,7 @@ impl<'r> Run<'r> {
         self.collect();
         let evaluated = clock();
         if self.task.picture.is_none() {
-            super::places::one_file_each(&mut self.cx, self.disk, &self.disk.script_name(self.task.name));
+            self.barred = super::places::one_file_each(&mut self.cx, self.disk, &self.disk.script_name(self.task.name));
         }
         if let Some(wanted) = self.task.picture {
             self.picture(wanted);
@@ -302,6 +306,9 @@ impl<'r> Run<'r> {
             if self.cx.job.go_on().is_err() {
                 return;
             }
+            if self.is_barred(&spec.path) {
+                continue;
+            }
             let row = export::write(&mut self.cx, &spec, self.disk);
             self.written(row);
         }
@@ -310,9 +317,17 @@ impl<'r> Run<'r> {
             if self.cx.job.go_on().is_err() {
                 return;
             }
+            if self.is_barred(&spec.path) {
+                continue;
+            }
             let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
             self.written(row);
         }
+    }
+
+    /// Whether an output would take the place of another one or of something that is read.
+    fn is_barred(&self, path: &str) -> bool {
+        !self.barred.is_empty() && self.disk.file_of(path).is_some_and(|file| self.barred.contains(&file))
     }
 
     fn written(&mut self, row: Result<OutputRow, Stop>) {

@@ -199,7 +199,7 @@ check area(part.surfaces[3]) == area(model.sail) within 0.0001%
     std::fs::write(folder.join("mesh.loft"), script).unwrap();
     let run = std::process::Command::new(env!("CARGO_BIN_EXE_loft")).args(["run", "mesh.loft"]).current_dir(&folder).output().unwrap();
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(!run.status.success() && said.contains("IGES holds points, curves, surfaces and shells, not a mesh"), "{said}");
+    assert!(!run.status.success() && said.contains("igs holds curves, surfaces, shells and points, not meshes"), "{said}");
 }
 
 /// Faces of other programs, written and read again: the same areas, and (u, v) that agree with the curves in space.
