@@ -17,7 +17,7 @@ use crate::model::contact::Turn;
 use crate::model::{EdgeId, Model, PatchId, SharedEdges, SharedTrack, SurfaceId};
 use crate::network::Chain;
 use crate::surface::plane::unbounded;
-use crate::surface::{IsoLine, Nearest, Surface};
+use crate::surface::{IsoLine, Nearest, Surface, SurfaceKind};
 use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
@@ -184,14 +184,27 @@ fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, S
         }
     };
     let found: Vec<EdgeId> = model.edges_of(&patches).into_iter().filter(lies).collect();
-    match found.as_slice() {
-        [one] => Ok(whole(module, &model, *one)),
+    let swept: Vec<EdgeId> = match key {
+        EdgeKey::Point(_) => found.iter().copied().filter(|edge| is_swept(&model, &patches, *edge)).collect(),
+        EdgeKey::Curve(_) => Vec::new(),
+    };
+    match (found.as_slice(), swept.as_slice()) {
+        ([one], _) | (_, [one]) => Ok(whole(module, &model, *one)),
         _ => {
             let of = surfaces.first().map_or(Origin::NONE, Surface::origin);
             let places = found.iter().map(|e| model.track(*e, &network).point(0.5 * model.edges[e.index()].length)).collect();
             Err(ValueFault::NotOneEdge { of, places }.into())
         }
     }
+}
+
+/// Whether an edge is the way of one point of a profile that was moved or turned: v stands still along it.
+fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
+    patches.iter().map(|p| &model.patches[p.index()]).any(|patch| {
+        let kind = model.surfaces[patch.surface.index()].surface.kind();
+        let along = |side: usize| patch.sides.get(side).is_some_and(|s| s.edges.iter().any(|(e, _)| *e == edge));
+        matches!(kind, SurfaceKind::Extrude | SurfaceKind::Revolve) && (along(0) || along(2))
+    })
 }
 
 /// Distance of a point from a track of this length, by projection from the nearest of some samples.
@@ -231,10 +244,12 @@ fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> R
 builtins! {
     /// The edge of a surface that lies along a curve, or on which a point lies.
     ///
+    /// Of the edges of an extruded or turned surface that meet in a point it is the one that this point of the profile sweeps.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
     /// let foot = wall.edge(south).length // => 4000mm
+    /// let post = wall.edge(south.end).length // => 3000mm
     /// ```
     fn edge(
         /// A surface.
