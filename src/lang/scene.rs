@@ -153,10 +153,12 @@ fn side_of(surface: &Surface, other: &Surface) -> Option<bool> {
     // Away from every line of symmetry, so that the turned surface shows another point there.
     const PROBE: (f64, f64) = (0.31, 0.23);
     let there = other.point(PROBE.0, PROBE.1);
-    if surface.point(PROBE.0, PROBE.1) == there {
+    // Parts of one surface have its points, and may have their corners in common.
+    let same = |one: &Surface| one.point(PROBE.0, PROBE.1) == there && one.outlines() == other.outlines();
+    if same(surface) {
         return Some(false);
     }
-    (surface.flipped().point(PROBE.0, PROBE.1) == there).then_some(true)
+    same(&surface.flipped()).then_some(true)
 }
 
 /// Where the borders of a surface begin and end, in an order of their own.

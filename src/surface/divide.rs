@@ -1,6 +1,6 @@
 //! The part of a surface that holds a point, when curves divide it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
@@ -9,7 +9,7 @@ use super::core::{Border, Surface};
 use super::faces::{Edge, Half, followers, loops, without_tails};
 use super::plane;
 use super::pull::{Course, is_pole};
-use super::strands::{Piece, pieces, strands};
+use super::strands::{Piece, Strand, pieces, strands};
 use super::trim::{Walk, assembled, shifts};
 use crate::base::fault::{CutFault, Result};
 use crate::base::origin::Origin;
@@ -23,6 +23,24 @@ use crate::network::Chain;
 pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let base = &plane::unmapped(base, tolerance)?;
     let foot = foot_of(base, cutters, keep, tolerance)?;
+    let (pieces, edges) = dividing(base, cutters, tolerance)?;
+    let division = Division::new(base, &pieces, &edges, tolerance);
+    let Some(face) = division.face(foot) else {
+        return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
+    };
+    assembled(base, division.walks(face), origin)
+}
+
+/// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
+pub fn split(base: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    let base = &plane::unmapped(base, tolerance)?;
+    let (pieces, edges) = dividing(base, cutters, tolerance)?;
+    let division = Division::new(base, &pieces, &edges, tolerance);
+    division.faces().into_iter().map(|face| assembled(base, division.walks(face), origin)).collect()
+}
+
+/// The pieces of the border and of curves that divide a surface, loose ends left out.
+fn dividing(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) -> Result<(Vec<Piece>, Vec<Edge>)> {
     let strands = strands(base, cutters, tolerance)?;
     let all = pieces(base, &strands, tolerance)?;
     let edges = graph(base, &all, tolerance);
@@ -31,18 +49,12 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
         let own = |i: &usize| strands[all[*i].strand].cutter == Some(k);
         let mut parts = (0..all.len()).filter(own).peekable();
         if parts.peek().is_some() && !parts.any(|i| stays[i]) {
-            let at = open_end(cutter, &all, &edges, k, &|s| strands[s].cutter);
-            return Err(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), at }.into());
+            let ends = open_ends(cutter, &strands, &all, &stays, tolerance);
+            return Err(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends }.into());
         }
     }
-    let kept: Vec<usize> = (0..all.len()).filter(|i| stays[*i]).collect();
-    let all: Vec<Piece> = kept.iter().map(|i| all[*i].clone()).collect();
-    let edges: Vec<Edge> = kept.iter().map(|i| edges[*i].clone()).collect();
-    let division = Division { base, pieces: &all, next: followers(&edges), point: tolerance.point, hair: tolerance.parameter };
-    let Some(face) = division.face(foot) else {
-        return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
-    };
-    assembled(base, division.walks(face), origin)
+    let kept = || (0..all.len()).filter(|i| stays[*i]);
+    Ok((kept().map(|i| all[i].clone()).collect(), kept().map(|i| edges[i].clone()).collect()))
 }
 
 /// The foot of the point to keep.
@@ -59,16 +71,18 @@ fn foot_of(base: &Surface, cutters: &[Chain], keep: DVec3, tolerance: &Tolerance
     Ok(DVec2::new(below.0, below.1))
 }
 
-/// The end of a cutter that hangs loose.
-fn open_end(cutter: &Chain, all: &[Piece], edges: &[Edge], k: usize, cutter_of: &dyn Fn(usize) -> Option<usize>) -> DVec3 {
-    let mut degree: BTreeMap<usize, usize> = BTreeMap::new();
-    for edge in edges {
-        *degree.entry(edge.ends.0).or_default() += 1;
-        *degree.entry(edge.ends.1).or_default() += 1;
-    }
-    let own = (0..all.len()).filter(|i| cutter_of(all[*i].strand) == Some(k));
-    let mut ends = own.flat_map(|i| [(edges[i].ends.0, all[i].p.0), (edges[i].ends.1, all[i].p.2)]);
-    ends.find(|(v, _)| degree[v] == 1).map_or(cutter.end(), |(_, p)| p)
+/// The ends of a cutter that are on nothing that divides the surface.
+fn open_ends(cutter: &Chain, strands: &[Strand], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
+    let held = |p: DVec3| {
+        let near = |piece: &Piece| match (&strands[piece.strand].chain, piece.own_chain()) {
+            (_, Some(run)) | (Some(run), None) => run.closest(p).2 <= 2.0 * tolerance.point,
+            (None, None) => piece.p.1.distance(p) <= 2.0 * tolerance.point,
+        };
+        all.iter().zip(stays).any(|(piece, stays)| *stays && near(piece))
+    };
+    let mut ends = vec![cutter.start(), cutter.end()];
+    ends.retain(|p| !held(*p));
+    ends
 }
 
 /// Vertices found by place, edges with their directions.
@@ -85,7 +99,19 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> Vec<Edge> {
         })
     };
     let ends: Vec<(usize, usize)> = all.iter().map(|piece| (vertex(piece.uv.0, piece.p.0), vertex(piece.uv.1, piece.p.2))).collect();
-    let out = |piece: &Piece| {
+    // Curves that touch leave a vertex in one direction: at one distance from it they have parted, at one share of each perhaps not.
+    let length = |piece: &Piece| match (&piece.course, piece.own_chain()) {
+        (Course::Pull(pull), Some(chain)) => chain.length() * (pull.fraction(1.0) - pull.fraction(0.0)).abs(),
+        _ => f64::INFINITY,
+    };
+    let mut shortest: BTreeMap<usize, f64> = BTreeMap::new();
+    for (piece, ends) in all.iter().zip(&ends) {
+        for vertex in [ends.0, ends.1] {
+            let least = shortest.entry(vertex).or_insert(f64::INFINITY);
+            *least = least.min(length(piece));
+        }
+    }
+    let out = |piece: &Piece, ends: &(usize, usize)| {
         let place = |f: f64| match (&piece.course, piece.own_chain()) {
             (Course::Pull(pull), Some(chain)) => {
                 let f = pull.fraction(f);
@@ -96,12 +122,17 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> Vec<Edge> {
                 places[0].lerp(places[places.len() - 1], f)
             }
         };
-        (place(START) - piece.uv.0, place(1.0 - START) - piece.uv.1)
+        let share = |vertex: usize| START * (shortest[&vertex] / length(piece)).min(1.0);
+        let (first, last) = match length(piece).is_finite() {
+            true => (share(ends.0), share(ends.1)),
+            false => (START, START),
+        };
+        (place(first) - piece.uv.0, place(1.0 - last) - piece.uv.1)
     };
-    all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece) }).collect()
+    all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece, &ends) }).collect()
 }
 
-/// Share of a piece at which its direction out of an end is taken.
+/// Share of the shortest piece at a vertex at which directions out of it are taken.
 const START: f64 = 0.01;
 /// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
 const NEAR: (f64, f64) = (NUDGE, 0.1);
@@ -111,6 +142,9 @@ struct Division<'a> {
     base: &'a Surface,
     pieces: &'a [Piece],
     next: BTreeMap<Half, Half>,
+    /// The loops of half edges, faces on their left, with their signed areas in (u, v).
+    rows: Vec<Vec<Half>>,
+    areas: Vec<f64>,
     point: f64,
     /// A step in (u, v) that is none.
     hair: f64,
@@ -118,6 +152,16 @@ struct Division<'a> {
 
 /// The loops of the face that is kept, each half edge with the turns by which it is moved in (u, v).
 type Face = Vec<Vec<(Half, DVec2)>>;
+
+impl<'a> Division<'a> {
+    fn new(base: &'a Surface, pieces: &'a [Piece], edges: &[Edge], tolerance: &Tolerance) -> Self {
+        let next = followers(edges);
+        let rows = loops(&next);
+        let mut division = Self { base, pieces, next, rows, areas: Vec::new(), point: tolerance.point, hair: tolerance.parameter };
+        division.areas = division.rows.iter().map(|row| division.area(row)).collect();
+        division
+    }
+}
 
 impl Division<'_> {
     fn polygon(&self, row: &[Half]) -> Vec<DVec2> {
@@ -149,11 +193,9 @@ impl Division<'_> {
 
     /// The loops around a place: the smallest one that goes round it and those directly inside.
     fn face(&self, foot: DVec2) -> Option<Face> {
-        let rows = loops(&self.next);
-        let areas: Vec<f64> = rows.iter().map(|row| self.area(row)).collect();
         let around = |p: DVec2| {
-            let inner = (0..rows.len()).filter(|r| areas[*r] > 0.0 && self.holds(&rows[*r], p));
-            inner.min_by(|a, b| areas[*a].total_cmp(&areas[*b]))
+            let inner = (0..self.rows.len()).filter(|r| self.areas[*r] > 0.0 && self.holds(&self.rows[*r], p));
+            inner.min_by(|a, b| self.areas[*a].total_cmp(&self.areas[*b]))
         };
         // On a seam, a pole or a border a place a hair inside decides.
         let hair = self.hair;
@@ -162,21 +204,49 @@ impl Division<'_> {
         let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.course.touches(p, 0.5 * hair));
         let near = places.into_iter().flat_map(|d| shifts(self.base).into_iter().map(move |by| foot + by + d));
         let outer = near.filter(|p| !on_border(*p)).find_map(around)?;
-        // What goes round clockwise bounds from outside: a hole of the smallest face around it.
-        let hole = |r: &usize| {
-            let place = self.pieces[rows[*r][0].0].uv.0;
-            areas[*r] < 0.0 && around_but(&rows, &areas, *r, |row| self.holds(row, place)) == Some(outer)
-        };
-        let mut loops_of: Vec<usize> = vec![outer];
-        loops_of.extend((0..rows.len()).filter(hole));
-        Some(self.across_seams(loops_of.into_iter().map(|r| rows[r].clone()).collect(), &rows))
+        Some(self.across_seams(outer).0)
     }
 
-    /// The same with what lies beyond seams, which are no borders of it.
-    fn across_seams(&self, first: Vec<Vec<Half>>, rows: &[Vec<Half>]) -> Face {
+    /// All faces, each once.
+    fn faces(&self) -> Vec<Face> {
+        let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
+        for outer in (0..self.rows.len()).filter(|r| self.areas[*r] > self.hair * self.hair) {
+            if seen.insert(outer) {
+                let (face, rows) = self.across_seams(outer);
+                seen.extend(rows);
+                found.push(face);
+            }
+        }
+        found
+    }
+
+    /// A loop and its holes: what goes round clockwise bounds from outside, and is a hole of the smallest face around it.
+    fn with_holes(&self, outer: usize) -> Vec<usize> {
+        let hole = |r: &usize| {
+            let place = self.pieces[self.rows[*r][0].0].uv.0;
+            self.areas[*r] < 0.0 && around_but(&self.rows, &self.areas, *r, |row| self.holds(row, place)) == Some(outer)
+        };
+        std::iter::once(outer).chain((0..self.rows.len()).filter(hole)).collect()
+    }
+
+    /// The face of a loop with what lies beyond seams, which are no borders of it, and the loops that it is made of.
+    fn across_seams(&self, first: usize) -> (Face, BTreeSet<usize>) {
         let mut next = self.next.clone();
-        let mut moved: BTreeMap<Half, DVec2> = first.iter().flatten().map(|h| (*h, DVec2::ZERO)).collect();
-        let mut open: Vec<Half> = moved.keys().copied().filter(|h| self.pieces[h.0].seam).collect();
+        let (mut moved, mut own): (BTreeMap<Half, DVec2>, BTreeSet<usize>) = (BTreeMap::new(), BTreeSet::new());
+        let mut open: Vec<Half> = Vec::new();
+        let mut enter = |row: usize, by: DVec2, moved: &mut BTreeMap<Half, DVec2>, open: &mut Vec<Half>| {
+            for r in self.with_holes(row) {
+                own.insert(r);
+                for h in &self.rows[r] {
+                    moved.insert(*h, by);
+                    if self.pieces[h.0].seam {
+                        open.push(*h);
+                    }
+                }
+            }
+        };
+        enter(first, DVec2::ZERO, &mut moved, &mut open);
+        open.sort_unstable();
         while let Some(half) = open.pop() {
             let Some(by) = moved.get(&half).copied() else { continue };
             let Some((twin, shift)) = self.twin(half) else { continue };
@@ -185,13 +255,8 @@ impl Division<'_> {
                 Some(there) if (*there - by - shift).length() > 0.5 => continue,
                 Some(_) => {}
                 None => {
-                    let Some(row) = rows.iter().find(|row| row.contains(&twin)) else { continue };
-                    for h in row {
-                        moved.insert(*h, by + shift);
-                        if self.pieces[h.0].seam {
-                            open.push(*h);
-                        }
-                    }
+                    let Some(row) = self.rows.iter().position(|row| row.contains(&twin)) else { continue };
+                    enter(row, by + shift, &mut moved, &mut open);
                 }
             }
             let before = |next: &BTreeMap<Half, Half>, h: Half| next.iter().find(|(_, to)| **to == h).map(|(from, _)| *from);
@@ -209,7 +274,8 @@ impl Division<'_> {
             }
         }
         next.retain(|h, _| moved.contains_key(h));
-        loops(&next).into_iter().map(|row| row.into_iter().map(|h| (h, moved[&h])).collect()).collect()
+        let face = loops(&next).into_iter().map(|row| row.into_iter().map(|h| (h, moved[&h])).collect()).collect();
+        (face, own)
     }
 
     /// The half edge of the opposite seam at the same place, and how far it must be moved in (u, v) to lie on it.

@@ -57,8 +57,8 @@ pub enum CutFault {
         cutter: Origin,
         /// The surface.
         surface: Origin,
-        /// Where it ends.
-        at: DVec3,
+        /// Its ends that lie inside; none where it runs from border to border and still divides nothing.
+        ends: Vec<DVec3>,
     },
     /// E660 `keep-off`: the point that says which part to keep is not on the surface, or on a cut.
     KeepOff {
@@ -114,18 +114,19 @@ impl Describe for CutFault {
             .at(*a, "this surface")
             .at(*b, "and this one")
             .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
-            Self::CutOpen { cutter, surface, at } => Report::new(
-                "E659",
-                format!(
-                    "{} cuts nothing off {}: it ends inside at {}",
-                    say.quoted(*cutter, "a curve"),
-                    say.quoted(*surface, "the surface"),
-                    say.point(*at)
-                ),
-            )
-            .at(*cutter, "ends inside")
-            .at(*surface, "this surface")
-            .help("a curve divides a surface when it runs from border to border, or closes, alone or with others"),
+            Self::CutOpen { cutter, surface, ends } => {
+                let places: Vec<String> = ends.iter().map(|p| say.point(*p)).collect();
+                let why = match ends.len() {
+                    0 => "both ends are on the border, and what lies beside it goes on round the surface".to_owned(),
+                    1 => format!("it ends inside at {}", places[0]),
+                    _ => format!("both its ends lie inside, at {}", places.join(" and ")),
+                };
+                let (which, whole) = (say.quoted(*cutter, "a curve"), say.quoted(*surface, "the surface"));
+                Report::new("E659", format!("{which} cuts nothing off {whole}: {why}"))
+                    .at(*cutter, if ends.is_empty() { "divides nothing" } else { "ends inside" })
+                    .at(*surface, "this surface")
+                    .help("a curve divides a surface when it runs from border to border, or closes, alone or with others")
+            }
             Self::KeepOff { surface, at, off, on, tolerance } => {
                 let (p, name) = (say.point(*at), say.quoted(*surface, "the surface"));
                 let report = match on {
