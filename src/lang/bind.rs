@@ -239,29 +239,27 @@ impl Cx<'_> {
     }
 
     /// Where the arguments of a failed call stand, by parameter name.
-    pub(super) fn blame(
-        &self,
-        code: Code<'_>,
-        id: ExprId,
-        builtin: &'static Builtin,
-        first: bool,
-        args: &[Arg],
-    ) -> Vec<(&'static str, Span)> {
+    pub(super) fn blame(&self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: bool, args: &[Arg]) -> Blame {
         let params: Vec<&str> = builtin.params.iter().map(|p| p.name).collect();
         let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.names.text(n))).collect();
         let found = places(&params, rest_of(builtin), usize::from(first), &names);
         let before = first.then(|| builtin.params.first().map(|p| (p.name, code.span(before_dot(code, id))))).flatten();
-        let mut blame: Vec<(&'static str, Span)> = before.into_iter().collect();
+        let whole: Vec<(&'static str, Span)> = before.into_iter().collect();
+        let mut blame = Blame { items: whole.clone(), whole };
         for (arg, place) in args.iter().zip(found) {
             let Some(k) = place else { continue };
             let name = builtin.params[k].name;
-            match code.expr(arg.value) {
-                // Members of a list written out are blamed one by one.
-                Expr::List(items) if matches!(builtin.params[k].ty, Ty::Rest(_)) => {
-                    blame.extend(items.iter().map(|i| (name, code.span(*i))));
-                }
-                _ => blame.push((name, code.span(arg.value))),
+            let members: Vec<(&'static str, Span)> = match code.expr(arg.value) {
+                Expr::List(items) => items.iter().map(|i| (name, code.span(*i))).collect(),
+                _ => vec![(name, code.span(arg.value))],
+            };
+            // Of a list written out where a row is wanted the members are arguments.
+            if matches!(builtin.params[k].ty, Ty::Rest(_)) {
+                blame.whole.extend(&members);
+            } else {
+                blame.whole.push((name, code.span(arg.value)));
             }
+            blame.items.extend(members);
         }
         blame
     }
@@ -277,6 +275,15 @@ pub(super) fn positional(builtin: &Builtin, k: usize) -> String {
         Some(param) if param.name == "by" => format!("`by`, the {} argument of `{}`,", PLACES.get(k).unwrap_or(&"last"), builtin.name),
         _ => format!("the {} argument of `{}`", PLACES.get(k).unwrap_or(&"last"), builtin.name),
     }
+}
+
+/// Where the arguments of a call stand, by parameter name.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Blame {
+    /// Each argument.
+    pub whole: Vec<(&'static str, Span)>,
+    /// The same with the members of lists written out one by one.
+    pub items: Vec<(&'static str, Span)>,
 }
 
 fn quoted(name: &str) -> String {

@@ -125,7 +125,8 @@ impl Cx<'_> {
             Err(Stop::Fault(crate::base::fault::Fault::Interrupted)) => Err(crate::base::fault::Fault::Interrupted.into()),
             Err(Stop::Fault(fault)) => {
                 let blame = self.blame(code, id, builtin, before.is_some(), args);
-                let diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
+                let mut diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
+                self.advise(&fault, (code, id), &blame, &mut diagnostic);
                 let of_value = matches!(fault, crate::base::fault::Fault::Value(_));
                 let diagnostic = self.by_place(code, (diagnostic, of_value), (builtin, before.as_ref(), args));
                 self.sink.push(diagnostic);

@@ -115,7 +115,7 @@ codes! {
     now "N608", "transfinite-oscillation", "a transfinite surface swings beyond its curves";
     now "N609", "end-trimmed", "the end of a curve was trimmed to the border";
     now "E611", "loop-self-intersects", "a loop crosses itself";
-    now "E612", "loop-outside", "a hole lies outside its outer loop";
+    now "E612", "loop-outside", "a hole lies outside its outer loop or cuts it";
     now "E613", "loop-outside-surface", "a loop leaves its surface";
     now "W614", "sliver-patch", "a patch is a sliver";
     now "N615", "shell-open", "a shell has free edges";
@@ -150,6 +150,9 @@ codes! {
     now "E658", "meets-without-end", "unbounded planes meet in a line without end";
     now "E659", "cut-open", "a curve that should divide a surface ends inside it";
     now "E660", "keep-off", "the point to keep is in no part of the surface";
+    now "E661", "loops-meet", "two holes of a face meet";
+    now "E662", "hole-in-hole", "a hole lies inside another one";
+    now "E663", "curve-given-twice", "one curve is given twice where each is wanted once";
     now "E666", "imprint-overlap", "faces that are to be joined cover each other";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
     now "E672", "set-in-part", "a set would hold a part of a curve";

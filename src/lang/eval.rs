@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::bind::Blame;
 use super::cx::{Cx, Stop};
 use super::diag::Diagnostic;
 use super::memory::Asked;
@@ -374,7 +375,7 @@ impl Cx<'_> {
         match stop {
             Stop::Fault(Fault::Interrupted) => Stop::Broken,
             Stop::Fault(fault) => {
-                let diagnostic = self.locate(&fault, code, span, &[]);
+                let diagnostic = self.locate(&fault, code, span, &Blame::default());
                 self.sink.push(diagnostic);
                 Stop::Failed
             }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::bind::Blame;
 use super::cx::Cx;
 use super::diag::{Diagnostic, FileId, Label};
 use super::eval::Code;
@@ -113,7 +114,7 @@ impl Cx<'_> {
             Some(module) if (site.declaration as usize) < module.script.declarations.len() => {
                 let nodes = &module.script.declarations[site.declaration as usize].nodes;
                 let code = Code { nodes, module: site.module, declaration: site.declaration };
-                self.locate(fault, code, self.machine_span(code), &[])
+                self.locate(fault, code, self.machine_span(code), &Blame::default())
             }
             _ => {
                 let find = |subject| match subject {
@@ -126,14 +127,14 @@ impl Cx<'_> {
     }
 
     /// A fault as a diagnostic with places: entities where they were made, arguments by `blame`, the rest at `span`.
-    pub(super) fn locate(&self, fault: &Fault, code: Code<'_>, span: Span, blame: &[(&'static str, Span)]) -> Diagnostic {
+    pub(super) fn locate(&self, fault: &Fault, code: Code<'_>, span: Span, blame: &Blame) -> Diagnostic {
         let file = self.machine.at(code.module).file;
         let find = |subject| match subject {
             Subject::Entity(origin) => self.span_of(origin),
-            Subject::Argument(name) => blame.iter().find(|b| b.0 == name).map(|b| (file, b.1)).or(Some((file, span))),
+            Subject::Argument(name) => blame.whole.iter().find(|b| b.0 == name).map(|b| (file, b.1)).or(Some((file, span))),
             Subject::Item(name, k) => {
-                let mut items = blame.iter().filter(|b| b.0 == name).map(|b| (file, b.1));
-                items.clone().nth(k).or(items.next()).or(Some((file, span)))
+                let of = |list: &[(&'static str, Span)], k: usize| list.iter().filter(|b| b.0 == name).nth(k).map(|b| (file, b.1));
+                of(&blame.items, k).or(of(&blame.whole, 0)).or(Some((file, span)))
             }
             Subject::Call => Some((file, span)),
         };

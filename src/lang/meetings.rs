@@ -1,5 +1,6 @@
 //! Where things meet, and the runs of curves between such places: `a & b` and `c[A..B]`.
 
+use super::bind::Blame;
 use super::cx::{Cx, Stop};
 use super::eval::Code;
 use super::std::kinds::{Cutter, Meeting};
@@ -154,7 +155,7 @@ impl Cx<'_> {
         match chain.slice(f0, f1, &tolerance) {
             Ok(slice) => Ok(Value::Curve(slice.with_origin(origin))),
             Err(fault) => {
-                let diagnostic = self.locate(&fault, code, code.span(id), &[]);
+                let diagnostic = self.locate(&fault, code, code.span(id), &Blame::default());
                 self.sink.push(diagnostic);
                 Err(Stop::Failed)
             }
@@ -192,7 +193,7 @@ impl Cx<'_> {
             }
         };
         result.map_err(|fault| {
-            let diagnostic = self.locate(&fault, code, code.span(id), &[]);
+            let diagnostic = self.locate(&fault, code, code.span(id), &Blame::default());
             self.sink.push(diagnostic);
             Stop::Failed
         })

@@ -19,6 +19,7 @@ mod faults;
 pub mod fmt;
 mod import_part;
 mod imports;
+mod joining;
 mod keys;
 mod later;
 mod load;

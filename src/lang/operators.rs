@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::bind::Blame;
 use super::cx::{Cx, Stop};
 use super::eval::Code;
 use super::room::LIST_COST;
@@ -94,8 +95,10 @@ impl Cx<'_> {
     fn at_operator(&mut self, at: At<'_>, stop: Stop) -> Stop {
         match stop {
             Stop::Fault(fault) => {
-                let blame = [("a", at.code.span(at.a)), ("b", at.code.span(at.b))];
-                let diagnostic = self.locate(&fault, at.code, at.code.span(at.id), &blame);
+                let sides = vec![("a", at.code.span(at.a)), ("b", at.code.span(at.b))];
+                let blame = Blame { items: sides.clone(), whole: sides };
+                let mut diagnostic = self.locate(&fault, at.code, at.code.span(at.id), &blame);
+                self.advise(&fault, (at.code, at.id), &blame, &mut diagnostic);
                 self.sink.push(diagnostic);
                 Stop::Failed
             }

@@ -87,6 +87,30 @@ pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
     best
 }
 
+/// Places of the first two of some chains that run over the same stretches, in either direction.
+pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, usize)> {
+    let ends = |c: &Chain| (c.start(), c.end());
+    let same_ends = |a: &Chain, b: &Chain| {
+        let ((a0, a1), (b0, b1)) = (ends(a), ends(b));
+        let same = |p, q| tolerance.same_point(p, q);
+        same(a0, b0) && same(a1, b1) || same(a0, b1) && same(a1, b0)
+    };
+    let run = |x: &Run, y: &Run| {
+        let span = |r: &Run| (r.s0.min(r.s1), r.s0.max(r.s1));
+        let ((a0, a1), (b0, b1)) = (span(x), span(y));
+        (a0 - b0).abs() <= tolerance.point && (a1 - b1).abs() <= tolerance.point && same_curve(&x.curve, &y.curve)
+    };
+    let forwards = |a: &Chain, b: &Chain| a.runs().iter().zip(b.runs()).all(|(x, y)| run(x, y));
+    let backwards = |a: &Chain, b: &Chain| a.runs().iter().zip(b.runs().iter().rev()).all(|(x, y)| run(x, y));
+    let same = |a: &Chain, b: &Chain| {
+        a.runs().len() == b.runs().len()
+            && (a.length() - b.length()).abs() <= tolerance.point
+            && same_ends(a, b)
+            && (forwards(a, b) || backwards(a, b))
+    };
+    (1..chains.len()).find_map(|b| (0..b).find(|&a| same(&chains[a], &chains[b])).map(|a| (a, b)))
+}
+
 /// The arc length of a run that stands for a place of its curve: inside within the tolerance, on any turn.
 fn on_run(run: &Run, s: f64, tolerance: &Tolerance) -> Option<f64> {
     let (lo, hi, length) = (run.s0.min(run.s1), run.s0.max(run.s1), run.curve.length());

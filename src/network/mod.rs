@@ -22,7 +22,7 @@ pub use chain::{Chain, Run};
 pub use flow::{Flow, FlowFault, FlowKind, FlowOptions, NodeList};
 pub use flow_chains::{ChainFlow, of_chains};
 pub use graph::{CurveId, Input, Link, LinkId, LinkMap, Network, Node, NodeId};
-pub use meet::{Meeting, meet, meet_once};
+pub use meet::{Meeting, given_twice, meet, meet_once};
 pub use rings::rings;
 pub use snap::{Move, SnapEnd, snap};
 pub use spread::ChainSpread;

@@ -18,11 +18,11 @@ use super::shape::Shape;
 use super::trilateral::Trilateral;
 use super::weights::{Axis, Rule};
 use crate::base::bbox::Box3;
-use crate::base::fault::{CurveEnd, CurveFault, Fault, NetworkFault, Result, SurfaceFault};
+use crate::base::fault::{CurveEnd, CurveFault, Fault, LoopFault, LoopRole, NetworkFault, Result, SurfaceFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{BESIDE, Tolerance};
-use crate::geometry::{Hit, Motion, self_intersect};
+use crate::geometry::{Curve, Hit, Kind, Motion, self_intersect};
 use crate::network::{Chain, Flow, FlowKind, meet};
 
 /// A frame in space: o + u·eu + v·ev, the vectors spanning the box of a boundary (or unit vectors, unbounded).
@@ -100,7 +100,7 @@ pub(super) type Step = (Chain, bool);
 /// Returns warnings too (W614). Fails with E502 when the curves do not close, E611 when they cross, E655 when they
 /// leave their plane.
 pub fn bounded(chains: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    let walk = walked(chains, tolerance)?;
+    let walk = walked(chains, LoopRole::Plane, tolerance)?;
     simple(&walk, tolerance)?;
     let frame = fitted(&walk, tolerance)?;
     let sides = if (2..=4).contains(&walk.len()) { walk.clone() } else { between_corners(&walk, origin, tolerance)? };
@@ -123,7 +123,7 @@ pub(super) fn unmapped(surface: &Surface, tolerance: &Tolerance) -> Result<Surfa
     if parts.kind != SurfaceKind::Plane || parts.domain == Domain::Loop || parts.chains.is_empty() {
         return Ok(surface.clone());
     }
-    let walk = walked(&parts.chains, tolerance)?;
+    let walk = walked(&parts.chains, LoopRole::Plane, tolerance)?;
     let frame = fitted(&walk, tolerance)?;
     let flat = around(&walk, frame, parts.origin);
     Ok(if parts.flipped { flat.flipped() } else { flat })
@@ -154,12 +154,14 @@ fn end((chain, against): &Step) -> DVec3 {
     if *against { chain.start() } else { chain.end() }
 }
 
-/// The chains in the order of a walk round the boundary, the first one forwards; E502 where it does not go on.
-pub(super) fn walked(chains: &[Chain], tolerance: &Tolerance) -> Result<Vec<Step>> {
+/// The chains in the order of a walk round the boundary, the first one forwards; E502 where it does not go on or some of several
+/// curves are closed by themselves, E663 for a curve that is given twice.
+pub(super) fn walked(chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<Vec<Step>> {
     let mut left: Vec<&Chain> = chains.iter().collect();
     if left.is_empty() {
         return Err(SurfaceFault::FlowUnknown { curves: Vec::new(), why: crate::base::fault::NoFlow::TooFewCurves { given: 0 } }.into());
     }
+    once_each(chains, role, tolerance)?;
     let mut walk: Vec<Step> = vec![(left.remove(0).clone(), false)];
     let open = |from: &Step, to: CurveEnd| {
         let a = CurveEnd { of: from.0.origin(), last: !from.1, at: end(from) };
@@ -180,11 +182,41 @@ pub(super) fn walked(chains: &[Chain], tolerance: &Tolerance) -> Result<Vec<Step
         walk.push((left.remove(next).clone(), against));
     }
     let (first, last) = (&walk[0], &walk[walk.len() - 1]);
-    if !tolerance.same_point(end(last), start(first)) {
-        return Err(open(last, CurveEnd { of: first.0.origin(), last: false, at: start(first) }));
+    match tolerance.same_point(end(last), start(first)) {
+        true => Ok(walk),
+        false if walk.len() == 1 => Err(open_alone(&first.0, role, tolerance)),
+        false => Err(open(last, CurveEnd { of: first.0.origin(), last: false, at: start(first) })),
     }
-    Ok(walk)
 }
+
+/// Fails where curves of one loop cannot follow each other whatever their order: one is given twice, or closed among others.
+fn once_each(chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<()> {
+    if let Some(places) = crate::network::given_twice(chains, tolerance) {
+        let (argument, hole) = match role {
+            LoopRole::Plane => ("curves", None),
+            LoopRole::Outer => ("outer", None),
+            LoopRole::Hole(k) => ("holes", Some(k)),
+        };
+        return Err(LoopFault::Twice { of: chains[places.1].origin(), argument, places, hole }.into());
+    }
+    let (mut closed, open): (Vec<&Chain>, Vec<&Chain>) = chains.iter().partition(|c| c.is_closed(tolerance));
+    if chains.len() == 1 || closed.is_empty() {
+        return Ok(());
+    }
+    closed.sort_by(|a, b| b.bbox().diagonal().total_cmp(&a.bbox().diagonal()));
+    let origins = |list: Vec<&Chain>| list.into_iter().map(Chain::origin).collect();
+    Err(LoopFault::ClosedAmong { given: origins(chains.iter().collect()), closed: origins(closed), open: origins(open), role }.into())
+}
+
+/// E502 for one curve that does not come back to its start.
+fn open_alone(chain: &Chain, role: LoopRole, tolerance: &Tolerance) -> Fault {
+    let closes = chain.whole_curve().map(Curve::kind).filter(|k| CLOSABLE.contains(k)).map(Kind::name);
+    let ends = (chain.start(), chain.end());
+    LoopFault::Open { of: chain.origin(), ends, closes, role, together: Vec::new(), tolerance: tolerance.point }.into()
+}
+
+/// Curves whose constructors take `closed:`.
+const CLOSABLE: [Kind; 3] = [Kind::Polyline, Kind::Spline, Kind::Bspline];
 
 /// Samples of a step in walking order, its last point left out: enough for a plane and for how far a curve leaves it.
 fn samples((chain, against): &Step) -> Vec<DVec3> {

@@ -70,7 +70,12 @@ pub(super) fn strands(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) 
     Ok(all)
 }
 
-fn of_border(base: &Surface, (border, course): (Border, Course), opposite: Option<Border>, tolerance: &Tolerance) -> Result<Strand> {
+pub(super) fn of_border(
+    base: &Surface,
+    (border, course): (Border, Course),
+    opposite: Option<Border>,
+    tolerance: &Tolerance,
+) -> Result<Strand> {
     let along = |side: &Side| match side {
         Side::Chain { chain, from, to } => super::iso::between(chain, *from, *to, tolerance).map(Some),
         _ => Ok(None),

@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::closest::closest;
 use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
-use super::lone::{Keep, lone};
 use super::plane;
 use super::pull::{Course, Pull, foot};
 use super::quick::Quick;
 use super::shape::Shape;
-use crate::base::bbox::Box3;
-use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, LoopRole, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::predicates::{Side as Within, point_in_polygon};
 use crate::base::tolerance::Tolerance;
@@ -52,7 +51,8 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    fn polygon(&self) -> Vec<DVec2> {
+    /// Its corners in (u, v), all on its curves.
+    pub fn polygon(&self) -> Vec<DVec2> {
         self.courses
             .iter()
             .flat_map(|c| {
@@ -74,9 +74,15 @@ impl Walk {
         Self { borders, courses, ..self }
     }
 
-    fn shifted(self, by: DVec2) -> Self {
+    /// Moved in (u, v).
+    pub fn shifted(self, by: DVec2) -> Self {
         let courses = self.courses.iter().map(|c| c.shifted(by)).collect();
         Self { courses, ..self }
+    }
+
+    /// The same once more.
+    pub fn copied(&self) -> Self {
+        Self { borders: self.borders.clone(), courses: self.courses.clone(), chains: self.chains.clone() }
     }
 }
 
@@ -88,57 +94,6 @@ fn area2(polygon: &[DVec2]) -> f64 {
 /// Whether a place is inside a polygon or on it.
 pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
     point_in_polygon(p, polygon) != Within::Outside
-}
-
-/// The part of a surface inside `outer` (the whole of it when empty) and outside `holes`, each given by the curves of a loop
-/// in any order and direction. Where a surface closes loops may run over seams and round poles.
-///
-/// Fails with E502 when a loop does not close, E611 when it crosses itself, E612 when a hole is not inside the outer loop or
-/// a loop goes round the surface and bounds nothing alone, E613 when a loop leaves the surface.
-pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
-    let mut base = plane::unmapped(base, tolerance)?;
-    if base.domain() == Domain::Unbounded {
-        // As much of it as the loop needs, with the frame that planes have.
-        base = plane::over(&base, outer.iter().map(Chain::bbox).fold(Box3::EMPTY, Box3::union));
-    }
-    let goes_round = |base: &Surface, chains: &[Chain]| -> Fault {
-        let of = chains.first().map_or(origin, Chain::origin);
-        let at = chains.first().map_or(DVec3::ZERO, Chain::start);
-        SurfaceFault::LoopGoesRound { of, surface: base.origin(), trimming: origin, at }.into()
-    };
-    let mut walks = Vec::new();
-    if !outer.is_empty() {
-        let walk = around(&base, outer, tolerance)?;
-        if walk.winds(&base) {
-            base = lone(&base, outer, Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(&base, outer))?;
-        } else {
-            walks.push(walk);
-        }
-    }
-    if walks.is_empty() {
-        walks.extend(natural(&base, tolerance)?);
-    }
-    let bounds = walks.first().map(Walk::polygon).unwrap_or_default();
-    let mut apart = Vec::new();
-    for chains in holes {
-        let walk = around(&base, chains, tolerance)?;
-        let polygon = walk.polygon();
-        let within = |by: DVec2| bounds.is_empty() || polygon.iter().all(|p| inside(&bounds, *p + by));
-        if let Some(by) = shifts(&base).into_iter().find(|by| within(*by)).filter(|_| !walk.winds(&base)) {
-            walks.push(walk.shifted(by));
-        } else if shifts(&base).len() > 1 && walk.lies_within(&base, &bounds) {
-            apart.push(chains);
-        } else {
-            let outside = polygon.iter().find(|p| !inside(&bounds, **p)).unwrap_or(&polygon[0]);
-            let (of, at) = (chains.first().map_or(origin, Chain::origin), base.point(outside.x, outside.y));
-            return Err(SurfaceFault::LoopOutside { of, trimming: origin, at }.into());
-        }
-    }
-    let mut made = assembled(&base, walks, origin)?;
-    for chains in apart {
-        made = lone(&made, chains, Keep::Outside, origin, tolerance)?.ok_or_else(|| goes_round(&base, chains))?;
-    }
-    Ok(made)
 }
 
 /// A surface with these loops, the outer one first.
@@ -201,15 +156,15 @@ pub(super) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>
 }
 
 /// A loop of curves on the surface.
-fn around(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Result<Walk> {
-    let steps = plane::walked(chains, tolerance)?;
+pub(super) fn around(base: &Surface, chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<Walk> {
+    let steps = plane::walked(chains, role, tolerance)?;
     plane::simple(&steps, tolerance)?;
     followed(base, &steps, tolerance)
 }
 
 /// The same in (u, v).
 fn followed(base: &Surface, steps: &[plane::Step], tolerance: &Tolerance) -> Result<Walk> {
-    let first = super::closest::closest(base, plane::start(&steps[0]));
+    let first = closest(base, plane::start(&steps[0]));
     let mut place = DVec2::new(first.uv.0, first.uv.1);
     let mut walk = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
     for (chain, against) in steps {

@@ -266,8 +266,8 @@ fn duplicate_points(fault: &CurveFault, say: &dyn Say) -> Report {
         format!("are {} apart, not above the model's tolerance of {}", say.length(*distance), say.length(*tolerance))
     };
     let report = Report::new("E403", format!("points {index} and {next} of {name} {how}, at {}", say.point(*at)))
-        .label(Subject::Item("points", next), format!("same as point {index}"))
-        .at(*of, "through these points")
+        .label(Subject::Item("points", *index), format!("point {index}"))
+        .label(Subject::Item("points", next), format!("point {next}, the same"))
         .edit(Subject::Argument("points"), Edit::Member(next, None));
     match (next, *tolerance == 0.0) {
         (0, _) => report.help("leave the last point out: a closed curve returns to its first by itself"),

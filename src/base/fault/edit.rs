@@ -16,6 +16,8 @@ pub enum Edit {
     Set(&'static str, String),
     /// This text in the place of a member of the list that the subject is, counted from 0; `None`: the member goes.
     Member(usize, Option<String>),
+    /// The call that the subject is takes this argument too, behind the others.
+    Add(String),
     /// The argument that the subject is goes, with its name and comma.
     DropArgument,
     /// The setting whose value the subject is goes; with the last setting of a clause goes the clause.

@@ -10,6 +10,7 @@ mod curves;
 mod cut;
 mod edit;
 mod files;
+mod loops;
 mod mesh;
 mod network;
 mod surface;
@@ -24,6 +25,7 @@ pub use curves::{CurveFault, KnotFault};
 pub use cut::CutFault;
 pub use edit::Edit;
 pub use files::{FileFault, Malformed};
+pub use loops::{LoopFault, LoopRole};
 pub use mesh::MeshFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use surface::{NoFlow, SurfaceFault, Touching};
@@ -45,6 +47,8 @@ pub enum Fault {
     Network(Box<NetworkFault>),
     /// Family 6: surfaces and model.
     Surface(Box<SurfaceFault>),
+    /// Family 6: loops of faces and the curves of a loop.
+    Loop(Box<LoopFault>),
     /// Family 6: surfaces that meet and what they cut.
     Cut(Box<CutFault>),
     /// Family 7: meshes.
@@ -195,6 +199,7 @@ impl Describe for Fault {
             Self::Curve(f) => f.describe(say),
             Self::Network(f) => f.describe(say),
             Self::Surface(f) => f.describe(say),
+            Self::Loop(f) => f.describe(say),
             Self::Cut(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
@@ -219,6 +224,7 @@ impl Fault {
             (Self::Curve(a), Self::Curve(b)) => same(&**a, &**b),
             (Self::Network(a), Self::Network(b)) => same(&**a, &**b),
             (Self::Surface(a), Self::Surface(b)) => same(&**a, &**b),
+            (Self::Loop(a), Self::Loop(b)) => same(&**a, &**b),
             (Self::Cut(a), Self::Cut(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
@@ -249,6 +255,7 @@ from_family!(
     Curve(CurveFault),
     Network(NetworkFault),
     Surface(SurfaceFault),
+    Loop(LoopFault),
     Cut(CutFault),
     Mesh(MeshFault),
     File(FileFault)

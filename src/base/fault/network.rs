@@ -448,7 +448,9 @@ fn chain_broken(a: &CurveEnd, b: &CurveEnd, (reversed_fits, snaps): (bool, bool)
     .at(b.of, "starts elsewhere")
     .note(tolerance_note(tolerance, say));
     let name = say.name(b.of);
-    if reversed_fits {
+    if let (true, Some((put, from, to))) = (reversed_fits, turned_run(&name)) {
+        report.help(format!("`{put}` runs from {from} to {to}")).edit(Subject::Call, Edit::Instead { put, of: name })
+    } else if reversed_fits {
         report
             .help(if name.is_empty() {
                 "run the second part backwards, with `-` before it".to_owned()
@@ -462,6 +464,14 @@ fn chain_broken(a: &CurveEnd, b: &CurveEnd, (reversed_fits, snaps): (bool, bool)
         let wanted = typed(say, round_above(gap));
         report.help(format!("end both at one node, or declare `snap {wanted}`")).edit(Subject::Call, Edit::Declare("snap", wanted))
     }
+}
+
+/// `eave[A..B]` for `eave[B..A]`, with `A` and `B`.
+fn turned_run(typed: &str) -> Option<(String, String, String)> {
+    let (curve, run) = typed.strip_suffix(']')?.rsplit_once('[')?;
+    let (from, to) = run.split_once("..")?;
+    let (from, to) = (from.trim(), to.trim());
+    (!from.is_empty() && !to.is_empty()).then(|| (format!("{curve}[{to}..{from}]"), to.to_owned(), from.to_owned()))
 }
 
 fn chain_repeats(a: Origin, b: Origin, stretch: (DVec3, DVec3), say: &dyn Say) -> Report {

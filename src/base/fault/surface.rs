@@ -268,15 +268,6 @@ pub enum SurfaceFault {
         /// A place on both.
         at: DVec3,
     },
-    /// E612: a hole that is not inside its outer loop.
-    LoopOutside {
-        /// The hole.
-        of: Origin,
-        /// The trimming.
-        trimming: Origin,
-        /// A point of it.
-        at: DVec3,
-    },
     /// E612: a loop of a closed surface with border on both sides of it.
     LoopGoesRound {
         /// The loop.
@@ -589,13 +580,6 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*surface, "one polynomial through all curves")
         .help("`coons` with the same curves stays between them"),
-        F::LoopOutside { of, trimming, at } => {
-            let which = say.quoted(*of, "the hole");
-            Report::new("E612", format!("{which} is not inside the outer loop: its point {} is outside, or crosses it", say.point(*at)))
-                .at(*trimming, "trimmed here")
-                .at(*of, "this hole")
-                .help("a hole lies wholly inside; where it cuts the border, make one outer loop of both")
-        }
         F::LoopGoesRound { of, surface, trimming, at } => {
             let (which, whose) = (say.quoted(*of, "the loop"), say.quoted(*surface, "the surface"));
             Report::new(
@@ -842,7 +826,6 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::TransfiniteOscillation { .. }
         | F::EndTrimmed { .. }
         | F::LoopSelfIntersects { .. }
-        | F::LoopOutside { .. }
         | F::LoopGoesRound { .. }
         | F::LoopOutsideSurface { .. }
         | F::LoopOutsideParameters { .. }

@@ -7,11 +7,13 @@ use glam::DVec3;
 use super::curves::unit;
 use super::kinds::{Cutter, Trimmed};
 use super::transforms::axis_line;
-use crate::base::fault::{Fault, ValueFault};
+use crate::base::fault::{Fault, LoopFault, ValueFault};
+use crate::base::tolerance::Tolerance;
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Angle, Axis, Direction, Length, Point, Rest};
 use crate::lang::value::{Plane, Value};
+use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow};
 use crate::surface::coons::{self, Grid, Method, Settings};
 use crate::surface::nurbs::{self, Net};
@@ -62,6 +64,18 @@ struct Curves {
 }
 
 impl Curves {
+    /// E663 for a curve that stands twice in one of the lists.
+    fn each_once(&self, tolerance: &Tolerance) -> Result<(), Stop> {
+        let lists = [("curves", Some(&self.row.0)), ("u", self.u.as_ref()), ("v", self.v.as_ref())];
+        for (argument, list) in lists {
+            let Some(list) = list else { continue };
+            if let Some(places) = network::given_twice(list, tolerance) {
+                return Err(LoopFault::Twice { of: list[places.1].origin(), argument, places, hole: None }.into());
+            }
+        }
+        Ok(())
+    }
+
     /// All curves in order of writing, each once, and the places of those along u and v.
     fn listed(self) -> (Vec<Chain>, Vec<usize>, Vec<usize>) {
         let mut all = self.row.0;
@@ -94,6 +108,7 @@ struct Said {
 /// A surface over a grid of curves, its flow found.
 fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> {
     let tolerance = cx.tolerance()?;
+    curves.each_once(&tolerance)?;
     let (chains, along_u, along_v) = curves.listed();
     let options = ChainFlow { along_u, along_v, pole: said.pole.map(|p| p.0), closed: said.closed };
     let (flow, nodes) = network::of_chains(&chains, &options, &tolerance)?;
@@ -113,6 +128,15 @@ fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, S
     let tolerance = cx.tolerance()?;
     surface.review(&tolerance).iter().for_each(|warning| cx.say(warning));
     Ok(surface)
+}
+
+/// Where a part of a surface stands among others: its centre in whole tolerances, which rounding does not change, and its area.
+fn by_centre(part: Surface, tolerance: &Tolerance) -> ([i64; 3], f64, Surface) {
+    // Centres often lie on round numbers: the steps between whole tolerances do not.
+    const OFF: f64 = 0.37;
+    let sheet = measure::sheet(std::slice::from_ref(&part));
+    let whole = |x: f64| (x / tolerance.point + OFF).floor() as i64;
+    (sheet.centroid.to_array().map(whole), sheet.area, part)
 }
 
 fn rows(net: Vec<Vec<Point>>) -> Vec<Vec<DVec3>> {
@@ -269,7 +293,8 @@ builtins! {
     ///
     /// Curves of a loop come in any order and direction and must lie on the surface within the tolerance. Without `outer:`
     /// the surface's own border is the outer loop. `by:` takes curves on the surface, or surfaces that it meets, which
-    /// divide it from border to border or in closed loops; the part with the point `keep:` stays.
+    /// divide it from border to border or in closed loops; the part with the point `keep:` stays (`split` has all of them).
+    /// Holes lie apart from each other and inside the outer loop, or touch in one point; those that the surface has stay.
     /// ```loft
     /// curve rim = circle(center: (0, 0, 0), radius: 1m)
     /// curve eye = circle(center: (300mm, 0, 0), radius: 200mm)
@@ -321,6 +346,31 @@ builtins! {
         let cutters = crate::lang::meetings::cutters(cx, &whole, by)?;
         let surface = crate::surface::divide(&whole, &cutters, keep.0, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
+    };
+
+    /// All parts into which curves or surfaces divide a surface.
+    ///
+    /// They are the parts of which `trim(s, by:, keep:)` keeps one, in the order of their centres along x, then y, then z,
+    /// whatever the order of the cutters; their areas add up to that of the surface.
+    /// ```loft
+    /// surface floor = plane(circle(center: (0, 0, 0), radius: 1m))
+    /// curve wall = line((-1m, 0, 0), (1m, 0, 0))
+    /// let rooms = split(floor, by: wall)
+    /// let n = len(rooms) // => 2
+    /// surface south = rooms[0]
+    /// ```
+    fn split(
+        /// The surface that is divided.
+        s: Surface,
+        /// A curve, surface, shell or plane that cuts, or a list of them.
+        by: Cutters,
+    ) -> Vec<Surface> = |cx, s, by| {
+        let tolerance = cx.tolerance()?;
+        let cutters = crate::lang::meetings::cutters(cx, &s, by)?;
+        let parts = crate::surface::split(&s, &cutters, cx.origin(), &tolerance)?;
+        let mut keyed: Vec<([i64; 3], f64, Surface)> = parts.into_iter().map(|part| by_centre(part, &tolerance)).collect();
+        keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        keyed.into_iter().map(|(_, _, part)| finished(cx, part, &[])).collect()
     };
 
     /// Surface that a curve leaves when it is moved along a straight way.

@@ -68,6 +68,7 @@ impl Text<'_> {
             Edit::Set(key, value) => self.value_of(self.declaration(at)?, key).map(|span| (span, value.clone())),
             Edit::Member(k, Some(text)) => self.member(at, *k).map(|tokens| (self.span(tokens), text.clone())),
             Edit::Member(k, None) => Some((self.without(self.member(at, *k)?), String::new())),
+            Edit::Add(argument) => self.added(at, argument),
             Edit::DropArgument => Some((self.without(self.argument(at)?), String::new())),
             Edit::DropSetting => Some((self.setting(self.first(at)?)?, String::new())),
             Edit::DropRule(key) => Some((self.rule(at, *key)?, String::new())),
@@ -142,6 +143,15 @@ impl Text<'_> {
             return None;
         }
         self.inside(at).and_then(once).or_else(|| once(self.declaration(at)?))
+    }
+
+    /// An argument more before the bracket that closes a call.
+    fn added(&self, call: Span, argument: &str) -> Option<(Span, String)> {
+        let (_, last) = self.inside(call)?;
+        let at = self.tokens.starts[last];
+        let bare = matches!(self.kind(last.checked_sub(1)?), Some(Kind::OpenRound | Kind::Comma));
+        let text = if bare { argument.to_owned() } else { format!(", {argument}") };
+        (self.kind(last) == Some(Kind::CloseRound)).then_some((Span { start: at, end: at }, text))
     }
 
     /// How deep the brackets are open behind each token, from the first one.

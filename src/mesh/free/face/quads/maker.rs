@@ -116,7 +116,9 @@ impl Maker<'_> {
         };
         let mut gardener = Gardener::new(web, ground, cells, self.fit.care);
         gardener.flip_all();
-        let web = gardener.web;
+        let mut web = gardener.web;
+        // Where loops touch, nodes may have grown through the point into a hole.
+        web.compact();
         job.go_on()?;
         let normal: Vec<DVec3> = web.xy.iter().map(|xy| ground.spot(*xy).normal()).collect();
         let flat = Alone::flat(&web, self.halves);
