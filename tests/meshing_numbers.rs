@@ -13,6 +13,7 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::line;
 use lofting::mesh::Mesh;
+use lofting::mesh::chart::Shape;
 use lofting::mesh::free::ground::{Even, Ground, Spot};
 use lofting::mesh::free::quads::net::Net;
 use lofting::mesh::free::quads::smooth::Smoother;
@@ -288,4 +289,189 @@ fn a_node_goes_to_the_weighted_centroid_of_the_reference() {
     assert_eq!(net.p.len(), middle + 1);
     Smoother::new(&mut net, &Flat, &Even(1.0)).smooth(1, &Job::new()).unwrap();
     assert!(net.p[middle].distance(point(&fact["new_position"])) < 1e-12, "{}", net.p[middle]);
+}
+
+/// A script with the end of its line moved: no count may change while it moves by less than half the tolerance.
+fn keeps_counts(text: &str) {
+    let nodes = |x: f64, y: f64| -> Vec<Vec<DVec3>> {
+        let moved = text.replace("DX", &format!("{x:e}")).replace("DY", &format!("{y:e}"));
+        meshes(&moved).iter().map(|m| m.nodes.clone()).collect()
+    };
+    let plain = nodes(0.0, 0.0);
+    for (x, y) in [(4.9, 0.0), (-4.9, 0.0), (0.0, 4.9), (0.0, -4.9), (3.4, 3.4), (-3.4, 3.4), (0.01, 0.0), (0.0, -0.01)] {
+        let found = nodes(x * 1e-7, y * 1e-7);
+        for (a, b) in plain.iter().zip(&found) {
+            assert_eq!(a.len(), b.len(), "{text} moved by {x} {y} tenths of the tolerance");
+            // What is grown inside a free face follows the least of its border's digits.
+            let grown = text.contains("delaunay");
+            let off = a.iter().zip(b).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
+            assert!(grown || off < 1e-4, "{text} moved by {x} {y} tenths of the tolerance: nodes by {off}");
+        }
+    }
+}
+
+#[test]
+fn ends_that_move_within_the_tolerance_change_no_count() {
+    let rims = "point P = (4 + DX, DY, 0)\ncurve south = line((0, 0, 0), P)\ncurve east = line(P, (4, 3, 0))\n\
+                curve north = line((4, 3, 0), (0, 3, 0))\ncurve west = line((0, 3, 0), (0, 0, 0))\n";
+    let plate = format!("units m\n{rims}surface s = coons(south, east, north, west)\n");
+    for settings in [
+        "size: 500mm",
+        "size: 100mm",
+        "size: 250mm  elements: quads",
+        "size: 500mm  on south { bias: 3 }",
+        "size: 100mm  on south { bias: 0.5 }",
+        "size: 500mm  method: delaunay",
+        "size: 1m  near (0, 0, 0) { size: 250mm  radius: 1m }",
+    ] {
+        keeps_counts(&format!("{plate}mesh m of s {{ {settings} }}\n"));
+    }
+    keeps_counts(&format!("units m\n{rims}mesh m of south, east {{ size: 100mm }}\n"));
+    // An arc of a right angle, by its end and by a point on it, and a circle.
+    for arc in
+        ["(2, 0, 0), (DX, 2 + DY, 0), through: (sqrt(2), sqrt(2), 0)", "(2, 0, 0), (0, 2, 0), through: (sqrt(2) + DX, sqrt(2) + DY, 0)"]
+    {
+        for limit in ["angle_error: 10deg", "angle_error: 15deg", "angle_error: 90deg", "chord_error: 2 * (1 - cos(5deg))"] {
+            keeps_counts(&format!(
+                "units m\ncurve a = arc({arc})\nsurface s = extrude(a, by: (0, 0, 3))\nmesh m of s {{ size: 10m  {limit} }}\n"
+            ));
+        }
+    }
+    // Ties: a count over three links of one length, and a side of two pieces opposite to nine steps.
+    let links =
+        "curve a = line((0, 0, 0), (1, 0, 0))\ncurve b = line((1, 0, 0), (2 + DX, DY, 0))\ncurve c = line((2 + DX, DY, 0), (3, 0, 0))\n";
+    keeps_counts(&format!(
+        "units m\n{links}modeling curve all = a + b + c\nsurface s = extrude(all, by: (0, 0, 2))\nmesh m of s {{ size: 1m  on all {{ count: 10 }} }}\n"
+    ));
+    let halves = "let P = (2 + DX, DY, 0)\ncurve a = line((0, 0, 0), P)\ncurve b = line(P, (4, 0, 0))\nmodeling curve south = a + b\n\
+                  curve north = line((0, 3, 0), (4, 3, 0))\nsurface s = ruled(south, north)\n";
+    keeps_counts(&format!("units m\n{halves}mesh m of s {{ size: 500mm }}\n"));
+    let south = "curve a = line((0, 0, 0), (2 + DX, DY, 0))\ncurve b = line((2 + DX, DY, 0), (4, 0, 0))\n";
+    let faces = "curve low = line((0, -2, 0), (2, -2, 0))\ncurve other = line((2, -2, 0), (4, -2, 0))\ncurve north = line((0, 3, 0), (4, 3, 0))\n\
+                 surface p = ruled(a, low)\nsurface q = ruled(b, other)\ncurve whole = line((0, 0, 0), (4, 0, 0))\nsurface r = ruled(whole, north)\n";
+    keeps_counts(&format!(
+        "units m\n{south}{faces}mesh m of p, q {{ size: 500mm }}\nmesh n of r {{ size: 500mm  on north {{ count: 9 }} }}\n"
+    ));
+}
+
+/// Random numbers from 0 to 1, the same in every run.
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Largest turn of the normal over the cells of a mapped face, at places between nodes too.
+fn turn(mesh: &Mesh) -> f64 {
+    let mut most = 0.0_f64;
+    for chart in &mesh.charts.0 {
+        let Shape::Grid(grid) = &chart.shape else { panic!("not mapped") };
+        let (nu, nv) = grid.size();
+        for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (i, j))) {
+            let (a, c) = (grid.uv(i, j), grid.uv(i + 1, j + 1));
+            let share = |k: usize| 0.001 + 0.998 * k as f64 / 4.0;
+            let normal = |k: usize| {
+                let (x, y) = (share(k % 5), share(k / 5));
+                chart.surface.normal(a.0 + (c.0 - a.0) * x, a.1 + (c.1 - a.1) * y)
+            };
+            let all: Vec<DVec3> = (0..25).map(normal).collect();
+            let pairs = (0..25).flat_map(|i| (0..i).map(move |j| (i, j)));
+            most = pairs.map(|(i, j)| all[i].angle_between(all[j])).fold(most, f64::max);
+        }
+    }
+    most
+}
+
+/// Steps along a profile that is extruded: half the triangles of a mesh of one row.
+fn steps_of(profile: &str, limit: &str) -> (usize, Arc<Mesh>) {
+    let text = format!("units m\n{profile}surface s = extrude(p, by: (0, 0, 20))\nmesh m of s {{ size: 100m  {limit}  method: mapped }}\n");
+    let mesh = meshes(&text).remove(0);
+    (mesh.triangles.len() / 2, mesh)
+}
+
+#[test]
+fn a_chain_of_kinked_arcs_takes_the_steps_of_its_arcs() {
+    // Nine waves of two arcs: where one ends the next begins in another direction, and rounding must not count that as a turn.
+    for height in [0.04_f64, 0.015, 0.09] {
+        let arc = |i: usize| {
+            let (a, z) = (0.2 * i as f64, if i % 2 == 0 { height } else { -height });
+            format!("curve a{i} = arc(({a:.1}, 0, 0), ({:.1}, 0, 0), through: ({:.1}, {z}, 0))\n", a + 0.2, a + 0.1)
+        };
+        let names: Vec<String> = (0..18).map(|i| format!("a{i}")).collect();
+        let profile = (0..18).map(arc).collect::<String>() + &format!("modeling curve p = {}\n", names.join(" + "));
+        let radius = (0.01 + height * height) / (2.0 * height);
+        let whole = 2.0 * (0.1 / radius).asin().to_degrees();
+        for limit in [2.0, 5.0, 9.7, 15.5, 20.0, 33.0, 60.0] {
+            let (steps, _) = steps_of(&profile, &format!("angle_error: {limit}deg"));
+            assert_eq!(steps, 18 * (whole / limit).ceil() as usize, "{height} {limit}");
+        }
+    }
+}
+
+#[test]
+fn looser_limits_never_take_more_steps_along_a_curve() {
+    let mut state = 3;
+    for case in 0..2 {
+        let waves = 2 + 2 * case;
+        let at = |k: usize, state: &mut u64| format!("({:.4}, {:.4}, 0)", k as f64 * 0.5, random(state) * 1.2);
+        let points: Vec<String> = (0..2 * waves).map(|k| at(k, &mut state)).collect();
+        let profile = format!("curve p = spline([{}])\n", points.join(", "));
+        let mut before = usize::MAX;
+        for limit in [12.0, 15.5, 20.0, 27.0, 40.0, 61.0, 90.0_f64] {
+            let (steps, mesh) = steps_of(&profile, &format!("angle_error: {limit}deg"));
+            assert!(steps <= before, "{profile}{limit}°: {steps} after {before}");
+            before = steps;
+            assert!(turn(&mesh) <= limit.to_radians() * 1.0001, "{profile}{limit}°: {}", turn(&mesh).to_degrees());
+            // Even steps over samples of the tangent.
+            let chart = &mesh.charts.0[0];
+            let jets: Vec<(DVec3, DVec3)> =
+                (0..=1000).map(|k| f64::from(k) / 1000.0).map(|v| (chart.surface.point(0.0, v), chart.surface.normal(0.5, v))).collect();
+            let mut run = vec![0.0];
+            jets.windows(2).for_each(|w| run.push(run[run.len() - 1] + w[0].0.distance(w[1].0)));
+            let keeps = |n: usize| {
+                (0..n).all(|k| {
+                    let place = |k: usize| run.partition_point(|s| *s < run[run.len() - 1] * k as f64 / n as f64).min(run.len() - 1);
+                    let own = &jets[place(k)..=place(k + 1)];
+                    let far = |from: DVec3| own.iter().map(|j| j.1).min_by(|a, b| from.dot(*a).total_cmp(&from.dot(*b))).unwrap();
+                    let a = far(own[0].1);
+                    a.angle_between(far(a)) <= limit.to_radians()
+                })
+            };
+            let best = (1..).find(|n| keeps(*n)).unwrap();
+            assert!(steps as f64 <= 1.5 * best as f64 + 1.0, "{profile}{limit}°: {steps} where {best} do");
+        }
+        let mut before = usize::MAX;
+        for limit in [2.0, 4.0, 7.0, 11.0, 20.0, 35.0, 60.0, 200.0] {
+            let (steps, _) = steps_of(&profile, &format!("chord_error: {limit}mm"));
+            assert!(steps <= before, "{profile}{limit} mm: {steps} after {before}");
+            before = steps;
+        }
+    }
+}
+
+#[test]
+fn looser_limits_never_take_more_elements_of_a_mapped_face() {
+    let mut state = 11;
+    for _ in 0..3 {
+        let row = |j: usize, state: &mut u64| {
+            let one: Vec<String> = (0..7).map(|i| format!("({i}, {j}, {:.3})", random(state) * 0.8)).collect();
+            format!("[{}]", one.join(", "))
+        };
+        let rows: Vec<String> = (0..6).map(|j| row(j, &mut state)).collect();
+        let surface = format!("units m\nsurface s = grid([{}])\n", rows.join(", "));
+        for (setting, unit, limits) in
+            [("angle_error", "deg", [8.0, 11.0, 15.5, 20.0, 30.0, 45.0]), ("chord_error", "mm", [12.0, 20.0, 40.0, 80.0, 150.0, 300.0])]
+        {
+            let mut before = usize::MAX;
+            for limit in limits {
+                let text = format!("{surface}mesh m of s {{ size: 100m  {setting}: {limit}{unit}  method: mapped }}\n");
+                let mesh = meshes(&text).remove(0);
+                let count = mesh.triangles.len();
+                assert!(count <= before, "{text}{count} after {before}");
+                before = count;
+                if unit == "deg" {
+                    assert!(turn(&mesh) <= f64::to_radians(limit) * 1.05, "{text}{}", turn(&mesh).to_degrees());
+                }
+            }
+        }
+    }
 }

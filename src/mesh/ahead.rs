@@ -15,6 +15,7 @@ use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
+use crate::base::tolerance::WHOLE_NUMBER;
 
 /// Steps of each stretch at which a free face is looked at ahead: more where borders so coarse cross.
 const COARSE: [u32; 3] = [32, 512, 8192];
@@ -39,13 +40,13 @@ fn of_stretch(input: &Input, layout: &Layout, sizing: &Sizing, k: usize) -> Orig
     let (plan, decision) = (input.plan, &sizing.decisions[k]);
     let count = |rule: usize| plan.rules[rule].count.map(|c| c.1);
     let by_bends = || {
-        let chord = Limits { chord: plan.chord_error.map(|c| c.0), angle: None };
+        let chord = Limits { angle: None, ..Limits::of(input) };
         let enough = |n: u32| steps(n, 1.0);
         let alone = least_steps(layout, k, &enough, &chord, decision.least.min(MESH_STEPS)).unwrap_or(1);
         let angle = plan.angle_error.filter(|_| plan.chord_error.is_none() || alone < decision.least.min(MESH_STEPS));
         angle.or(plan.chord_error).map(|limit| limit.1)
     };
-    let even = (layout.length(k) / decision.size.0).ceil();
+    let even = ((layout.length(k) - input.tolerance.point) / decision.size.0 - WHOLE_NUMBER).ceil();
     let asked = decision.count.map_or(decision.wish, |c| c.0);
     if decision.least > 1
         && f64::from(decision.least) >= even
@@ -86,8 +87,8 @@ fn of_count(input: &Input, layout: &Layout, sizing: &Sizing, (k, count): (usize,
         });
         wishes.map(|w| w.least).fold(0.0, f64::max)
     };
-    let by_angle = steps(Limits { chord: None, angle: Some(angle.0) });
-    if by_angle > steps(Limits { chord: Some(limit.0), angle: None }) { angle.1 } else { limit.1 }
+    let by_angle = steps(Limits { chord: None, ..Limits::of(input) });
+    if by_angle > steps(Limits { angle: None, ..Limits::of(input) }) { angle.1 } else { limit.1 }
 }
 
 /// Steps over those that a stretch asks for itself from which rows decide.

@@ -75,13 +75,14 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         job.go_on()?;
         let mut unknown = sizing.stretches(&layout);
         unknown.extend(relations.rows());
-        let (counts, strip) = strips::solve(&unknown, &relations.list, MOST).map_err(|c| relations.fault(input, &layout, &sizing, &c))?;
+        let (counts, strip) = strips::solve(&unknown, &relations.list, (MOST, input.tolerance.point))
+            .map_err(|c| relations.fault(input, &layout, &sizing, &c))?;
         relations.refuse_odd_borders(input, &layout, &sizing, &counts)?;
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
         ahead::refuse_counts(input, &layout, (&sizing, &relations), &counts)?;
         let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
-        let uneven = uneven::look(&layout, &nodes, &sizing);
+        let uneven = uneven::look(&layout, (&nodes, input.tolerance.point), &sizing);
         if !uneven.is_empty() {
             uneven.into_iter().for_each(|(f, step)| layout.faces[f].uneven = Some(step));
             (sizing, wishes, relations) = begin(input, &mut layout, size, (known, job))?;

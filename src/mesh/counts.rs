@@ -4,28 +4,36 @@ use crate::base::math;
 use crate::base::tolerance::WHOLE_NUMBER;
 
 /// Shares `total` out to stretches by weight: largest remainder, at least `least[i]` each; ties go to the earlier one.
+/// Weights that differ by no more than `near` are a tie.
 ///
 /// `None` when `total` is below the sum of the least shares.
-pub fn share(total: u32, weights: &[f64], least: &[u32]) -> Option<Vec<u32>> {
+pub fn share(total: u32, (weights, near): (&[f64], f64), least: &[u32]) -> Option<Vec<u32>> {
     let floor: u32 = least.iter().sum();
     if total < floor {
         return None;
     }
     let sum: f64 = weights.iter().sum();
     let quota: Vec<f64> = weights.iter().map(|w| if sum > 0.0 { w / sum * f64::from(total) } else { 0.0 }).collect();
-    let mut shares: Vec<u32> = quota.iter().zip(least).map(|(q, l)| ((q + WHOLE_NUMBER).floor() as u32).max(*l)).collect();
+    let near = WHOLE_NUMBER + if sum > 0.0 { near / sum * f64::from(total) } else { 0.0 };
+    let mut shares: Vec<u32> = quota.iter().zip(least).map(|(q, l)| ((q + near).floor() as u32).max(*l)).collect();
     // What the least shares took from the others goes back where it hurts least.
     while shares.iter().sum::<u32>() > total {
         let over = |i: &usize| f64::from(shares[*i]) - quota[*i];
-        let i = (0..shares.len()).filter(|i| shares[*i] > least[*i]).max_by(|a, b| over(a).total_cmp(&over(b)).then(b.cmp(a)))?;
+        let i = largest((0..shares.len()).filter(|i| shares[*i] > least[*i]), over, near)?;
         shares[i] -= 1;
     }
     while shares.iter().sum::<u32>() < total {
         let short = |i: &usize| quota[*i] - f64::from(shares[*i]);
-        let i = (0..shares.len()).max_by(|a, b| short(a).total_cmp(&short(b)).then(b.cmp(a)))?;
+        let i = largest(0..shares.len(), short, near)?;
         shares[i] += 1;
     }
     Some(shares)
+}
+
+/// The first of those whose value is the largest or less by no more than `near`.
+pub fn largest(among: impl Iterator<Item = usize> + Clone, value: impl Fn(&usize) -> f64, near: f64) -> Option<usize> {
+    let most = among.clone().map(|i| value(&i)).fold(f64::NEG_INFINITY, f64::max);
+    among.into_iter().find(|i| value(i) >= most - near)
 }
 
 /// Fractions 0…1 of the ends of `n` steps that grow geometrically, the last `bias` times the first.
@@ -75,12 +83,12 @@ mod tests {
 
     #[test]
     fn shares_by_largest_remainder() {
-        assert_eq!(share(10, &[3.0, 3.0, 4.0], &[1; 3]), Some(vec![3, 3, 4]));
-        assert_eq!(share(10, &[1.0, 1.0, 1.0], &[1; 3]), Some(vec![4, 3, 3]));
-        assert_eq!(share(5, &[100.0, 1.0, 1.0], &[1; 3]), Some(vec![3, 1, 1]));
-        assert_eq!(share(3, &[100.0, 1.0, 1.0], &[1; 3]), Some(vec![1, 1, 1]));
-        assert_eq!(share(2, &[100.0, 1.0, 1.0], &[1; 3]), None);
-        assert_eq!(share(7, &[0.5, 0.5], &[1, 5]), Some(vec![2, 5]));
+        assert_eq!(share(10, (&[3.0, 3.0, 4.0], 0.0), &[1; 3]), Some(vec![3, 3, 4]));
+        assert_eq!(share(10, (&[1.0, 1.0, 1.0], 0.0), &[1; 3]), Some(vec![4, 3, 3]));
+        assert_eq!(share(5, (&[100.0, 1.0, 1.0], 0.0), &[1; 3]), Some(vec![3, 1, 1]));
+        assert_eq!(share(3, (&[100.0, 1.0, 1.0], 0.0), &[1; 3]), Some(vec![1, 1, 1]));
+        assert_eq!(share(2, (&[100.0, 1.0, 1.0], 0.0), &[1; 3]), None);
+        assert_eq!(share(7, (&[0.5, 0.5], 0.0), &[1, 5]), Some(vec![2, 5]));
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! The least number of steps along a stretch that keeps chord error and angle, and the nodes of these steps.
 
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_PI_2;
 
-use glam::{DVec3, DVec4};
+use glam::DVec3;
 
+use super::build::Input;
 use super::counts::for_size;
 use super::layout::Layout;
 use crate::base::fault::Result;
@@ -11,14 +12,13 @@ use crate::base::math::{self, angle_between};
 use crate::base::tolerance::{Tolerance, WHOLE_NUMBER};
 use crate::geometry::Curve;
 use crate::geometry::nurbs::projected;
+use crate::geometry::nurbs_edit::Bezier;
 use crate::model::Track;
 
 /// Halvings of a step's control polygon; each brings the bound four times closer to the truth.
 const HALVINGS: u32 = 4;
 /// Points inside a step where no control polygon is known.
 const PROBES: u32 = 8;
-/// Refinements before the last count is taken; each at least adds a step and follows the square law.
-const ROUNDS: usize = 200;
 
 /// Limits along a line, model units and radians.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,10 +27,36 @@ pub struct Limits {
     pub chord: Option<f64>,
     /// Largest turn of the tangent across a step.
     pub angle: Option<f64>,
+    /// What ends may move by without a change of any count.
+    pub near: f64,
 }
 
+impl Limits {
+    /// Of a plan.
+    pub fn of(input: &Input) -> Self {
+        let plan = input.plan;
+        Self { chord: plan.chord_error.map(|c| c.0), angle: plan.angle_error.map(|a| a.0), near: input.tolerance.point }
+    }
+
+    /// Share of the angle that a turn may be over it, along a curve of this length that turns by `whole` in all: what the
+    /// length changes by where an end moves by the tolerance, and the tangents at both ends where a point between moves.
+    pub fn turn_room(&self, length: f64, whole: f64) -> f64 {
+        WHOLE_NUMBER + (self.near / length * (1.0 + TANGENTS / whole)).min(MOST_ROOM)
+    }
+
+    /// Share of the chord error that a step may be over it: distances from a chord go with the square of its length.
+    fn chord_room(&self, length: f64) -> f64 {
+        WHOLE_NUMBER + (2.0 * self.near / length).min(MOST_ROOM)
+    }
+}
+
+/// Turn between the tangents at the ends of a curve whose middle moves, over that way as a share of its length.
+const TANGENTS: f64 = 4.0;
+/// Share of a limit that room for moved ends is at most.
+const MOST_ROOM: f64 = 0.001;
+
 /// How far the worst step of a division is from its limits: 1 is just kept, the square law applies to `chord`.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Load {
     chord: f64,
     angle: f64,
@@ -38,54 +64,146 @@ struct Load {
 
 /// The least number of steps for the limits, up to `cap`: so many are not looked at any more.
 ///
-/// `divided` gives the fractions 0…1 of so many steps.
+/// `divided` gives the fractions 0…1 of so many steps. Counts below half of one that does are not the least in any but odd cases;
+/// from there on each is tried, so that a looser limit never asks for more.
 pub fn least_steps(layout: &Layout, stretch: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Ok(1);
     }
-    let mut n = 1_u32;
-    for _ in 0..ROUNDS {
+    let line = Line { layout, stretch, limits };
+    let mut worst = Vec::new();
+    let (mut low, mut n) = (0_u32, 1_u32);
+    loop {
         if n >= cap {
-            break;
+            return Ok(cap);
         }
-        let load = worst(layout, stretch, divided(n), limits)?;
-        let keeps = 1.0 + WHOLE_NUMBER;
-        if load.chord <= keeps && load.angle <= keeps {
-            break;
-        }
-        // Deviation falls with the square of the step, turns with the step; from below, so that the least count is met.
-        let factor = load.chord.sqrt().max(load.angle);
-        let guess = f64::from(n) * factor * if n < 4 { 0.9 } else { 1.0 };
-        n = (guess.min(f64::from(cap)) as u32).max(n + 1);
+        let Some(step) = line.worst(&divided(n), &worst)? else { break };
+        worst.push(step.at);
+        // Deviation falls with the square of the step, turns with the step, once steps are shorter than bends.
+        let guess = f64::from(n) * step.load.steps().min(TWICE);
+        (low, n) = (n, (guess.min(f64::from(cap)) as u32).max(n + 1));
     }
-    Ok(n.min(cap))
+    if n > ONE_BY_ONE {
+        return line.between(divided, (low, n), &mut worst);
+    }
+    for count in if n <= FEW { 1 } else { n / 2 }..n {
+        match line.broken(&divided(count), &worst)? {
+            Some(at) if worst.contains(&at) => {}
+            Some(at) => worst.push(at),
+            None => return Ok(count),
+        }
+    }
+    Ok(n)
 }
 
-fn worst(layout: &Layout, stretch: usize, fractions: Vec<f64>, limits: &Limits) -> Result<Load> {
-    let atom = &layout.pieces.atoms[stretch];
-    let track = &layout.parts[atom.track].track;
-    let at: Vec<f64> = fractions.into_iter().map(|f| atom.s.0 + (atom.s.1 - atom.s.0) * f).collect();
-    // What is kept for sure, or no worse than what was seen, need not be known closer.
-    let enough = |limit: Option<f64>, seen: f64| limit.map_or(f64::INFINITY, |limit| limit * seen.max(1.0));
-    let (mut load, mut reached) = (Load::default(), track.point(at[0]));
-    for w in at.windows(2) {
-        let (chord, angle) = match track {
-            Track::Links { .. } => {
-                let start = std::mem::replace(&mut reached, track.point(w[1]));
-                let enough = (enough(limits.chord, load.chord), enough(limits.angle, load.angle));
-                hull_of(track, (w[0], w[1]), (start, reached), enough)?
+/// Counts up to which all are tried.
+const FEW: u32 = 32;
+/// Counts up to which those from the half on are tried; of larger ones the least is found to within what one step more changes.
+const ONE_BY_ONE: u32 = 4096;
+
+/// Counts grow by no more at a time: steps longer than bends seem to ask for more than they do.
+const TWICE: f64 = 2.0;
+
+impl Load {
+    /// Steps in place of one that would keep the limits.
+    fn steps(&self) -> f64 {
+        self.chord.sqrt().max(self.angle)
+    }
+}
+
+/// A step that breaks a limit.
+struct Broken {
+    /// Fraction of its middle.
+    at: f64,
+    load: Load,
+}
+
+/// A stretch under limits.
+struct Line<'a> {
+    layout: &'a Layout,
+    stretch: usize,
+    limits: &'a Limits,
+}
+
+impl Line<'_> {
+    /// The least count above `low`, which does not do, up to `high`, which does, as if all between did from one on.
+    fn between(&self, divided: &dyn Fn(u32) -> Vec<f64>, (mut low, mut high): (u32, u32), worst: &mut Vec<f64>) -> Result<u32> {
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            match self.broken(&divided(middle), worst)? {
+                Some(at) => {
+                    worst.push(at);
+                    low = middle;
+                }
+                None => high = middle,
             }
-            Track::Iso(_) => probed(track, w[0], w[1]),
-        };
-        load.chord = load.chord.max(limits.chord.map_or(0.0, |limit| chord / limit));
-        load.angle = load.angle.max(limits.angle.map_or(0.0, |limit| angle / limit));
+        }
+        Ok(high)
     }
-    Ok(load)
+
+    /// The place of a step that breaks a limit, looked for first where others did.
+    fn broken(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<f64>> {
+        for place in worst.iter().rev() {
+            if self.load(fractions, Self::at(fractions, *place))?.is_some() {
+                return Ok(Some(*place));
+            }
+        }
+        for k in 0..fractions.len() - 1 {
+            if self.load(fractions, k)?.is_some() {
+                return Ok(Some(0.5 * (fractions[k] + fractions[k + 1])));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The step that breaks a limit most, or one that asks for twice as many.
+    fn worst(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<Broken>> {
+        let mut found: Option<Broken> = None;
+        let first = worst.iter().rev().map(|place| Self::at(fractions, *place));
+        for k in first.chain(0..fractions.len() - 1) {
+            let Some(load) = self.load(fractions, k)? else { continue };
+            if found.as_ref().is_none_or(|f| f.load.steps() < load.steps()) {
+                let enough = load.steps() >= TWICE;
+                found = Some(Broken { at: 0.5 * (fractions[k] + fractions[k + 1]), load });
+                if enough {
+                    break;
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The step over a place.
+    fn at(fractions: &[f64], place: f64) -> usize {
+        fractions.partition_point(|f| *f <= place).clamp(1, fractions.len() - 1) - 1
+    }
+
+    /// How far a step is over its limits; `None` where it keeps them.
+    fn load(&self, fractions: &[f64], k: usize) -> Result<Option<Load>> {
+        let (limits, atom) = (self.limits, &self.layout.pieces.atoms[self.stretch]);
+        let track = &self.layout.parts[atom.track].track;
+        let length = atom.s.1 - atom.s.0;
+        let (a, b) = (atom.s.0 + length * fractions[k], atom.s.0 + length * fractions[k + 1]);
+        let steps = (fractions.len() - 1) as f64;
+        // What is kept for sure need not be known closer.
+        let most = (
+            limits.chord.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.chord_room(length))),
+            limits.angle.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.turn_room(length, limit * steps))),
+        );
+        let (chord, angle) = match track {
+            Track::Links { .. } => hull_of(track, (a, b), (track.point(a), track.point(b)), (most, limits.near))?,
+            Track::Iso(_) => probed(track, a, b),
+        };
+        let over = |x: f64, limit: Option<f64>| limit.map_or(0.0, |limit| x / limit);
+        let load = Load { chord: over(chord, limits.chord), angle: over(angle, limits.angle) };
+        Ok((chord > most.0 || angle > most.1).then_some(load))
+    }
 }
 
-/// Bounds over a step on links: distance from the chord by the convex hull, turn by the cone of the control legs [Floater 1992].
-/// Bounds up to `enough` may be rough.
-fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), enough: (f64, f64)) -> Result<(f64, f64)> {
+/// Bounds over a step on links: distance from the chord by the convex hull, turn by the directions of the control legs [Floater 1992].
+/// Bounds up to `enough` may be rough. A piece of another curve that is no longer than `near`, as rounding leaves at a kink,
+/// has no direction.
+fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), (enough, near): ((f64, f64), f64)) -> Result<(f64, f64)> {
     let Track::Links { chains, starts, span } = track else {
         return Ok((0.0, 0.0));
     };
@@ -97,10 +215,8 @@ fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), enough: (f
     if *against {
         (from, to) = (length - to, length - from);
     }
-    // The cone stands about the chord, so two directions in it differ by twice its half angle at most.
-    let enough = (enough.0, 0.5 * enough.1);
-    let ends = if *against { (ends.1, ends.0) } else { ends };
-    let (mut chord, mut angle, mut before) = (0.0_f64, 0.0_f64, 0.0);
+    let (mut chord, mut before) = (0.0_f64, 0.0);
+    let mut turning = Vec::new();
     for run in chain.runs() {
         let extent = (run.s1 - run.s0).abs();
         let (low, high) = ((from - before).max(0.0), (to - before).min(extent));
@@ -108,16 +224,21 @@ fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), enough: (f
         if high <= low {
             continue;
         }
-        let (c, t) = if run.s0 <= run.s1 { (run.s0 + low, run.s0 + high) } else { (run.s0 - high, run.s0 - low) };
-        let ends = if run.s0 > run.s1 { (ends.1, ends.0) } else { ends };
-        let bound = hull_on_curve(&run.curve, (c, t), ends, enough)?;
-        (chord, angle) = (chord.max(bound.0), angle.max(bound.1));
+        let forward = run.s0 <= run.s1;
+        let part = if forward { (run.s0 + low, run.s0 + high) } else { (run.s0 - high, run.s0 - low) };
+        let pieces = pieces_of(&run.curve, part, ends.0.distance(ends.1))?;
+        if enough.1.is_finite() && high - low > near {
+            turning.extend(pieces.iter().map(|piece| (piece.clone(), if forward { 1.0 } else { -1.0 })));
+        }
+        if enough.0.is_finite() {
+            chord = chord_of(pieces, ends, (enough.0, chord));
+        }
     }
-    Ok((chord, 2.0 * angle))
+    Ok((chord, turn_of(turning, enough.1)))
 }
 
-/// Distance and direction bounds of a piece of a curve against a chord, closer only where they are above what is `enough`.
-fn hull_on_curve(curve: &Curve, s: (f64, f64), ends: (DVec3, DVec3), enough: (f64, f64)) -> Result<(f64, f64)> {
+/// Bézier pieces of a part of a curve by arc length, converted for a step with a chord of this length.
+fn pieces_of(curve: &Curve, s: (f64, f64), across: f64) -> Result<Vec<Bezier>> {
     let length = curve.length();
     let wrap = |x: f64| if x > length { x - length } else { x };
     let (s0, mut s1) = (wrap(s.0), wrap(s.1));
@@ -126,38 +247,59 @@ fn hull_on_curve(curve: &Curve, s: (f64, f64), ends: (DVec3, DVec3), enough: (f6
     }
     let (t0, t1) = (curve.param_at_length(s0), curve.param_at_length(s1));
     if t1 <= t0 {
-        return Ok((0.0, 0.0));
+        return Ok(Vec::new());
     }
-    let along = ends.1 - ends.0;
-    let nurbs = curve.part(t0, t1).to_nurbs(&Tolerance::new(along.length() * CONVERSION, along.length()))?;
-    let (mut chord, mut angle) = (0.0_f64, 0.0_f64);
-    let mut open: Vec<_> = nurbs.beziers().into_iter().map(|b| (b, HALVINGS)).collect();
-    while let Some((piece, left)) = open.pop() {
-        let own = hull_of_poles(&piece.poles, ends, along, enough.1.is_finite());
-        let rough = own.0 > enough.0.max(chord) || own.1 > enough.1.max(angle);
-        if rough && left > 0 && piece.poles.len() > 2 {
-            let (a, b) = piece.halves();
-            open.push((a, left - 1));
-            open.push((b, left - 1));
-            continue;
-        }
-        (chord, angle) = (chord.max(own.0), angle.max(own.1));
-    }
-    Ok((chord, angle))
+    Ok(curve.part(t0, t1).to_nurbs(&Tolerance::new(across * CONVERSION, across))?.beziers())
 }
 
-/// Distance of a control polygon from a chord, and the largest turn of its legs from it where that is asked for.
-fn hull_of_poles(poles: &[DVec4], ends: (DVec3, DVec3), along: DVec3, turns: bool) -> (f64, f64) {
-    let (mut chord, mut angle, mut last) = (0.0_f64, 0.0_f64, None);
-    for p in poles.iter().map(|q| projected(*q)) {
-        chord = chord.max(distance_to_segment(p, ends.0, ends.1));
-        let leg = last.replace(p).map_or(DVec3::ZERO, |last| p - last);
-        if turns && leg.length_squared() > 0.0 {
-            // A step round a whole loop has no chord and turns all the way.
-            angle = angle.max(if along == DVec3::ZERO { PI } else { angle_between(leg, along) });
+/// Distance bound of pieces of a curve from a chord, closer only where it is above what is `enough` or was seen.
+fn chord_of(pieces: Vec<Bezier>, ends: (DVec3, DVec3), (enough, seen): (f64, f64)) -> f64 {
+    let mut chord = seen;
+    let mut open: Vec<_> = pieces.into_iter().map(|piece| (piece, HALVINGS)).collect();
+    while let Some((piece, left)) = open.pop() {
+        let own = piece.poles.iter().map(|q| distance_to_segment(projected(*q), ends.0, ends.1)).fold(0.0, f64::max);
+        if own > enough.max(chord) && left > 0 && piece.poles.len() > 2 {
+            let (a, b) = piece.halves();
+            open.extend([(a, left - 1), (b, left - 1)]);
+        } else {
+            chord = chord.max(own);
         }
     }
-    (chord, angle)
+    chord
+}
+
+/// How far tangents of pieces, each run one way or the other, are apart: tangents lie between control legs, and the first and last
+/// legs are tangents. Pieces are halved until a bound is `enough` or tangents are sure to be farther apart.
+fn turn_of(mut pieces: Vec<(Bezier, f64)>, enough: f64) -> f64 {
+    for left in (0..=HALVINGS).rev() {
+        let (mut legs, mut tangents) = (Vec::new(), Vec::new());
+        for (piece, sign) in &pieces {
+            let points: Vec<DVec3> = piece.poles.iter().map(|q| projected(*q)).collect();
+            let own: Vec<DVec3> = points.windows(2).filter_map(|w| (w[1] - w[0]).try_normalize()).map(|leg| *sign * leg).collect();
+            tangents.extend(own.first().into_iter().chain(own.last()).copied());
+            legs.extend(own);
+        }
+        let (sure, bound) = (apart(&tangents), apart(&legs));
+        // Tangents that are more than a right angle apart may have more between them.
+        if sure > enough || left == 0 || bound <= enough && bound <= FRAC_PI_2 {
+            return sure.max(bound);
+        }
+        pieces = pieces.into_iter().flat_map(|(piece, sign)| halved(&piece).map(move |half| (half, sign))).collect();
+    }
+    0.0
+}
+
+/// Both halves of a piece; one of a straight piece is as good as the whole.
+fn halved(piece: &Bezier) -> impl Iterator<Item = Bezier> + use<> {
+    let (a, b) = if piece.poles.len() > 2 { piece.halves() } else { (piece.clone(), piece.clone()) };
+    [a, b].into_iter()
+}
+
+/// The largest angle between unit vectors.
+fn apart(all: &[DVec3]) -> f64 {
+    let pairs = all.iter().enumerate().flat_map(|(k, a)| all[k + 1..].iter().map(move |b| (*a, *b)));
+    let farthest = pairs.min_by(|(a, b), (c, d)| a.dot(*b).total_cmp(&c.dot(*d)));
+    farthest.map_or(0.0, |(a, b)| angle_between(a, b))
 }
 
 /// Share of a step within which curves without an exact NURBS form are converted for their bound.
@@ -187,7 +329,7 @@ pub fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     p.distance(a + along * t)
 }
 
-/// The wanted number of steps for a size.
-pub fn wanted_steps(length: f64, size: f64, bias: f64, cap: u32) -> u32 {
-    for_size(length, size, bias).min(f64::from(cap)) as u32
+/// The wanted number of steps for a size, of a length that may be longer by `near`.
+pub fn wanted_steps((length, near): (f64, f64), size: f64, bias: f64, cap: u32) -> u32 {
+    for_size((length - near).max(0.0), size, bias).min(f64::from(cap)) as u32
 }

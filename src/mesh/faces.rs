@@ -366,7 +366,7 @@ impl Prepared {
 
 /// The limits a plan sets on faces.
 pub fn limits_of(input: &Input) -> Limits {
-    Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) }
+    Limits::of(input)
 }
 
 /// Too many elements, before anything is allocated.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::Shape;
+use super::chart::{Grid, Shape};
 use super::chord;
 use super::data::Mesh;
 use super::edges::Limits;
@@ -85,12 +85,12 @@ pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], ke
 fn verdict_on(input: &Input, limits: &Limits, mesh: &Mesh, finished: &Finished) -> Verdict {
     let surface = &input.model.surfaces[finished.face.surface.index()].surface;
     let mut verdict = Verdict::FINE;
-    sizes(finished, mesh, &mut verdict);
+    sizes(finished, (mesh, input.tolerance.point), &mut verdict);
     if let Some(limit) = limits.chord {
         chords(input, (surface, limit), mesh, finished, &mut verdict);
     }
     if let Some(limit) = limits.angle {
-        turns(surface, finished, limit, &mut verdict);
+        turns(surface, finished, (limits, limit), &mut verdict);
     }
     verdict
 }
@@ -125,8 +125,8 @@ fn directions(finished: &Finished) -> [bool; 2] {
 }
 
 /// Edges along u and v against the size with its room; diagonals are left aside.
-fn sizes(finished: &Finished, mesh: &Mesh, verdict: &mut Verdict) {
-    let most = finished.face.size.0 * SIZE_ROOM;
+fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict) {
+    let most = finished.face.size.0 * SIZE_ROOM + near;
     let node = |id: u32| mesh.nodes[id as usize];
     match &finished.ready.chart.frame {
         Frame::Grid(frame) => {
@@ -186,52 +186,16 @@ fn sizes(finished: &Finished, mesh: &Mesh, verdict: &mut Verdict) {
     }
 }
 
-/// Turns of the normal between the corners of each cell.
-fn turns(surface: &Surface, finished: &Finished, limit: f64, verdict: &mut Verdict) {
-    let mut worst = [0.0_f64; 3];
-    match &finished.ready.chart.shape {
-        Shape::Grid(grid) => {
-            let (nu, nv) = grid.size();
-            let lean = |at: usize, last: usize| if at == last { Lean::Before } else { Lean::After };
-            let row = |j: usize| -> Vec<DVec3> {
-                (0..=nu)
-                    .map(|i| {
-                        let (u, v) = grid.uv(i, j);
-                        surface.normal_lean(u, v, (lean(i, nu), lean(j, nv)))
-                    })
-                    .collect()
-            };
-            let mut below = row(0);
-            for j in 0..nv {
-                let above = row(j + 1);
-                for i in 0..nu {
-                    worst[0] = worst[0].max(turn(below[i], below[i + 1])).max(turn(above[i], above[i + 1]));
-                    worst[1] = worst[1].max(turn(below[i], above[i])).max(turn(below[i + 1], above[i + 1]));
-                    worst[2] = worst[2].max(turn(below[i], above[i + 1])).max(turn(below[i + 1], above[i]));
-                }
-                below = above;
-            }
-        }
-        shape => {
-            let uv = match shape {
-                Shape::Lattice(lattice) => super::trilateral::lattice_points(lattice),
-                Shape::Blocks(blocks) => blocks.uv.clone(),
-                Shape::Free(free) => free.uv.clone(),
-                Shape::Grid(_) => Vec::new(),
-            };
-            let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
-            super::chord::each_cell(shape, |corners| {
-                for a in corners {
-                    for b in corners {
-                        worst[2] = worst[2].max(turn(normals[*a], normals[*b]));
-                    }
-                }
-            });
-        }
-    }
+/// Turns of the normal over each cell: between its corners, and between places inside where cells are large.
+fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64), verdict: &mut Verdict) {
+    let worst = match &finished.ready.chart.shape {
+        Shape::Grid(grid) => turns_of_grid(surface, grid),
+        shape => [0.0, 0.0, turn_of_cells(surface, shape)],
+    };
     let most = worst.iter().fold(0.0_f64, |m, t| m.max(*t));
     let over = most / limit;
-    if over > 1.0 + WHOLE_NUMBER {
+    let room = |wish: &Wish| limits.turn_room(wish.length, limit);
+    if over > 1.0 + finished.wishes.iter().map(room).fold(f64::INFINITY, f64::min) {
         let share = [2.0 * worst[0] >= worst[1], 2.0 * worst[1] >= worst[0]];
         for (factor, dominates) in verdict.limit.iter_mut().zip(share) {
             if dominates {
@@ -243,6 +207,82 @@ fn turns(surface: &Surface, finished: &Finished, limit: f64, verdict: &mut Verdi
         }
         (verdict.broken, verdict.reached) = ("angle_error", most);
     }
+}
+
+/// Places along each direction of a face at which its normal is looked at, at least.
+const LOOKS: usize = 64;
+/// Places along a side of a cell at most.
+const MOST_LOOKS: usize = 16;
+
+/// The largest turns over cells of a grid: along u, along v, and in all.
+fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
+    let (nu, nv) = grid.size();
+    let parts = |n: usize| LOOKS.div_ceil(n).min(MOST_LOOKS);
+    let (ku, kv) = (parts(nu), parts(nv));
+    let lean = |last: bool| if last { Lean::Before } else { Lean::After };
+    let line = |j: usize, y: usize| -> Vec<DVec3> {
+        (0..=nu * ku)
+            .map(|n| {
+                let i = (n / ku).min(nu - 1);
+                let (u, v) = inside(grid, (i, j), ((n - i * ku) as f64 / ku as f64, y as f64 / kv as f64));
+                surface.normal_lean(u, v, (lean(n == nu * ku), lean(j + 1 == nv && y == kv)))
+            })
+            .collect()
+    };
+    let mut worst = [0.0_f64; 3];
+    let mut lines = vec![line(0, 0)];
+    for j in 0..nv {
+        lines.extend((1..=kv).map(|y| line(j, y)));
+        for i in 0..nu {
+            let along = lines.iter().map(|line| spread(&line[i * ku..=(i + 1) * ku]));
+            let across = (i * ku..=(i + 1) * ku).map(|n| spread(&lines.iter().map(|line| line[n]).collect::<Vec<_>>()));
+            let (along, across) = (along.fold(0.0, f64::max), across.fold(0.0, f64::max));
+            let all: Vec<DVec3> = lines.iter().flat_map(|line| &line[i * ku..=(i + 1) * ku]).copied().collect();
+            worst = [worst[0].max(along), worst[1].max(across), worst[2].max(spread(&all))];
+        }
+        lines.drain(..kv);
+    }
+    worst
+}
+
+/// A place in a cell of a grid by its shares.
+fn inside(grid: &Grid, (i, j): (usize, usize), (x, y): (f64, f64)) -> (f64, f64) {
+    let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| grid.uv(i, j));
+    let mix = |a: f64, b: f64, t: f64| if t == 1.0 { b } else { a + (b - a) * t };
+    (mix(mix(a.0, b.0, x), mix(d.0, c.0, x), y), mix(mix(a.1, b.1, x), mix(d.1, c.1, x), y))
+}
+
+/// The largest turn over the cells of a lattice, of blocks or of a free face.
+fn turn_of_cells(surface: &Surface, shape: &Shape) -> f64 {
+    let uv = match shape {
+        Shape::Lattice(lattice) => super::trilateral::lattice_points(lattice),
+        Shape::Blocks(blocks) => blocks.uv.clone(),
+        Shape::Free(free) => free.uv.clone(),
+        Shape::Grid(_) => Vec::new(),
+    };
+    let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
+    let few = uv.len() < LOOKS * LOOKS;
+    let mut worst = 0.0_f64;
+    super::chord::each_cell(shape, |corners| {
+        let mut own: Vec<DVec3> = corners.iter().map(|c| normals[*c]).collect();
+        if few {
+            // The middles of sides and diagonals.
+            for (k, a) in corners.iter().enumerate() {
+                own.extend(corners[k + 1..].iter().map(|b| surface.normal(0.5 * (uv[*a].0 + uv[*b].0), 0.5 * (uv[*a].1 + uv[*b].1))));
+            }
+        }
+        worst = worst.max(spread(&own));
+    });
+    worst
+}
+
+/// How far normals are apart: from the first to the farthest, and from that to the farthest of all.
+fn spread(all: &[DVec3]) -> f64 {
+    let farthest = |from: DVec3| all.iter().copied().filter(|n| *n != DVec3::ZERO).min_by(|a, b| from.dot(*a).total_cmp(&from.dot(*b)));
+    let first = all.iter().copied().find(|n| *n != DVec3::ZERO);
+    let a = first.and_then(farthest);
+    let b = a.and_then(farthest);
+    a.zip(b).map_or(0.0, |(a, b)| turn(a, b))
 }
 
 fn turn(a: DVec3, b: DVec3) -> f64 {

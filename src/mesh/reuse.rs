@@ -200,7 +200,7 @@ crate::content!(Grid { u, v, sides, straight });
 crate::content!(Lattice { sides });
 crate::content!(Free { uv, border, triangles, quads });
 crate::content!(Blocks { uv, inner, quads, sides });
-crate::content!(Limits { chord, angle });
+crate::content!(Limits { chord, angle, near });
 crate::content!(Wish { size, least, length, bend });
 
 impl Content for Shape {

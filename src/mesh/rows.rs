@@ -50,13 +50,13 @@ pub fn wishes(surface: &Surface, u: (f64, f64), v: (f64, f64), size: f64, limits
     }
     let cells = CELLS as f64;
     for wish in [&mut a, &mut b] {
-        wish.size = wish.length / (SIZE_ROOM * size);
+        wish.size = (wish.length - limits.near).max(0.0) / (SIZE_ROOM * size);
     }
     sample.bends(&mut a, &mut b, limits);
     if triangle {
         let slant = sample.slants(limits);
         let both = Wish {
-            size: a.size.max(b.size).max(slant.length / (SIZE_ROOM * size)),
+            size: a.size.max(b.size).max((slant.length - limits.near).max(0.0) / (SIZE_ROOM * size)),
             least: a.least.max(b.least).max(slant.least),
             length: a.length.max(b.length).max(slant.length),
             bend: a.bend.max(b.bend).max(slant.bend),
@@ -125,21 +125,36 @@ impl Sample {
             b.least = cells * (b.bend / (8.0 * chord)).sqrt();
         }
         if let Some(angle) = limits.angle {
-            let (mut turn_u, mut turn_v) = (0.0_f64, 0.0_f64);
-            for j in 1..CELLS {
-                for i in 1..CELLS {
-                    let Some(n) = self.normal(i, j) else { continue };
-                    if let Some(next) = self.normal(i + 1, j) {
-                        turn_u = turn_u.max(angle_between(n, next));
-                    }
-                    if let Some(next) = self.normal(i, j + 1) {
-                        turn_v = turn_v.max(angle_between(n, next));
-                    }
-                }
+            for (wish, along_u) in [(a, true), (b, false)] {
+                let most = angle * (1.0 + limits.turn_room(wish.length, angle));
+                wish.least = wish.least.max(self.least_for_turns(along_u, most));
             }
-            a.least = a.least.max(cells * turn_u / angle);
-            b.least = b.least.max(cells * turn_v / angle);
         }
+    }
+
+    /// The least number of even steps over no one of which the normals of the samples turn by more than `most`; of steps shorter
+    /// than two cells as many as the cell takes over which it turns most.
+    fn least_for_turns(&self, along_u: bool, most: f64) -> f64 {
+        let row = |k: usize| (0..Self::N).map(|n| if along_u { self.normal(n, k) } else { self.normal(k, n) }).collect();
+        let rows: Vec<Vec<Option<DVec3>>> = (1..CELLS).map(row).collect();
+        // Of small angles a cosine is not close enough.
+        let turn = |row: &[Option<DVec3>]| {
+            let all = row.iter().flatten().enumerate();
+            let pairs = all.flat_map(|(k, a)| row.iter().flatten().skip(k + 1).map(move |b| (*a, *b)));
+            pairs.min_by(|(a, b), (c, d)| a.dot(*b).total_cmp(&c.dot(*d))).map_or(0.0, |(a, b)| angle_between(a, b))
+        };
+        let keeps = |n: &usize| {
+            let step = |k: usize| (k * CELLS).div_ceil(*n)..=(k + 1) * CELLS / n;
+            rows.iter().all(|row| (0..*n).all(|k| turn(&row[step(k)]) <= most))
+        };
+        let few = CELLS / 2;
+        (1..=few).find(keeps).map_or_else(
+            || {
+                let worst = rows.iter().flat_map(|row| row.windows(2)).map(turn).fold(0.0, f64::max);
+                (CELLS as f64 * worst / most).max((few + 1) as f64)
+            },
+            |n| n as f64,
+        )
     }
 
     /// Lines of constant u + v of a triangle.

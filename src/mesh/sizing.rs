@@ -122,21 +122,24 @@ impl Sizing {
                     let (uses, links) = stretches_of(input, layout, chain);
                     let rank = if links.len() == 1 && chain.whole_curve().is_none() { LINK } else { CURVE };
                     let lines = [Lines { uses, links, rank, length: chain.length() }];
-                    sizing.line_rule((index, rule, "curve"), &lines, &mut division, &mut bias)?;
+                    sizing.line_rule((index, rule, "curve"), input.tolerance.point, &lines, &mut division, &mut bias)?;
                 }
                 Target::Edge(courses) => {
                     let lines = along_courses(layout, courses);
-                    sizing.line_rule((index, rule, "edge"), &lines, &mut division, &mut bias)?;
+                    sizing.line_rule((index, rule, "edge"), input.tolerance.point, &lines, &mut division, &mut bias)?;
                 }
-                Target::Surface(_) | Target::Patches(_) => sizing.face_counts(layout, (index, rule), &mut division)?,
+                Target::Surface(_) | Target::Patches(_) => {
+                    sizing.face_counts((layout, input.tolerance.point), (index, rule), &mut division)?
+                },
                 Target::Point(_) => {}
             }
         }
         let own = own_sizes(layout, size);
-        let limits = Limits { chord: input.plan.chord_error.map(|c| c.0), angle: input.plan.angle_error.map(|a| a.0) };
+        let limits = Limits::of(input);
         let rows = super::gaps::rows(input, layout, &limits);
         super::gaps::refuse(input, layout, &limits, &rows)?;
-        let shape = shapes(layout);
+        let near = input.tolerance.point;
+        let shape = shapes(layout, near);
         let count_of = |k: usize| division[k].and_then(|d| if let Division::Count(c) = d.value { Some((c, d.rule)) } else { None });
         let size_of = |k: usize| match division[k] {
             Some(Ruled { value: Division::Size(s), rule, .. }) => (s, Some(rule)),
@@ -151,7 +154,7 @@ impl Sizing {
         let bias_of = |k: usize| bias[k].map_or(1.0, |b| b.value);
         let biased: Vec<Option<u32>> = par::map(n, |k| {
             let free = bias[k].is_some() && count_of(k).is_none();
-            free.then(|| sizing.biased_steps(layout, k, size_of(k).0, bias_of(k)))
+            free.then(|| sizing.biased_steps(layout, (k, near), size_of(k).0, bias_of(k)))
         });
         let written_steps = |k: usize| Some(Pace::of_count(layout.length(k), count_of(k).map(|c| c.0).or(biased[k])?, bias_of(k)));
         let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
@@ -175,9 +178,9 @@ impl Sizing {
         for k in 0..n {
             let (count, size, bias) = (count_of(k), size_of(k), bias_of(k));
             let wish = match (&sizing.paces[k], biased[k]) {
-                (Some(pace), _) => pace.wish(layout.length(k), size.0, STEPS),
+                (Some(pace), _) => pace.wish((layout.length(k) - near).max(0.0), size.0, STEPS),
                 (None, Some(steps)) => steps,
-                (None, None) => wanted_steps(layout.length(k), size.0, bias, STEPS),
+                (None, None) => wanted_steps((layout.length(k), near), size.0, bias, STEPS),
             };
             if count.is_none() && least[k] <= MESH_STEPS {
                 sizing.refuse_below_floor(input, layout, k, (least[k], shape[k]))?;
@@ -240,9 +243,9 @@ impl Sizing {
     }
 
     /// Steps of a stretch under a bias, none of them longer than the size or what is wanted along it.
-    fn biased_steps(&self, layout: &Layout, k: usize, size: f64, bias: f64) -> u32 {
-        let length = layout.length(k);
-        let mut count = wanted_steps(length, size, bias, STEPS);
+    fn biased_steps(&self, layout: &Layout, (k, near): (usize, f64), size: f64, bias: f64) -> u32 {
+        let length = (layout.length(k) - near).max(0.0);
+        let mut count = wanted_steps((layout.length(k), near), size, bias, STEPS);
         while count < MOST_BIASED && !self.wanted.sources.is_empty() {
             let over = steps(count, bias).windows(2).fold(1.0, |over: f64, w| {
                 let there = w.iter().map(|f| self.wanted.sources.at(layout.point(k, *f), size));
@@ -337,6 +340,7 @@ impl Sizing {
     fn line_rule(
         &mut self,
         (index, rule, what): (usize, &Rule, &str),
+        near: f64,
         lines: &[Lines],
         division: &mut [Option<Ruled<Division>>],
         bias: &mut [Option<Ruled<f64>>],
@@ -354,7 +358,7 @@ impl Sizing {
             let rank = *rank;
             if let Some((count, origin)) = rule.count {
                 let shares =
-                    count_shares(uses, links, count).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
+                    count_shares(uses, links, (count, near)).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
                 for (u, n) in uses.iter().zip(shares) {
                     settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
                 }
@@ -377,7 +381,12 @@ impl Sizing {
     }
 
     /// A count on a surface or a face is for each of its sides.
-    fn face_counts(&mut self, layout: &Layout, (index, rule): (usize, &Rule), division: &mut [Option<Ruled<Division>>]) -> Result<()> {
+    fn face_counts(
+        &mut self,
+        (layout, near): (&Layout, f64),
+        (index, rule): (usize, &Rule),
+        division: &mut [Option<Ruled<Division>>],
+    ) -> Result<()> {
         let Some((count, origin)) = rule.count else {
             return Ok(());
         };
@@ -397,7 +406,7 @@ impl Sizing {
             }
             let weights: Vec<f64> = stretches.iter().map(|s| layout.length(*s)).collect();
             let least = vec![1; stretches.len()];
-            let shares = share(count, &weights, &least)
+            let shares = share(count, (&weights, near), &least)
                 .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: stretches.len() as u32 })?;
             for (s, n) in stretches.iter().zip(shares) {
                 let rank = if matches!(rule.target, Target::Patches(_)) { PATCH } else { FACE };
@@ -559,7 +568,7 @@ fn own_sizes(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
 
 /// Least counts that keep stretches from falling on each other: 3 for a ring; of several with the same ends the shortest may
 /// be one step, as a blunt trailing edge is, and the others take 2.
-fn shapes(layout: &Layout) -> Vec<u32> {
+fn shapes(layout: &Layout, near: f64) -> Vec<u32> {
     let ends = |k: usize| {
         let (a, b) = layout.pieces.atoms[k].ends;
         (a.min(b), a.max(b))
@@ -574,7 +583,7 @@ fn shapes(layout: &Layout) -> Vec<u32> {
     for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
         let length = |k: &usize| layout.pieces.atoms[*k].length();
         let shortest = group.iter().map(length).fold(f64::INFINITY, f64::min);
-        let alike = group.iter().filter(|k| length(k) <= shortest * (1.0 + WHOLE_NUMBER)).count();
+        let alike = group.iter().filter(|k| length(k) <= shortest * (1.0 + WHOLE_NUMBER) + near).count();
         for k in group {
             let (a, b) = ends(*k);
             let sides = match () {
@@ -651,17 +660,17 @@ struct LinkRange {
 }
 
 /// A count shared out to links by length, then to the stretches of each link; `Err`: how many stretches there are.
-fn count_shares(uses: &[Use], links: &[LinkRange], count: u32) -> std::result::Result<Vec<u32>, u32> {
+fn count_shares(uses: &[Use], links: &[LinkRange], (count, near): (u32, f64)) -> std::result::Result<Vec<u32>, u32> {
     let least: Vec<u32> = links.iter().map(|l| (l.uses.len() as u32).max(1)).collect();
     let weights: Vec<f64> = links.iter().map(|l| l.length).collect();
-    let by_link = share(count, &weights, &least).ok_or(least.iter().sum::<u32>())?;
+    let by_link = share(count, (&weights, near), &least).ok_or(least.iter().sum::<u32>())?;
     let mut shares = Vec::new();
     for (n, link) in by_link.iter().zip(links) {
         let lengths: Vec<f64> = uses[link.uses.clone()].iter().map(|u| u.s.1 - u.s.0).collect();
         // A link of which only a part is meshed gives that part its share.
         let covered: f64 = lengths.iter().sum::<f64>() / link.length;
-        let own = ((f64::from(*n) * covered).round() as u32).max(lengths.len() as u32);
-        shares.extend(share(own, &lengths, &vec![1; lengths.len()]).unwrap_or_default());
+        let own = ((f64::from(*n) * (covered + near / link.length) + 0.5).floor() as u32).max(lengths.len() as u32);
+        shares.extend(share(own, (&lengths, near), &vec![1; lengths.len()]).unwrap_or_default());
     }
     Ok(shares)
 }

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::counts::share;
+use super::counts::{largest, share};
 use super::parity::{self, Sum};
 use crate::model::glue::root;
 
@@ -110,11 +110,14 @@ struct Solver<'a> {
     relations: &'a [Relation],
     count: Vec<u32>,
     limit: u32,
+    /// Lengths that differ by no more are one, model units.
+    near: f64,
 }
 
-/// Least counts that satisfy all relations, and the strip of each stretch. Sums stay below `limit`.
-pub fn solve(stretches: &[Stretch], relations: &[Relation], limit: u32) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
-    let mut solver = Solver::new(stretches, relations, limit)?;
+/// Least counts that satisfy all relations, and the strip of each stretch. Sums stay below `limit`; of steps whose lengths differ
+/// by no more than `near` the first is raised.
+pub fn solve(stretches: &[Stretch], relations: &[Relation], (limit, near): (u32, f64)) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
+    let mut solver = Solver::new(stretches, relations, (limit, near))?;
     solver.parities()?;
     solver.pass_on()?;
     for (n, strip) in solver.strips.iter().enumerate() {
@@ -125,7 +128,7 @@ pub fn solve(stretches: &[Stretch], relations: &[Relation], limit: u32) -> Resul
 }
 
 impl<'a> Solver<'a> {
-    fn new(stretches: &[Stretch], relations: &'a [Relation], limit: u32) -> Result<Self, Conflict> {
+    fn new(stretches: &[Stretch], relations: &'a [Relation], (limit, near): (u32, f64)) -> Result<Self, Conflict> {
         let mut parent: Vec<usize> = (0..stretches.len()).collect();
         for relation in relations {
             if let Relation::Equal(a, b) = relation
@@ -169,7 +172,7 @@ impl<'a> Solver<'a> {
             }
         }
         let count = vec![0; strips.len()];
-        Ok(Self { strip_of, strips, relations, count, limit })
+        Ok(Self { strip_of, strips, relations, count, limit, near })
     }
 
     /// Settles which counts are even and which odd, where some have to be even.
@@ -304,7 +307,7 @@ impl<'a> Solver<'a> {
         }
         let weights: Vec<f64> = open.iter().map(|(s, c)| c.abs() as f64 * f64::from(self.strips[*s].wish)).collect();
         let least: Vec<u32> = open.iter().map(|(s, c)| c.unsigned_abs() as u32 * self.strips[*s].least.0).collect();
-        let shares = share(target, &weights, &least)?;
+        let shares = share(target, (&weights, 0.0), &least)?;
         let mut counts: Vec<u32> = shares.iter().zip(open).map(|(n, (_, c))| n / c.unsigned_abs() as u32).collect();
         let mut left = target - counts.iter().zip(open).map(|(n, (_, c))| n * c.unsigned_abs() as u32).sum::<u32>();
         while left > 0 {
@@ -402,10 +405,9 @@ impl<'a> Solver<'a> {
     /// Raises the strips with the longest steps until `deficit` is made up.
     fn lift(&mut self, relation: usize, candidates: &[(usize, i64)], mut deficit: i64) -> Result<(), Conflict> {
         while deficit > 0 {
-            let step = |s: usize| self.strips[s].length / f64::from(self.count[s]);
-            let free = candidates.iter().filter(|(s, _)| self.strips[*s].fixed.is_none());
-            let best = free.max_by(|x, y| step(x.0).total_cmp(&step(y.0)).then(y.0.cmp(&x.0)));
-            let Some(&(s, c)) = best else {
+            let step = |k: &usize| self.strips[candidates[*k].0].length / f64::from(self.count[candidates[*k].0]);
+            let free = (0..candidates.len()).filter(|k| self.strips[candidates[*k].0].fixed.is_none());
+            let Some((s, c)) = largest(free, step, self.near).map(|k| candidates[k]) else {
                 return Err(Conflict::Endless { relation });
             };
             if self.count[s] >= self.limit {
@@ -463,7 +465,7 @@ mod tests {
     }
 
     fn check(stretches: &[Stretch], relations: &[Relation], expected: Result<&[u32], Conflict>) {
-        let found = solve(stretches, relations, 10_000).map(|r| r.0);
+        let found = solve(stretches, relations, (10_000, 0.0)).map(|r| r.0);
         assert_eq!(found, expected.map(<[u32]>::to_vec));
         if let Ok(n) = found {
             let sum = |side: &Vec<usize>| side.iter().map(|k| n[*k]).sum::<u32>();

@@ -19,18 +19,18 @@ pub enum Uneven {
 }
 
 /// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.
-pub fn look(layout: &Layout, nodes: &Nodes, sizing: &Sizing) -> Vec<(usize, Uneven)> {
+pub fn look(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> Vec<(usize, Uneven)> {
     let mut strained: Vec<Option<f64>> = vec![None; layout.pieces.atoms.len()];
     for (k, pace) in sizing.strained.iter().enumerate() {
         let least = pace.as_ref().map_or(f64::INFINITY, |pace| pace.least());
-        strained[k] = (least < SHARE * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
+        strained[k] = (least + near < SHARE * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
     }
     let of = |face: &Face| {
         if face.free || face.method != Method::Auto || face.elements != Elements::Triangles || counted(face, sizing) {
             return None;
         }
         let beside = face.stretches().filter_map(|k| strained[k]).reduce(f64::min);
-        row(face, nodes).map(Uneven::Row).or(beside.map(Uneven::Beside))
+        row(face, (nodes, near)).map(Uneven::Row).or(beside.map(Uneven::Beside))
     };
     layout.faces.iter().enumerate().filter_map(|(f, face)| Some((f, of(face)?))).collect()
 }
@@ -42,7 +42,7 @@ fn counted(face: &Face, sizing: &Sizing) -> bool {
 }
 
 /// The shortest step of a side next to much longer ones.
-fn row(face: &Face, nodes: &Nodes) -> Option<f64> {
+fn row(face: &Face, (nodes, near): (&Nodes, f64)) -> Option<f64> {
     let n = face.sides.len();
     let steps = |side: &Border| -> Vec<f64> { side.uses.iter().map(|u| (u.s.1 - u.s.0) / f64::from(nodes.count(u.atom))).collect() };
     let all: Vec<Vec<f64>> = face.sides.iter().map(steps).collect();
@@ -52,7 +52,7 @@ fn row(face: &Face, nodes: &Nodes) -> Option<f64> {
         // A row that is narrow among rows as long is what limits ask for.
         let beside = [(k + 1) % n, (k + n - 1) % n].map(longest);
         let across = beside.into_iter().filter(|step| *step > 0.0).fold(longest(k), f64::min);
-        found = own.iter().copied().filter(|step| *step < SHARE * across).chain(found).reduce(f64::min);
+        found = own.iter().copied().filter(|step| *step + near < SHARE * across).chain(found).reduce(f64::min);
     }
     found
 }

@@ -7,8 +7,8 @@ use crate::base::digest::{Content, Digester};
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::Surface;
 use crate::surface::quick::Quick;
+use crate::surface::{Lean, Surface};
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
@@ -80,8 +80,16 @@ impl Trace {
     /// Point and derivative by `t`.
     pub fn jet(&self, t: f64) -> (DVec3, DVec3) {
         let (u, v) = self.uv(t);
-        let [p, du, dv] = self.surface.tangents_by(self.quick.as_ref(), u, v);
-        (p, du * (self.to.0 - self.from.0) + dv * (self.to.1 - self.from.1))
+        let (along_u, along_v) = (self.to.0 - self.from.0, self.to.1 - self.from.1);
+        let [p, du, dv] = if t == 0.0 || t == 1.0 {
+            // A line may end at a kink: its own direction there is that of what it comes from.
+            let lean = |way: f64| if way != 0.0 && (t == 0.0) != (way > 0.0) { Lean::Before } else { Lean::After };
+            let jet = self.surface.jet_lean(u, v, (lean(along_u), lean(along_v)));
+            [jet.p, jet.du, jet.dv]
+        } else {
+            self.surface.tangents_by(self.quick.as_ref(), u, v)
+        };
+        (p, du * along_u + dv * along_v)
     }
 
     fn speed(&self, t: f64) -> f64 {
