@@ -77,7 +77,7 @@ pub const MESH: &[Setting] = &[
     Setting { key: "order", docs: "1, or 2 with mid nodes.", default: "1", ty: Ty::Count },
     Setting {
         key: "method",
-        docs: "How faces are meshed: `auto` (`mapped` where it fits, else `delaunay`), `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of constant u and v, as large as `chord_error` and `size` let them be) or `display` (few and long triangles within `chord_error`).",
+        docs: "How faces are meshed: `auto` (`mapped` where it fits and its elements are well shaped, else `delaunay`), `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of constant u and v, as large as `chord_error` and `size` let them be) or `display` (few and long triangles within `chord_error`).",
         default: "auto",
         ty: Ty::Choice(METHODS),
     },

@@ -16,8 +16,9 @@ use super::nodes::Nodes;
 use super::relations::Relations;
 use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
-use super::sizing::{MOST, Sizing};
-use super::{ahead, blame, inside, lines, second_order, shape_check, strips, uneven};
+use super::sizing::{MOST, Remark, Sizing};
+use super::uneven::Uneven;
+use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, uneven};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -65,10 +66,31 @@ fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Quick> {
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
     inside::place(input, &mut layout);
+    loop {
+        match attempt(input, &mut layout, size, (known, job)) {
+            Ok(done) => return Ok(finish(input, layout, done)),
+            // What was only made freely for better angles has a map.
+            Err(_) if keep_maps(&mut layout) => job.go_on()?,
+            Err(fault) => return Err(fault),
+        }
+    }
+}
+
+/// Takes back that faces are made freely because their maps are sharp; whether there were any.
+fn keep_maps(layout: &mut Layout) -> bool {
+    let mut any = false;
+    for face in layout.faces.iter_mut().filter(|face| matches!(face.uneven, Some(Uneven::Sharp(_)))) {
+        (face.uneven, face.kept, any) = (None, true, true);
+    }
+    any
+}
+
+/// Divides, refines and fills once.
+fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Done> {
     let mut narrow: Vec<Narrow> = Vec::new();
     let limits = faces::limits_of(input);
-    let _held = held(input, &layout, &limits);
-    let (mut sizing, mut wishes, mut relations) = begin(input, &mut layout, size, (known, job))?;
+    let _held = held(input, layout, &limits);
+    let (mut sizing, mut wishes, mut relations) = begin(input, layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     let (mut looks, mut before) = (LOOKS, Vec::new());
     for _ in 0..ROUNDS + LOOKS + layout.faces.len() {
@@ -76,40 +98,49 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
         let mut unknown = sizing.stretches(&layout);
         unknown.extend(relations.rows());
         let (counts, strip) = strips::solve(&unknown, &relations.list, (MOST, input.tolerance.point))
-            .map_err(|c| relations.fault(input, &layout, &sizing, &c))?;
-        relations.refuse_odd_borders(input, &layout, &sizing, &counts)?;
+            .map_err(|c| relations.fault(input, layout, &sizing, &c))?;
+        relations.refuse_odd_borders(input, layout, &sizing, &counts)?;
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
-        ahead::refuse_counts(input, &layout, (&sizing, &relations), &counts)?;
-        let nodes = Nodes::new(&layout, &sizing, &counts[..layout.pieces.atoms.len()]);
-        let uneven = uneven::look(&layout, (&nodes, input.tolerance.point), &sizing);
+        ahead::refuse_counts(input, layout, (&sizing, &relations), &counts)?;
+        let nodes = Nodes::new(layout, &sizing, &counts[..layout.pieces.atoms.len()]);
+        let uneven = uneven::look(layout, (&nodes, input.tolerance.point), &sizing);
         if !uneven.is_empty() {
             uneven.into_iter().for_each(|(f, step)| layout.faces[f].uneven = Some(step));
-            (sizing, wishes, relations) = begin(input, &mut layout, size, (known, job))?;
+            (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
             narrow.clear();
             (last, before) = (Vec::new(), Vec::new());
             continue;
         }
-        let border = nodes.points(&layout, &input.plan.points);
-        let made = Made { input, layout: &layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
+        let border = nodes.points(layout, &input.plan.points);
+        let made = Made { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
         // Shorter steps that leave all counts as they are help no more.
         if looks > 0 && counts != before {
             looks -= 1;
             let found = narrow::look(&made);
             if !found.is_empty() {
                 narrow.extend(found);
-                sizing = Sizing::new(input, &mut layout, size, (known, &narrow))?;
+                sizing = Sizing::new(input, layout, size, (known, &narrow))?;
                 before = counts;
                 continue;
             }
         }
         let mut prepared = prepare(&made, &relations, &counts)?;
+        let foreseen = foresee::look(&made, &prepared);
+        let better = foresee::better_free(&made, &sizing, &foreseen);
+        if !better.is_empty() {
+            better.into_iter().for_each(|(f, why)| layout.faces[f].uneven = Some(why));
+            (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+            narrow.clear();
+            (last, before) = (Vec::new(), Vec::new());
+            continue;
+        }
         let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
         let keys: Vec<Digest> = known.map(key).unwrap_or_default();
         let keyed = known.map(|known| (known, keys.as_slice()));
         let mut mesh = fill(input, &border, &prepared, (keyed, false), job)?;
         if !settled {
-            verdicts = limits::check(input, &limits, &mesh, &finished(&layout, &sizing, &prepared, &wishes), keyed);
+            verdicts = limits::check(input, &limits, &mesh, &finished(layout, &sizing, &prepared, &wishes), keyed);
         }
         if settled || verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
             shape_check::refuse_turned(input, &prepared, &mesh, keyed)?;
@@ -118,17 +149,21 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
                 mesh = fill(input, &border, &prepared, (keyed, true), job)?;
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
             }
-            let blames = blame::of_faces(&made, &sizing, &prepared, &mesh);
+            layout.faces.iter_mut().zip(&foreseen).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
+            let made = Made { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
+            let blames = blame::of_faces(&made, (&sizing, &foreseen), &prepared, &mesh);
+            let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
+            sizing.sharp = sharp.into_iter().reduce(Remark::sharper);
             sizing.take(&counts);
             sizing.take_refined(input, &prepared);
-            let mut explanation = Explanation::new(input, &layout, &sizing, &prepared, (&counts, &strip));
-            explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame));
-            return Ok(finish(input, Whole { layout, nodes, prepared, sizing }, mesh, explanation));
+            let mut explanation = Explanation::new(input, layout, &sizing, &prepared, (&counts, &strip));
+            explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame.line));
+            return Ok(Done { nodes, prepared, sizing, mesh, explanation });
         }
         relations.raise(&verdicts, &counts);
         last = counts;
     }
-    Err(relations.out_of_reach(input, &layout, &verdicts))
+    Err(relations.out_of_reach(input, layout, &verdicts))
 }
 
 /// Sizes of everything, what rows want, and the equations between counts.
@@ -302,17 +337,18 @@ fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [Prepared], w
     prepared.iter().enumerate().map(one).collect()
 }
 
-/// Everything but the mesh.
-struct Whole {
-    layout: Layout,
+/// Everything but the layout.
+struct Done {
     nodes: Nodes,
     prepared: Vec<Prepared>,
     sizing: Sizing,
+    mesh: Mesh,
+    explanation: Explanation,
 }
 
 /// Ranges, line elements and mid nodes.
-fn finish(input: &Input, whole: Whole, mut mesh: Mesh, explanation: Explanation) -> Part {
-    let Whole { layout, nodes, prepared, sizing } = whole;
+fn finish(input: &Input, layout: Layout, done: Done) -> Part {
+    let Done { nodes, prepared, sizing, mut mesh, explanation } = done;
     let mut ranges = super::sets::Ranges::new();
     let (mut t, mut q) = (0, 0);
     for (ready, face) in prepared.iter().zip(&layout.faces) {

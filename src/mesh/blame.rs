@@ -1,15 +1,19 @@
 //! Why the least angle of a face is small: what its border is like there.
 
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_6;
 
 use glam::DVec3;
 
 use super::data::Mesh;
 use super::edges::distance_to_segment;
 use super::faces::Prepared;
+use super::foresee::{self, Foreseen, SHARP};
 use super::free::face::Made;
 use super::layout::Face;
-use super::sizing::Sizing;
+use super::plan::Method;
+use super::sizing::{Remark, Sizing};
+use crate::base::fault::Cure;
 use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::text::real;
@@ -18,12 +22,27 @@ use crate::base::text::real;
 const SMALL: f64 = 0.2618;
 /// A corner of the border this much wider than the least angle is not its cause.
 const ITSELF: f64 = 1.5;
+/// Size that makes the angle over a short side 27°, over that side.
+const TALLER: f64 = 2.0;
 /// A side shorter than this share of the longest one makes its triangle sharp.
 const SHORT: f64 = 0.3;
 
-/// The least angle of each face with its place and the border's part in it; nothing where it is not small, or where
-/// triangles are long by their method.
-pub fn of_faces(made: &Made, sizing: &Sizing, prepared: &[Prepared], mesh: &Mesh) -> Vec<String> {
+/// A corner of the border as sharp is the cause of sharp angles near it, radians: 30°.
+const POINTED: f64 = FRAC_PI_6;
+/// How far its doing goes, in sides of the element.
+const REACH: f64 = 3.0;
+
+/// What is to be said of the least angle of a face.
+#[derive(Default)]
+pub struct Seen {
+    /// With its place and the border's part in it; nothing where it is not small.
+    pub line: String,
+    /// W724: one that is sharp and away from sharp corners.
+    pub sharp: Option<Remark>,
+}
+
+/// The least angle of each face; nothing where triangles are long by their method.
+pub fn of_faces(made: &Made, (sizing, foreseen): (&Sizing, &[Option<Foreseen>]), prepared: &[Prepared], mesh: &Mesh) -> Vec<Seen> {
     let (mut t, mut q) = (0, 0);
     let ranges = prepared.iter().map(|ready| {
         let range = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
@@ -33,25 +52,40 @@ pub fn of_faces(made: &Made, sizing: &Sizing, prepared: &[Prepared], mesh: &Mesh
     let ranges: Vec<_> = ranges.collect();
     par::map(prepared.len(), |f| {
         let elements = (&mesh.triangles[ranges[f].0.clone()], &mesh.quads[ranges[f].1.clone()]);
-        of_face(made, sizing, &made.layout.faces[f], elements, mesh).unwrap_or_default()
+        of_face(made, (sizing, foreseen[f].as_ref()), &made.layout.faces[f], elements, mesh).unwrap_or_default()
     })
 }
 
 type Elements<'a> = (&'a [[u32; 3]], &'a [[u32; 4]]);
 
-fn of_face(made: &Made, sizing: &Sizing, face: &Face, (triangles, quads): Elements, mesh: &Mesh) -> Option<String> {
+fn of_face(
+    made: &Made,
+    (sizing, foreseen): (&Sizing, Option<&Foreseen>),
+    face: &Face,
+    (triangles, quads): Elements,
+    mesh: &Mesh,
+) -> Option<Seen> {
     if face.free && face.method.is_sparing() {
         return None;
     }
     // Each corner first, with the nodes before and after it.
     let halves = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
     let own = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
-    let least = own.chain(halves).map(|t| (angle(mesh, t), t)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    if least.0 >= SMALL {
+    let all = || own.clone().chain(halves.clone()).map(|t| (angle(mesh, t), t));
+    let least = all().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    if least.0 >= SHARP {
         return None;
     }
-    let why = Blame { made, sizing, face, mesh, edges: edges(made, face) }.why(least)?;
-    Some(format!("; least angle {}° at {}: {why}", digits(least.0.to_degrees()), place(mesh.nodes[least.1[0] as usize])))
+    let blame = Blame { made, sizing, face, mesh, edges: edges(made, face) };
+    let pointed = blame.pointed();
+    let sharp = all().filter(|(angle, t)| *angle < SHARP && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let sharp = sharp.map(|(angle, t)| {
+        let surface = made.input.model.surfaces[face.surface.index()].name.clone();
+        Remark::Sharp { angle, at: mesh.nodes[t[0] as usize], surface, faces: 1, cure: blame.cure(foreseen, t) }
+    });
+    let why = if least.0 < SMALL { blame.why(least) } else { None };
+    let tell = |why| format!("; least angle {}° at {}: {why}", digits(least.0.to_degrees()), place(mesh.nodes[least.1[0] as usize]));
+    Some(Seen { line: why.map(tell).unwrap_or_default(), sharp })
 }
 
 fn angle(mesh: &Mesh, c: [u32; 3]) -> f64 {
@@ -97,6 +131,42 @@ impl Blame<'_> {
         let length = |(a, b): &(u32, u32)| self.mesh.nodes[*a as usize].distance(self.mesh.nodes[*b as usize]);
         let own = self.edges.iter().filter(|((a, b), _)| *a == n || *b == n).map(|(e, stretch)| (length(e), *stretch));
         own.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Nodes at which two edges of the border meet at a sharp angle.
+    fn pointed(&self) -> Vec<DVec3> {
+        let node = |n: u32| self.mesh.nodes[n as usize];
+        let mut at: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (a, b) in self.edges.keys() {
+            at.entry(*a).or_default().push(*b);
+            at.entry(*b).or_default().push(*a);
+        }
+        let sharp = |(n, others): &(&u32, &Vec<u32>)| {
+            let ways: Vec<DVec3> = others.iter().map(|o| node(*o) - node(**n)).filter(|way| *way != DVec3::ZERO).collect();
+            (1..ways.len()).any(|i| (0..i).any(|j| angle_between(ways[i], ways[j]) < POINTED))
+        };
+        at.iter().filter(sharp).map(|(n, _)| node(*n)).collect()
+    }
+
+    /// Whether an element is near a sharp corner of the border.
+    fn is_near(&self, pointed: &[DVec3], c: [u32; 3]) -> bool {
+        let p = c.map(|n| self.mesh.nodes[n as usize]);
+        let longest = (0..3).map(|k| p[k].distance(p[(k + 1) % 3])).fold(0.0, f64::max);
+        pointed.iter().any(|q| p.iter().any(|p| p.distance(*q) <= REACH * longest))
+    }
+
+    /// The setting that makes a sharp angle larger.
+    fn cure(&self, foreseen: Option<&Foreseen>, c: [u32; 3]) -> Cure {
+        let p = c.map(|n| self.mesh.nodes[n as usize]);
+        let shortest = (0..3).map(|k| p[k].distance(p[(k + 1) % 3])).fold(f64::INFINITY, f64::min);
+        match foreseen {
+            _ if foresee::is_written(self.face, self.sizing) => Cure::Rows,
+            None => Cure::Near,
+            Some(found) if self.face.method == Method::Mapped && found.is_worse_than_free() => Cure::Auto,
+            // A right-angled triangle of the size beside the short side has 27°.
+            Some(_) if TALLER * shortest < self.face.size.0 => Cure::Size(TALLER * shortest),
+            Some(_) => Cure::Method,
+        }
     }
 
     fn on_border(&self, n: u32) -> bool {

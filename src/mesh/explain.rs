@@ -176,7 +176,9 @@ impl Explanation {
             let sides: Vec<String> = f.sides.iter().map(|n| if *n == 0 { "pole".to_owned() } else { n.to_string() }).collect();
             let name = &input.model.surfaces[f.surface.index()].name;
             let face = &layout.faces[k];
-            let why = face.why.as_ref().map_or_else(String::new, |why| format!(" (a face {why})"));
+            let foreseen = face.foreseen.filter(|_| face.method == Method::Auto);
+            let told = foreseen.map_or_else(String::new, |angle| format!(" (angles of {}° foreseen)", angle.to_degrees().round()));
+            let why = face.why.as_ref().map_or(told, |why| format!(" (a face {why})"));
             let size = face.size.1.map_or_else(String::new, |clause| format!("; by {}", reasons::clause(input, clause)));
             let inside = reasons::of_face(input, &prepared[k].deciders) + &prepared[k].tally.map_or_else(String::new, reasons::of_cells);
             format!("face {} of {name}: {}{why}, {}, sides {}{size}{inside}", f.patch, f.method, f.elements, sides.join(" "))

@@ -153,7 +153,23 @@ impl Teller<'_> {
 
     fn face(&self, face: &Face, to: &mut Digester) {
         // How it is made and what lies in it follow from the rest.
-        let Face { patch, surface, flipped, elements, method, size, sides, near, free: _, uneven: _, why: _, lines: _, points: _ } = face;
+        let Face {
+            patch,
+            surface,
+            flipped,
+            elements,
+            method,
+            size,
+            sides,
+            near,
+            free: _,
+            uneven: _,
+            kept: _,
+            foreseen: _,
+            why: _,
+            lines: _,
+            points: _,
+        } = face;
         let record = &self.input.model.patches[patch.index()];
         (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).tell(to);
         (*flipped, *elements, (*method, size.0, size.1)).tell(to);

@@ -53,6 +53,10 @@ pub struct Face {
     pub sides: Vec<Border>,
     /// What rows would have to follow, or keep others from following: it is made freely for that.
     pub uneven: Option<Uneven>,
+    /// It stays mapped whatever its map is like: made freely it failed.
+    pub kept: bool,
+    /// The least angle that its map was foreseen to have, radians.
+    pub foreseen: Option<f64>,
     /// Why it is made freely though no method says so, in words that follow "a face".
     pub why: Option<String>,
     /// Stretches of curves inside it.
@@ -208,6 +212,8 @@ impl Layout {
             near: reach(input, std::iter::once(patch)),
             sides,
             uneven: None,
+            kept: false,
+            foreseen: None,
             why: None,
             lines: Vec::new(),
             points: Vec::new(),

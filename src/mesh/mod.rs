@@ -18,6 +18,7 @@ pub mod data;
 mod edges;
 pub mod explain;
 pub mod faces;
+mod foresee;
 pub mod free;
 mod gaps;
 mod hash;

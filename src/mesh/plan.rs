@@ -24,7 +24,7 @@ pub enum Elements {
 /// How a face is meshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Mapped where it fits, else Delaunay.
+    /// Mapped where it fits and its elements are well shaped, else Delaunay.
     Auto,
     /// Mapped, or an error.
     Mapped,

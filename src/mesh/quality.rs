@@ -93,6 +93,20 @@ impl Tally {
     }
 }
 
+/// The least corner angle of a triangle or quad, radians; a quad that is to be split, by the better of its diagonals.
+pub fn least_angle(corners: &[DVec3], split: bool) -> f64 {
+    let of = |part: &[DVec3]| {
+        let n = part.len();
+        let side = |k: usize| (part[(k + 1) % n] - part[k % n]).normalize_or_zero();
+        math::acos((0..n).map(|k| -side(k).dot(side(k + n - 1))).fold(-1.0, f64::max).min(1.0))
+    };
+    match *corners {
+        [a, b, c, d] if split => of(&[a, b, c]).min(of(&[a, c, d])).max(of(&[a, b, d]).min(of(&[b, c, d]))),
+        [] | [_] | [_, _] => 0.0,
+        ref all => of(all),
+    }
+}
+
 /// Quality of one triangle or quad by its corners, as [`Quality::mean_quality`] counts it; 0 for anything else.
 pub fn of_element(corners: &[DVec3]) -> f64 {
     let mut tally = Tally::NONE;

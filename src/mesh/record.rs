@@ -10,6 +10,7 @@ use super::mapped;
 use super::sizing::Remark;
 use super::trilateral::{Blocks, LatticeFrame};
 use crate::base::bytes::{Bytes, Plain, Put};
+use crate::base::fault::Cure;
 use crate::surface::Surface;
 
 crate::plain!(FaceRange { name, triangles, quads, lines });
@@ -80,12 +81,39 @@ impl Plain for Frame {
     }
 }
 
+impl Put for Cure {
+    fn put(&self, to: &mut Vec<u8>) {
+        match self {
+            Self::Auto => 0u8.put(to),
+            Self::Rows => 1u8.put(to),
+            Self::Size(size) => (2u8, size).put(to),
+            Self::Method => 3u8.put(to),
+            Self::Near => 4u8.put(to),
+        }
+    }
+}
+
+impl Plain for Cure {
+    const LEAST: usize = 1;
+    fn take(from: &mut Bytes) -> Option<Self> {
+        Some(match u8::take(from)? {
+            0 => Self::Auto,
+            1 => Self::Rows,
+            2 => Self::Size(Plain::take(from)?),
+            3 => Self::Method,
+            4 => Self::Near,
+            _ => return None,
+        })
+    }
+}
+
 impl Put for Remark {
     fn put(&self, to: &mut Vec<u8>) {
         match self {
             Self::Unused { rule, why } => (0u8, (rule, why)).put(to),
             Self::Overridden { key, earlier, later } => (1u8, (key, (earlier, later))).put(to),
             Self::Touch(Touch { kind, surfaces, names, length, at }) => (2u8, (kind.word(), (*surfaces, (names, (*length, *at))))).put(to),
+            Self::Sharp { angle, at, surface, faces, cure } => (3u8, ((angle, at), (surface, (faces, cure)))).put(to),
         }
     }
 }
@@ -100,6 +128,13 @@ impl Plain for Remark {
                 let (kind, (surfaces, (names, (length, at)))) = Plain::take(from)?;
                 Self::Touch(Touch { kind: Kind::of_word(kind)?, surfaces, names, length, at })
             }
+            3 => Self::Sharp {
+                angle: Plain::take(from)?,
+                at: Plain::take(from)?,
+                surface: Plain::take(from)?,
+                faces: Plain::take(from)?,
+                cure: Plain::take(from)?,
+            },
             _ => return None,
         })
     }

@@ -1,5 +1,7 @@
 //! Which setting decides each stretch: rules by rank, written counts shared out, wishes of size, chord and angle.
 
+use glam::DVec3;
+
 use super::build::Input;
 use super::contacts::{self, Touch};
 use super::counts::{share, steps};
@@ -15,7 +17,7 @@ use super::reuse::{Known, recalled_if_sound};
 use super::strips::Stretch;
 use super::wanted::{Wanted, least_on};
 use crate::base::digest::Digester;
-use crate::base::fault::{Fault, MeshFault, Result, SurfaceFault, Touching};
+use crate::base::fault::{Cure, Fault, MeshFault, Result, SurfaceFault, Touching};
 use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
 use crate::base::par;
@@ -74,6 +76,8 @@ pub struct Sizing {
     pub bias_rule: Vec<Option<usize>>,
     /// What `near`, `in` and `min_size` ask for.
     pub wanted: Wanted,
+    /// What is to be said of sharp angles.
+    pub sharp: Option<Remark>,
     overridden: Vec<(usize, usize, &'static str)>,
 }
 
@@ -462,6 +466,7 @@ impl Sizing {
             let why = self.homeless[rule].clone().unwrap_or_else(|| "other settings ask for more, or inner rules say it all".to_owned());
             remarks.push(Remark::Unused { rule, why });
         }
+        remarks.extend(self.sharp.clone());
         remarks
     }
 
@@ -477,6 +482,10 @@ impl Sizing {
             }
         }
         self.overridden.extend(&other.overridden);
+        self.sharp = match (self.sharp.take(), other.sharp.clone()) {
+            (Some(a), Some(b)) => Some(a.sharper(b)),
+            (a, b) => a.or(b),
+        };
     }
 }
 
@@ -501,6 +510,34 @@ pub enum Remark {
     },
     /// W667: two faces touch without sharing nodes.
     Touch(Touch),
+    /// W724: sharp angles away from sharp corners.
+    Sharp {
+        /// The least, radians.
+        angle: f64,
+        /// Where.
+        at: DVec3,
+        /// Surface of its face.
+        surface: String,
+        /// How many faces have such.
+        faces: usize,
+        /// The setting to change there.
+        cure: Cure,
+    },
+}
+
+impl Remark {
+    /// What is to be said of the sharp angles of two parts of a mesh: the least is told.
+    pub fn sharper(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Sharp { angle: a, at, surface, faces: n, cure }, Self::Sharp { angle: b, faces: m, .. }) if a <= b => {
+                Self::Sharp { angle: a, at, surface, faces: n + m, cure }
+            }
+            (Self::Sharp { faces: n, .. }, Self::Sharp { angle, at, surface, faces: m, cure }) => {
+                Self::Sharp { angle, at, surface, faces: n + m, cure }
+            }
+            (first, _) => first,
+        }
+    }
 }
 
 /// Settings of the whole mesh that only faces made freely know; they follow the clauses in [`Sizing::taken`].
@@ -544,6 +581,10 @@ impl Remark {
             Self::Overridden { key, earlier, later } => {
                 let key = KEYS.into_iter().find(|k| k == key).unwrap_or("a setting");
                 MeshFault::RuleOverridden { key, earlier: origin(*earlier), later: origin(*later) }.into()
+            }
+            Self::Sharp { angle, at, surface, faces, cure } => {
+                let (name, surface) = (plan.name.clone(), surface.clone());
+                MeshFault::Sharp { of: plan.origin, name, angle: *angle, at: *at, surface, faces: *faces, cure: *cure }.into()
             }
         }
     }

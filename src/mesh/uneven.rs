@@ -16,6 +16,8 @@ pub enum Uneven {
     Row(f64),
     /// A free face beside it needs steps as short, model units.
     Beside(f64),
+    /// Its map would have angles as sharp, radians.
+    Sharp(f64),
 }
 
 /// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.

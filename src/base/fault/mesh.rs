@@ -5,6 +5,21 @@ use glam::DVec3;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
+/// The setting that makes angles of elements larger.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cure {
+    /// `method: auto`.
+    Auto,
+    /// Written counts or their growth.
+    Rows,
+    /// A size, model units.
+    Size(f64),
+    /// `method: delaunay`.
+    Method,
+    /// A smaller size at the place.
+    Near,
+}
+
 /// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshFault {
@@ -139,6 +154,23 @@ pub enum MeshFault {
         earlier: Origin,
         /// The clause that holds.
         later: Origin,
+    },
+    /// W724: elements with sharp angles, away from sharp corners of their face.
+    Sharp {
+        /// The mesh.
+        of: Origin,
+        /// Its name.
+        name: String,
+        /// The least angle, radians.
+        angle: f64,
+        /// Where.
+        at: DVec3,
+        /// Surface of the face.
+        surface: String,
+        /// How many faces have such.
+        faces: usize,
+        /// The setting to change.
+        cure: Cure,
     },
     /// E707: a size below the floor of all sizes.
     BelowFloor {
@@ -344,6 +376,26 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help("remove the first of the two")
                 .edit(Subject::Entity(*earlier), Edit::DropRule(Some(key)))
         }
+        F::Sharp { of, name, angle, at, surface, faces, cure } => {
+            let more = match *faces {
+                0 | 1 => String::new(),
+                2 => ", and one more face has such".to_owned(),
+                n => format!(", and {} more faces have such", n - 1),
+            };
+            let help = match cure {
+                Cure::Auto => "without `method: mapped` the face is made freely, with larger angles".to_owned(),
+                Cure::Rows => "the steps of this face are written out: another `count` or `bias` on its sides".to_owned(),
+                Cure::Size(size) => {
+                    format!("`size: {}` on this face, or `method: delaunay`, which takes as short steps", say.length(*size))
+                }
+                Cure::Method => "`method: delaunay` on this face".to_owned(),
+                Cure::Near => "a smaller `size` on this face, or `near` this place".to_owned(),
+            };
+            Report::new("W724", format!("`{name}` has angles down to {} on `{surface}`", say.angle(*angle)))
+                .at(*of, "this mesh")
+                .note(format!("the sharpest is at {}, away from sharp corners{more}", say.point(*at)))
+                .help(help)
+        }
         F::BelowFloor { size, floor } => {
             Report::new("E707", format!("the size {} is below `min_size`, {}", say.length(size.0), say.length(floor.0)))
                 .at(size.1, "smaller than the floor")
@@ -500,6 +552,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::CountTooFew { .. }
         | F::CountBelowLinks { .. }
         | F::RuleOverridden { .. }
+        | F::Sharp { .. }
         | F::BelowFloor { .. }
         | F::FloorKeeps { .. }
         | F::GapTooWide { .. }

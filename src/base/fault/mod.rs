@@ -26,7 +26,7 @@ pub use cut::CutFault;
 pub use edit::Edit;
 pub use files::{FileFault, Malformed};
 pub use loops::{LoopFault, LoopRole};
-pub use mesh::MeshFault;
+pub use mesh::{Cure, MeshFault};
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use surface::{NoFlow, SurfaceFault, Touching};
 pub use values::ValueFault;
