@@ -52,3 +52,72 @@ fn every_mesh_of_every_model_is_sound() {
     let enough = tally.iter().zip([50, 100, 3_000, 20, 5]).all(|(n, least)| *n >= least);
     assert!(enough, "too little was looked at: {tally:?}");
 }
+
+/// A square of four by four cells with a hole of one in the middle, in triangles: elements, border with the hole, own nodes from 100.
+fn plate() -> (Vec<[u32; 3]>, Vec<[u32; 2]>) {
+    let node = |i: u32, j: u32| if i == 0 || j == 0 || i == 5 || j == 5 { i + 6 * j } else { 100 + (i - 1) + 4 * (j - 1) };
+    let hole = |n: u32| if [105, 106, 109, 110].contains(&n) { n - 50 } else { n };
+    let id = |i: u32, j: u32| {
+        let n = hole(node(i, j));
+        if n >= 100 {
+            100 + [100, 101, 102, 103, 104, 107, 108, 111, 112, 113, 114, 115].iter().position(|m| *m == n).unwrap() as u32
+        } else {
+            n
+        }
+    };
+    let (mut triangles, mut border) = (Vec::new(), Vec::new());
+    for j in 0..5 {
+        for i in 0..5 {
+            if (i, j) != (2, 2) {
+                let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    for k in 0..5 {
+        border.extend([[id(k, 0), id(k + 1, 0)], [id(5, k), id(5, k + 1)], [id(k + 1, 5), id(k, 5)], [id(0, k + 1), id(0, k)]]);
+    }
+    border.extend([[id(2, 2), id(2, 3)], [id(2, 3), id(3, 3)], [id(3, 3), id(3, 2)], [id(3, 2), id(2, 2)]]);
+    (triangles, border)
+}
+
+/// What the check of every run finds in a mesh that is broken on purpose.
+#[test]
+fn a_broken_mesh_is_seen() {
+    use lofting::mesh::Elements;
+    use lofting::mesh::verify::{Claim, Defect};
+    let (whole, border) = plate();
+    let look = |triangles: &[[u32; 3]], border: &[[u32; 2]], euler: i64| {
+        let kind = Elements::Triangles;
+        Claim { triangles, quads: &[], kind, border, lines: &[], points: &[], own: (100, 12), euler: Some(euler) }.hold()
+    };
+    assert_eq!(look(&whole, &border, 0), Ok(()), "a disc with a hole");
+    assert_eq!(look(&whole, &border, 1), Err(Defect::Euler(0, 1)));
+    assert_eq!(look(&[], &border, 0), Err(Defect::Empty));
+    // The hole is filled; so it is where its loop is there twice and counts as nothing.
+    let filled: Vec<[u32; 3]> = [whole.as_slice(), &[[55, 56, 60], [55, 60, 59]]].concat();
+    assert!(matches!(look(&filled, &border, 0), Err(Defect::Edge(_, [1, 1], _))), "{:?}", look(&filled, &border, 0));
+    let twice = [border.as_slice(), &border[20..]].concat();
+    assert!(matches!(look(&filled, &twice, -1), Err(Defect::Edge(_, [1, 1], _))), "{:?}", look(&filled, &twice, -1));
+    // One triangle less, one twice, one turned over, one with a node of elsewhere: at every place.
+    for k in 0..whole.len() {
+        let mut less = whole.clone();
+        let one = less.remove(k);
+        assert!(matches!(look(&less, &border, 0), Err(Defect::Edge(..) | Defect::Torn)), "without {k}");
+        let more = [whole.as_slice(), &[one]].concat();
+        assert!(matches!(look(&more, &border, 0), Err(Defect::Edge(..) | Defect::Torn)), "{k} twice");
+        let both = [whole.as_slice(), &[one, [one[0], one[2], one[1]]]].concat();
+        assert!(look(&both, &border, 0).is_err(), "{k} with its back");
+        let mut turned = whole.clone();
+        turned[k].swap(1, 2);
+        assert!(matches!(look(&turned, &border, 0), Err(Defect::Edge(..) | Defect::Torn)), "{k} turned");
+        let mut foreign = whole.clone();
+        foreign[k][0] = 77;
+        assert!(look(&foreign, &border, 0).is_err(), "{k} elsewhere");
+    }
+    let mut loose = whole.clone();
+    loose.retain(|t| !t.contains(&100));
+    assert_eq!(look(&loose, &border, 0), Err(Defect::Loose(100)));
+    // An edge of the border that no element has.
+    assert!(matches!(look(&whole, &[border.as_slice(), &[[0, 55]]].concat(), 0), Err(Defect::Edge([0, 55], [0, 0], [1, 0]))));
+}

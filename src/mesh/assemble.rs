@@ -18,7 +18,7 @@ use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Remark, Sizing};
 use super::uneven::Uneven;
-use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, uneven};
+use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, uneven, verify};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -62,6 +62,18 @@ fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Quick> {
     layout.faces.iter().filter(free).take(HELD).filter_map(|face| surface(face).quick()).collect()
 }
 
+/// Times that the steps of the border of a face that closes on itself are halved for it.
+const HALVED: u32 = 6;
+
+/// Whether a face that is made freely meets itself at a seam or in a pole.
+fn closes(face: &Face) -> bool {
+    let mut round: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).collect();
+    let all = round.len();
+    round.sort_unstable();
+    round.dedup();
+    face.free && (round.len() < all || face.sides.iter().any(|side| side.pole.is_some()))
+}
+
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
@@ -93,7 +105,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
     let (mut sizing, mut wishes, mut relations) = begin(input, layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     let (mut looks, mut before) = (LOOKS, Vec::new());
-    for _ in 0..ROUNDS + LOOKS + layout.faces.len() {
+    for _ in 0..ROUNDS + LOOKS + (1 + HALVED as usize) * layout.faces.len() {
         job.go_on()?;
         let mut unknown = sizing.stretches(&layout);
         unknown.extend(relations.rows());
@@ -148,6 +160,17 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
                 free(&made, &mut prepared, (known, job))?;
                 mesh = fill(input, &border, &prepared, (keyed, true), job)?;
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
+            }
+            if let Some((f, defect)) = verify::unsound(input, (&*layout, &nodes), &prepared, &mesh) {
+                if !closes(&layout.faces[f]) || layout.faces[f].halved == HALVED {
+                    return Err(verify::fault(input, &layout.faces[f], (&prepared[f], defect), &mesh));
+                }
+                // Where a face closes on itself, elements from one of its sides to another may be the same ones.
+                layout.faces[f].halved += 1;
+                (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+                narrow.clear();
+                (last, before) = (Vec::new(), Vec::new());
+                continue;
             }
             layout.faces.iter_mut().zip(&foreseen).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
             let made = Made { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };

@@ -166,6 +166,7 @@ impl Teller<'_> {
             uneven: _,
             kept: _,
             foreseen: _,
+            halved: _,
             why: _,
             lines: _,
             points: _,

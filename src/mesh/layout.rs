@@ -57,6 +57,8 @@ pub struct Face {
     pub kept: bool,
     /// The least angle that its map was foreseen to have, radians.
     pub foreseen: Option<f64>,
+    /// Times that the steps of its border were halved because it closes on itself and its elements did not keep apart.
+    pub halved: u32,
     /// Why it is made freely though no method says so, in words that follow "a face".
     pub why: Option<String>,
     /// Stretches of curves inside it.
@@ -214,6 +216,7 @@ impl Layout {
             uneven: None,
             kept: false,
             foreseen: None,
+            halved: 0,
             why: None,
             lines: Vec::new(),
             points: Vec::new(),

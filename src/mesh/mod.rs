@@ -52,6 +52,7 @@ pub mod sources;
 pub mod strips;
 pub mod trilateral;
 mod uneven;
+pub mod verify;
 mod wanted;
 
 pub use build::{Built, Input, Outline, build};

@@ -53,7 +53,10 @@ impl Relations {
                 for (direction, wish) in wishes[index].iter().enumerate() {
                     // Between two poles one row of triangles would meet in both.
                     let both_ends = face.sides[1 - direction].uses.is_empty() && face.sides[3 - direction].uses.is_empty();
-                    let least = if both_ends { 2 } else { 1 };
+                    // Round a seam, fewer than three columns would fall on each other.
+                    let [from, to] = if direction == 0 { [3, 1] } else { [0, 2] }.map(|k| face.sides[k].stretches());
+                    let is_ring = from.iter().any(|s| to.contains(s));
+                    let least = if is_ring { 3 } else { 1 + u32::from(both_ends) };
                     let row = relations.row(index, wish, least);
                     relations.join(index, row, face, &[direction, direction + 2]);
                 }

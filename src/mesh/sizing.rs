@@ -607,6 +607,10 @@ fn own_sizes(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
     own.into_iter().map(|own| own.unwrap_or((size, None))).collect()
 }
 
+/// Least steps of the borders of a face that is made freely between two poles, before they are halved: with fewer there may be
+/// nothing inside.
+const CLOSED: u32 = 4;
+
 /// Least counts that keep stretches from falling on each other: 3 for a ring; of several with the same ends the shortest may
 /// be one step, as a blunt trailing edge is, and the others take 2.
 fn shapes(layout: &Layout, near: f64) -> Vec<u32> {
@@ -633,6 +637,12 @@ fn shapes(layout: &Layout, near: f64) -> Vec<u32> {
                 () => 2,
             };
             least[*k] = if halved[*k] { 2 * sides - 1 } else { sides };
+        }
+    }
+    for face in layout.faces.iter().filter(|face| face.free) {
+        let poles = face.sides.iter().filter(|side| side.uses.is_empty()).count();
+        if face.halved > 0 || poles == 2 && face.sides.len() == 4 {
+            face.stretches().for_each(|k| least[k] = least[k].max(CLOSED << face.halved));
         }
     }
     least

@@ -263,6 +263,30 @@ pub enum MeshFault {
         /// Where.
         at: DVec3,
     },
+    /// E999: elements that are not what their face asks for, whatever that was.
+    Unsound {
+        /// The mesh and its name.
+        mesh: (Origin, String),
+        /// The surface.
+        surface: Origin,
+        /// How the face was made: `mapped`, `delaunay`, …
+        method: &'static str,
+        /// Triangles and quads of the face.
+        elements: [u64; 2],
+        /// What is wrong, in words that follow "a face where".
+        what: String,
+        /// Where.
+        at: DVec3,
+    },
+    /// E720: a face that closes on itself, whose elements do not keep apart there.
+    ClosesTooNear {
+        /// The surface.
+        surface: Origin,
+        /// How the face was made.
+        method: &'static str,
+        /// Where.
+        at: DVec3,
+    },
     /// E703 without a count: an edge glued so far beside a face that no step keeps the chord error.
     GapTooWide {
         /// How far the edge is from the surface, model units.
@@ -531,6 +555,23 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "this face")
         .help("keep the borders further apart, or divide them more finely there"),
+        F::ClosesTooNear { surface, method, at } => Report::new(
+            "E720",
+            format!(
+                "{} closes on itself more narrowly at {} than elements made by `method: {method}` keep apart",
+                say.quoted(*surface, "a face"),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "this face")
+        .help(if *method == "mapped" { "a smaller `size`" } else { "a smaller `size`, or `method: mapped`" }),
+        F::Unsound { mesh: (mesh, name), surface, method, elements: [triangles, quads], what, at } => Report::new(
+            "E999",
+            format!("a bug in loft: the mesh `{name}` is not right on {}: {what}, at {}", say.quoted(*surface, "a face"), say.point(*at)),
+        )
+        .at(*mesh, "this mesh was not made")
+        .at(*surface, format!("this face, made by `method: {method}` of {triangles} triangles and {quads} quads"))
+        .help("please report it with this script; another `method` or `size` may do meanwhile"),
         F::TreeTooDeep { surface, at, levels } => Report::new(
             "E716",
             format!("the quadtree of {} needs more than {levels} levels at {}", say.quoted(*surface, "a face"), say.point(*at)),

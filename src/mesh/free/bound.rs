@@ -75,7 +75,7 @@ const PARTS: u32 = 3;
 pub fn chord(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
-        return 0.0;
+        return off_line(of.0, uv);
     }
     let first = part(of, uv, normal, None);
     if first <= wanted || first > TOO_FAR * wanted {
@@ -116,6 +116,22 @@ pub fn chord(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], want
         next = open.pop();
     }
     worst
+}
+
+/// The same of three corners on a line, or of which two are one point: how far the surface between their places may be from the
+/// line, in any direction. Nothing where the places are on a line too, as in a pole.
+fn off_line(surface: &Surface, uv: [DVec2; 3]) -> f64 {
+    if (uv[1] - uv[0]).perp_dot(uv[2] - uv[0]).abs() <= NUDGE * NUDGE {
+        return 0.0;
+    }
+    let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
+    let hold = |x: f64| x.clamp(0.0, 1.0);
+    let spread = surface.spread((hold(low.x), hold(high.x)), (hold(low.y), hold(high.y)));
+    let all = [spread.duu, spread.duv, spread.dvv];
+    if all.iter().any(Ranges::is_vast) {
+        return f64::INFINITY;
+    }
+    over_sides(&Bends { mid: [0.0; 3], slack: all.map(|r| r.reach()) }, uv, high - low)
 }
 
 /// How far the surface over a triangle of (u, v) is from a plane along its normal, by the heights of the corners where they

@@ -61,7 +61,24 @@ impl Loads {
 /// The bounds of three nodes as a triangle that may be long against the limits.
 pub fn load_of_long(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
     let c = corners.map(|n| n as usize);
-    leaning(load(sheet, web, corners, None, limits), lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])))
+    let xy = c.map(|n| web.xy[n]);
+    let load = leaning(load(sheet, web, corners, None, limits), lean(sheet, xy, c.map(|n| web.p[n])));
+    let fixed = corners.iter().any(|n| *n < web.fixed);
+    if fixed { load } else { capped(sheet, xy, load, limits) }
+}
+
+/// No place of the surface over a triangle is farther from it than the surface there reaches: all there is to say at a tip, where
+/// nothing bounds its bend.
+fn capped(sheet: &Sheet, xy: [DVec2; 3], load: Load, limits: &Limits) -> Load {
+    let Some(limit) = limits.chord.filter(|_| load.chord > 1.0) else { return load };
+    let at = xy.map(|xy| DVec2::from(sheet.uv(xy)));
+    let (low, high) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
+    if !(low.cmpge(DVec2::ZERO).all() && high.cmple(DVec2::ONE).all()) {
+        return load;
+    }
+    let spread = sheet.surface().spread((low.x, high.x), (low.y, high.y));
+    let reach = spread.du.reach() * (high.x - low.x) + spread.dv.reach() * (high.y - low.y);
+    if reach.is_finite() { Load { chord: load.chord.min(reach / limit), ..load } } else { load }
 }
 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
@@ -100,7 +117,7 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], first: Option<(DVec2, D
 
 /// The same of three places of the chart with their points, by parts.
 pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
-    leaning(of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p))
+    capped(sheet, xy, leaning(of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p)), limits)
 }
 
 /// Points are up to `beside` off the surface.
@@ -111,11 +128,27 @@ fn of_places(sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limi
         (bound::chord(surface, from_pole(&|at| sheet.tangents(at.into()), places), p, limit - beside) + beside) / limit
     });
     let angle = limits.angle.map_or(0.0, |limit| {
-        let normals = xy.map(|xy| sheet.spot(xy).normal());
+        let columns = from_pole(&|at| sheet.tangents(at.into()), places);
+        let normals = [0, 1, 2].map(|k| pole_normal(sheet, columns[k]).unwrap_or_else(|| sheet.spot(xy[k]).normal()));
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
         turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
     });
     Load { chord, angle }
+}
+
+/// The normal of a pole on the way to it along its column: where the surface is smooth there they are one, and round a tip
+/// each column has its own. `None` where a place is no pole.
+fn pole_normal(sheet: &Sheet, at: DVec2) -> Option<DVec3> {
+    if at.cmpgt(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all() {
+        return None;
+    }
+    let [_, du, dv] = sheet.tangents(at.into());
+    let along = [(du, dv, 1), (dv, du, 0)].into_iter().find(|(none, all, _)| none.length() <= SINGULAR * all.length())?.2;
+    let jet = sheet.surface().jet(at.x, at.y);
+    // A step inwards, the vanishing derivative is the mixed one times that step.
+    let inwards = if at[along] > 0.5 { -jet.duv } else { jet.duv };
+    let normal = if along == 1 { inwards.cross(jet.dv) } else { jet.du.cross(inwards) };
+    Some(normal.normalize_or_zero())
 }
 
 /// How far a border node is from the surface: glued edges run beside it.
@@ -126,19 +159,25 @@ fn off_surface(sheet: &Sheet, web: &Web, n: usize, limit: f64) -> f64 {
 /// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two
 /// corners spans the least.
 pub fn from_pole(tangents: &impl Fn(DVec2) -> [DVec3; 3], at: [DVec2; 3]) -> [DVec2; 3] {
+    let free = at.map(|at| {
+        // Poles lie on the border of (u, v).
+        if at.cmpgt(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all() {
+            return None;
+        }
+        let [_, du, dv] = tangents(at).map(DVec3::length);
+        [(du, dv, 0), (dv, du, 1)].into_iter().find(|(none, all, _)| *none <= SINGULAR * all).map(|found| found.2)
+    });
     let mut best = at;
     for k in 0..3 {
-        // Poles lie on the border of (u, v).
-        if at[k].cmpgt(DVec2::ZERO).all() && at[k].cmplt(DVec2::ONE).all() {
-            continue;
-        }
-        let [_, du, dv] = tangents(at[k]).map(DVec3::length);
-        let middle = 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]);
-        if du <= SINGULAR * dv {
-            best[k].x = middle.x;
-        } else if dv <= SINGULAR * du {
-            best[k].y = middle.y;
-        }
+        let Some(axis) = free[k] else { continue };
+        // Of two corners in poles both have the column of the third.
+        let others = [(k + 1) % 3, (k + 2) % 3];
+        let held: Vec<f64> = others.into_iter().filter(|i| free[*i] != Some(axis)).map(|i| at[i][axis]).collect();
+        best[k][axis] = match held[..] {
+            [] => 0.5 * (at[others[0]][axis] + at[others[1]][axis]),
+            [one] => one,
+            _ => 0.5 * (held[0] + held[1]),
+        };
     }
     best
 }

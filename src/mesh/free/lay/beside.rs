@@ -15,6 +15,9 @@ use crate::mesh::free::web::Web;
 /// Longest side of a triangle beside a border over the longest side of a cell: its diagonal, and a little.
 const STRETCH: f64 = 1.5;
 
+/// Share of the longest side of a triangle without area by which the surface may be off it.
+const ROUND: f64 = 0.25;
+
 impl Work<'_> {
     /// The triangulation of all nodes with the edges of borders and of the triangles that are sure, and which are inside.
     pub(super) fn triangulated(&self, web: &Web, sure: &[[u32; 3]]) -> Tried<(Triangles, Vec<bool>)> {
@@ -40,11 +43,13 @@ impl Work<'_> {
             let c = all.corners[t];
             // At a pole the chart has edges that are points in space, and lines of the surface run into it: what stands on an edge,
             // or has its corners on a line, is no triangle in the end.
-            if sure.contains(&sorted(c)) || self.is_flat(web, c) {
+            let flat = self.is_flat(web, c);
+            let wraps = flat && self.wraps(web, c);
+            if sure.contains(&sorted(c)) || flat && !wraps {
                 continue;
             }
             let load = loads::load_of_long(self.ask.sheet, web, c, self.ask.limits);
-            let long = self.too_long(web, (c, all.given[t]));
+            let long = wraps || self.too_long(web, (c, all.given[t]));
             if load.worst() <= 1.0 && !long {
                 continue;
             }
@@ -70,6 +75,23 @@ impl Work<'_> {
         let [a, b, d] = c.map(|n| web.p[n as usize]);
         let longest = a.distance(b).max(b.distance(d)).max(d.distance(a));
         (b - a).cross(d - a).length() <= self.ask.point * longest
+    }
+
+    /// Whether the surface between the places of a triangle without area goes round a good way off the line of its corners: they
+    /// are on both sides of a seam, or in several poles.
+    fn wraps(&self, web: &Web, c: [u32; 3]) -> bool {
+        let sheet = self.ask.sheet;
+        let places = c.map(|n| DVec2::from(sheet.uv(web.xy[n as usize])));
+        let columns = loads::from_pole(&|at| sheet.tangents(at.into()), places);
+        let middle = (columns[0] + columns[1] + columns[2]) / 3.0;
+        let p = c.map(|n| web.p[n as usize]);
+        let (a, b) = [(p[0], p[1]), (p[1], p[2]), (p[2], p[0])]
+            .into_iter()
+            .max_by(|one, other| one.0.distance_squared(one.1).total_cmp(&other.0.distance_squared(other.1)))
+            .unwrap_or_default();
+        let off = sheet.surface().point_by(sheet.quick(), middle.x, middle.y) - a;
+        let along = (b - a).normalize_or_zero();
+        (off - along * off.dot(along)).length() > ROUND * a.distance(b) + self.ask.point
     }
 
     /// Whether a side of a triangle that is no edge of the border is longer than cells may be.

@@ -11,6 +11,7 @@ use crate::mesh::free::ground::Ground;
 use crate::mesh::free::loads;
 use crate::mesh::free::marks::corners;
 use crate::mesh::free::tree::Class;
+use crate::surface::{Domain, Side};
 
 /// A direction across which a cell is cut, and in how many parts at last.
 pub(super) type Cut = (usize, u32);
@@ -21,6 +22,10 @@ const MOST_PARTS: f64 = 1e6;
 const NARROW: f64 = 1.0 / 64.0;
 /// Width of a leaf over that of a triangle below which it is thin.
 const THIN: f64 = 0.6;
+/// Largest part of a closed direction that one cell covers: with a third, three nodes go round.
+const TURN: f64 = 0.35;
+/// Largest part of the way from pole to pole that one cell covers.
+const HALF: f64 = 0.6;
 /// Pieces by which the side of a cell is measured.
 const PIECES: usize = 4;
 
@@ -62,6 +67,9 @@ impl Work<'_> {
         }
         let cell = &self.cells.all()[k as usize];
         let (low, high) = (cell.low, cell.high);
+        if let Some(axis) = self.overlong(k) {
+            return Ok(Some(((axis, 2), Why::Bends)));
+        }
         let lengths = self.lengths(low, high);
         let longer = usize::from(lengths.y > lengths.x);
         let (most, why) = self.allowed(low, high, lengths);
@@ -78,6 +86,26 @@ impl Work<'_> {
         }
         self.floor(lengths[longer], load, low)?;
         Ok(self.best_cut(k, (low, high)).map(|cut| (cut, Why::Bends)))
+    }
+
+    /// The direction in which a leaf goes so far round a surface that closes, or from pole to pole, that nodes on its two sides
+    /// would have more than one edge between them.
+    fn overlong(&self, k: u32) -> Option<usize> {
+        let surface = self.ask.sheet.surface();
+        let width = self.cells.all()[k as usize].width();
+        let pole = |side: usize| surface.domain() == Domain::Square && matches!(surface.side(side), Side::Pole(_));
+        let most = |closed: bool, poles: bool| {
+            if closed {
+                TURN
+            } else if poles {
+                HALF
+            } else {
+                f64::INFINITY
+            }
+        };
+        let (u, v) = surface.closed();
+        let most = [most(u, pole(1) && pole(3)), most(v, pole(0) && pole(2))];
+        (0..2).find(|axis| width[*axis] > most[*axis] && self.cells.divisible(k, *axis))
     }
 
     /// How long the sides of a box may be, and by which clause.

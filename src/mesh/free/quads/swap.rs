@@ -96,8 +96,8 @@ impl<'a> Swapper<'a> {
 
     /// What a node with so many faces more costs.
     fn odd(&self, node: u32, more: i64) -> f64 {
-        let off = i64::from(self.valence[node as usize]) + more - i64::from(self.wanted[node as usize]);
-        (off * off) as f64
+        let off = (i64::from(self.valence[node as usize]) + more - i64::from(self.wanted[node as usize])) as f64;
+        off * off
     }
 
     /// Cost of a face of the polygon; infinite where it may not be.
