@@ -219,7 +219,13 @@ fn figure_2_2_has_its_patches_edges_and_vertices() {
 #[test]
 fn figure_2_2_is_an_open_shell_and_meshes_conform() {
     let scene = figure_2_2();
-    let request = ShellRequest { name: "hall".to_owned(), surfaces: vec![SurfaceId(0), SurfaceId(1)], snap: None, origin: Origin::NONE };
+    let request = ShellRequest {
+        name: "hall".to_owned(),
+        surfaces: vec![SurfaceId(0), SurfaceId(1)],
+        snap: None,
+        branches: false,
+        origin: Origin::NONE,
+    };
     let mut sink = Vec::new();
     let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut sink).unwrap();
     assert!(!shell.closed);
@@ -286,7 +292,8 @@ fn neighbours_share_nodes_where_one_side_meets_two() {
         coons_of(&[half(0.5, 1.0), chain(&low[4]), chain(&low[1]), chain(&low[3])]),
     ];
     let scene = Scene::new(&curves, surfaces);
-    let request = ShellRequest { name: "s".to_owned(), surfaces: (0..3).map(SurfaceId).collect(), snap: None, origin: Origin::NONE };
+    let request =
+        ShellRequest { name: "s".to_owned(), surfaces: (0..3).map(SurfaceId).collect(), snap: None, branches: false, origin: Origin::NONE };
     let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).unwrap();
     let mut plan = scene.plan();
     plan.surfaces = shell.surfaces;
@@ -390,7 +397,13 @@ fn a_ball_of_two_lunes_is_a_closed_shell() {
     let axis = axis_of(&chain(&straight(s, n)), &tolerance()).unwrap();
     let half = |k: usize| revolve(&chain(&curves[k]), &axis, std::f64::consts::PI, Origin(k as u32 + 1), &tolerance()).unwrap();
     let scene = Scene::new(&curves, vec![half(0), half(1)]);
-    let request = ShellRequest { name: "ball".to_owned(), surfaces: vec![SurfaceId(0), SurfaceId(1)], snap: None, origin: Origin::NONE };
+    let request = ShellRequest {
+        name: "ball".to_owned(),
+        surfaces: vec![SurfaceId(0), SurfaceId(1)],
+        snap: None,
+        branches: false,
+        origin: Origin::NONE,
+    };
     let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).unwrap();
     assert!(shell.closed);
     let mut plan = scene.plan();
@@ -416,8 +429,13 @@ fn shells_refuse_three_faces_at_an_edge_and_apart_ones() {
     curves.extend(far);
     let scene = Scene::new(&curves, surfaces);
     let shell = |list: &[u32]| {
-        let request =
-            ShellRequest { name: "s".to_owned(), surfaces: list.iter().map(|k| SurfaceId(*k)).collect(), snap: None, origin: Origin::NONE };
+        let request = ShellRequest {
+            name: "s".to_owned(),
+            surfaces: list.iter().map(|k| SurfaceId(*k)).collect(),
+            snap: None,
+            branches: false,
+            origin: Origin::NONE,
+        };
         scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).map(|s| s.surfaces).map_err(|f| f.code().0)
     };
     assert_eq!(shell(&[0, 1, 2]), Err("E617"));

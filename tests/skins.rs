@@ -347,6 +347,20 @@ fn area(mesh: &Mesh, name: &str) -> f64 {
     mesh.faces.iter().filter(own).map(of).sum()
 }
 
+/// Length of the edges that three elements or more have.
+fn joined(mesh: &Mesh) -> f64 {
+    let mut uses = std::collections::BTreeMap::<(u32, u32), usize>::new();
+    let corners = mesh.triangles.iter().map(|t| t.to_vec()).chain(mesh.quads.iter().map(|q| q.to_vec()));
+    for c in corners {
+        (0..c.len()).for_each(|k| {
+            let (a, b) = (c[k], c[(k + 1) % c.len()]);
+            *uses.entry((a.min(b), a.max(b))).or_default() += 1;
+        });
+    }
+    let length = |(a, b): &(u32, u32)| mesh.nodes[*a as usize].distance(mesh.nodes[*b as usize]);
+    uses.iter().filter(|(_, n)| **n > 2).map(|(e, _)| length(e)).sum()
+}
+
 #[test]
 fn faces_that_touch_are_joined_where_that_is_asked() {
     let slab = "units m\nlet ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]\nsurface slab = plane(polyline(ring, closed: true))\n";
@@ -407,21 +421,115 @@ fn faces_that_touch_are_joined_where_that_is_asked() {
             let outcome = imprinted(&name, &text);
             assert_eq!(outcome.report.meshes[0].parts, 1, "{name}");
             let mesh = &outcome.meshes[0].1;
-            let mut uses = std::collections::BTreeMap::<(u32, u32), usize>::new();
-            let corners = mesh.triangles.iter().map(|t| t.to_vec()).chain(mesh.quads.iter().map(|q| q.to_vec()));
-            for c in corners {
-                (0..c.len()).for_each(|k| {
-                    let (a, b) = (c[k], c[(k + 1) % c.len()]);
-                    *uses.entry((a.min(b), a.max(b))).or_default() += 1;
-                });
-            }
-            let length = |(a, b): &(u32, u32)| mesh.nodes[*a as usize].distance(mesh.nodes[*b as usize]);
-            let joined: f64 = uses.iter().filter(|(_, n)| **n > 2).map(|(e, _)| length(e)).sum();
+            let joined = joined(mesh);
             assert!((joined / seam - 1.0).abs() < 0.02, "{name}: {joined} {seam}");
             for (face, wanted, within) in &areas {
                 let found = area(mesh, face);
                 assert!((found / wanted - 1.0).abs() < *within, "{name}: {face} {found} {wanted}");
             }
         }
+    }
+}
+
+#[test]
+fn surfaces_are_cut_by_each_other() {
+    let slab = "units m\nlet ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]\nsurface slab = plane(polyline(ring, closed: true))\n";
+    let pi = std::f64::consts::PI;
+    // Declarations, the list, areas of the pieces, parts of the mesh and length of edges of three elements or more.
+    let cases: Vec<(&str, &str, &str, Vec<f64>, f64)> = vec![
+        (
+            "pieces_column",
+            "surface column = extrude(circle(center: (5, 5, 0), radius: 1), by: (0, 0, -3))\n",
+            "slab, column",
+            vec![pi, 6.0 * pi, 100.0 - pi],
+            2.0 * pi,
+        ),
+        ("pieces_wall", "surface wall = extrude(line((5, 0, 0), (5, 10, 0)), by: (0, 0, 3))\n", "slab, wall", vec![30.0, 50.0, 50.0], 10.0),
+        (
+            "pieces_crossing",
+            "surface plate = extrude(line((0, 5, -1), (10, 5, -1)), by: (0, 0, 2))\n",
+            "slab, plate",
+            vec![10.0, 10.0, 50.0, 50.0],
+            10.0,
+        ),
+        (
+            "pieces_pipe",
+            "surface pipe = extrude(circle(center: (5, 5, -1), radius: 1), by: (0, 0, 2))\n",
+            "slab, pipe",
+            vec![2.0 * pi, 2.0 * pi, pi, 100.0 - pi],
+            2.0 * pi,
+        ),
+        (
+            "pieces_cover",
+            "surface other = plane(polyline([(4, 4, 0), (14, 4, 0), (14, 14, 0), (4, 14, 0)], closed: true))\n",
+            "slab, other",
+            vec![36.0, 64.0, 64.0],
+            0.0,
+        ),
+        ("pieces_twice", "surface other = plane(polyline(ring, closed: true))\n", "slab, other", vec![100.0], 0.0),
+    ];
+    for (name, text, list, mut areas, seam) in cases {
+        let script = format!(
+            "{slab}{text}let pieces = imprint({list})\ngroup floor of slab\nmesh m of pieces {{ size: 0.5m }}\nreport \"areas\": [for p in pieces: {{area: p.area}}]\n"
+        );
+        let outcome = imprinted(name, &script);
+        let mut found: Vec<f64> = outcome.report.reports[0]
+            .rows
+            .iter()
+            .map(|row| match row[0] {
+                lofting::session::report::Cell::Number(x) => x,
+                _ => f64::NAN,
+            })
+            .collect();
+        found.sort_by(f64::total_cmp);
+        areas.sort_by(f64::total_cmp);
+        let same = found.len() == areas.len() && found.iter().zip(&areas).all(|(a, b)| (a / b - 1.0).abs() < 1e-5);
+        assert!(same, "{name}: {found:?} {areas:?}");
+        assert_eq!(outcome.report.meshes[0].parts, 1, "{name}");
+        let mesh = &outcome.meshes[0].1;
+        assert!((joined(mesh) - seam).abs() <= 0.02 * seam, "{name}: {} {seam}", joined(mesh));
+        // The set of the surface is all of its pieces.
+        let sets: Vec<_> = mesh.groups.iter().filter(|g| g.name == "slab" || g.name == "floor").collect();
+        assert!(sets.len() == 2 && sets[0].triangles == sets[1].triangles, "{name}");
+        assert!((area(mesh, "slab") / 100.0 - 1.0).abs() < 1e-9, "{name}: {}", area(mesh, "slab"));
+    }
+}
+
+#[test]
+fn shells_are_cut_where_that_is_asked() {
+    let text = "units m
+let ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]
+surface slab = plane(polyline(ring, closed: true))
+surface column = extrude(circle(center: (5, 5, 0), radius: 1), by: (0, 0, -3))
+surface wall = extrude(line((2, 2, 0), (8, 2, 0)), by: (0, 0, 3))
+shell frame of slab, column, wall { imprint: true }
+group floor of slab
+mesh m of frame { size: 0.5m }
+check \"branches\": not frame.closed
+";
+    let outcome = imprinted("frame", text);
+    assert!(outcome.report.checks.iter().all(|c| c.pass), "{:?}", outcome.report.checks);
+    assert_eq!(outcome.report.meshes[0].parts, 1);
+    let mesh = &outcome.meshes[0].1;
+    assert!((area(mesh, "slab") / 100.0 - 1.0).abs() < 1e-9 && (joined(mesh) - 6.0 - 2.0 * std::f64::consts::PI).abs() < 0.2);
+    let refused = text.replace(" { imprint: true }", "");
+    let disk = Disk::new(None, None, &[], Outputs::Counted).unwrap();
+    let outcome = script::outcome("model.loft", refused.as_bytes(), &[], &disk);
+    assert!(outcome.drawn(false, false).contains("E618"), "{}", outcome.drawn(false, true));
+}
+
+#[test]
+fn skins_of_a_shell_that_touch_are_told() {
+    let shell = |b: (f64, f64, f64)| {
+        let text = format!("units mm\n{}{}shell s of {}, {}\n", cube("a", (0., 0., 0.), 10.0), cube("b", b, 5.0), faces("a"), faces("b"));
+        let outcome = run("touching", &text);
+        outcome.diagnostics.iter().filter(|d| d.code.0 == "W667").map(|d| d.message.clone()).collect::<Vec<_>>()
+    };
+    for apart in [(2.0, 2.0, 2.0), (12.0, 0.0, 0.0)] {
+        assert_eq!(shell(apart), Vec::<String>::new(), "{apart:?}");
+    }
+    for near in [(10.0, 2.0, 2.0), (8.0, 2.0, 2.0)] {
+        let said = shell(near);
+        assert!(said.len() == 1 && said[0].starts_with("`a_w` and `b_"), "{near:?}: {said:?}");
     }
 }

@@ -11,6 +11,7 @@ use super::lookalikes;
 use super::module::bound;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::settings::{self, Setting};
+use super::std::imprint::pieces;
 use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
 use super::units;
 use super::value::{MeshValue, ShellValue, Value};
@@ -98,6 +99,8 @@ impl Cx<'_> {
                     let settings = settings.unwrap_or_default();
                     let mut snap = said(&settings, "snap", number);
                     let flip = said(&settings, "flip", truth).is_some_and(|said| said.0);
+                    let asked = said(&settings, "imprint", truth).filter(|said| said.0);
+                    let mut imprint = asked.map(|said| said.1);
                     let things = things.unwrap_or_default();
                     let mut surfaces = Vec::with_capacity(things.len());
                     for (thing, _) in things {
@@ -106,11 +109,15 @@ impl Cx<'_> {
                             Value::Shell(s) => {
                                 surfaces.extend(s.surfaces.iter().map(|face| if s.flip { face.flipped() } else { face.clone() }));
                                 snap = snap.or(s.snap);
+                                imprint = imprint.or(s.imprint);
                             }
                             _ => return Err(Stop::Bug("a shell of something else")),
                         }
                     }
-                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap, flip })))
+                    if let Some((_, origin)) = asked {
+                        surfaces = pieces(cx, surfaces, origin)?;
+                    }
+                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap, imprint, flip })))
                 }
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));

@@ -72,7 +72,13 @@ impl Scene {
                 surfaces.push(*id)
             }
         });
-        let request = ShellRequest { name: shell.name.to_string(), surfaces, snap: shell.snap, origin: shell.origin };
+        let request = ShellRequest {
+            name: shell.name.to_string(),
+            surfaces,
+            snap: shell.snap,
+            branches: shell.imprint.is_some(),
+            origin: shell.origin,
+        };
         let mut built = self.model.shell(&request, &self.network, tolerance, sink)?;
         if shell.flip != (!built.closed && places.first().is_some_and(|(_, flipped)| *flipped)) {
             built.surfaces.iter_mut().for_each(|(_, other)| *other = !*other);

@@ -136,6 +136,13 @@ pub const SHELL: &[Setting] = &[
         ty: LENGTH,
     },
     Setting {
+        key: "imprint",
+        docs: "Faces are cut by each other where they touch or cross, as by the function `imprint`; more than two may then share an edge. \
+               A mesh of the shell joins what touches along lines that cut nothing off, too.",
+        default: "false",
+        ty: Ty::Bool,
+    },
+    Setting {
         key: "flip",
         docs: "The other side is shown. Without it a closed shell points out of its material, whatever the order and direction of its \
                faces, and an open one follows its first face.",

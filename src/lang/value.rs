@@ -137,6 +137,8 @@ pub struct ShellValue {
     pub surfaces: Vec<Surface>,
     /// How far apart borders may be and still be one edge, model units, with the expression that says so.
     pub snap: Option<(f64, Origin)>,
+    /// What says that its faces were cut by each other: more than two of them may share an edge, and a mesh joins lines that end in a face.
+    pub imprint: Option<Origin>,
     /// Whether it shows the other side: a closed one points inwards, an open one away from where its first surface does.
     pub flip: bool,
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::assemble::{Part, assemble};
-use super::data::Mesh;
+use super::data::{Group, Mesh};
 use super::explain::Explanation;
 use super::layout::Layout;
 use super::nodes::Nodes;
@@ -147,8 +147,34 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
     for request in &input.plan.groups {
         groups.push(sets::of_request(input, &named, &built.mesh, &ranges, request)?);
     }
-    built.mesh.groups = groups;
+    built.mesh.groups = together(groups);
     Ok(built)
+}
+
+/// Sets of one name as one: pieces of a surface, whose elements are all of it.
+fn together(groups: Vec<Group>) -> Vec<Group> {
+    let mut out: Vec<Group> = Vec::with_capacity(groups.len());
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    for group in groups {
+        let Some(place) = places.get(&group.name) else {
+            places.insert(group.name.clone(), out.len());
+            out.push(group);
+            continue;
+        };
+        let whole = &mut out[*place];
+        let parts = [
+            (&mut whole.nodes, group.nodes),
+            (&mut whole.lines, group.lines),
+            (&mut whole.triangles, group.triangles),
+            (&mut whole.quads, group.quads),
+        ];
+        for (all, own) in parts {
+            all.extend(own);
+            all.sort_unstable();
+            all.dedup();
+        }
+    }
+    out
 }
 
 /// A twentieth of the diagonal of what is meshed.

@@ -77,6 +77,8 @@ struct Scan<'a> {
     users: Vec<Vec<u32>>,
     /// Nodes along each stretch.
     along: Vec<Vec<u32>>,
+    /// Where each surface stands first in the plan.
+    places: BTreeMap<SurfaceId, usize>,
 }
 
 /// A stretch of an edge on a face, nodes from and to by their places along it.
@@ -132,7 +134,22 @@ impl<'a> Scan<'a> {
                 }
             }
         }
-        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along }
+        let mut places = BTreeMap::new();
+        input.plan.surfaces.iter().enumerate().for_each(|(place, (s, _))| {
+            places.entry(*s).or_insert(place);
+        });
+        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along, places }
+    }
+
+    /// Where the surface of a face stands in the plan.
+    fn place(&self, face: usize) -> usize {
+        self.places.get(&self.surface_of(face)).copied().unwrap_or_default()
+    }
+
+    /// The places of the surfaces of two faces, ascending.
+    fn key(&self, a: usize, b: usize) -> (usize, usize) {
+        let (a, b) = (self.place(a), self.place(b));
+        (a.min(b), a.max(b))
     }
 
     fn p(&self, node: u32) -> DVec3 {
@@ -178,12 +195,9 @@ impl Known<'_> {
 
     fn add(&mut self, (a, b): (usize, usize), kind: Kind, (length, longest): (f64, f64), at: DVec3) {
         let scan = self.scan;
-        let (sa, sb) = (scan.surface_of(a), scan.surface_of(b));
-        let place = |s: SurfaceId| scan.input.plan.surfaces.iter().position(|x| x.0 == s).unwrap_or(0);
-        let name = |s: SurfaceId| scan.input.model.surfaces[s.index()].name.clone();
-        let key = (place(sa).min(place(sb)), place(sa).max(place(sb)));
-        let touch = Touch { kind, surfaces: (place(sa), place(sb)), names: (name(sa), name(sb)), length, at };
-        match self.touches.entry(key) {
+        let name = |face: usize| scan.input.model.surfaces[scan.surface_of(face).index()].name.clone();
+        let touch = Touch { kind, surfaces: (scan.place(a), scan.place(b)), names: (name(a), name(b)), length, at };
+        match self.touches.entry(scan.key(a, b)) {
             std::collections::btree_map::Entry::Vacant(slot) => {
                 slot.insert((touch, longest));
             }
@@ -307,16 +321,16 @@ impl Known<'_> {
     /// Faces that bend and cross inside both; two planes cross where a border of one goes through the other.
     fn crossings(&mut self) {
         let scan = self.scan;
-        for (a, b) in scan.tree.pairs(0.0) {
-            let (a, b) = (a as usize, b as usize);
-            let place = |f: usize| scan.input.plan.surfaces.iter().position(|x| x.0 == scan.surface_of(f)).unwrap_or(0);
-            let key = (place(a).min(place(b)), place(a).max(place(b)));
-            let flat = scan.leaves[a].is_flat() && scan.leaves[b].is_flat();
-            if flat || scan.surface_of(a) == scan.surface_of(b) || self.touches.contains_key(&key) {
-                continue;
-            }
-            for at in scan.leaves[a].crossings(&scan.leaves[b], scan.mesh, LOOKS) {
-                if self.crosses(a, b, at) {
+        let pairs = scan.tree.pairs(0.0).into_iter().map(|(a, b)| (a as usize, b as usize));
+        let wanted = |(a, b): &(usize, usize)| {
+            let flat = scan.leaves[*a].is_flat() && scan.leaves[*b].is_flat();
+            !flat && scan.surface_of(*a) != scan.surface_of(*b) && !self.touches.contains_key(&scan.key(*a, *b))
+        };
+        let pairs: Vec<(usize, usize)> = pairs.filter(wanted).collect();
+        let found = par::map(pairs.len(), |n| scan.leaves[pairs[n].0].crossings(&scan.leaves[pairs[n].1], scan.mesh, LOOKS));
+        for ((a, b), places) in pairs.into_iter().zip(found) {
+            for at in places {
+                if self.touches.contains_key(&scan.key(a, b)) || self.crosses(a, b, at) {
                     break;
                 }
             }

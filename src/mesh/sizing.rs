@@ -575,7 +575,7 @@ impl Remark {
                     contacts::Kind::Crossing => Touching::Crossing,
                 };
                 let names = names.clone();
-                SurfaceFault::FacesTouch { mesh: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at }.into()
+                SurfaceFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at }.into()
             }
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {

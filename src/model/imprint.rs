@@ -1,12 +1,12 @@
 //! What makes faces conform that touch: the curves in which they cross, and the points where their borders do.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use super::topology::{EdgeCurve, EdgeId, Model, SurfaceId};
 use crate::base::boxtree::BoxTree;
-use crate::base::fault::Result;
+use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
 use crate::base::origin::Origin;
 use crate::base::par;
@@ -26,6 +26,13 @@ pub struct Imprint {
 
 crate::content!(Imprint { curves, points });
 
+/// Two surfaces that may touch and share no edge.
+pub(super) struct Met {
+    pub pair: (SurfaceId, SurfaceId),
+    /// The curves in which they cross.
+    pub curves: Vec<Chain>,
+}
+
 /// Faces that run along each other have no curve in common: their borders tell where.
 const COINCIDE: &str = "E657";
 
@@ -40,47 +47,47 @@ impl Model {
         (network, tolerance): (&Network, &Tolerance),
         job: &Job,
     ) -> Result<Imprint> {
-        let pairs = self.apart_pairs(listed, tolerance);
-        let curves = par::try_map(pairs.len(), |k| {
-            job.go_on()?;
-            let surface = |s: SurfaceId| std::slice::from_ref(&self.surfaces[s.index()].surface);
-            match with_surfaces(surface(pairs[k].0), surface(pairs[k].1), origin, tolerance) {
-                Ok(common) => Ok(common.curves),
-                Err(fault) if fault.code().0 == COINCIDE => Ok(Vec::new()),
-                Err(fault) => Err(fault),
-            }
-        })?;
-        let curves: Vec<Chain> = curves.into_iter().flatten().collect();
-        let sides = |s: SurfaceId| self.edges_of(&self.patches_of(s).collect::<Vec<_>>());
-        let crossing: BTreeSet<(EdgeId, EdgeId)> = pairs
-            .iter()
-            .flat_map(|(a, b)| {
-                let others = sides(*b);
-                sides(*a).into_iter().flat_map(move |x| others.clone().into_iter().map(move |y| (x.min(y), x.max(y))))
-            })
-            .filter(|(x, y)| x != y)
-            .collect();
+        let met = self.met(listed, origin, tolerance, job)?;
+        let mut crossing: BTreeSet<(EdgeId, EdgeId)> = BTreeSet::new();
+        for m in &met {
+            let others = self.sides_of(m.pair.1);
+            crossing.extend(self.sides_of(m.pair.0).iter().flat_map(|x| others.iter().map(move |y| (*x.min(y), *x.max(y)))));
+        }
+        crossing.retain(|(x, y)| x != y);
         let edges: BTreeSet<EdgeId> = crossing.iter().flat_map(|(a, b)| [*a, *b]).collect();
         let edges: Vec<EdgeId> = edges.into_iter().collect();
-        let ways = par::try_map(edges.len(), |k| self.ways(edges[k], network, tolerance))?;
-        let place = |e: EdgeId| edges.binary_search(&e).unwrap_or_default();
-        let mut meetings: Vec<(&Chain, &Chain)> = Vec::new();
-        for (a, b) in &crossing {
-            meetings.extend(ways[place(*a)].iter().flat_map(|x| ways[place(*b)].iter().map(move |y| (x, y))));
-        }
+        let ways = par::try_map(edges.len(), |k| self.edge_way(edges[k], network, tolerance))?;
+        let ways: BTreeMap<EdgeId, Chain> = edges.into_iter().zip(ways).filter_map(|(e, way)| Some((e, way?))).collect();
+        let curves: Vec<Chain> = met.into_iter().flat_map(|m| m.curves).collect();
+        let mut pairs: Vec<(&Chain, &Chain)> = crossing.iter().filter_map(|(a, b)| Some((ways.get(a)?, ways.get(b)?))).collect();
         for (k, curve) in curves.iter().enumerate() {
-            meetings.extend(curves[k + 1..].iter().map(|other| (curve, other)));
-            meetings.extend(ways.iter().flatten().map(|way| (curve, way)));
+            pairs.extend(curves[k + 1..].iter().map(|other| (curve, other)));
+            pairs.extend(ways.values().map(|way| (curve, way)));
         }
-        let points = par::try_map(meetings.len(), |k| {
+        let points = par::try_map(pairs.len(), |k| {
             job.go_on()?;
-            let (a, b) = meetings[k];
+            let (a, b) = pairs[k];
             let found = meet(a, b, tolerance)?;
-            Ok::<_, crate::base::fault::Fault>(
-                found.into_iter().flat_map(|m| [Some(m.point), m.shared_to.map(|to| a.point(to.0))]).flatten().collect::<Vec<_>>(),
-            )
+            let both = |m: &crate::network::Meeting| [Some(m.point), m.shared_to.map(|to| a.point(to.0))];
+            Ok::<Vec<DVec3>, Fault>(found.iter().flat_map(both).flatten().collect())
         })?;
-        Ok(Imprint { curves, points: points.into_iter().flatten().collect() })
+        let points = points.into_iter().flatten().collect();
+        Ok(Imprint { curves, points })
+    }
+
+    /// Pairs of surfaces whose boxes touch and that share no edge, with the curves in which they cross.
+    pub(super) fn met(&self, listed: &[SurfaceId], origin: Origin, tolerance: &Tolerance, job: &Job) -> Result<Vec<Met>> {
+        let pairs = self.apart_pairs(listed, tolerance);
+        par::try_map(pairs.len(), |k| {
+            job.go_on()?;
+            let pair = pairs[k];
+            let surface = |s: SurfaceId| std::slice::from_ref(&self.surfaces[s.index()].surface);
+            match with_surfaces(surface(pair.0), surface(pair.1), origin, tolerance) {
+                Ok(common) => Ok(Met { pair, curves: common.curves }),
+                Err(fault) if fault.code().0 == COINCIDE => Ok(Met { pair, curves: Vec::new() }),
+                Err(fault) => Err(fault),
+            }
+        })
     }
 
     /// Pairs of surfaces whose boxes touch and that share no edge, in the order of the list.
@@ -96,21 +103,49 @@ impl Model {
         pairs.filter(|(a, b)| a != b && !joined.contains(&(*a, *b))).collect()
     }
 
-    /// The curves that carry an edge, whole ones also where the edge is a part.
-    fn ways(&self, edge: EdgeId, network: &Network, tolerance: &Tolerance) -> Result<Vec<Chain>> {
-        Ok(match &self.edges[edge.index()].curve {
-            EdgeCurve::Links { links, .. } => links.iter().map(|(link, _)| network.link_chain(*link)).collect(),
-            EdgeCurve::Run { chain, .. } => vec![chain.clone()],
+    /// Edges of a surface.
+    pub(super) fn sides_of(&self, surface: SurfaceId) -> Vec<EdgeId> {
+        self.edges_of(&self.patches_of(surface).collect::<Vec<_>>())
+    }
+
+    /// An edge as a chain; `None` for one that no curve carries (a straight line in (u, v) of a trimmed face).
+    pub(super) fn edge_way(&self, edge: EdgeId, network: &Network, tolerance: &Tolerance) -> Result<Option<Chain>> {
+        let edge = &self.edges[edge.index()];
+        let (whole, span) = match &edge.curve {
+            EdgeCurve::Links { links, span } => {
+                let chain = |(link, against): &(_, bool)| {
+                    let chain = network.link_chain(*link);
+                    if *against { chain.reversed() } else { chain }
+                };
+                let chains: Vec<Chain> = links.iter().map(chain).collect();
+                let Some(first) = chains.first() else { return Ok(None) };
+                (if chains.len() == 1 { first.clone() } else { Chain::join(&chains, first.origin(), tolerance)? }, *span)
+            }
+            EdgeCurve::Run { chain, span } => (chain.clone(), *span),
             EdgeCurve::Iso { surface, from, to } => {
                 let surface = &self.surfaces[surface.index()].surface;
-                // A side of a trimmed face that is neither is straight in (u, v); its ends are corners, and no border cuts it.
                 let line = match (from.0 == to.0, from.1 == to.1) {
                     (true, _) => IsoLine::U(from.0),
                     (false, true) => IsoLine::V(from.1),
-                    _ => return Ok(Vec::new()),
+                    _ => return Ok(None),
                 };
-                surface.iso(line, surface.origin(), tolerance)?.iter().map(Chain::of_curve).collect()
+                let Some(curve) = surface.iso(line, surface.origin(), tolerance)? else { return Ok(None) };
+                let chain = Chain::of_curve(&curve);
+                let (a, b) = if from.0 == to.0 { (from.1, to.1) } else { (from.0, to.0) };
+                let (a, b) = (a.min(b), a.max(b));
+                if a <= 0.0 && b >= 1.0 {
+                    return Ok(Some(chain));
+                }
+                let at = |t: f64| {
+                    let (u, v) = line.at(t);
+                    chain.closest(surface.point(u, v)).0 * chain.length()
+                };
+                let ends = (at(a), at(b));
+                (chain, (ends.0.min(ends.1), ends.0.max(ends.1)))
             }
-        })
+        };
+        let length = whole.length();
+        let all = span.0 <= tolerance.point && span.1 >= length - tolerance.point;
+        Ok(Some(if all { whole } else { whole.slice(span.0 / length, span.1 / length, tolerance)? }))
     }
 }

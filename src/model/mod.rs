@@ -8,6 +8,7 @@ mod feet;
 pub mod gather;
 pub mod glue;
 pub mod imprint;
+mod imprint_pieces;
 pub mod loops;
 pub mod measure;
 mod measure_quadrature;

@@ -3,15 +3,17 @@
 use glam::DVec3;
 
 use super::measure;
+use super::shells::ShellRequest;
 use super::sides::Component;
-use super::topology::Model;
+use super::topology::{Model, SurfaceId};
 use crate::base::bbox::Box3;
+use crate::base::fault::{CutFault, Fault, SurfaceFault, Touching};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::build::line;
 use crate::network::Chain;
 use crate::surface::Surface;
-use crate::surface::meet::with_curve;
+use crate::surface::meet::{with_curve, with_surfaces};
 
 /// Points of a skin that are tried before it counts as not inside another one: those on that one do not tell.
 const POINTS: usize = 16;
@@ -46,13 +48,45 @@ impl Model {
         }
     }
 
+    /// W667 for each two skins of a shell that touch, cross or lie on each other.
+    pub(super) fn tell_touching(&self, request: &ShellRequest, skins: &[Component], tolerance: &Tolerance, sink: &mut Vec<Fault>) {
+        let surface = |id: SurfaceId| &self.surfaces[id.index()].surface;
+        for (k, skin) in skins.iter().enumerate() {
+            for other in &skins[k + 1..] {
+                let pairs = skin.faces.iter().flat_map(|(a, _)| other.faces.iter().map(move |(b, _)| (*a, *b)));
+                let near = |(a, b): &(SurfaceId, SurfaceId)| surface(*a).hull().touches(&surface(*b).hull(), tolerance.point);
+                let found = pairs.filter(near).filter_map(|(a, b)| Some((a, b, touching(surface(a), surface(b), tolerance)?)));
+                let found: Vec<_> = found.collect();
+                // That they cover each other says more than that they cross.
+                let covers = found.iter().position(|(_, _, (how, _))| *how == Touching::Overlap);
+                if let Some(&(a, b, (how, at))) = found.get(covers.unwrap_or(0)) {
+                    let names = (self.surfaces[a.index()].name.clone(), self.surfaces[b.index()].name.clone());
+                    let (a, b) = (surface(a).origin(), surface(b).origin());
+                    sink.push(SurfaceFault::FacesTouch { within: request.origin, a, b, names, how, at }.into());
+                }
+            }
+        }
+    }
+
     fn skin(&self, component: &Component) -> Skin {
-        let surface = |id: super::SurfaceId| self.surfaces[id.index()].surface.clone();
+        let surface = |id: SurfaceId| self.surfaces[id.index()].surface.clone();
         let faces: Vec<(Surface, bool)> = component.faces.iter().map(|(id, other)| (surface(*id), *other)).collect();
         let hull = faces.iter().fold(Box3::EMPTY, |all, (s, _)| all.union(s.hull()));
         let patches: Vec<_> = component.faces.iter().flat_map(|(id, _)| self.patches_of(*id)).collect();
         let points = patches.iter().map(|p| self.loop_of(*p).at(0.37).1).take(POINTS).collect();
         Skin { faces, hull, points }
+    }
+}
+
+/// How two faces touch that share no edge, and where.
+fn touching(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Option<(Touching, DVec3)> {
+    match with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), Origin::NONE, tolerance) {
+        Ok(common) => common.curves.first().map(|c| (Touching::Meeting, c.point(0.5))),
+        Err(Fault::Cut(fault)) => match *fault {
+            CutFault::RunAlong { at, .. } => Some((Touching::Overlap, at)),
+            _ => None,
+        },
+        Err(_) => None,
     }
 }
 

@@ -46,8 +46,10 @@ impl Model {
         let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
         let seams = Seams { model: self, edges: &edges, joins: &joins };
         seams.refuse_gaps(request, &free)?;
-        self.manifold(request, &joins, &usages)?;
-        let sides = self.orient(request, &joins, (&usages, &slivers), tolerance)?;
+        if !request.branches {
+            self.manifold(request, &joins, &usages)?;
+        }
+        let sides = self.orient(request, &joins, (&usages, &slivers), tolerance, sink)?;
         seams.tell(request, &slivers, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.atoms[*a].length().total_cmp(&pieces.atoms[*b].length())) {
             let length = free.iter().map(|a| pieces.atoms[*a].length()).sum();
@@ -57,7 +59,14 @@ impl Model {
         let mut free: Vec<_> =
             free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.atoms[*a].length()))).collect();
         free.sort_by(|a, b| b.2.total_cmp(&a.2));
-        Ok(Shell { name: request.name.clone(), origin: request.origin, surfaces: sides, near, closed: free.is_empty(), free })
+        Ok(Shell {
+            name: request.name.clone(),
+            origin: request.origin,
+            surfaces: sides,
+            near,
+            closed: free.is_empty() && usages.iter().all(|u| u.len() <= 2),
+            free,
+        })
     }
 
     /// Edges of some surfaces, cut into atoms; borders up to `near` apart are one.
@@ -116,6 +125,7 @@ impl Model {
         joins: &Joins,
         (usages, slivers): (&[Vec<Usage>], &[PatchId]),
         tolerance: &Tolerance,
+        sink: &mut Vec<Fault>,
     ) -> Result<Vec<(SurfaceId, bool)>> {
         let whole: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| !self.is_thin(*s, slivers)).collect();
         let mut components = components(&whole, usages);
@@ -127,10 +137,15 @@ impl Model {
         match components.as_slice() {
             [first, others @ ..] if !others.is_empty() => {
                 // Skins that close may lie apart or inside each other; an open one is all of its shell.
-                if let Some(apart) = others.iter().find(|c| !first.closed || !c.closed) {
+                if let Some(apart) = others.iter().find(|c| !(request.branches || first.closed && c.closed)) {
                     return Err(self.not_connected(first, apart));
                 }
-                self.turn_outwards(&mut components, tolerance);
+                if !request.branches {
+                    self.tell_touching(request, &components, tolerance, sink);
+                }
+                let (mut closed, open): (Vec<Component>, Vec<_>) = components.into_iter().partition(|c| c.closed);
+                self.turn_outwards(&mut closed, tolerance);
+                components = closed.into_iter().chain(open).collect();
             }
             [only] if only.closed => self.turn_outwards(&mut components, tolerance),
             _ => {}
@@ -164,6 +179,8 @@ pub struct ShellRequest {
     pub surfaces: Vec<SurfaceId>,
     /// How far apart borders may be and still be one edge, model units, with the expression that says so.
     pub snap: Option<(f64, Origin)>,
+    /// More than two faces may share an edge, and pieces may lie apart.
+    pub branches: bool,
     /// The declaration.
     pub origin: Origin,
 }

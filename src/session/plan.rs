@@ -14,7 +14,7 @@ use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::carry::Stage;
 use crate::model::{Model, SharedEdge, SurfaceId};
 use crate::network::Chain;
-use crate::surface::Surface;
+use crate::surface::{Domain, Surface, closest};
 
 /// Finds what the values of a mesh stand for.
 struct Finder<'s> {
@@ -30,6 +30,8 @@ struct Faces {
     loose: Vec<(SurfaceId, bool)>,
     /// Those of closed shells.
     closed: BTreeSet<SurfaceId>,
+    /// What asks a shell among them to join faces that touch.
+    imprint: Option<Origin>,
 }
 
 /// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
@@ -50,12 +52,18 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
     let near = scene.model.reach(alone.iter().copied(), None, &tolerance);
     plan.glue.extend(alone.into_iter().map(|s| (s, near)));
-    finder.turn(&mut plan, faces, near, spec, sink);
+    finder.turn(&mut plan, &faces, near, spec, sink);
     settings(&mut plan, spec);
     for rule in &spec.rules {
         let first = plan.rules.len();
         for (value, _) in &rule.things {
-            for target in finder.targets(cx, value)? {
+            let mut targets = finder.targets(cx, value)?;
+            // Where the mesh has the pieces of a surface, a rule on it speaks of them.
+            let meshed = |s: &SurfaceId| plan.surfaces.iter().any(|own| own.0 == *s);
+            if targets.iter().any(|t| matches!(t, Target::Surface(s) if meshed(s))) {
+                targets.retain(|t| !matches!(t, Target::Surface(s) if !meshed(s)));
+            }
+            for target in targets {
                 plan.rules.push(rule_on(rule, target));
             }
         }
@@ -95,7 +103,8 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         }
         plan.groups.push(GroupRequest { name: group.name.to_string(), members, origin: group.origin });
     }
-    if let Some((true, origin)) = spec.imprint {
+    let imprint = spec.imprint.map_or(faces.imprint, |(asked, origin)| asked.then_some(origin));
+    if let Some(origin) = imprint {
         if !plan.conforming {
             sink.push(MeshFault::RuleUnused { rule: origin, why: "`conforming: false` keeps faces apart".to_owned() }.into());
         } else {
@@ -161,9 +170,9 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 
 impl Finder<'_> {
     /// Gives faces that are of no closed shell the sides of the shell that they would make, and turns all where that is asked.
-    fn turn(&self, plan: &mut Plan, faces: Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) {
-        let Faces { mut loose, closed } = faces;
-        loose.retain(|(s, _)| !closed.contains(s));
+    fn turn(&self, plan: &mut Plan, faces: &Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) {
+        let mut loose = faces.loose.clone();
+        loose.retain(|(s, _)| !faces.closed.contains(s));
         let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
         let sides: BTreeMap<SurfaceId, bool> =
             self.scene.model.outward(&loose, near, &self.scene.network, &self.tolerance).into_iter().collect();
@@ -188,6 +197,7 @@ impl Finder<'_> {
                 // Whether it is open was said where the shell is declared.
                 let mut said = Vec::new();
                 let built = self.scene.shell(shell, &self.tolerance, &mut said)?;
+                faces.imprint = faces.imprint.or(shell.imprint);
                 for (surface, _) in &built.surfaces {
                     let near = plan.glue.entry(*surface).or_insert(built.near);
                     *near = near.max(built.near);
@@ -198,7 +208,8 @@ impl Finder<'_> {
                     faces.loose.extend(built.surfaces.iter().copied());
                 }
                 plan.surfaces.extend(built.surfaces);
-                sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N')));
+                // What touches is told of the mesh where it is so there.
+                sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N') && fault.code().0 != "W667"));
             }
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),
             Value::Node(p) | Value::Vector(p, _) => plan.points.push(*p),
@@ -221,6 +232,18 @@ impl Finder<'_> {
         Ok(())
     }
 
+    /// Surfaces as targets, and pieces of them that the scene holds: parts of the same surface cut by others.
+    fn faces<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<Target>, Stop> {
+        let mut found = Vec::new();
+        for surface in surfaces {
+            let (own, _) = self.scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
+            let all = self.scene.model.surfaces.iter().enumerate();
+            let pieces = all.filter(|(n, named)| *n != own.index() && is_piece(&named.surface, surface, &self.tolerance));
+            found.extend(std::iter::once(own).chain(pieces.map(|(n, _)| SurfaceId::at(n))).map(Target::Surface));
+        }
+        Ok(found)
+    }
+
     /// What a rule or a group speaks of.
     fn targets(&self, cx: &mut Cx, value: &Value) -> Result<Vec<Target>, Stop> {
         Ok(match value {
@@ -229,8 +252,8 @@ impl Finder<'_> {
                 let what = format!("{} of a module in a mesh or group of another script", value.ty().words());
                 return Err(ValueFault::NotInThisVersion { what }.into());
             }
-            Value::Surface(surface) => self.scene.find_all([surface])?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
-            Value::Shell(shell) => self.scene.find_all(&shell.surfaces)?.into_iter().map(|(id, _)| Target::Surface(id)).collect(),
+            Value::Surface(surface) => self.faces([surface])?,
+            Value::Shell(shell) => self.faces(&shell.surfaces)?,
             Value::Curve(chain) => vec![Target::Chain(chain.clone())],
             Value::Link(_, link) => vec![Target::Chain(self.scene.network.link_chain(*link))],
             Value::Edge(module, edge) => {
@@ -269,6 +292,13 @@ pub(super) fn chain_of(cx: &mut Cx, module: ModuleId, edge: &SharedEdge) -> Resu
     let scene = Scene { model: cx.model(module)?, network: cx.network(module)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
+}
+
+/// Whether a surface is a part that was cut out of another one: made by the same expression, with all corners on it.
+fn is_piece(part: &Surface, whole: &Surface, tolerance: &Tolerance) -> bool {
+    let corners: Vec<_> = (0..part.n_sides()).filter_map(|k| part.border_start(k)).collect();
+    let on = |p: &glam::DVec3| closest(whole, *p).distance <= tolerance.point;
+    part.origin() == whole.origin() && part.domain() == Domain::Loop && !corners.is_empty() && corners.iter().all(on)
 }
 
 fn wrong(value: &Value) -> Stop {

@@ -17,6 +17,8 @@ pub enum Touching {
     },
     /// They cross.
     Crossing,
+    /// They have a curve in common.
+    Meeting,
 }
 
 /// Why curves span no flow, nearest to success first.
@@ -242,8 +244,8 @@ pub enum SurfaceFault {
     },
     /// W667: faces of a mesh touch without sharing nodes.
     FacesTouch {
-        /// The mesh.
-        mesh: Origin,
+        /// The mesh or shell.
+        within: Origin,
         /// One face; its edge lies on the other one where an edge does.
         a: Origin,
         /// The other face.
@@ -738,8 +740,8 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         .at(*imprint, "joins faces along lines")
         .at(*a, "this face")
         .at(*b, "and this one")
-        .help("trim one of them by the border of the other: `trim(a, by: b.edges, keep: P)`"),
-        F::FacesTouch { mesh, a, b, names, how, at } => {
+        .help(format!("`mesh m of imprint({}, {})` has what they share once", names.0, names.1)),
+        F::FacesTouch { within, a, b, names, how, at } => {
             let (one, other) = (format!("`{}`", names.0), format!("`{}`", names.1));
             let (text, first, second) = match how {
                 Touching::Overlap => (format!("{one} and {other} lie on each other at"), "this face", "and this one"),
@@ -750,12 +752,17 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                 Touching::Edge { .. } => {
                     (format!("an edge of {one} meets {other} without sharing a node at"), "its edge", "meets this face")
                 }
+                Touching::Meeting => (format!("{one} and {other} touch or cross at"), "this face", "and this one"),
                 Touching::Crossing => (format!("{one} and {other} cross without sharing nodes at"), "this face", "and this one"),
             };
             Report::new("W667", format!("{text} {}", say.point(*at)))
                 .at(*a, first)
                 .at(*b, second)
-                .at(*mesh, "they are not joined in this mesh")
+                .at(*within, "they are not joined here")
+                .help(match how {
+                    Touching::Overlap => format!("`imprint({}, {})` are their pieces, what they share once", names.0, names.1),
+                    _ => "`imprint: true` in the settings joins them".to_owned(),
+                })
         }
         F::ShellNotOrientable { shell, a, b, at } => Report::new(
             "E616",
@@ -793,6 +800,11 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         .at(*a, "this face")
         .at(*b, "and this one"),
         F::ShellNotClosed { shell, wanted, free } => {
+            if free.is_empty() {
+                let shell_name = say.quoted(*shell, "the shell");
+                let text = format!("the {wanted} of {shell_name} needs a closed shell, but more than two of its faces share an edge");
+                return Report::new("E656", text).at(*shell, "branches").help("make a shell of the faces around what is measured");
+            }
             let length: f64 = free.iter().map(|edge| edge.2).sum();
             let mut report = Report::new(
                 "E656",

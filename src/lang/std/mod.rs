@@ -10,6 +10,7 @@ use super::value::Value;
 mod curves;
 mod data;
 mod distances;
+pub(in crate::lang) mod imprint;
 mod joins;
 pub mod kinds;
 mod lists;
@@ -95,6 +96,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     surfaces::BUILTINS,
     transforms::BUILTINS,
     topology::BUILTINS,
+    imprint::BUILTINS,
     joins::BUILTINS,
     mesh::BUILTINS,
     measures::BUILTINS,

@@ -180,7 +180,7 @@ impl Maker<'_> {
         let made = made.maybe("max_aspect", self.ratio(row.max_aspect)).maybe("area", self.length(row.area, 2));
         let made = made.maybe("chord_error", self.length(row.chord_error, 1));
         let made = made.maybe("watertight", row.watertight.map(|w| Value::Word(yes(w).to_owned())));
-        let made = made.maybe("parts", (row.parts != 1).then(|| Value::Count(row.parts as u64)));
+        let made = made.maybe("parts", (row.parts != 1).then_some(Value::Count(row.parts as u64)));
         let mut groups: Vec<(String, u64)> =
             row.groups.iter().filter(|g| declared.contains(&g.name)).map(|g| (g.name.clone(), g.nodes as u64)).collect();
         groups.sort();
