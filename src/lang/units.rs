@@ -244,6 +244,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::approx_constant, reason = "numbers as they are typed")]
     fn shares_of_pi_are_radians() {
         let radians = [1.5708, 3.14, 0.785, 2.094, 6.2832, std::f64::consts::FRAC_PI_3];
         assert!(

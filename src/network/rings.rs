@@ -45,12 +45,14 @@ mod tests {
     use crate::base::origin::Origin;
     use crate::geometry::build;
 
-    fn line(a: (f64, f64), b: (f64, f64)) -> Chain {
+    type Place = (f64, f64);
+
+    fn line(a: Place, b: Place) -> Chain {
         let p = |(x, y)| DVec3::new(x, y, 0.0);
         Chain::of_curve(&build::line(p(a), p(b), Origin::NONE).unwrap())
     }
 
-    fn check(lines: &[((f64, f64), (f64, f64))], expected: &[usize]) {
+    fn check(lines: &[(Place, Place)], expected: &[usize]) {
         let chains: Vec<Chain> = lines.iter().map(|&(a, b)| line(a, b)).collect();
         let sizes: Vec<usize> = rings(&chains, &Tolerance::new(1e-5, 10.0)).iter().map(Vec::len).collect();
         assert_eq!(sizes, expected);
