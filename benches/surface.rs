@@ -30,7 +30,7 @@ fn roof() -> Surface {
     ];
     let tolerance = Tolerance::new(1e-4, 150.0);
     let (flow, _) = of_chains(&chains, &ChainFlow::default(), &tolerance).expect("a closed boundary");
-    let settings = Settings { method: Method::Composite, reparam: Reparam::Smooth, origin: Origin::NONE };
+    let settings = Settings { method: Method::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
     build(&Grid { chains: &chains, flow: &flow, poles: (None, None) }, &settings, &tolerance).expect("a quadrilateral").0
 }
 

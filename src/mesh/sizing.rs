@@ -134,7 +134,7 @@ impl Sizing {
                 }
                 Target::Surface(_) | Target::Patches(_) => {
                     sizing.face_counts((layout, input.tolerance.point), (index, rule), &mut division)?
-                },
+                }
                 Target::Point(_) => {}
             }
         }
@@ -361,8 +361,8 @@ impl Sizing {
         for Lines { uses, links, rank, length } in lines {
             let rank = *rank;
             if let Some((count, origin)) = rule.count {
-                let shares =
-                    count_shares(uses, links, (count, near)).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
+                let shares = count_shares(uses, links, (count, near))
+                    .map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
                 for (u, n) in uses.iter().zip(shares) {
                     settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
                 }

@@ -107,8 +107,8 @@ fn parts(surface: &Surface, mut cutters: Vec<Chain>, tolerance: &Tolerance) -> R
     while !cutters.is_empty() {
         match all_parts(surface, &cutters, tolerance) {
             Err(Fault::Cut(fault)) => {
-                let CutFault::CutOpen { at, .. } = &*fault else { return Err(Fault::Cut(fault)) };
-                let loose = |c: &Chain| [c.start(), c.end()].into_iter().any(|p| tolerance.same_point(p, *at));
+                let CutFault::CutOpen { ends, .. } = &*fault else { return Err(Fault::Cut(fault)) };
+                let loose = |c: &Chain| [c.start(), c.end()].into_iter().any(|p| ends.iter().any(|end| tolerance.same_point(p, *end)));
                 let before = cutters.len();
                 cutters.retain(|c| !loose(c));
                 if cutters.len() == before {

@@ -90,7 +90,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let shells = spec.things.iter().filter_map(|(value, _)| if let Value::Shell(shell) = value { Some((shell, value)) } else { None });
     for (shell, value) in shells {
         if !shell.name.is_empty() && !plan.groups.iter().any(|group| *group.name == *shell.name) {
-            plan.groups.push(GroupRequest { name: shell.name.to_string(), members: finder.targets(value)? });
+            plan.groups.push(GroupRequest { name: shell.name.to_string(), members: finder.targets(cx, value)?, origin: shell.origin });
         }
     }
     for group in &cx.groups(module)? {

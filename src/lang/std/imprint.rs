@@ -45,6 +45,6 @@ builtins! {
         surfaces: Rest<Faces>,
     ) -> Vec<Surface> = |cx, surfaces| {
         let origin = cx.origin();
-        pieces(cx, surfaces.0.into_iter().flat_map(Faces::surfaces).collect(), origin)
+        pieces(cx, surfaces.0.iter().flat_map(Faces::surfaces).collect(), origin)
     };
 }

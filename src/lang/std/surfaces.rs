@@ -363,7 +363,7 @@ builtins! {
         /// The surface that is divided.
         s: Surface,
         /// A curve, surface, shell or plane that cuts, or a list of them.
-        by: Cutters,
+        by: Vec<Cutter>,
     ) -> Vec<Surface> = |cx, s, by| {
         let tolerance = cx.tolerance()?;
         let cutters = crate::lang::meetings::cutters(cx, &s, by)?;

@@ -8,7 +8,7 @@ use crate::base::bbox::Box3;
 use crate::lang::cx::Cx;
 use crate::lang::scene::Scene;
 use crate::lang::value::Value as Thing;
-use crate::model::{EdgeCurve, Moments, measure};
+use crate::model::{Moments, measure};
 use crate::network::Chain;
 use crate::surface::{Domain, Surface};
 
@@ -106,16 +106,15 @@ impl Held {
             Thing::Edge(module, edge) => {
                 let (Ok(model), Ok(network), Ok(tolerance)) = (cx.model(*module), cx.network(*module), cx.tolerance()) else { return };
                 let scene = Scene { model, network };
-                let edge = &scene.model.edges[edge.index()];
-                match (&edge.curve, scene.edge_chain(edge, &tolerance)) {
-                    (_, Ok(Some(chain))) => self.chain(&chain),
-                    (EdgeCurve::Iso { surface, from, to }, _) => {
+                match scene.shared_chain(edge, &tolerance) {
+                    Ok(Some(chain)) => self.chain(&chain),
+                    _ => {
                         self.curves += 1;
-                        let surface = &scene.model.surfaces[surface.index()].surface;
-                        let places = [*from, *to, (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1))];
-                        self.spots(places.map(|(u, v)| surface.point(u, v)).to_vec());
+                        if let Some(track) = scene.model.shared_track(edge, &scene.network) {
+                            let places = [0.0, 0.5, 1.0].map(|f| track.point(f * track.length()));
+                            self.spots(places.to_vec());
+                        }
                     }
-                    _ => self.curves += 1,
                 }
             }
             Thing::List(items) => items.iter().for_each(|item| self.add(cx, item)),

@@ -81,10 +81,12 @@ fn names(cx: &Cx, looks: &Looks, things: &[(Thing, Origin)]) -> Option<Value> {
 fn export(cx: &mut Cx, looks: &Looks, spec: &ExportSpec) -> super::line::Line {
     let unit = cx.unit().name;
     let said = |word: &Option<(Arc<str>, Origin)>| word.as_ref().map(|w| Value::Word(w.0.to_string()));
+    let words: Vec<String> = spec.elements.iter().map(|e| e.0.to_string()).collect();
+    let elements = (!words.is_empty()).then(|| Value::Word(words.join(", ")));
     let made: Growing = line("export", &spec.path)
         .maybe("of", names(cx, looks, &spec.things))
         .maybe("encoding", said(&spec.encoding))
-        .maybe("element", said(&spec.element))
+        .maybe("element", elements)
         .maybe("units", spec.units.map(|u| Value::Word(u.0.name.to_owned())));
     let held = Held::of(cx, spec.things.iter().map(|t| &t.0).filter(|t| !is_declared_mesh(t)));
     made.all(held.pairs(unit)).0
