@@ -393,7 +393,7 @@ fn a_chain_of_kinked_arcs_takes_the_steps_of_its_arcs() {
     // Nine waves of two arcs: where one ends the next begins in another direction, and rounding must not count that as a turn.
     for height in [0.04_f64, 0.015, 0.09] {
         let arc = |i: usize| {
-            let (a, z) = (0.2 * i as f64, if i % 2 == 0 { height } else { -height });
+            let (a, z) = (0.2 * i as f64, if i.is_multiple_of(2) { height } else { -height });
             format!("curve a{i} = arc(({a:.1}, 0, 0), ({:.1}, 0, 0), through: ({:.1}, {z}, 0))\n", a + 0.2, a + 0.1)
         };
         let names: Vec<String> = (0..18).map(|i| format!("a{i}")).collect();

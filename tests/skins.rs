@@ -361,13 +361,16 @@ fn joined(mesh: &Mesh) -> f64 {
     uses.iter().filter(|(_, n)| **n > 2).map(|(e, _)| length(e)).sum()
 }
 
+/// A name, declarations, faces, the length of what was joined, and areas of faces with how exact they are.
+type Case = (&'static str, String, &'static str, f64, Vec<(&'static str, f64, f64)>);
+
 #[test]
 fn faces_that_touch_are_joined_where_that_is_asked() {
     let slab = "units m\nlet ring = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]\nsurface slab = plane(polyline(ring, closed: true))\n";
     let wall = |name: &str, from: &str, to: &str| format!("surface {name} = extrude(line({from}, {to}), by: (0, 0, 3))\n");
     let pi = std::f64::consts::PI;
     // Declarations, faces, edges of three elements or more along what was joined, areas of faces and how exact they are.
-    let cases: Vec<(&str, String, &str, f64, Vec<(&str, f64, f64)>)> = vec![
+    let cases: Vec<Case> = vec![
         (
             "column",
             "surface column = extrude(circle(center: (5, 5, 0), radius: 1), by: (0, 0, -3))\n".to_owned(),

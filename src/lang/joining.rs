@@ -44,13 +44,7 @@ impl Cx<'_> {
             None => format!("`{}` joins them", filler.name),
         };
         let file = self.machine.at(code.module).file;
-        let put = if ordered {
-            &filler.typed
-        } else if filler.run.is_some() {
-            &filler.typed
-        } else {
-            &filler.name
-        };
+        let put = if ordered || filler.run.is_some() { &filler.typed } else { &filler.name };
         let Some((span, text)) = self.inserted((code, id, file), blame, (a, b), put, ordered) else {
             diagnostic.help = Some(what);
             return;

@@ -107,7 +107,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
     let (mut looks, mut before) = (LOOKS, Vec::new());
     for _ in 0..ROUNDS + LOOKS + (1 + HALVED as usize) * layout.faces.len() {
         job.go_on()?;
-        let mut unknown = sizing.stretches(&layout);
+        let mut unknown = sizing.stretches(layout);
         unknown.extend(relations.rows());
         let (counts, strip) = strips::solve(&unknown, &relations.list, (MOST, input.tolerance.point))
             .map_err(|c| relations.fault(input, layout, &sizing, &c))?;

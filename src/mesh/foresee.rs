@@ -211,7 +211,7 @@ fn between(view: &View, (a, a_last): (&[u32], bool), (b, b_last): (&[u32], bool)
 fn round_pole(view: &View, ready: &Prepared, side: usize) -> f64 {
     let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.chart.shape, &ready.chart.frame) else { return f64::INFINITY };
     let (nu, nv) = grid.size();
-    let n = if side % 2 == 0 { nu } else { nv };
+    let n = if side.is_multiple_of(2) { nu } else { nv };
     let next = |k: usize| match side {
         0 => (k, 1),
         1 => (nu - 1, k),

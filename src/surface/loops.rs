@@ -61,6 +61,9 @@ impl Ring {
     }
 }
 
+/// The number of a chain of a loop, and a fraction of it.
+pub(super) type ChainCut = (usize, f64);
+
 /// Where two loops meet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Touch {
@@ -72,8 +75,8 @@ pub(super) struct Touch {
     pub shared: f64,
     /// How far they are from each other at the first place.
     pub apart: f64,
-    /// Fractions of the chains of the first and the second loop, with the numbers of the chains.
-    pub cuts: (Vec<(usize, f64)>, Vec<(usize, f64)>),
+    /// Where the chains of the first and the second loop are cut.
+    pub cuts: (Vec<ChainCut>, Vec<ChainCut>),
 }
 
 impl Touch {

@@ -13,6 +13,7 @@ mod files;
 mod loops;
 mod mesh;
 mod network;
+mod no_flow;
 mod surface;
 mod values;
 
@@ -28,7 +29,8 @@ pub use files::{FileFault, Malformed};
 pub use loops::{LoopFault, LoopRole};
 pub use mesh::{Cure, MeshFault};
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
-pub use surface::{NoFlow, SurfaceFault, Touching};
+pub use no_flow::NoFlow;
+pub use surface::{SurfaceFault, Touching};
 pub use values::ValueFault;
 
 use super::origin::Origin;

@@ -79,7 +79,7 @@ fn of_report(report: &Report, looks: Looks, size: f64) -> Vec<Line> {
     lines.extend(report.checks.iter().enumerate().map(|(k, row)| looked(check(row), beside(&looks.checks, k))));
     lines.extend(looks.outputs.into_iter().map(Growing));
     for (path, table) in looks.exported {
-        lines.extend(make.rows(&Table { title: path, ..table }).into_iter());
+        lines.extend(make.rows(&Table { title: path, ..table }));
     }
     lines.into_iter().map(|line| line.0).collect()
 }

@@ -90,7 +90,7 @@ mod tests {
     /// A square of 6 × 6 nodes, the border first.
     fn web() -> Web {
         let place = |k: usize| DVec2::new((k % 6) as f64 + 0.1 * (k * k % 7) as f64, (k / 6) as f64 + 0.1 * (k * k % 5) as f64);
-        let on_border = |k: &usize| k % 6 == 0 || k % 6 == 5 || k / 6 == 0 || k / 6 == 5;
+        let on_border = |k: &usize| k.is_multiple_of(6) || k % 6 == 5 || k / 6 == 0 || k / 6 == 5;
         let (border, inner): (Vec<usize>, Vec<usize>) = (0..36).partition(on_border);
         let xy: Vec<DVec2> = border.iter().chain(&inner).map(|k| place(*k)).collect();
         let all = points(&xy, &[]).unwrap();
