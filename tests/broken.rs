@@ -240,6 +240,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("E622", "leave that stretch out"),
     ("E658", "bound one of them"),
     ("E666", "trim one of them by the border of the other"),
+    ("E666", "`mesh "),
+    ("E502", "both are closed: `outer:"),
     ("E201", "for example"),
     // General forms, and two units in one value, which mend each other only together.
     ("E102", "functions need no import"),

@@ -468,7 +468,11 @@ fn the_examples_give_the_same_bytes_on_any_number_of_threads() {
 fn the_flow_that_was_found_is_told() {
     let folder = Folder::new("flow").with("plate.loft", PLATE).with("figure.loft", FIGURE);
     let run = folder.loft(&["run", "plate.loft", "-v", "-o", "out"]);
-    assert!(run.err.contains("surface plate: coons, quadrilateral; along u: south, north; along v: west, east\n"), "{}", run.err);
+    assert!(
+        run.err.contains("surface plate: coons, quadrilateral; along u: south, north; along v: west, east; linear blend\n"),
+        "{}",
+        run.err
+    );
     assert!(!folder.loft(&["run", "plate.loft", "-o", "out"]).err.contains("along u"));
 }
 

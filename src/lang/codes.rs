@@ -171,8 +171,8 @@ codes! {
     now "E716", "quadtree-too-deep", "a quadtree grows too deep";
     later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
     later "E718", "trim-folded", "a trimmed face folds over";
-    now "W724", "sharp-elements", "a mesh has elements with sharp angles";
     now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements are wide";
+    now "W724", "sharp-elements", "a mesh has elements with sharp angles";
     now "W728", "empty-selection", "a selection is empty";
     now "W729", "holds-of-nothing", "a check holds of nothing";
     now "E801", "cannot-read", "a file cannot be read";

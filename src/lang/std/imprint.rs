@@ -1,6 +1,6 @@
 //! Faces cut by each other where they touch.
 
-use super::kinds::Faces;
+use super::kinds::SurfaceOrShell;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::builtins;
@@ -42,9 +42,9 @@ builtins! {
     /// ```
     fn imprint(
         /// Surfaces and shells.
-        surfaces: Rest<Faces>,
+        surfaces: Rest<SurfaceOrShell>,
     ) -> Vec<Surface> = |cx, surfaces| {
         let origin = cx.origin();
-        pieces(cx, surfaces.0.iter().flat_map(Faces::surfaces).collect(), origin)
+        pieces(cx, surfaces.0.iter().flat_map(SurfaceOrShell::surfaces).collect(), origin)
     };
 }

@@ -99,6 +99,41 @@ one_of! {
     }
 }
 
+one_of! {
+    /// A surface or a shell.
+    SurfaceOrShell {
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+        /// A shell.
+        Shell(Arc<ShellValue>) = Ty::Shell, Value::Shell(s) => Self::Shell(s);
+    }
+}
+
+impl SurfaceOrShell {
+    /// The surfaces that it is made of, in order.
+    pub fn surfaces(&self) -> Vec<Surface> {
+        match self {
+            Self::Surface(s) => vec![s.clone()],
+            Self::Shell(s) => s.surfaces.clone(),
+        }
+    }
+}
+
+/// What has edges: a surface, a shell or a list of them.
+#[derive(Clone, Debug)]
+pub struct Edged(pub Faces);
+
+impl FromValue for Edged {
+    const TY: Ty = Ty::OneOf(&[Ty::Surface, Ty::Shell, Ty::List(&Ty::OneOf(&[Ty::Surface, Ty::Shell]))]);
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::List(items) => Some(Self(Faces(items.to_vec()))),
+            one @ (Value::Surface(_) | Value::Shell(_)) => Some(Self(Faces(vec![one]))),
+            _ => None,
+        }
+    }
+}
+
 /// Faces of surfaces and shells.
 #[derive(Clone, Debug)]
 pub struct Faces(Vec<Value>);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::kinds::{Carrier, EdgeKey, EdgeOf, Faces, PatchOf, VertexOf};
+use super::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, PatchOf, VertexOf};
 use super::surfaces::checked_uv;
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
@@ -271,10 +271,10 @@ builtins! {
     /// ```
     fn creases(
         /// A surface, a shell, or several.
-        of: Faces,
+        of: Edged,
         /// How far the normal turns at least.
         angle: Angle,
-    ) -> Vec<EdgeOf> = |cx, of, angle| creases(cx, &of, angle.0);
+    ) -> Vec<EdgeOf> = |cx, of, angle| creases(cx, &of.0, angle.0);
 
     /// Those of some edges that lie on a plane, surface, shell or curve.
     ///
@@ -462,7 +462,7 @@ fields! {
     ///
     /// A tube has two rims of one edge each, a closed shell none. The first loop begins with the first free edge (`.edges`
     /// says in which order they come), the next one with the first that is left.
-    fn rims(of: Faces) -> Vec<Vec<EdgeOf>> = |cx, of| {
+    fn rims(of: Edged) -> Vec<Vec<EdgeOf>> = |cx, Edged(of)| {
         let (all, skin) = skin(cx, &of)?;
         Ok(skin.rims().iter().map(|around| picked(&all, around)).collect())
     };
