@@ -248,7 +248,7 @@ fn faces_that_touch_without_a_shared_border_are_told() {
             "dome",
             "surface ball = revolve(arc((5, 5, -2), (5, 5, 2), through: (7, 5, 0)), axis: line((5, 5, 0), (5, 5, 1)))\n".to_owned(),
             "slab, ball",
-            &["`ball`", "cross"],
+            &["`ball`", "`slab`"],
             2,
         ),
         (
