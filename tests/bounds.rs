@@ -355,7 +355,7 @@ fn meshed_by(method: MeshMethod, surface: &Surface, chord: f64, elements: Elemen
     let named = vec![Named { name: "s".to_owned(), surface: surface.clone() }];
     let model = Model::build(named, &network, &tolerance(), &Job::new()).unwrap();
     let mut plan = Plan::of("m", vec![(SurfaceId::at(0), false)]);
-    plan.method = Some((method, Origin::NONE));
+    plan.method = method;
     (plan.chord_error, plan.size, plan.elements) = (Some((chord, Origin::NONE)), Some((100.0, Origin::NONE)), elements);
     let input = Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance() };
     mesh_of(&input, &Job::new(), &mut Vec::new()).unwrap().mesh
