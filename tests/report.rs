@@ -5,6 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
+use lofting::lang::std::fields;
 use serde_json::Value;
 
 fn schema() -> Value {
@@ -191,4 +192,46 @@ fn reports_that_a_screen_folds_are_all_there() {
     messages.sort_unstable();
     messages.dedup();
     assert_eq!(messages.len(), 40);
+}
+
+/// Every member that the reference lists for a kind stands in the report of a thing of that kind, with its unit.
+#[test]
+fn an_entity_tells_all_of_its_members() {
+    let base = "units m\ncurve south = line((0, 0, 0), (4, 0, 0))\nsurface wall = extrude(south, by: (0, 0, 3))\n\
+        surface side = extrude(line((0, 0, 0), (0, 2, 0)), by: (0, 0, 3))\nshell hall of wall, side\nmesh fine of hall { size: 1m }\n";
+    let things = [
+        ("curve", "south"),
+        ("surface", "wall"),
+        ("edge", "wall.edge(south)"),
+        ("patch", "wall.patches[0]"),
+        ("vertex", "wall.vertices[0]"),
+        ("shell", "hall"),
+        ("mesh", "fine"),
+        ("network", "network"),
+        ("vector", "south.mid"),
+    ];
+    for (kind, thing) in things {
+        let script = Script::new(&format!("told-{kind}"), &format!("{base}report {thing}\nreport [{thing}, south]\n"));
+        let report = script.run(&["check"]);
+        assert_eq!(mistakes(&report), Vec::<String>::new());
+        let rows = report["reports"][0]["rows"].as_array().unwrap();
+        let columns = report["reports"][1]["columns"].as_array().unwrap();
+        let members: Vec<_> = fields().filter(|f| f.params[0].ty.signature() == kind).collect();
+        assert!(!members.is_empty(), "{kind}");
+        for member in members {
+            let named = |text: &Value| {
+                let text = text.as_str().unwrap();
+                text == member.name || text.starts_with(&format!("{}.", member.name))
+            };
+            let row = rows.iter().find(|row| named(&row[0])).unwrap_or_else(|| panic!("{kind} does not tell `{}`", member.name));
+            assert!(columns.iter().any(|column| named(&column["name"])), "{kind} in a list does not tell `{}`", member.name);
+            let unit = match member.returns.signature().as_str() {
+                "length" | "point" | "node" => "m",
+                "area" => "m2",
+                "angle" => "deg",
+                _ => continue,
+            };
+            assert_eq!(row[2], unit, "{kind}.{}", member.name);
+        }
+    }
 }

@@ -9,7 +9,7 @@ use super::eval::Machine;
 use super::memory::Memory;
 use super::names::Names;
 use super::origins::Origins;
-use super::plans::{MeshSpec, ReportTable};
+use super::plans::MeshSpec;
 use super::syntax::ast::Keyword;
 use super::units::LengthUnit;
 use super::value::{MeshValue, ModuleId, Record, ShellValue, Value};
@@ -111,11 +111,6 @@ pub trait Pipeline: Sync {
     fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop>;
     /// A declared mesh.
     fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Stop>;
-    /// The table that `report x` shows for a mesh or other entity; `None` for plain values (title is set by the caller).
-    fn table(&self, cx: &mut Cx, value: &Value) -> Result<Option<ReportTable>, Stop> {
-        let _ = (cx, value);
-        Ok(None)
-    }
 }
 
 /// One run: scripts, values, and what builtins may ask for.

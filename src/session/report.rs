@@ -3,6 +3,7 @@
 //! The order of fields is the order of keys. Lengths are in model units, angles in degrees.
 
 use crate::base::tolerance::Tolerance;
+use crate::lang::members::UNIT_COLUMN;
 use serde::Serialize;
 
 /// Version of the report's shape.
@@ -224,13 +225,15 @@ pub struct Column {
     pub unit: Option<String>,
 }
 
-/// A value of a table.
 impl Table {
-    /// The table as people see it: coordinates of points in this unit, the model's, as far as the tolerance tells them.
+    /// The table as people see it: coordinates of points in this unit, the model's, as far as the tolerance tells them. The unit is
+    /// that of the column, or stands in the row where each row has its own.
     pub fn told(mut self, tolerance: &Tolerance, unit: &str) -> Self {
+        let own = self.columns.iter().position(|c| c.name == UNIT_COLUMN && c.unit.is_none());
         for row in &mut self.rows {
+            let in_row = own.is_some_and(|k| matches!(row.get(k), Some(Cell::Text(text)) if text == unit));
             for (cell, column) in row.iter_mut().zip(&self.columns) {
-                if let (Cell::List(items), Some(true)) = (cell, column.unit.as_ref().map(|u| u == unit))
+                if let (Cell::List(items), true) = (cell, in_row || column.unit.as_deref() == Some(unit))
                     && let [Cell::Number(x), Cell::Number(y), Cell::Number(z)] = items[..]
                 {
                     *items = tolerance.told(glam::DVec3::new(x, y, z)).to_array().map(Cell::Number).to_vec();
@@ -241,6 +244,7 @@ impl Table {
     }
 }
 
+/// A value of a table.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 #[allow(missing_docs)]

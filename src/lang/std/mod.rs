@@ -104,7 +104,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
 
 /// All tables of fields.
 pub const FIELDS: &[&[Builtin]] =
-    &[vectors::FIELDS, data::FIELDS, network::FIELDS, topology::FIELDS, joins::FIELDS, measures::FIELDS, mesh::FIELDS];
+    &[vectors::FIELDS, data::FIELDS, network::FIELDS, mesh::FIELDS, topology::FIELDS, joins::FIELDS, measures::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

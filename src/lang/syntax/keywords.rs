@@ -132,7 +132,9 @@ pub static WORDS: [KeywordDoc; 36] = [
         "report",
         (Kind::Report, Keyword::Report),
         "report value\nreport \"title\": value\nreport value for i in list",
-        "A table in the summary and the JSON report: of records, lists, or what an entity tells of itself.",
+        "A table in the summary and the JSON report: of records, lists, or what an entity tells of itself. One entity shows its members \
+         (those of its kind in the reference) a row each, with units; a family, a group or several things a row for each thing. A list \
+         among the members is told by how many it holds.",
     ),
     opens(
         "shell",
