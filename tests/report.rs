@@ -202,7 +202,7 @@ fn an_entity_tells_all_of_its_members() {
     let things = [
         ("curve", "south"),
         ("surface", "wall"),
-        ("edge", "wall.edge(south)"),
+        ("edge", "wall.edge(south.start)"),
         ("patch", "wall.patches[0]"),
         ("vertex", "wall.vertices[0]"),
         ("shell", "hall"),
