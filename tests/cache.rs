@@ -88,6 +88,7 @@ fn process(script: &Path, text: &str, out: &Path, cache: Option<&Path>) -> Found
         name: "model.loft",
         text: text.as_bytes(),
         sets: &[],
+        row: None,
         strict: false,
         keep_going: true,
         full: true,

@@ -333,14 +333,66 @@ fn a_table_runs_each_row_and_one_failure_stops_no_other() {
     let folder = Folder::new("table").with("plate.loft", PLATE).with("sizes.csv", table);
     let run = folder.loft(&["run", "plate.loft", "--table", "sizes.csv", "-o", "out"]);
     assert_eq!(run.status, 1);
-    let last: Vec<&str> = run.out.trim_end().lines().rev().take(3).collect();
-    assert!(last[2].starts_with("short  fine") && last[1].starts_with("wide   FAILED") && last[0].starts_with("003    fine"), "{last:?}");
+    // One line a row, and nothing else on standard output.
+    let lines: Vec<&str> = run.out.lines().collect();
+    let starts = |k: usize, words: &[&str]| lines[k].split_whitespace().take(words.len()).eq(words.iter().copied());
+    assert!(lines.len() == 4 && starts(0, &["case", "width", "n", "result"]), "{}", run.out);
+    assert!(
+        starts(1, &["short", "2m", "2", "fine"]) && starts(2, &["wide", "80m", "4", "FAILED"]) && starts(3, &["003", "6m", "6", "fine"])
+    );
     let stl: Vec<String> = folder.names().into_iter().filter(|n| n.ends_with(".stl")).collect();
     assert_eq!(stl, ["out/003/plate.stl", "out/short/plate.stl"]);
     let cases = folder.loft(&["check", "plate.loft", "--table", "sizes.csv", "--json"]).json();
     let names: Vec<&str> = cases["cases"].as_array().unwrap().iter().map(|c| c["case"].as_str().unwrap()).collect();
     assert_eq!((cases["loft"].as_u64(), names), (Some(1), vec!["short", "wide", "003"]));
     assert_eq!(cases["cases"][0]["surfaces"][0]["area"].as_f64(), Some(6.0));
+    let place = &cases["cases"][1]["diagnostics"][0]["labels"][0];
+    let place = ["file", "line", "column", "length"].map(|key| place[key].to_string());
+    assert_eq!(place, ["\"sizes.csv\"", "3", "6", "3"]);
+    assert_eq!(cases["cases"][2]["set"][0], serde_json::json!({ "name": "width", "value": "6m" }));
+}
+
+#[test]
+fn the_table_of_rows_has_what_they_set_check_and_report() {
+    let more =
+        "check \"wide\": width > 3m\ncheck \"long\": n > 1\nreport [{span: width, steps: n}]\nreport \"tall\": width * 2\nreport west\n";
+    let table = "# a comment\nname;width [m];n\n\nsmall; 2 ;2\nlarge;\"6\";3 # seen\nbroken; 80 ;4\n";
+    let folder = Folder::new("rows").with("plate.loft", &format!("{PLATE}{more}")).with("sizes.csv", table);
+    let run = folder.loft(&["check", "plate.loft", "--table", "sizes.csv"]);
+    let rows: Vec<Vec<&str>> = run.out.lines().map(|line| line.split("  ").map(str::trim).filter(|c| !c.is_empty()).collect()).collect();
+    let cell = |row: usize, name: &str| {
+        let heads: Vec<usize> = run.out.lines().next().unwrap().match_indices(name).map(|(at, _)| at + name.len()).collect();
+        let line = run.out.lines().nth(row).unwrap();
+        line.get(..heads[0]).unwrap_or(line).rsplit("  ").next().unwrap().trim().to_owned()
+    };
+    assert_eq!(rows[0][..5], ["case", "width", "n", "result", "checks"], "{}", run.out);
+    assert_eq!(
+        (cell(1, "span [m]"), cell(2, "span [m]"), cell(2, "steps"), cell(2, "tall [m]")),
+        ("2".into(), "6".into(), "3".into(), "12".into())
+    );
+    assert!(rows[1].contains(&"2 of 3") && rows[1].contains(&"wide") && rows[2].contains(&"3 of 3"), "{}", run.out);
+    assert!(run.out.ends_with("reports of several rows are not in this table: `--each` prints them, `--json` holds them\n"), "{}", run.out);
+    // An error names file, row and column, and shows the cell.
+    for words in ["case broken (row 3 of sizes.csv: width = 80m, n = 4)", "[sizes.csv:6:9]", "row 3, column 2 (`width`) of sizes.csv"] {
+        assert!(run.err.contains(words), "{words}: {}", run.err);
+    }
+    let each = folder.loft(&["check", "plate.loft", "--table", "sizes.csv", "--each"]);
+    assert!(each.out.contains("case large\nplate.loft: ") && each.out.contains("\nmember"), "{}", each.out);
+    let quiet = folder.loft(&["check", "plate.loft", "--table", "sizes.csv", "--quiet"]);
+    assert_eq!((quiet.out.as_str(), quiet.status, quiet.err == run.err), ("", 1, true));
+}
+
+#[test]
+fn a_wrong_column_is_told_once_and_quiet_runs_print_nothing() {
+    let folder = Folder::new("quiet").with("plate.loft", PLATE).with("bad.csv", "name,widht\na,2m\nb,3m\n");
+    let run = folder.loft(&["check", "plate.loft", "--table", "bad.csv"]);
+    assert_eq!((run.status, run.err.matches("E219").count()), (1, 1), "{}", run.err);
+    assert!(run.err.contains("[bad.csv:1:6]") && run.err.contains("  the same as in case a\n"), "{}", run.err);
+    let quiet = folder.loft(&["run", "plate.loft", "-q"]);
+    assert_eq!((quiet.status, quiet.out.as_str(), quiet.err.as_str()), (0, "", ""));
+    assert!(folder.path("plate.stl").exists());
+    assert_eq!(folder.loft(&["run", "plate.loft", "-q", "--json"]).status, 2);
+    assert_eq!(folder.loft(&["run", "plate.loft", "--each"]).status, 2);
 }
 
 #[test]

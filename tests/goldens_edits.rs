@@ -90,6 +90,7 @@ impl Folder {
             name: "model.loft",
             text: script.as_bytes(),
             sets: &[],
+            row: None,
             strict: false,
             keep_going: false,
             full: true,

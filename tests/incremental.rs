@@ -46,6 +46,7 @@ impl Folder {
             name: "model.loft",
             text: text.as_bytes(),
             sets: &[],
+            row: None,
             strict: false,
             keep_going: true,
             full: true,

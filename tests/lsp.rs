@@ -468,6 +468,7 @@ fn said_from_nothing(text: &str) -> Vec<(String, Value)> {
         name: "edited.loft",
         text: text.as_bytes(),
         sets: &[],
+        row: None,
         strict: false,
         keep_going: false,
         full: false,

@@ -1,5 +1,6 @@
 //! Floor 9: the commands; the only place with stdout, exit codes, arguments, clock and threads count.
 
+mod cases;
 mod check;
 mod completions;
 mod diff;
@@ -19,6 +20,7 @@ mod run;
 mod summary;
 mod terminal;
 mod test;
+mod variants;
 
 use std::process::ExitCode;
 

@@ -1,15 +1,16 @@
 //! What `run` and `check` share: from the options to a report and an exit status.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::options::{Options, script_path};
 use super::progress::with_progress;
-use super::{Exit, Terminal, interrupt, summary};
+use super::variants::variants;
+use super::{Exit, Terminal, cases, interrupt, summary};
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::io::FileError;
+use crate::lang::run::TableRow;
 use crate::session::cache::Cache;
 use crate::session::disk::{Disk, Outputs, read_limited, read_stream, words};
 use crate::session::guard::{Bug, guarded};
@@ -50,14 +51,18 @@ pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
         complain(cache.as_deref(), options, terminal);
         worst = worst.max(exit);
         cases.cases.extend(rows);
-        if exit >= Exit::Usage {
+        if exit == Exit::Usage {
             return exit;
         }
+        if exit == Exit::Interrupted {
+            break;
+        }
     }
-    if options.table.is_some() && !options.json {
-        terminal.print(&format!("\n{}", summary::cases(&cases, terminal.color_out)));
+    if options.table.is_some() && !options.json && !options.quiet {
+        let gap = if options.each { "\n" } else { "" };
+        terminal.print(&format!("{gap}{}", cases::text(&cases.cases, terminal.color_out)));
     }
-    if options.json && (several || options.table.is_some()) {
+    if options.json && worst != Exit::Interrupted && (several || options.table.is_some()) {
         terminal.print(&cases_text(&cases));
     }
     worst
@@ -80,10 +85,10 @@ pub fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Mo
     Ok(Model { name, text, disk })
 }
 
-/// Runs one case behind the wall and shows what it said; `None` after a bug.
-fn case(
+/// Runs one case behind the wall, with the row of a table that it is of.
+pub fn case(
     model: &Model,
-    (disk, sets): (&Disk, &[(String, String)]),
+    (disk, sets, row): (&Disk, &[(String, String)], Option<&TableRow>),
     options: &Options,
     job: &Arc<Job>,
     kept: Option<&mut Kept>,
@@ -95,6 +100,7 @@ fn case(
         name: model.name,
         text: &model.text,
         sets,
+        row,
         strict: options.strict,
         keep_going: options.keep_going,
         full: options.json || options.verbose,
@@ -146,17 +152,17 @@ fn one(
 ) -> (Exit, Vec<Case>) {
     let watched = terminal.watched && !options.json;
     let mut kept = cache.map(|cache| Kept::on(Some(cache.clone())));
-    let outcome = match with_progress(job, watched, || case(model, (&model.disk, &options.sets), options, job, kept.as_mut())) {
+    let outcome = match with_progress(job, watched, || case(model, (&model.disk, &options.sets, None), options, job, kept.as_mut())) {
         Ok(outcome) => outcome,
         Err(caught) => return (bug(&caught, model, terminal), Vec::new()),
     };
     show(&outcome, options, terminal);
-    if !options.json {
+    if !options.json && !options.quiet {
         terminal.print(&summary::text(&outcome.report, outcome.tolerance, terminal.color_out));
-    } else if !several {
+    } else if options.json && !several {
         terminal.print(&report_text(&outcome.report));
     }
-    (exit_of(&outcome), vec![Case { case: model.name.to_owned(), report: outcome.report }])
+    (exit_of(&outcome), vec![Case { case: model.name.to_owned(), set: Vec::new(), report: outcome.report }])
 }
 
 /// Diagnostics, how things were found, and timings: all on standard error.
@@ -178,50 +184,4 @@ pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
     if outcome.interrupted {
         terminal.tell("interrupted: nothing was written\n");
     }
-}
-
-fn variants(
-    model: &Model,
-    (table, cache): (&Path, Option<&Arc<Cache>>),
-    options: &Options,
-    job: &Arc<Job>,
-    terminal: &Terminal,
-) -> (Exit, Vec<Case>) {
-    let rows = match read_limited(table, limits::DATA_BYTES) {
-        Ok(bytes) => crate::session::variants::rows(&bytes, &options.sets),
-        Err(error) => return (terminal.wrong_usage(&format!("cannot read {:?}: {}", table.to_string_lossy(), words(&error))), Vec::new()),
-    };
-    let rows = match rows {
-        Ok(rows) => rows,
-        Err(text) => return (terminal.wrong_usage(&format!("{}: {text}", table.display())), Vec::new()),
-    };
-    let mut worst = Exit::Fine;
-    let mut cases = Vec::new();
-    // Rows differ in few params: what does not depend on those is taken over.
-    let mut kept = Kept::on(cache.cloned());
-    for row in rows {
-        let disk = model.disk.with_subfolder(&row.name);
-        let watched = terminal.watched && !options.json;
-        let outcome = match with_progress(job, watched, || case(model, (&disk, &row.sets), options, job, Some(&mut kept))) {
-            Ok(outcome) => outcome,
-            // One row that fails does not stop the others, even by a bug.
-            Err(caught) => {
-                worst = worst.max(bug(&caught, model, terminal));
-                continue;
-            }
-        };
-        if !options.json {
-            terminal.print(&format!("case {}\n", row.name));
-        }
-        show(&outcome, options, terminal);
-        if !options.json {
-            terminal.print(&summary::text(&outcome.report, outcome.tolerance, terminal.color_out));
-        }
-        worst = worst.max(exit_of(&outcome));
-        cases.push(Case { case: row.name, report: outcome.report });
-        if worst == Exit::Interrupted {
-            break;
-        }
-    }
-    (worst, cases)
 }

@@ -24,6 +24,10 @@ pub struct Options {
     pub json: bool,
     /// How things were found: flows, methods, counts, notes.
     pub verbose: bool,
+    /// Nothing on standard output; what is wrong is told all the same.
+    pub quiet: bool,
+    /// The whole summary of each row of a table, not only its line.
+    pub each: bool,
     /// Further places that may be read.
     pub allow: Vec<PathBuf>,
     /// What is sound is written although something failed.
@@ -42,7 +46,9 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
         .arg(path("out", "DIR", "Folder for outputs [default: the script's]").short('o'))
         .arg(path("table", "FILE.csv", "One run for each row; the header names params"))
         .arg(path("cache", "DIR", "Keeps meshes there from run to run; made when it does not exist"))
+        .arg(flag("each", "With --table: prints the whole summary of each row as well").requires("table").conflicts_with("json"))
         .arg(flag("json", "Prints the report as JSON"))
+        .arg(flag("quiet", "Prints nothing but errors and warnings").short('q').conflicts_with_all(["json", "verbose", "each", "timings"]))
         .arg(flag("keep-going", "Writes what is sound although something failed"));
     add_shared(command)
 }
@@ -94,6 +100,8 @@ impl Options {
             table: matches.get_one::<PathBuf>("table").cloned(),
             cache: matches.get_one::<PathBuf>("cache").cloned(),
             json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+            each: matches.get_flag("each"),
             keep_going: matches.get_flag("keep-going"),
             ..Self::read_shared(matches)?
         })
@@ -111,6 +119,8 @@ impl Options {
             strict: matches.get_flag("strict"),
             timings: matches.get_flag("timings"),
             json: false,
+            quiet: false,
+            each: false,
             verbose: matches.get_flag("verbose"),
             allow: matches.get_many::<PathBuf>("allow").into_iter().flatten().cloned().collect(),
             keep_going: false,

@@ -94,6 +94,7 @@ fn draw(
         name: model.name,
         text: &model.text,
         sets: &options.sets,
+        row: None,
         strict: options.strict,
         keep_going: false,
         full: false,

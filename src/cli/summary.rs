@@ -2,26 +2,26 @@
 
 use crate::base::text::columns as width;
 use crate::base::tolerance::Tolerance;
-use crate::session::report::{Cases, Cell, Report, Table};
+use crate::session::report::{Cell, Report, Table};
 
 /// Significant digits of a number in a summary; the JSON report has all.
 const DIGITS: usize = 6;
 
 /// A table as text: the first column and texts to the left, numbers to the right.
-struct Grid {
+pub(super) struct Grid {
     head: Vec<String>,
-    rows: Vec<Vec<String>>,
+    pub(super) rows: Vec<Vec<String>>,
     right: Vec<bool>,
 }
 
 impl Grid {
     /// Column names; those that begin with `>` hold numbers.
-    fn new(head: &[&str]) -> Self {
+    pub(super) fn new(head: &[&str]) -> Self {
         let right = head.iter().map(|h| h.starts_with('>')).collect();
         Self { head: head.iter().map(|h| h.trim_start_matches('>').to_owned()).collect(), rows: Vec::new(), right }
     }
 
-    fn print(&self, out: &mut String, color: bool) {
+    pub(super) fn print(&self, out: &mut String, color: bool) {
         let columns = self.head.len();
         let lines = || std::iter::once(&self.head).chain(&self.rows);
         // A column without any value says nothing.
@@ -59,7 +59,7 @@ pub fn short(x: f64) -> String {
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
-fn maybe(x: Option<f64>, unit: &str) -> String {
+pub(super) fn maybe(x: Option<f64>, unit: &str) -> String {
     x.map_or_else(String::new, |x| with_unit(x, unit))
 }
 
@@ -188,7 +188,7 @@ pub fn print_table(table: &Table, out: &mut String, color: bool) {
     grid.print(out, color);
 }
 
-fn cell(cell: &Cell) -> String {
+pub(super) fn cell(cell: &Cell) -> String {
     match cell {
         Cell::Missing => String::new(),
         Cell::Bool(b) => b.to_string(),
@@ -207,33 +207,6 @@ fn bytes(n: u64) -> String {
         step += 1;
     }
     if step == 0 { format!("{n} B") } else { format!("{size:.1} {}", STEPS[step]) }
-}
-
-/// The last table of a run over variants: one line a case.
-pub fn cases(cases: &Cases, color: bool) -> String {
-    let mut grid = Grid::new(&["case", "result", ">checks", ">failed", ">errors", ">warnings", ">nodes", ">elements", ">area", ">outputs"]);
-    for case in &cases.cases {
-        let report = &case.report;
-        let said = |severity: &str| report.diagnostics.iter().filter(|d| d.severity == severity).map(|d| d.count).sum();
-        let nonzero = |n: usize| if n == 0 { String::new() } else { n.to_string() };
-        let areas: Vec<f64> = report.surfaces.iter().filter_map(|s| s.area).collect();
-        let area = (!areas.is_empty()).then(|| areas.iter().sum());
-        grid.rows.push(vec![
-            case.case.clone(),
-            if report.ok { "fine" } else { "FAILED" }.to_owned(),
-            nonzero(report.checks.len()),
-            nonzero(report.checks.iter().filter(|c| !c.pass).count()),
-            nonzero(said("error")),
-            nonzero(said("warning")),
-            nonzero(report.meshes.iter().map(|m| m.nodes).sum()),
-            nonzero(report.meshes.iter().map(|m| m.triangles + m.quads).sum()),
-            maybe(area, &format!("{}2", report.units)),
-            nonzero(report.outputs.len()),
-        ]);
-    }
-    let mut out = String::new();
-    grid.print(&mut out, color);
-    out
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ mod sets;
 mod stl;
 pub mod stl_read;
 pub mod table;
+pub mod table_places;
 mod vtu;
 mod weld;
 

@@ -214,7 +214,7 @@ impl<'a> Rows<'a> {
 }
 
 /// The text with comments blanked out; lines and the places in them stay.
-fn without_comments(text: &str) -> Cow<'_, str> {
+pub(super) fn without_comments(text: &str) -> Cow<'_, str> {
     if !text.contains('#') {
         return Cow::Borrowed(text);
     }
@@ -235,7 +235,7 @@ fn without_comments(text: &str) -> Cow<'_, str> {
 }
 
 /// The separator that most of the first lines agree on; tab before semicolon before comma.
-fn separator(text: &str) -> u8 {
+pub(super) fn separator(text: &str) -> u8 {
     let lines = || text.lines().filter(|line| !line.trim().is_empty()).take(20);
     let count = |line: &str, separator: u8| {
         let mut quoted = false;

@@ -7,7 +7,7 @@ use super::diag::FileId;
 use super::memory::{Asked, Keys};
 use super::names::Name;
 use super::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
-use super::syntax::ast::{Bound, Declaration, DeclarationKind, Script};
+use super::syntax::ast::{Bound, Declaration, DeclarationKind, Script, Span};
 use super::units::LengthUnit;
 use super::value::{ModuleId, Value};
 use crate::base::digest::Digest;
@@ -52,10 +52,25 @@ pub(super) enum Stage<T> {
 /// A param set from outside: its value, or the text of a literal.
 #[derive(Clone, Debug)]
 pub(super) enum Given {
-    /// From `--set` or a table: text and the pseudo-file it stands in.
-    Text(Arc<str>, FileId),
+    /// From `--set` or a table: the text of a literal, and where it stands.
+    Text(Arc<str>, Written),
     /// From `use`: an evaluated value and where it stands.
-    Value(Value, FileId, super::syntax::ast::Span),
+    Value(Value, FileId, Span),
+}
+
+/// Where a param is set: in the text of a `--set`, or in a cell of a table.
+#[derive(Clone, Debug)]
+pub(super) struct Written {
+    /// The table, or a file that holds the text of the option.
+    pub file: FileId,
+    /// Its name: the head of the column.
+    pub name: Span,
+    /// Its value: the cell.
+    pub value: Span,
+    /// The column in words; `None` for an option.
+    pub column: Option<String>,
+    /// Row and column in words.
+    pub cell: Option<String>,
 }
 
 /// One evaluated script.

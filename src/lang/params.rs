@@ -5,8 +5,9 @@ use std::sync::Arc;
 use super::cx::{Cx, Stop};
 use super::diag::{Diagnostic, FileId};
 use super::eval::Code;
-use super::module::{Given, bound};
+use super::module::{Given, Written, bound};
 use super::names::nearest;
+use super::run::TableRow;
 use super::syntax::ast::{Allowed, Bound, DeclarationKind, Expr, ExprId, Keyword, Node, Span, TextPart, TypeName, Unary};
 use super::types::Ty;
 use super::units;
@@ -56,23 +57,22 @@ impl Cx<'_> {
         (ty, allowed): (Ty, Option<&Allowed>),
         given: Given,
     ) -> Result<Value, Stop> {
-        let (value, file, span) = match given {
-            Given::Value(value, file, span) => (Some(value), file, span),
-            Given::Text(text, file) => {
-                let span = Span { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) };
-                let literal = text.split_once('=').map_or(&*text, |(_, v)| v).trim();
+        let (value, file, span, words) = match given {
+            Given::Value(value, file, span) => (Some(value), file, span, None),
+            Given::Text(text, Written { file, value: span, cell: words, .. }) => {
+                let literal = text.trim();
                 let value = match ty {
                     Ty::Text if !literal.starts_with('"') => Some(Value::text(literal)),
                     Ty::Word => Some(Value::Word(literal.into())),
                     _ => self.literal_text(literal),
                 };
-                (value, file, span)
+                (value, file, span, words)
             }
         };
         let declared = self.machine.at(code.module).file;
         let fail = |cx: &mut Self, code: &'static str, message: String, label: &str| {
             let diagnostic = Diagnostic::new(code, message, file, span, label).label(declared, name.span, "declared here");
-            cx.sink.push(diagnostic);
+            cx.sink.push(words.iter().fold(diagnostic, |d, words| d.note(words)));
             Stop::Failed
         };
         let Some(value) = value else {
@@ -91,7 +91,12 @@ impl Cx<'_> {
                 return Err(fail(self, "E211", format!("{subject} is {wanted}, got {found}"), &label));
             }
         };
-        self.allowed(code, subject, &value, (ty, allowed), Some((file, span)), name.span)?;
+        let said = self.sink.len();
+        let fits = self.allowed(code, subject, &value, (ty, allowed), Some((file, span)), name.span);
+        if let (true, Some(words)) = (fits.is_err(), words) {
+            self.sink.iter_mut().skip(said).for_each(|d| d.notes.push(words.clone()));
+        }
+        fits?;
         Ok(value)
     }
 
@@ -205,15 +210,16 @@ impl Cx<'_> {
             self.machine.at_mut(module).given.push((b.name, given));
             return Ok(());
         }
-        let (file, span) = match &given {
-            Given::Text(text, file) => (*file, Span { start: 0, end: text.len() as u32 }),
-            Given::Value(_, file, span) => (*file, *span),
+        let (file, span, words) = match given {
+            Given::Text(_, Written { file, name, column: words, .. }) => (file, name, words),
+            Given::Value(_, file, span) => (file, span, None),
         };
         let names: Vec<&str> = params().map(|b| self.names.text(b.name)).collect();
         let near = nearest(name, names.iter().copied());
         let label = near.map_or_else(|| "no such param".to_owned(), |n| format!("did you mean `{n}`?"));
         let diagnostic = Diagnostic::new("E219", format!("there is no param `{name}`"), file, span, label);
         let diagnostic = near.into_iter().fold(diagnostic, |d, near| d.put(span, near));
+        let diagnostic = words.into_iter().fold(diagnostic, Diagnostic::note);
         Err(match names.is_empty() {
             true => diagnostic.note("this script has no params"),
             false => diagnostic.note(format!("its params are {}", names.join(", "))),
@@ -221,12 +227,24 @@ impl Cx<'_> {
         .into())
     }
 
-    /// Params from outside as `name = literal` texts, each with a pseudo-file of its own.
-    pub(super) fn give_all(&mut self, module: ModuleId, sets: &[(String, String)]) {
+    /// Params from outside by the texts of literals: of a table where their cells are known, else each with a file of its own.
+    pub(super) fn give_all(&mut self, module: ModuleId, sets: &[(String, String)], row: Option<&TableRow>) {
+        let table = row.map(|row| (row, self.sources.add(&*row.file, &*row.text)));
         for (name, value) in sets {
-            let text: Arc<str> = format!("{name}={value}").into();
-            let file = self.sources.add("set", &*text);
-            if let Err(diagnostic) = self.give(module, name, Given::Text(text, file)) {
+            let cell = table.and_then(|(row, file)| Some((row, file, row.cells.iter().find(|cell| cell.name == *name)?)));
+            let at = match cell {
+                Some((row, file, cell)) => {
+                    let column = format!("column {} of {}", cell.column, row.file);
+                    let words = format!("row {}, column {} (`{name}`) of {}", row.number, cell.column, row.file);
+                    Written { file, name: cell.head, value: cell.cell, column: Some(column), cell: Some(words) }
+                }
+                None => {
+                    let text: Arc<str> = format!("{name}={value}").into();
+                    let all = Span { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) };
+                    Written { file: self.sources.add("set", &*text), name: all, value: all, column: None, cell: None }
+                }
+            };
+            if let Err(diagnostic) = self.give(module, name, Given::Text(value.as_str().into(), at)) {
                 self.machine.filed.push((None, *diagnostic));
             }
         }

@@ -8,7 +8,7 @@ use super::eval::Code;
 use super::module::{State, bound};
 use super::plans::{CheckResult, ExportSpec, PictureSpec, ReportTable};
 use super::stages;
-use super::syntax::ast::{DeclarationKind, ExprId, Keyword};
+use super::syntax::ast::{DeclarationKind, ExprId, Keyword, Span};
 use super::types::Ty;
 use super::units;
 use super::value::{Dim, ModuleId, Value};
@@ -30,6 +30,34 @@ pub struct Entry<'e> {
     pub text: &'e str,
     /// Params set from outside: name and the text of a literal.
     pub sets: &'e [(String, String)],
+    /// The row of a table of variants that sets some of them.
+    pub row: Option<&'e TableRow>,
+}
+
+/// A row of a table of variants: where its file says what.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TableRow {
+    /// The table as named on the command line.
+    pub file: Arc<str>,
+    /// Its text.
+    pub text: Arc<str>,
+    /// Number of the row, from 1 below the header.
+    pub number: usize,
+    /// The cells that set params.
+    pub cells: Vec<SetCell>,
+}
+
+/// A cell that sets a param.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SetCell {
+    /// Name of the param.
+    pub name: String,
+    /// Number of the column, from 1.
+    pub column: usize,
+    /// Where the head of the column stands in the text.
+    pub head: Span,
+    /// Where the cell stands.
+    pub cell: Span,
 }
 
 impl Cx<'_> {
@@ -37,7 +65,7 @@ impl Cx<'_> {
     pub fn load(&mut self, entry: &Entry) {
         let main = self.add_module(entry.name, entry.path, entry.text.into(), String::new());
         self.unit = self.machine.at(main).unit;
-        self.give_all(main, entry.sets);
+        self.give_all(main, entry.sets, entry.row);
     }
 
     /// Evaluates every declaration: first what needs no tolerance, then the tolerance, then the rest.

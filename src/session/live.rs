@@ -70,6 +70,7 @@ impl Live {
             name: &self.name,
             text: text.as_bytes(),
             sets,
+            row: None,
             strict: false,
             keep_going: false,
             full: false,

@@ -330,11 +330,22 @@ pub struct Timings {
     pub write: f64,
 }
 
+/// A param that a row of a table of variants sets.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SetRow {
+    /// Its name.
+    pub name: String,
+    /// The text of its literal: `50m`.
+    pub value: String,
+}
+
 /// One run of a table of variants.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Case {
     /// Name of the row, also of its output folder.
     pub case: String,
+    /// Params that the row sets, in order of its columns; none where a case is a model of the command line.
+    pub set: Vec<SetRow>,
     /// Its report.
     #[serde(flatten)]
     pub report: Report,

@@ -20,7 +20,7 @@ use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::memory::Memory;
 use crate::lang::plans::PictureSpec;
-use crate::lang::run::Entry;
+use crate::lang::run::{Entry, TableRow};
 use crate::lang::value::ModuleId;
 use crate::mesh::Mesh;
 
@@ -32,6 +32,8 @@ pub struct Task<'a> {
     pub text: &'a [u8],
     /// Params set from outside: name and the text of a literal.
     pub sets: &'a [(String, String)],
+    /// The row of a table of variants that sets some of them.
+    pub row: Option<&'a TableRow>,
     /// Warnings are errors.
     pub strict: bool,
     /// What is sound is written although something failed.
@@ -197,7 +199,7 @@ impl<'r> Run<'r> {
             }
         };
         let text = text.as_str();
-        self.cx.load(&Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets });
+        self.cx.load(&Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets, row: self.task.row });
         self.report.units = self.cx.unit().name.to_owned();
         let parsed = clock();
         self.cx.evaluate_all();

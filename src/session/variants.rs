@@ -1,9 +1,14 @@
 //! Tables of variants: a header of param names, each row one run.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
+use std::sync::Arc;
 
 use crate::base::text::real;
 use crate::io::table::{Cell, Layout, Reading, read};
+use crate::io::table_places::Places;
+use crate::lang::run::{SetCell, TableRow};
+use crate::lang::syntax::ast::Span;
 
 /// One row of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,18 +17,21 @@ pub struct Row {
     pub name: String,
     /// Params and the texts of their literals: those of the command line, then those of the row.
     pub sets: Vec<(String, String)>,
+    /// Where the file says it.
+    pub at: TableRow,
 }
 
 /// Column that names the cases.
 const NAME: &str = "name";
 
-/// The rows of a csv; `sets` are the params set for all rows. The error is a sentence about the table.
+/// The rows of a csv of this name; `sets` are the params set for all rows. The error is a sentence about the table.
 ///
 /// A case is called by its column `name`, or by its number from 001. An empty cell leaves a param at its default.
-pub fn rows(bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<Row>, String> {
+pub fn rows(file: &str, bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<Row>, String> {
     let is_unit = |word: &str| crate::lang::units::quantity(1.0, word, crate::lang::units::MILLIMETRE).is_some();
     let reading = Reading { layout: Layout::Separated, header: Some(true), is_unit: &is_unit };
-    let table = read(bytes, &reading).map_err(|at| format!("line {}: {}", at.line, at.what))?;
+    let column = |at: Option<u64>| at.map_or_else(String::new, |column| format!(", column {column}"));
+    let table = read(bytes, &reading).map_err(|at| format!("line {}{}: {}", at.line, column(at.column), at.what))?;
     let header = table.header.unwrap_or_default();
     if let Some((_, name)) = header.iter().enumerate().find(|(i, name)| header[..*i].contains(name)) {
         return Err(format!("the column {name:?} stands there twice"));
@@ -31,19 +39,24 @@ pub fn rows(bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<Row>, String>
     if let Some((name, _)) = sets.iter().find(|(name, _)| header.contains(name)) {
         return Err(format!("`{name}` is set by the table and by --set"));
     }
+    let places = Places::new(bytes);
+    let (file, text, head): (Arc<str>, Arc<str>, _) = (file.into(), places.text.into(), places.first_line());
     let mut names = BTreeSet::new();
     let mut rows = Vec::new();
     for (number, cells) in table.rows.iter().enumerate() {
-        let mut row = Row { name: format!("{:03}", number + 1), sets: sets.to_vec() };
-        for (column, cell) in header.iter().zip(cells) {
+        let line = table.lines.get(number).copied().unwrap_or(0);
+        let at = TableRow { file: file.clone(), text: text.clone(), number: number + 1, cells: Vec::new() };
+        let mut row = Row { name: format!("{:03}", number + 1), sets: sets.to_vec(), at };
+        for (k, (column, cell)) in header.iter().zip(cells).enumerate() {
             let Some(text) = literal(cell) else { continue };
             if column == NAME {
                 row.name = text;
             } else {
+                let (head, cell) = (span(places.cell(head, k)), span(places.cell(line, k)));
+                row.at.cells.push(SetCell { name: column.clone(), column: k + 1, head, cell });
                 row.sets.push((column.clone(), text));
             }
         }
-        let line = table.lines.get(number).copied().unwrap_or(0);
         if !is_folder_name(&row.name) {
             return Err(format!("line {line}: {:?} cannot name an output folder", row.name));
         }
@@ -53,6 +66,11 @@ pub fn rows(bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<Row>, String>
         rows.push(row);
     }
     Ok(rows)
+}
+
+fn span(range: Range<usize>) -> Span {
+    let place = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+    Span { start: place(range.start), end: place(range.end) }
 }
 
 /// The text of a cell as a literal of the language; `None` for an empty one.
@@ -78,18 +96,24 @@ mod tests {
     #[test]
     fn rows_are_named_by_column_or_number() {
         let sets = [("n".to_owned(), "3".to_owned())];
-        let found = rows(b"name,span,kind\nlong,50m,quads\n,7.5,\n", &sets).unwrap();
+        let found = rows("t.csv", b"name,span,kind\nlong,50m,quads\n,7.5,\n", &sets).unwrap();
         let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
-        let long = Row { name: "long".into(), sets: vec![pair("n", "3"), pair("span", "50m"), pair("kind", "quads")] };
-        assert_eq!(found, [long, Row { name: "002".into(), sets: vec![pair("n", "3"), pair("span", "7.5")] }]);
+        let told: Vec<_> = found.iter().map(|row| (row.name.as_str(), row.sets.clone(), row.at.number)).collect();
+        let long = vec![pair("n", "3"), pair("span", "50m"), pair("kind", "quads")];
+        assert_eq!(told, [("long", long, 1), ("002", vec![pair("n", "3"), pair("span", "7.5")], 2)]);
+        let cell = &found[1].at.cells[0];
+        assert_eq!(
+            (cell.name.as_str(), cell.column, &found[1].at.text[cell.cell.start as usize..cell.cell.end as usize]),
+            ("span", 2, "7.5")
+        );
     }
 
     #[test]
     fn names_are_folders_of_their_own() {
-        let said = |text: &str| rows(text.as_bytes(), &[]).unwrap_err();
+        let said = |text: &str| rows("t.csv", text.as_bytes(), &[]).unwrap_err();
         assert_eq!(said("name,n\na/b,1\n"), "line 2: \"a/b\" cannot name an output folder");
         assert_eq!(said("name,n\nA,1\na,2\n"), "line 3: there is a case \"a\" already");
-        assert_eq!(said("n,n\n1,2\n"), "line 1: two columns are called `n`: 1 and 2");
-        assert_eq!(rows(b"n\n1\n", &[("n".into(), "2".into())]).unwrap_err(), "`n` is set by the table and by --set");
+        assert_eq!(said("n,n\n1,2\n"), "line 1, column 2: two columns are called `n`: 1 and 2");
+        assert_eq!(rows("t.csv", b"n\n1\n", &[("n".into(), "2".into())]).unwrap_err(), "`n` is set by the table and by --set");
     }
 }

@@ -249,6 +249,7 @@ impl Model<'_> {
             name: &file,
             text: self.text,
             sets,
+            row: None,
             strict: false,
             keep_going: false,
             full: true,
