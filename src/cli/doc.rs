@@ -3,7 +3,7 @@
 use clap::{Arg, ArgAction, ArgMatches};
 
 use super::{Command, Exit, Terminal};
-use crate::session::{reference, textmate};
+use crate::session::{lookup, reference, textmate};
 
 /// Prints the reference of the language.
 pub const COMMAND: Command = Command { name: "doc", about: "The reference of the language", arguments, run };
@@ -13,7 +13,7 @@ fn arguments(command: clap::Command) -> clap::Command {
     let textmate = Arg::new("textmate").long("textmate").action(ArgAction::SetTrue).conflicts_with_all(["name", "markdown"]).hide(true);
     command
         .arg(textmate)
-        .arg(Arg::new("name").value_name("NAME").help("A word of the language; without one, all words in a line each"))
+        .arg(Arg::new("name").value_name("NAME").help("A word of the language or a code; without one, all words in a line each"))
         .arg(markdown.help("The whole reference as a Markdown page"))
 }
 
@@ -22,13 +22,27 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         None if matches.get_flag("textmate") => terminal.print(&textmate::grammar()),
         None if matches.get_flag("markdown") => terminal.print(&reference::manual()),
         None => terminal.print(&reference::overview()),
-        Some(name) => match reference::entry(name) {
-            Ok(text) => terminal.print(&text),
-            Err(similar) => {
-                let hint = if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(" or ")) };
-                return terminal.wrong_usage(&format!("no word of the language is called `{name}`{hint}"));
-            }
-        },
+        Some(name) => return word(name, terminal),
     }
     Exit::Fine
+}
+
+/// Prints what is known of a word or a code; also for `loft explain`.
+pub fn word(name: &str, terminal: &Terminal) -> Exit {
+    match lookup::entry(name) {
+        Ok(text) => {
+            terminal.print(&text);
+            Exit::Fine
+        }
+        Err(similar) => {
+            let hint = if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(" or ")) };
+            let is_code = matches!(name.as_bytes(), [b'e' | b'w' | b'n' | b'E' | b'W' | b'N', digits @ ..] if digits.iter().all(u8::is_ascii_digit) && !digits.is_empty());
+            let text = if is_code {
+                format!("there is no code {}", name.to_uppercase())
+            } else {
+                format!("no word of the language is called `{name}`")
+            };
+            terminal.wrong_usage(&format!("{text}{hint}"))
+        }
+    }
 }

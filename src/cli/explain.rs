@@ -3,7 +3,6 @@
 use clap::{Arg, ArgMatches};
 
 use super::{Command, Exit, Terminal};
-use crate::lang::codes;
 
 /// The long form of a diagnostic.
 pub const COMMAND: Command =
@@ -12,10 +11,10 @@ pub const COMMAND: Command =
 fn arguments(command: clap::Command) -> clap::Command {
     command.arg(
         Arg::new("what")
-            .value_name("CODE | MODEL NAME")
+            .value_name("CODE | WORD | MODEL NAME")
             .required(true)
             .num_args(1..=2)
-            .help("A code, for example E501; or a script and a name or expression of it"),
+            .help("A code, for example E501, or a word of the language; or a script and a name or expression of it"),
     )
 }
 
@@ -25,17 +24,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         [model, name] => return explain_name(model, name, terminal),
         what => what[0],
     };
-    let wanted = code.to_uppercase();
-    if let Some(page) = codes::explain(&wanted) {
-        terminal.print(&format!("{}\n", page.trim_end()));
-        return Exit::Fine;
-    }
-    // The same number under another letter is what was meant.
-    let number = wanted.trim_start_matches(|c: char| !c.is_ascii_digit());
-    match codes::CODES.iter().find(|info| !number.is_empty() && &info.code[1..] == number) {
-        Some(info) => terminal.wrong_usage(&format!("there is no code {wanted}; did you mean {}?", info.code)),
-        None => terminal.wrong_usage(&format!("there is no code {wanted}")),
-    }
+    super::doc::word(code, terminal)
 }
 
 /// How a name of a model came about.

@@ -5,11 +5,13 @@ mod check;
 mod completions;
 mod diff;
 mod doc;
+mod examples;
 mod explain;
 mod fmt;
 mod interrupt;
 mod later;
 mod lsp;
+mod man;
 mod model;
 mod new;
 mod options;
@@ -55,6 +57,7 @@ const COMMANDS: &[&[Command]] = &[
         explain::COMMAND,
         doc::COMMAND,
         completions::COMMAND,
+        man::COMMAND,
     ],
     later::COMMANDS,
 ];
@@ -98,7 +101,13 @@ fn command_line() -> clap::Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .arg(color);
-    COMMANDS.iter().copied().flatten().fold(root, |root, c| root.subcommand((c.arguments)(clap::Command::new(c.name).about(c.about))))
+    let subcommand = |c: &Command| {
+        let made = (c.arguments)(clap::Command::new(c.name).about(c.about));
+        // What a command says behind its options stays, the examples come first.
+        let after = made.get_after_help().map(|text| format!("\n\n{text}")).unwrap_or_default();
+        if examples::of(c.name).is_empty() { made } else { made.after_help(format!("{}{after}", examples::text(c.name))) }
+    };
+    COMMANDS.iter().copied().flatten().fold(root, |root, c| root.subcommand(subcommand(c)))
 }
 
 /// Runs the program.

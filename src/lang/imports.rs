@@ -9,11 +9,10 @@ use super::cx::{Cx, Stop};
 use super::eval::{Code, Gather};
 use super::later;
 use super::load::file_fault;
-use super::settings::FILE_UNITS;
+use super::settings::IMPORT;
 use super::syntax::ast::{Arg, ExprId};
 use super::syntax::number::is_unit;
 use super::table::Table;
-use super::types::Ty;
 use super::units::{self, LengthUnit};
 use super::value::{Dim, MeshValue, Record, Value};
 use crate::base::fault::{FileFault, Malformed};
@@ -92,11 +91,11 @@ impl Cx<'_> {
     /// `header:` and `unit:`; E303 for one that files of this ending have no use for.
     fn import_args(&mut self, code: Code<'_>, args: &[Arg], ending: &str) -> Result<(Option<bool>, Option<LengthUnit>), Stop> {
         let shown = "import \"…\" (header: true, unit: m)".to_owned();
-        let signature = Signature { name: "import", params: vec!["header", "unit"], rest: None, shown };
+        let signature = Signature { name: "import", params: IMPORT.iter().map(|setting| setting.key).collect(), rest: None, shown };
         let places = self.match_args(code, &signature, 0, args)?;
         let (mut header, mut unit, mut gather) = (None, None, Gather::default());
         for (arg, k) in args.iter().zip(places) {
-            let (ty, subject) = if k == 0 { (Ty::Bool, "`header`") } else { (Ty::Choice(FILE_UNITS), "`unit`") };
+            let (ty, subject) = (IMPORT[k].ty, format!("`{}`", IMPORT[k].key));
             let idle = if k == 0 { !TABLES.contains(&ending) } else { ending == "json" };
             if idle {
                 let text = format!("{subject} says nothing about a {ending} file");
@@ -105,7 +104,7 @@ impl Cx<'_> {
                 gather.take::<()>(Err(draft.note(format!("it is for {of}")).stop()));
                 continue;
             }
-            match gather.take(self.eval_as(code, arg.value, ty, subject)) {
+            match gather.take(self.eval_as(code, arg.value, ty, &subject)) {
                 Some(Value::Bool(b)) => header = Some(b),
                 Some(Value::Word(w)) => unit = units::file_unit(&w),
                 _ => {}

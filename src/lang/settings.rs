@@ -163,6 +163,23 @@ pub const EXPORT: &[Setting] = &[
     Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS) },
 ];
 
+/// `import "file" ( … ) as name`; in this order.
+pub const IMPORT: &[Setting] = &[
+    Setting {
+        key: "header",
+        docs: "Whether the first line of a table names its columns.",
+        default: "whether no cell of that line is a number",
+        ty: Ty::Bool,
+    },
+    Setting {
+        key: "unit",
+        docs: "Unit of bare numbers in a table and of the coordinates of an OBJ or STL file; of a CAD file instead of the unit that it \
+               states.",
+        default: "the model's",
+        ty: Ty::Choice(FILE_UNITS),
+    },
+];
+
 /// `picture things to "…" { … }`.
 pub const PICTURE: &[Setting] = &[
     Setting {
@@ -217,10 +234,16 @@ pub const BLOCKS: &[(&str, &[Setting])] = &[
     ("in box(a, b) { … }", IN),
     ("shell name of surfaces { … }", SHELL),
     ("export things to \"file\" { … }", EXPORT),
+    ("import \"file\" ( … ) as name", IMPORT),
     ("picture things to \"file\" { … }", PICTURE),
 ];
 
+/// The blocks that a word opens: `mesh`, `on`, `export`.
+pub fn blocks_of(word: &str) -> impl Iterator<Item = &'static (&'static str, &'static [Setting])> {
+    BLOCKS.iter().filter(move |(form, _)| form.split(' ').next() == Some(word))
+}
+
 /// All words that settings take.
 pub(super) fn words() -> impl Iterator<Item = &'static str> {
-    BLOCKS.iter().flat_map(|block| block.1).filter(|s| s.key != "units").filter_map(|s| s.ty.choices()).flatten().copied()
+    BLOCKS.iter().flat_map(|block| block.1).filter(|s| !matches!(s.key, "unit" | "units")).filter_map(|s| s.ty.choices()).flatten().copied()
 }

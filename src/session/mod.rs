@@ -10,6 +10,7 @@ pub mod guard;
 pub mod json;
 pub mod kept;
 pub mod live;
+pub mod lookup;
 pub mod notebook;
 mod picture_names;
 mod picture_paths;

@@ -29,60 +29,17 @@ pub fn overview() -> String {
     section("settings", settings().map(|(_, s)| (s.key.to_owned(), first_sentence(s.docs))).collect());
     section("functions", sorted(&mut builtins()));
     section("fields, written x.name or name(x)", sorted(&mut fields()));
-    out.push_str("\n`loft doc NAME` tells more about one of them.\n");
+    out.push_str("\n`loft doc NAME` tells more about one of them, and `loft doc E501` about a code.\n");
     out
 }
 
-fn first_sentence(docs: &str) -> &str {
+pub(super) fn first_sentence(docs: &str) -> &str {
     docs.split(". ").next().unwrap_or(docs).trim_end_matches('.')
 }
 
 /// All settings with their blocks.
-fn settings() -> impl Iterator<Item = (&'static str, &'static Setting)> {
+pub(super) fn settings() -> impl Iterator<Item = (&'static str, &'static Setting)> {
     BLOCKS.iter().flat_map(|(block, table)| table.iter().map(|s| (*block, s)))
-}
-
-/// All that is known of a word, or words that look like it.
-pub fn entry(name: &str) -> Result<String, Vec<&'static str>> {
-    let words = WORDS.iter().filter(|w| w.word == name || w.written() == name).map(text_of_word);
-    let keys = settings().filter(|(_, s)| s.key == name).map(|(block, s)| text_of_setting(block, s));
-    let calls = builtins().chain(fields()).filter(|b| b.name == name).map(text_of);
-    let found: Vec<String> = words.chain(keys).chain(calls).collect();
-    if found.is_empty() {
-        let all = builtins().chain(fields()).map(|b| b.name);
-        let all = all.chain(WORDS.iter().map(KeywordDoc::written)).chain(settings().map(|(_, s)| s.key));
-        let mut near: Vec<(usize, &'static str)> = all.filter_map(|w| super::similar::word_distance(name, w).map(|d| (d, w))).collect();
-        near.sort_unstable();
-        near.dedup();
-        return Err(near.into_iter().take(3).map(|(_, name)| name).collect());
-    }
-    Ok(found.join("\n"))
-}
-
-/// A reserved word for a terminal.
-fn text_of_word(word: &KeywordDoc) -> String {
-    format!("{}\n\n  {}\n", word.form, word.docs)
-}
-
-/// A setting for a terminal.
-fn text_of_setting(block: &str, setting: &Setting) -> String {
-    let default = if setting.default.is_empty() { String::new() } else { format!(" [default: {}]", setting.default) };
-    format!("{}: {}{default}\n\n  {}\n  Stands in `{block}`.\n", setting.key, setting.ty.signature(), setting.docs)
-}
-
-/// A word for a terminal.
-fn text_of(builtin: &Builtin) -> String {
-    let mut out = format!("{}\n\n", builtin.signature());
-    for line in builtin.docs.trim().lines().filter(|line| !line.trim_start().starts_with("```")) {
-        let line = format!("  {}", line.strip_prefix(' ').unwrap_or(line));
-        out.push_str(line.trim_end());
-        out.push('\n');
-    }
-    for param in builtin.params.iter().filter(|p| !p.docs.trim().is_empty()) {
-        let default = param.default.map(|d| format!(" [default: {d}]")).unwrap_or_default();
-        out.push_str(&format!("\n  {}: {}\n      {}{default}\n", param.name, param.ty.signature(), param.docs.trim()));
-    }
-    out
 }
 
 /// The reference manual in Markdown: `docs/guide/reference.md`.

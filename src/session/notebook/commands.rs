@@ -7,7 +7,7 @@ use crate::base::limits;
 use crate::lang::symbols::Condition;
 use crate::session::disk::{read_limited, write_whole};
 use crate::session::live::Depth;
-use crate::session::reference;
+use crate::session::lookup;
 
 /// One command.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ impl Notebook {
             return Answer::text(format!(":{} {}\n  {}", command.word, command.takes, command.docs).replace(" \n", "\n"));
         }
         if !name.is_empty() {
-            return match reference::entry(name) {
+            return match lookup::entry(name) {
                 Ok(text) => Answer::text(text.trim_end()),
                 Err(near) if near.is_empty() => Answer::failure(format!("there is no `{name}` in the language")),
                 Err(near) => Answer::failure(format!("there is no `{name}` in the language; did you mean `{}`?", near.join("`, `"))),
