@@ -106,11 +106,18 @@ curve north = line((4, 3.0002, 0), (0, 3, 0.0003))
 curve west = line((0, 3, 0), (0, 0, 0.0002))
 curve tie for i in 0..3 = line((6 + i, 0, 0), (7 + 1.0002 * i, 0.0001 * i, 0))
 curve apart = line((9, 9, 9), top)
+let corners = [for t in tie: t.end]
+curve lead = spline([corners[0], corners[1], corners[2]])
+curve stub = line(corners[1] + (0, 0.0003, 0), (8, 8, rise))
+curve far = line(stub.end, lead.mid)
+point hung = stub.start
 let before = south.length + apart.length + post.foot.length
 surface slab = coons(south, east, north, west)
 let cut = east.at(50%)
 curve rib = line(cut, west.at(50%))
 let corner = east & north
+use "post.loft" (height: before * 0.01) as other
+curve lean = line(other.foot.end, lead.start)
 curve stay = post.foot
 shell skin of slab
 group edges of east, tie[0], tie[2]
@@ -118,12 +125,14 @@ mesh fine of slab { size: 0.5 }
 check "closed": (south & east).z == 0m within 1mm
 check "rise": rise > 1m
 check "area": area(slab) > 11m2
+check "stands": hung == tie[1].end within 1um
+check "leans": lean.start == other.rest.start within 1um
 report "lengths": [{east: east.length, before: before, stay: post.foot.length + corner.x}]
 export fine to "fine.obj"
 "#;
 
 /// The module of [`MEASURED`].
-const POST: &str = "units mm\nsnap 2mm\ncurve foot = line((0, 0, 0), (0, 0, 500))\ncurve rest = line((0, 1, 500), (0, 400, 500))\n";
+const POST: &str = "units mm\nsnap 2mm\nparam height = 500mm\ncurve foot = line((0, 0, 0), (0, 0, height))\ncurve rest = line((0, 1, height), (0, 400, height))\ncheck foot.end == (0, 0.5, height) within 1um\n";
 
 /// Starts of declarations, as lines.
 fn starts(lines: &[String]) -> Vec<usize> {

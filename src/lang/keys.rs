@@ -95,7 +95,7 @@ impl Cx<'_> {
     }
 
     /// Keys of declarations from what each one is by itself and the keys of what it names; of `fixed` ones what they
-    /// are by themselves is all.
+    /// are by themselves is the key.
     pub(super) fn joined_keys(&self, module: ModuleId, own: &[Option<Digest>], fixed: &[bool]) -> Keys {
         let script = self.machine.at(module).script.clone();
         let n = script.declarations.len();
@@ -121,8 +121,10 @@ impl Cx<'_> {
                     stack.push((below, 0));
                     continue;
                 }
-                of[at] = own[at].and_then(|own| joined(own, &leads[at], &of, &met));
-                of[at] = of[at].map(|key| self.with_text(module, at, key));
+                of[at] = match fixed[at] {
+                    true => own[at],
+                    false => own[at].and_then(|own| joined(own, &leads[at], &of, &met)).map(|key| self.with_text(module, at, key)),
+                };
                 met[at] = 2;
             }
         }

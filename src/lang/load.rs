@@ -15,14 +15,17 @@ use crate::base::origin::Origin;
 use crate::io::FileError;
 
 impl Cx<'_> {
-    /// Adds a script as a module: parsed, its units known, its names bound once.
-    pub(super) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, label: String) -> ModuleId {
+    /// Adds a script as a module: parsed, its units known, its names bound once. `place` is the module that it stands for anew.
+    pub(super) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, (label, place): (String, Option<ModuleId>)) -> ModuleId {
         let file = self.sources.add(name, &*text);
         let (script, mistakes) = super::syntax::parse(&text, file, &mut self.names);
         self.machine.filed.extend(mistakes.into_iter().map(|d| (None, d)));
         let (module, twice) = Module::new(file, path.into(), Arc::new(script), self.names.len());
-        let id = ModuleId::at(self.machine.modules.len());
-        self.machine.modules.push(module);
+        let id = place.unwrap_or_else(|| ModuleId::at(self.machine.modules.len()));
+        match self.machine.modules.get_mut(id.index()) {
+            Some(before) => *before = module,
+            None => self.machine.modules.push(module),
+        }
         self.settle_in(id, &label);
         self.machine.at_mut(id).label = label;
         self.set_unit(id);
@@ -100,7 +103,8 @@ impl Cx<'_> {
         let label = self.names.text(bound.name).to_owned();
         let parent = self.machine.at(code.module).label.clone();
         let label = if parent.is_empty() { label } else { format!("{parent}.{label}") };
-        let id = self.add_module(&written, &resolved, text.into(), label);
+        let before = self.loaded_by(code.module, code.declaration);
+        let id = self.add_module(&written, &resolved, text.into(), (label, before));
         let module = self.machine.at_mut(id);
         module.parent = Some((code.module, code.declaration));
         let file = self.machine.at(code.module).file;
@@ -111,6 +115,12 @@ impl Cx<'_> {
             }
         }
         Ok(Value::Module(id))
+    }
+
+    /// The module that a `use` declaration has loaded.
+    pub(super) fn loaded_by(&self, module: ModuleId, declaration: u32) -> Option<ModuleId> {
+        let loaded = self.machine.modules.iter().position(|m| m.parent == Some((module, declaration)));
+        loaded.map(ModuleId::at)
     }
 
     /// A value that may be given to a param of a module.

@@ -44,6 +44,7 @@ pub mod scene;
 pub mod scopes;
 pub mod settings;
 mod show;
+mod snap_rounds;
 mod snapping;
 mod stages;
 pub mod std;

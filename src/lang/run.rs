@@ -63,7 +63,7 @@ pub struct SetCell {
 impl Cx<'_> {
     /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
     pub fn load(&mut self, entry: &Entry) {
-        let main = self.add_module(entry.name, entry.path, entry.text.into(), String::new());
+        let main = self.add_module(entry.name, entry.path, entry.text.into(), (String::new(), None));
         self.unit = self.machine.at(main).unit;
         self.give_all(main, entry.sets, entry.row);
     }

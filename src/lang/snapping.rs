@@ -1,43 +1,128 @@
-//! `snap 4mm`: moves ends of measured curves once, and what was made from the curves before is made again.
+//! `snap 4mm`: moves ends of measured curves, and what was made from the curves before is made again.
 //!
-//! A script that snaps has two sets of keys. Before it, a declaration's key is made of what it is written with, as
-//! everywhere. Afterwards a curve goes by that key and what became of it, and everything else by its own key and those of
-//! what it names, so that nothing of before is taken for something of afterwards.
+//! A curve may be made from the ends of another one, so curves are snapped in rounds ([`Rounds`]): first those that name no
+//! other curve, then those made from these, which are evaluated anew where something moved, and so on. What other curves
+//! are made from stays where its own round left it. A module is snapped in the round of its `use`.
+//!
+//! Each round that moves something changes the keys of the script. A curve that moved goes by the key it had and what became
+//! of it, and what names it by its own key and those of what it names, so that nothing of before is taken for something of
+//! afterwards.
 
-use std::collections::BTreeSet;
-
-use super::cx::Cx;
-use super::eval::Code;
+use super::cx::{Cx, Snapping, Turn};
+use super::eval::{Code, Site};
 use super::memory::Keys;
 use super::module::{State, bound};
+use super::origins::NO_MEMBER;
+use super::snap_rounds::Rounds;
 use super::stages;
-use super::syntax::ast::{DeclarationKind, Expr, ExprId, Keyword, Node};
+use super::syntax::ast::{DeclarationKind, ExprId, Keyword};
 use super::types::Ty;
 use super::value::{Dim, ModuleId, Value};
+use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
 use crate::network::Chain;
+
+/// What a round looks at.
+const LOOKED_AT: &[Keyword] = &[Keyword::Use, Keyword::Point, Keyword::Curve];
+
+/// For each declaration of a script the digest of what it became where that is something else now.
+type Moved = Vec<Option<Digest>>;
 
 impl Cx<'_> {
     /// `snap 4mm` of each script: moves curve ends, then forgets what was made from the curves before.
     pub(super) fn snap(&mut self) {
-        for m in 0..self.machine.modules.len() {
-            let module = ModuleId::at(m);
-            let Some(index) = self.single(module, Keyword::Snap) else { continue };
-            let script = self.machine.at(module).script.clone();
-            let DeclarationKind::Snap(expr) = script.declarations[index as usize].kind else { continue };
-            let Some(values) = self.head(module, index, &[(expr, Ty::Quantity(Dim::LENGTH), "the distance")]) else { continue };
-            let [Value::Number(distance)] = values.as_slice() else { continue };
-            self.snap_module(module, index, expr, distance.value);
+        let is_said = |m: usize| !self.heads(ModuleId::at(m), Keyword::Snap).is_empty();
+        if (0..self.machine.modules.len()).any(is_said) {
+            self.snap_module(ModuleId::MAIN);
         }
     }
 
-    fn snap_module(&mut self, module: ModuleId, index: u32, expr: ExprId, distance: f64) {
-        let mut parts = stages::gather(self, module);
-        self.machine.site.module = module;
-        self.machine.site.declaration = index;
+    /// Snaps a script and its modules; the digest of all that moved, `None` where nothing did.
+    fn snap_module(&mut self, module: ModuleId) -> Option<Digest> {
+        let asked = self.snap_distance(module);
+        let rounds = Rounds::of(self, module);
+        let mut all: Option<Digester> = None;
+        for round in 0..rounds.count() {
+            if self.job.go_on().is_err() {
+                break;
+            }
+            self.evaluate_round(module, &rounds, round);
+            let mut moved = self.snap_used(module, &rounds, round);
+            let sound = asked.is_none_or(|asked| self.snap_round(module, (&rounds, round), asked, &mut moved));
+            if moved.iter().any(Option::is_some) {
+                let each = moved.iter().enumerate().filter_map(|(i, moved)| Some((i, (*moved)?)));
+                all = Some(each.fold(all.unwrap_or_else(|| Digester::new("rounds")), |d, (i, moved)| d.number(i as u64).digest(moved)));
+                let stale = rounds.users(|i| moved[i].is_some());
+                self.snapped_keys(module, &moved, &stale);
+                self.forget(module, &stale);
+            }
+            if !sound {
+                break;
+            }
+        }
+        all.map(|all| all.finish())
+    }
+
+    /// The distance that a script's `snap` says, the declaration, and where the distance stands.
+    fn snap_distance(&mut self, module: ModuleId) -> Option<(f64, u32, ExprId)> {
+        let index = self.single(module, Keyword::Snap)?;
+        let script = self.machine.at(module).script.clone();
+        let DeclarationKind::Snap(expr) = script.declarations[index as usize].kind else { return None };
+        let values = self.head(module, index, &[(expr, Ty::Quantity(Dim::LENGTH), "the distance")])?;
+        let [Value::Number(distance)] = values.as_slice() else { return None };
+        Some((distance.value, index, expr))
+    }
+
+    /// Evaluates what a round looks at and the rounds before it changed. Curves that ask for the tolerance are not measured
+    /// ones: they wait, as they did before the first round.
+    fn evaluate_round(&mut self, module: ModuleId, rounds: &Rounds, round: u32) {
+        let (tolerance, seen) = (self.tolerance.take(), std::mem::replace(&mut self.seen, Box3::EMPTY));
+        let script = self.machine.at(module).script.clone();
+        for (i, declaration) in script.declarations.iter().enumerate() {
+            let waits = matches!(self.machine.at(module).states[i], State::Waiting);
+            if waits && rounds.of[i] <= round && LOOKED_AT.contains(&declaration.keyword) {
+                self.ensure_all(module, i as u32);
+            }
+        }
+        (self.tolerance, self.seen) = (tolerance, seen);
+    }
+
+    /// Snaps the modules whose `use` is in a round.
+    fn snap_used(&mut self, module: ModuleId, rounds: &Rounds, round: u32) -> Moved {
+        let mut moved = vec![None; rounds.of.len()];
+        for (i, moved) in moved.iter_mut().enumerate().filter(|(i, _)| rounds.of[*i] == round) {
+            if let State::Done(Value::Module(used)) = self.machine.at(module).states[i] {
+                *moved = self.snap_module(used);
+            }
+        }
+        moved
+    }
+
+    /// Snaps the curves of a round; `false` where they cannot be.
+    fn snap_round(
+        &mut self,
+        module: ModuleId,
+        (rounds, round): (&Rounds, u32),
+        (distance, index, expr): (f64, u32, ExprId),
+        moved: &mut Moved,
+    ) -> bool {
+        let parts = stages::gather(self, module);
+        let mut of: Vec<(u32, Keyword)> = Vec::new();
+        let looked_at = &[Keyword::Point, Keyword::Curve];
+        stages::each_member(self.machine.at(module), &self.names, looked_at, &mut |i, keyword, _, _, _| of.push((i, keyword)));
+        let turn = |i: u32| match rounds.of[i as usize] {
+            now if now == round => Some(Turn::Now),
+            before if before < round => Some(Turn::Before { named: rounds.named[i as usize] }),
+            _ => None,
+        };
+        let turns = |keyword: Keyword| of.iter().filter(move |o| o.1 == keyword).map(|o| turn(o.0)).collect::<Vec<_>>();
+        let points = parts.points.iter().zip(turns(Keyword::Point)).filter(|(_, turn)| turn.is_some()).map(|(p, _)| p.value);
+        let curves = parts.curves.iter().cloned().zip(turns(Keyword::Curve)).filter_map(|(curve, turn)| Some((curve, turn?)));
+        self.machine.site = Site { module, declaration: index, member: [NO_MEMBER; 2], expr };
         let origin = self.origin_at(expr);
-        let pipeline = self.pipeline;
-        let result = pipeline.snap(self, &mut parts, distance, origin);
+        let mut snapping = Snapping { curves: curves.collect(), points: points.collect(), distance, origin };
+        let result = self.pipeline.snap(self, &mut snapping);
+        let sound = result.is_ok();
         if let Err(stop) = result {
             let script = self.machine.at(module).script.clone();
             let declaration = &script.declarations[index as usize];
@@ -46,15 +131,20 @@ impl Cx<'_> {
         }
         let said = std::mem::take(&mut self.sink);
         self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
-        let mut curves = parts.curves.into_iter();
-        let moved = self.replace_curves(module, &mut || curves.next().map(|c| c.value));
-        self.snapped_keys(module, &moved);
-        self.forget_dependents(module);
+        let mut curves = snapping.curves.into_iter();
+        self.replace_curves(module, &|i| turn(i as u32).is_some(), &mut || curves.next().map(|c| c.0.value), moved);
+        sound
     }
 
-    /// Puts snapped curves in the place of those evaluated before, in the order in which they were gathered; gives for
-    /// each declaration the digest of its curves where they are others now.
-    fn replace_curves(&mut self, module: ModuleId, next: &mut dyn FnMut() -> Option<Chain>) -> Vec<Option<Digest>> {
+    /// Puts snapped curves in the place of those evaluated before, in the order in which they were gathered; `moved` gets the
+    /// digest of the curves of each declaration where they are others now.
+    fn replace_curves(
+        &mut self,
+        module: ModuleId,
+        has_turn: &dyn Fn(usize) -> bool,
+        next: &mut dyn FnMut() -> Option<Chain>,
+        all: &mut Moved,
+    ) {
         fn walk(value: &Value, next: &mut dyn FnMut() -> Option<Chain>, moved: &mut (u64, Option<Digester>)) -> Value {
             match value {
                 Value::List(items) => Value::list(items.iter().map(|v| walk(v, next, moved)).collect()),
@@ -71,9 +161,9 @@ impl Cx<'_> {
             }
         }
         let script = self.machine.at(module).script.clone();
-        let mut all = vec![None; script.declarations.len()];
         for (i, declaration) in script.declarations.iter().enumerate() {
             if declaration.keyword == Keyword::Curve
+                && has_turn(i)
                 && let State::Done(value) = &self.machine.at(module).states[i]
             {
                 let mut moved = (0, None);
@@ -84,27 +174,23 @@ impl Cx<'_> {
                 }
             }
         }
-        all
     }
 
-    /// Changes the keys of a script to those that hold after its `snap`, and takes over the curves that the run before
-    /// moved to the same places: entities are told apart by what they were made as.
-    fn snapped_keys(&mut self, module: ModuleId, moved: &[Option<Digest>]) {
+    /// Changes the keys of a script to those that hold after a round that moved something, and takes over the curves that
+    /// the run before moved to the same places: entities are told apart by what they were made as.
+    fn snapped_keys(&mut self, module: ModuleId, moved: &Moved, stale: &[bool]) {
         if self.memory.is_none() {
             return;
         }
-        let script = self.machine.at(module).script.clone();
         let before = self.keys(module);
-        let is_snapped = |i: usize| {
-            let done = matches!(self.machine.at(module).states[i], State::Done(_));
-            done && script.declarations[i].keyword == Keyword::Curve
+        let own = |i: usize| {
+            let key = before.of[i]?;
+            let changed = moved[i].is_some() || stale[i];
+            let after = || Digester::new("snapped").digest(key);
+            Some(if changed { moved[i].iter().fold(after(), |after, moved| after.digest(*moved)).finish() } else { key })
         };
-        let fixed: Vec<bool> = (0..moved.len()).map(is_snapped).collect();
-        let own = before.of.iter().zip(moved).map(|(key, moved)| {
-            let after = Digester::new("snapped").digest((*key)?);
-            Some(moved.iter().fold(after, |after, moved| after.digest(*moved)).finish())
-        });
-        let own: Vec<Option<Digest>> = own.collect();
+        let own: Vec<Option<Digest>> = (0..moved.len()).map(own).collect();
+        let fixed: Vec<bool> = stale.iter().map(|stale| !stale).collect();
         let keys = self.joined_keys(module, &own, &fixed);
         self.machine.at_mut(module).keys = Some(keys.clone());
         for i in (0..moved.len()).filter(|i| moved[*i].is_some()) {
@@ -115,43 +201,54 @@ impl Cx<'_> {
     fn take_over_moved(&mut self, module: ModuleId, i: usize, keys: &Keys) {
         let (Some(key), Some(memory)) = (keys.of[i], &mut self.memory) else { return };
         let State::Done(value) = &mut self.machine.modules[module.index()].states[i] else { return };
+        if matches!(value, Value::Module(_)) {
+            return;
+        }
         match memory.value_of(key) {
             Some(before) => *value = before,
             None => memory.keep_value(key, value.clone()),
         }
     }
 
-    /// Declarations other than curves that name a snapped curve, at first or second hand, are evaluated again.
-    fn forget_dependents(&mut self, module: ModuleId) {
+    /// What names something that moved, at first or second hand, is evaluated again.
+    fn forget(&mut self, module: ModuleId, stale: &[bool]) {
         let script = self.machine.at(module).script.clone();
-        let n = script.declarations.len();
-        let mut stale: Vec<bool> = script.declarations.iter().map(|d| d.keyword == Keyword::Curve).collect();
-        loop {
-            let names_stale = |node: &Node| match node.expr {
-                Expr::Name(name) | Expr::Call { name, .. } => self.machine.at(module).find(name).is_some_and(|d| stale[d as usize]),
-                _ => false,
-            };
-            let next: Vec<bool> = (0..n).map(|i| stale[i] || script.declarations[i].nodes.iter().any(names_stale)).collect();
-            if next == stale {
-                break;
-            }
-            stale = next;
-        }
-        let mut again = BTreeSet::new();
-        for (i, named) in stale.into_iter().enumerate() {
+        let mut again = vec![false; stale.len()];
+        for (i, declaration) in script.declarations.iter().enumerate().filter(|(i, _)| stale[*i]) {
             // A second declaration of one name stays refused.
-            let first = bound(&script.declarations[i]).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
+            let first = bound(declaration).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
             let evaluated = !matches!(self.machine.at(module).states[i], State::Waiting | State::Running | State::Suspended);
-            if named && first && evaluated && script.declarations[i].keyword != Keyword::Curve {
+            if first && evaluated {
                 self.machine.at_mut(module).states[i] = State::Waiting;
-                again.insert(i as u32);
+                again[i] = true;
+                if declaration.keyword == Keyword::Use {
+                    self.unload(module, i as u32);
+                }
             }
         }
-        self.machine.filed.retain(|(owner, _)| owner.is_none_or(|(m, i)| m != module || !again.contains(&i)));
+        let goes = |i: u32| again[i as usize];
+        self.machine.filed.retain(|(owner, _)| owner.is_none_or(|(m, i)| m != module || !goes(i)));
         let m = self.machine.at_mut(module);
-        m.checks.retain(|c| !again.contains(&c.0));
-        m.reports.retain(|c| !again.contains(&c.0));
-        m.exports.retain(|c| !again.contains(&c.0));
-        m.pictures.retain(|c| !again.contains(&c.0));
+        m.checks.retain(|c| !goes(c.0));
+        m.reports.retain(|c| !goes(c.0));
+        m.exports.retain(|c| !goes(c.0));
+        m.pictures.retain(|c| !goes(c.0));
+    }
+
+    /// Forgets what the script of a `use` said and checked, since it is loaded anew with other params.
+    fn unload(&mut self, by: ModuleId, declaration: u32) {
+        let Some(module) = self.loaded_by(by, declaration) else { return };
+        for index in self.heads(module, Keyword::Use) {
+            self.unload(module, index);
+        }
+        let file = self.machine.at(module).file;
+        let of_file = |d: &super::diag::Diagnostic| d.labels.first().is_some_and(|label| label.file == file);
+        self.machine.filed.retain(|(owner, said)| owner.map_or_else(|| !of_file(said), |(m, _)| m != module));
+        let m = self.machine.at_mut(module);
+        m.states.fill(State::Broken);
+        m.checks.clear();
+        m.reports.clear();
+        m.exports.clear();
+        m.pictures.clear();
     }
 }

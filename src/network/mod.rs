@@ -24,5 +24,5 @@ pub use flow_chains::{ChainFlow, of_chains};
 pub use graph::{CurveId, Input, Link, LinkId, LinkMap, Network, Node, NodeId};
 pub use meet::{Meeting, given_twice, meet, meet_once};
 pub use rings::rings;
-pub use snap::{Move, SnapEnd, snap};
+pub use snap::{Hold, Move, SnapEnd, snap};
 pub use spread::ChainSpread;

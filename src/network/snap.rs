@@ -13,10 +13,21 @@ use crate::base::tolerance::{SNAP_SHARE, Tolerance};
 pub struct SnapEnd {
     /// The curve and its end.
     pub end: CurveEnd,
-    /// Whether the curve can be rebuilt with this end elsewhere (it is built from points).
-    pub movable: bool,
+    /// Whether it may go elsewhere.
+    pub hold: Hold,
     /// Length of the curve, model units.
     pub length: f64,
+}
+
+/// Whether an end may go elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hold {
+    /// The curve can be built anew with this end elsewhere: it is made from points.
+    Free,
+    /// The curve cannot.
+    Fixed,
+    /// It was moved in a round before and stays, since other curves are made from it; two such ends may be apart.
+    Settled,
 }
 
 /// An end that goes elsewhere.
@@ -35,7 +46,8 @@ pub fn may_snap(gap: f64, shorter: f64) -> bool {
 }
 
 /// Moves that bring ends closer than `distance` together: to the end among them that cannot move, else to the declared
-/// point, else to their mean. Each move is noted in `sink` (N513, W223 where it is large against the curve); two ends that cannot move are E511.
+/// point, else to their mean. Each move is noted in `sink` (N513, W223 where it is large against the curve); two ends that cannot
+/// move are E511, but for two that are settled.
 ///
 /// `asked` is the expression that says the distance. Independent of the order of ends.
 pub fn snap(
@@ -56,10 +68,13 @@ pub fn snap(
             continue;
         }
         let declared: Vec<DVec3> = group.iter().map(|&k| k as usize).filter(|&k| k >= ends.len()).map(|k| all[k]).collect();
-        let fixed: Vec<usize> = members.iter().copied().filter(|&k| !ends[k].movable).collect();
+        let fixed: Vec<usize> = members.iter().copied().filter(|&k| ends[k].hold != Hold::Free).collect();
+        let is_settled = |k: usize| ends[k].hold == Hold::Settled;
         for (i, &a) in fixed.iter().enumerate() {
-            if let Some(&b) = fixed[i + 1..].iter().find(|&&b| !tolerance.same_point(all[a], all[b])) {
-                return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance, asked }.into());
+            let apart = |b: usize| !(is_settled(a) && is_settled(b)) && !tolerance.same_point(all[a], all[b]);
+            if let Some(&b) = fixed[i + 1..].iter().find(|&&b| apart(b)) {
+                let settled = [a, b].into_iter().find(|k| is_settled(*k)).map(|k| ends[k].end.of);
+                return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance, asked, settled }.into());
             }
         }
         let fixed_points: Vec<DVec3> = fixed.iter().map(|&k| all[k]).collect();
@@ -68,7 +83,7 @@ pub fn snap(
             let targets = if !fixed_points.is_empty() { &fixed_points } else { &declared };
             let near = |p: &DVec3| p.distance_squared(all[k]);
             let to = targets.iter().copied().min_by(|a, b| near(a).total_cmp(&near(b)).then(compare_points(*a, *b))).unwrap_or(mean);
-            if ends[k].movable && to != all[k] {
+            if ends[k].hold == Hold::Free && to != all[k] {
                 moves.push(Move { end: k, to });
             }
         }
@@ -93,10 +108,11 @@ fn mean(mut points: Vec<DVec3>) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use super::Hold::{Fixed, Free, Settled};
     use super::*;
 
-    fn end(x: f64, movable: bool) -> SnapEnd {
-        SnapEnd { end: CurveEnd { of: Origin::NONE, last: false, at: DVec3::new(x, 0.0, 0.0) }, movable, length: 10.0 }
+    fn end(x: f64, hold: Hold) -> SnapEnd {
+        SnapEnd { end: CurveEnd { of: Origin::NONE, last: false, at: DVec3::new(x, 0.0, 0.0) }, hold, length: 10.0 }
     }
 
     fn moved(ends: &[SnapEnd], points: &[f64]) -> Result<Vec<(usize, f64)>> {
@@ -115,10 +131,16 @@ mod tests {
 
     #[test]
     fn ends_go_to_the_fixed_end_the_declared_point_or_their_mean() {
-        assert_eq!(moved(&[end(0.0, true), end(0.25, true), end(9.0, true)], &[]).unwrap(), [(0, 0.125), (1, 0.125)]);
-        assert_eq!(moved(&[end(0.0, true), end(0.25, true)], &[0.3]).unwrap(), [(0, 0.3), (1, 0.3)]);
-        assert_eq!(moved(&[end(0.0, true), end(0.25, false)], &[0.3]).unwrap(), [(0, 0.25)]);
-        assert_eq!(moved(&[end(4.0, true)], &[4.25]).unwrap(), [(0, 4.25)]);
-        assert_eq!(moved(&[end(0.0, false), end(0.25, false)], &[]).unwrap_err().code().0, "E511");
+        assert_eq!(moved(&[end(0.0, Free), end(0.25, Free), end(9.0, Free)], &[]).unwrap(), [(0, 0.125), (1, 0.125)]);
+        assert_eq!(moved(&[end(0.0, Free), end(0.25, Free)], &[0.3]).unwrap(), [(0, 0.3), (1, 0.3)]);
+        assert_eq!(moved(&[end(0.0, Free), end(0.25, Fixed)], &[0.3]).unwrap(), [(0, 0.25)]);
+        assert_eq!(moved(&[end(4.0, Free)], &[4.25]).unwrap(), [(0, 4.25)]);
+        assert_eq!(moved(&[end(0.0, Fixed), end(0.25, Fixed)], &[]).unwrap_err().code().0, "E511");
+    }
+
+    #[test]
+    fn settled_ends_draw_others_and_may_be_apart() {
+        assert_eq!(moved(&[end(0.0, Settled), end(0.25, Free), end(0.4, Settled)], &[0.26]).unwrap(), [(1, 0.4)]);
+        assert_eq!(moved(&[end(0.0, Settled), end(0.25, Fixed)], &[]).unwrap_err().code().0, "E511");
     }
 }

@@ -8,9 +8,8 @@ use glam::DVec3;
 use crate::base::fault::{CurveEnd, Fault, Say};
 use crate::base::job::Job;
 use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD};
-use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Parts, Pipeline, Stop};
+use crate::lang::cx::{Cx, Parts, Pipeline, Snapping, Stop, Turn};
 use crate::lang::plans::MeshSpec;
 use crate::lang::scene::Scene;
 use crate::lang::value::ModuleId;
@@ -21,7 +20,7 @@ use crate::model::topology::Named;
 use crate::model::{Model, measure};
 use crate::network::chain::same_curve;
 use crate::network::graph::Input;
-use crate::network::snap::{SnapEnd, snap};
+use crate::network::snap::{Hold, SnapEnd, snap};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
@@ -120,21 +119,24 @@ impl Stages<'_> {
 }
 
 impl Pipeline for Stages<'_> {
-    fn snap(&self, cx: &mut Cx, parts: &mut Parts, distance: f64, origin: Origin) -> Result<(), Stop> {
+    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Stop> {
         let tolerance = cx.tolerance()?;
         let (mut ends, mut owners) = (Vec::new(), Vec::new());
-        for (k, declared) in parts.curves.iter().enumerate() {
+        for (k, (declared, turn)) in snapping.curves.iter().enumerate() {
             let Some(curve) = declared.value.whole_curve().filter(|c| !c.is_closed(&tolerance)) else { continue };
-            let movable = curve.has_movable_ends(&tolerance);
+            let hold = match turn {
+                _ if !curve.has_movable_ends(&tolerance) => Hold::Fixed,
+                Turn::Before { named: true } => Hold::Settled,
+                Turn::Before { named: false } | Turn::Now => Hold::Free,
+            };
             let length = declared.value.length();
             for (last, at) in [(false, curve.start()), (true, curve.end())] {
-                ends.push(SnapEnd { end: CurveEnd { of: declared.origin, last, at }, movable, length });
+                ends.push(SnapEnd { end: CurveEnd { of: declared.origin, last, at }, hold, length });
                 owners.push(k);
             }
         }
-        let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
         let mut sink = Vec::new();
-        let moves = snap(&ends, &points, (distance, origin), &tolerance, &mut sink)?;
+        let moves = snap(&ends, &snapping.points, (snapping.distance, snapping.origin), &tolerance, &mut sink)?;
         say_all(cx, &sink);
         let mut places: Vec<DVec3> = ends.iter().map(|e| e.end.at).collect();
         let mut moved = vec![false; owners.len()];
@@ -144,7 +146,7 @@ impl Pipeline for Stages<'_> {
         }
         for pair in (0..ends.len()).step_by(2) {
             if moved[pair] || moved[pair + 1] {
-                let declared = &mut parts.curves[owners[pair]];
+                let declared = &mut snapping.curves[owners[pair]].0;
                 if let Some(curve) = declared.value.whole_curve() {
                     declared.value = Chain::of_curve(&curve.with_ends(places[pair], places[pair + 1])?);
                 }

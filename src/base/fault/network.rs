@@ -144,6 +144,8 @@ pub enum NetworkFault {
         snap: f64,
         /// The expression that says it.
         asked: Origin,
+        /// The curve of them that stays since others are made from it.
+        settled: Option<Origin>,
     },
     /// N512: two curves run over the same links.
     SharedRun {
@@ -300,24 +302,7 @@ impl Describe for NetworkFault {
             Self::SeveralMeetings { a, b, candidates } => several_meetings(*a, *b, candidates, say),
             Self::SharesRun { a, b, runs } => shares_run(*a, *b, runs, say),
             Self::InUse { of, users } => in_use(*of, users, say),
-            Self::SnapFixed { a, b, snap, asked } => Report::new(
-                "E511",
-                format!(
-                    "{} and {} end {} apart at {}, closer than `snap {}`, and neither end can be moved",
-                    say.quoted(a.of, "one curve"),
-                    say.quoted(b.of, "another"),
-                    say.length(a.at.distance(b.at)),
-                    say.point(a.at),
-                    typed(say, *snap)
-                ),
-            )
-            .at(a.of, a.verb())
-            .at(b.of, b.verb())
-            .at(*asked, "ends closer than this are joined")
-            .help(format!(
-                "write one of them through points, end both at one point, or declare a `snap` below {}",
-                typed(say, a.at.distance(b.at))
-            )),
+            Self::SnapFixed { a, b, snap, asked, settled } => snap_fixed([a, b], (*snap, *asked), *settled, say),
             Self::SharedRun { owner, other, run, length } => Report::new(
                 "N512",
                 format!(
@@ -374,6 +359,27 @@ fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn 
 /// A number of two digits, or a whole one.
 fn rounded(x: f64) -> String {
     if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") }
+}
+
+fn snap_fixed([a, b]: [&CurveEnd; 2], (snap, asked): (f64, Origin), settled: Option<Origin>, say: &dyn Say) -> Report {
+    let gap = a.at.distance(b.at);
+    let (one, other, at) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"), say.point(a.at));
+    let words = format!(
+        "{one} and {other} end {} apart at {at}, closer than `snap {}`, and neither end can be moved",
+        say.length(gap),
+        typed(say, snap)
+    );
+    let below = typed(say, gap);
+    let report = Report::new("E511", words)
+        .at(a.of, a.verb())
+        .at(b.of, b.verb())
+        .at(asked, "ends closer than this are joined")
+        .help(format!("write one of them through points, end both at one point, or declare a `snap` below {below}"));
+    match settled {
+        Some(of) => report
+            .note(format!("{} stays, since other curves are made from it, which `snap` comes to afterwards", say.quoted(of, "the first"))),
+        None => report,
+    }
 }
 
 fn tolerance_note(tolerance: f64, say: &dyn Say) -> String {

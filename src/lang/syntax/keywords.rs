@@ -146,7 +146,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "snap",
         (Kind::Snap, Keyword::Snap),
         "snap length",
-        "For measured data: curve ends closer than this are moved together, once, before anything is built. Every move is told.",
+        "For measured data: curve ends closer than this are moved together before anything is built; what is made from them stands where they went. Every move is told.",
     ),
     opens(
         "surface",
