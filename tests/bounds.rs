@@ -347,15 +347,11 @@ fn nets_made_ready_are_the_nets_and_their_bends_are_bounded() {
 
 /// A mesh of one surface under a chord error alone.
 fn meshed(surface: &Surface, chord: f64, elements: Elements) -> Mesh {
-    meshed_by(MeshMethod::Auto, surface, chord, elements)
-}
-
-fn meshed_by(method: MeshMethod, surface: &Surface, chord: f64, elements: Elements) -> Mesh {
     let network = Network::build(Vec::new(), &[], &tolerance(), &Job::new(), &mut Vec::new()).unwrap();
     let named = vec![Named { name: "s".to_owned(), surface: surface.clone() }];
     let model = Model::build(named, &network, &tolerance(), &Job::new()).unwrap();
     let mut plan = Plan::of("m", vec![(SurfaceId::at(0), false)]);
-    plan.method = method;
+    plan.method = MeshMethod::Auto;
     (plan.chord_error, plan.size, plan.elements) = (Some((chord, Origin::NONE)), Some((100.0, Origin::NONE)), elements);
     let input = Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance() };
     mesh_of(&input, &Job::new(), &mut Vec::new()).unwrap().mesh
@@ -474,7 +470,7 @@ fn a_ridge_that_samples_miss_is_found() {
     let surface = ridged();
     assert!((0..=32).all(|i| surface.point(f64::from(i) / 32.0, 0.5).z.abs() < 1e-12) && surface.point(0.515, 0.5).z > 0.5);
     for elements in [Elements::Triangles, Elements::Quads] {
-        let mesh = meshed_by(MeshMethod::Mapped, &surface, 0.05, elements);
+        let mesh = meshed(&surface, 0.05, elements);
         let worst = densely(&mesh, 20);
         assert!(worst <= 0.05, "{worst}");
         // Refined across the ridge alone.

@@ -9,6 +9,7 @@ use super::edges::Limits;
 use super::explain::Explanation;
 use super::faces::{self, Frame, Prepared};
 use super::free::face::{self as free_face, Made};
+use super::free::twins;
 use super::layout::{Face, Layout};
 use super::limits::{self, Finished, Verdict};
 use super::narrow::{self, Narrow};
@@ -92,7 +93,8 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
 fn keep_maps(layout: &mut Layout) -> bool {
     let mut any = false;
     for face in layout.faces.iter_mut().filter(|face| matches!(face.uneven, Some(Uneven::Sharp(_)))) {
-        (face.uneven, face.kept, any) = (None, true, true);
+        face.keep_map();
+        any = true;
     }
     any
 }
@@ -105,7 +107,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
     let (mut sizing, mut wishes, mut relations) = begin(input, layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     let (mut looks, mut before) = (LOOKS, Vec::new());
-    for _ in 0..ROUNDS + LOOKS + (1 + HALVED as usize) * layout.faces.len() {
+    for _ in 0..ROUNDS + LOOKS + (2 + HALVED as usize) * layout.faces.len() {
         job.go_on()?;
         let mut unknown = sizing.stretches(layout);
         unknown.extend(relations.rows());
@@ -139,9 +141,11 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
         }
         let mut prepared = prepare(&made, &relations, &counts)?;
         let foreseen = foresee::look(&made, &prepared);
-        let better = foresee::better_free(&made, &sizing, &foreseen);
+        let better = foresee::better_free(&made, &sizing, &foreseen, &prepared);
         if !better.is_empty() {
-            better.into_iter().for_each(|(f, why)| layout.faces[f].uneven = Some(why));
+            for (f, why, elements) in better {
+                (layout.faces[f].uneven, layout.faces[f].foreseen_free) = (Some(why), elements);
+            }
             (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
             narrow.clear();
             (last, before) = (Vec::new(), Vec::new());
@@ -159,6 +163,18 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
             if layout.faces.iter().any(|f| f.free) {
                 free(&made, &mut prepared, (known, job))?;
                 mesh = fill(input, &border, &prepared, (keyed, true), job)?;
+                let back = foresee::better_mapped(&made, &prepared, &mesh);
+                if !back.is_empty() {
+                    back.into_iter().for_each(|f| layout.faces[f].keep_map());
+                    (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+                    narrow.clear();
+                    (last, before) = (Vec::new(), Vec::new());
+                    continue;
+                }
+                if twins::divide(&made, &mut prepared, &mesh) {
+                    number(&made, &mut prepared)?;
+                    mesh = fill(input, &border, &prepared, (keyed, true), job)?;
+                }
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
             }
             if let Some((f, defect)) = verify::unsound(input, (&*layout, &nodes), &prepared, &mesh) {

@@ -6,6 +6,7 @@ use std::f64::consts::{FRAC_PI_6, PI};
 use glam::DVec3;
 
 use super::chart::Shape;
+use super::data::Mesh;
 use super::edges::Limits;
 use super::faces::{Frame, Prepared};
 use super::free::bound;
@@ -28,6 +29,10 @@ const FREE: f64 = FRAC_PI_6;
 const WORTH: f64 = 1.5;
 /// Free elements for one of the map at most: rows that limits make narrow save elements.
 const MORE: f64 = 2.5;
+/// Free elements for one that was foreseen at most.
+const DEARER: f64 = 4.0;
+/// So few elements may be any number of times what was foreseen.
+const FEW: u64 = 100;
 /// Area of an equilateral triangle with sides of 1.
 const EQUILATERAL: f64 = 0.433_012_701_892_219_3;
 /// Steps of free faces between borders that are near, over their distance.
@@ -61,16 +66,42 @@ pub fn look(made: &Made, prepared: &[Prepared]) -> Vec<Option<Foreseen>> {
     par::map(prepared.len(), |f| (!made.layout.faces[f].free).then(|| of_face(made, &made.layout.faces[f], &prepared[f])).flatten())
 }
 
-/// Faces that are better made freely, of those that are mapped because nothing says otherwise. Rows whose steps are written out are
-/// what is meant.
-pub fn better_free(made: &Made, sizing: &Sizing, foreseen: &[Option<Foreseen>]) -> Vec<(usize, Uneven)> {
+/// Faces that are better made freely, of those that are mapped because nothing says otherwise, and the number of elements that this
+/// makes. Rows whose steps are written out are what is meant.
+pub fn better_free(made: &Made, sizing: &Sizing, foreseen: &[Option<Foreseen>], prepared: &[Prepared]) -> Vec<(usize, Uneven, u64)> {
     let chosen = |(f, found): (usize, &Option<Foreseen>)| {
         let face = &made.layout.faces[f];
         let found = found.filter(Foreseen::is_worse_than_free)?;
         let open = face.method == Method::Auto && !face.kept && !is_written(face, sizing);
-        open.then_some((f, Uneven::Sharp(found.angle)))
+        let elements = found.more * (prepared[f].triangles + prepared[f].quads) as f64;
+        open.then_some((f, Uneven::Sharp(found.angle), elements.ceil() as u64))
     };
     foreseen.iter().enumerate().filter_map(chosen).collect()
+}
+
+/// Faces made freely for better angles that have many more elements than was foreseen, or elements turned over against the surface.
+pub fn better_mapped(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<usize> {
+    let worse = |f: usize| {
+        let (face, ready) = (&made.layout.faces[f], &prepared[f]);
+        let many = (ready.triangles + ready.quads) as f64 > DEARER * (face.foreseen_free.max(FEW)) as f64;
+        matches!(face.uneven, Some(Uneven::Sharp(_))) && (many || turned(ready, mesh))
+    };
+    let found = par::map(prepared.len(), worse);
+    (0..prepared.len()).filter(|f| found[*f]).collect()
+}
+
+/// Whether an element is seen from its back along the normal of the surface in its middle.
+fn turned(ready: &Prepared, mesh: &Mesh) -> bool {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return false };
+    let surface = &ready.chart.surface;
+    let back = |corners: &[u32]| {
+        let share = 1.0 / corners.len() as f64;
+        let uv = corners.iter().map(|n| free.uv[*n as usize]).fold((0.0, 0.0), |s, uv| (s.0 + share * uv.0, s.1 + share * uv.1));
+        let p = |k: usize| mesh.nodes[ids[corners[k] as usize] as usize];
+        let last = corners.len() - 1;
+        (p(last - 1) - p(0)).cross(p(last) - p(last - 2)).dot(surface.normal(uv.0, uv.1)) <= 0.0
+    };
+    !surface.is_flat() && (free.triangles.iter().any(|t| back(t)) || free.quads.iter().any(|q| back(q)))
 }
 
 /// Whether all steps of a side are written, or their growth.

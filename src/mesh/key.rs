@@ -165,6 +165,7 @@ impl Teller<'_> {
             free: _,
             uneven: _,
             kept: _,
+            foreseen_free: _,
             foreseen: _,
             halved: _,
             why: _,

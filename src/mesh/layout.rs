@@ -53,8 +53,10 @@ pub struct Face {
     pub sides: Vec<Border>,
     /// What rows would have to follow, or keep others from following: it is made freely for that.
     pub uneven: Option<Uneven>,
-    /// It stays mapped whatever its map is like: made freely it failed.
+    /// It stays mapped whatever its map is like: made freely it failed, or turned out worse.
     pub kept: bool,
+    /// Elements that it was foreseen to have where it is made freely for better angles.
+    pub foreseen_free: u64,
     /// The least angle that its map was foreseen to have, radians.
     pub foreseen: Option<f64>,
     /// Times that the steps of its border were halved because it closes on itself and its elements did not keep apart.
@@ -68,6 +70,11 @@ pub struct Face {
 }
 
 impl Face {
+    /// Has it made by its map from now on: freely it turned out worse.
+    pub fn keep_map(&mut self) {
+        (self.uneven, self.kept) = (None, true);
+    }
+
     /// Whether it is the triangle of a uniform trilateral.
     pub fn is_triangle(&self) -> bool {
         self.sides.len() == 3
@@ -215,6 +222,7 @@ impl Layout {
             sides,
             uneven: None,
             kept: false,
+            foreseen_free: 0,
             foreseen: None,
             halved: 0,
             why: None,

@@ -23,4 +23,5 @@ pub mod size;
 pub mod taken;
 pub mod thin;
 pub mod tree;
+pub mod twins;
 pub mod web;
