@@ -276,16 +276,10 @@ impl Cx<'_> {
     fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
         let Some(x) = number(&value) else { return Ok(value) };
         let (least, most) = (f64::from(limits::PICTURE_LEAST), f64::from(limits::PICTURE_SIDE));
-        let range = match key {
-            "order" if x != 1.0 && x != 2.0 => "1 or 2",
-            "count" if x < 1.0 => "at least 1",
-            "count" if x > 1e8 => "at most 10^8",
-            "width" | "height" if !(least..=most).contains(&x) => return Err(self.out_of_page(code, key, &value, id)),
-            "size" | "chord_error" | "angle_error" | "min_size" | "bias" | "snap" if x <= 0.0 => "more than 0",
-            "growth" if x <= 1.0 => "more than 1",
-            "radius" if x < 0.0 => "0 or more",
-            _ => return Ok(value),
-        };
+        if matches!(key, "width" | "height") && !(least..=most).contains(&x) {
+            return Err(self.out_of_page(code, key, &value, id));
+        }
+        let Some((_, range)) = settings::bounds(key).iter().find(|(holds, _)| !holds(x)) else { return Ok(value) };
         let found = if let Value::Number(q) = &value { units::told(*q, self.unit) } else { self.show(&value) };
         Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).came_from(code).stop())
     }

@@ -1,5 +1,6 @@
 //! Floor 7: the language: text to tree, values, evaluation by dependency, diagnostics.
 
+pub mod assist;
 mod bind;
 mod call;
 mod came_from;

@@ -2,6 +2,7 @@
 
 use super::types::Ty;
 use super::value::Dim;
+use crate::base::limits;
 
 /// Words of `elements:`.
 pub const ELEMENTS: &[&str] = &["triangles", "quads", "mixed"];
@@ -246,4 +247,32 @@ pub fn blocks_of(word: &str) -> impl Iterator<Item = &'static (&'static str, &'s
 /// All words that settings take.
 pub(super) fn words() -> impl Iterator<Item = &'static str> {
     BLOCKS.iter().flat_map(|block| block.1).filter(|s| !matches!(s.key, "unit" | "units")).filter_map(|s| s.ty.choices()).flatten().copied()
+}
+
+/// A condition of a number, and its words.
+type Bound = (fn(f64) -> bool, &'static str);
+
+/// What the numbers of a setting must be.
+pub fn bounds(key: &str) -> &'static [Bound] {
+    match key {
+        "order" => &[(|x| x == 1.0 || x == 2.0, "1 or 2")],
+        "count" => &[(|x| x >= 1.0, "at least 1"), (|x| x <= 1e8, "at most 10^8")],
+        "size" | "chord_error" | "angle_error" | "min_size" | "bias" | "snap" => &[(|x| x > 0.0, "more than 0")],
+        "growth" => &[(|x| x > 1.0, "more than 1")],
+        "radius" => &[(|x| x >= 0.0, "0 or more")],
+        _ => &[],
+    }
+}
+
+/// What a setting may be, in words; empty where its type says all.
+pub fn range(setting: &Setting) -> String {
+    match setting.key {
+        "width" | "height" => format!("{} to {} pixels", limits::PICTURE_LEAST, limits::PICTURE_SIDE),
+        key => bounds(key).iter().map(|bound| bound.1).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// ` = triangles`; empty where nothing holds unless it is said.
+pub fn default_words(setting: &Setting) -> String {
+    if setting.default.is_empty() { String::new() } else { format!(" = {}", setting.default) }
 }

@@ -1,5 +1,6 @@
 //! What a script declares, as tools show it: names, places, states, dependencies, and a line about each value.
 
+use super::assist::Shape;
 use super::cx::Cx;
 use super::diag::FileId;
 use super::module::{State, bound};
@@ -45,6 +46,8 @@ pub struct Symbol {
     pub doc: Option<String>,
     /// How far it came.
     pub condition: Condition,
+    /// What kind of value it has.
+    pub shape: Shape,
     /// Declarations of the same script that it names, by their places in the list of symbols.
     pub needs: Vec<usize>,
 }
@@ -67,6 +70,7 @@ impl Cx<'_> {
                     State::Failed => Condition::Failed,
                     _ => Condition::Skipped,
                 },
+                shape: if let State::Done(value) = state { Shape::of_value(value, &self.names) } else { Shape::Unknown },
                 needs: self.needs(ModuleId::MAIN, declaration),
             }
         };

@@ -46,6 +46,11 @@ impl Live {
         self.unsaved = unsaved;
     }
 
+    /// The file beside which its imports are looked for.
+    pub fn script(&self) -> Option<&Path> {
+        self.script.as_deref()
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name

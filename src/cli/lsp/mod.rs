@@ -45,7 +45,7 @@ fn capabilities(bytes: bool) -> Value {
         "hoverProvider": true, "definitionProvider": true, "referencesProvider": true, "renameProvider": true,
         "documentSymbolProvider": true, "documentFormattingProvider": true, "foldingRangeProvider": true,
         "codeLensProvider": {}, "codeActionProvider": { "codeActionKinds": ["quickfix"] },
-        "completionProvider": { "triggerCharacters": [".", "\"", "/"] },
+        "completionProvider": { "triggerCharacters": [".", "\"", "/", ":", "{", " "] },
         "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
         "semanticTokensProvider": { "legend": { "tokenTypes": text::COLOURS, "tokenModifiers": [] }, "full": true },
     })

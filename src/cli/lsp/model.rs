@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use super::document::Document;
 use crate::base::job::Job;
+use crate::lang::assist::{Known, Shape};
 use crate::lang::cx::Cx;
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::syntax::ast::{Keyword, Span};
@@ -19,13 +20,19 @@ use crate::session::run::Outcome;
 /// Names that are described in every run; in a larger script only those that were asked for are.
 const DESCRIBED: usize = 500;
 
-/// What is told of a name: its line, and its doc comment.
+/// What is told of a name.
 #[derive(Clone, Debug)]
 pub struct About {
     pub keyword: Keyword,
     pub span: Span,
     pub line: String,
-    pub doc: String,
+}
+
+/// A line about a name, and the text's count of changes then.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    pub line: String,
+    pub revision: u64,
 }
 
 /// What a run told about a text.
@@ -36,6 +43,10 @@ pub struct Facts {
     /// How much was run; `None` before the first run.
     pub depth: Option<Depth>,
     pub names: BTreeMap<String, About>,
+    /// Kinds of the values of all names.
+    pub shapes: Known,
+    /// The last line about each name, also of earlier runs.
+    pub seen: BTreeMap<String, Seen>,
     /// Names that were asked for; all of them where there are few.
     asked: Option<BTreeSet<String>>,
     pub meshes: BTreeMap<String, MeshRow>,
@@ -72,6 +83,11 @@ impl Facts {
         self.asked.as_ref().is_none_or(|asked| asked.contains(name))
     }
 
+    /// All names were told of.
+    pub fn knows_all(&self) -> bool {
+        self.asked.is_none()
+    }
+
     pub fn is_mesh(&self, name: &str) -> bool {
         self.names.get(name).is_some_and(|about| about.keyword == Keyword::Mesh)
     }
@@ -84,7 +100,7 @@ impl Running {
         let (uri, revision, text, watched) = (document.uri.clone(), document.revision, document.text.clone(), job.clone());
         live.set_unsaved(unsaved);
         let work = move || {
-            let (mut names, mut all) = (BTreeMap::new(), true);
+            let (mut names, mut all) = (Told::default(), true);
             let ran = live.run((&text, &[]), depth, &watched, &mut |cx| (names, all) = told(cx, &wanted));
             let facts = match ran {
                 Ok(outcome) if outcome.interrupted => None,
@@ -116,10 +132,11 @@ impl Running {
     }
 }
 
-fn facts(outcome: Outcome, names: BTreeMap<String, About>) -> Facts {
+fn facts(outcome: Outcome, (names, shapes): Told) -> Facts {
     let checks = &outcome.report.checks;
     Facts {
         names,
+        shapes,
         checks: (checks.iter().filter(|c| c.pass).count(), checks.len()),
         meshes: outcome.report.meshes.into_iter().map(|row| (row.name.clone(), row)).collect(),
         diagnostics: outcome.diagnostics,
@@ -128,18 +145,24 @@ fn facts(outcome: Outcome, names: BTreeMap<String, About>) -> Facts {
     }
 }
 
-/// Lines about the names of a script, and whether they are about all of them.
-fn told(cx: &mut Cx<'_>, wanted: &BTreeSet<String>) -> (BTreeMap<String, About>, bool) {
+/// Lines about names, and the kinds of their values.
+type Told = (BTreeMap<String, About>, Known);
+
+/// What is told of the names of a script, and whether there are lines about all of them.
+fn told(cx: &mut Cx<'_>, wanted: &BTreeSet<String>) -> (Told, bool) {
     let symbols = cx.symbols();
     let all = symbols.len() <= DESCRIBED;
-    let mut out = BTreeMap::new();
+    let (mut out, mut shapes) = (BTreeMap::new(), Known::new());
     for symbol in symbols {
+        if let Some(name) = symbol.name.clone().filter(|_| symbol.shape != Shape::Unknown) {
+            shapes.entry(name).or_insert(symbol.shape);
+        }
         let Some(name) = symbol.name.filter(|name| all || wanted.contains(name)) else { continue };
         if let Some(line) = cx.describe_name(&name) {
-            let about = About { keyword: symbol.keyword, span: symbol.span, line, doc: symbol.doc.unwrap_or_default() };
+            let about = About { keyword: symbol.keyword, span: symbol.span, line };
             // Of two declarations of a name the first one counts.
             out.entry(name).or_insert(about);
         }
     }
-    (out, all)
+    ((out, shapes), all)
 }

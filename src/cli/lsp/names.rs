@@ -1,4 +1,4 @@
-//! Which name means what: definitions, references, renaming, and what is known of a word.
+//! Which name means what: definitions, references and renaming.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,10 +10,8 @@ use super::document::{Document, uri_of};
 use crate::lang::diag::FileId;
 use crate::lang::names::Names;
 use crate::lang::scopes::{Binding, Occurrence, occurrences};
-use crate::lang::settings::BLOCKS;
-use crate::lang::std::{builtins, fields};
 use crate::lang::syntax::ast::{DeclarationKind, Expr, Keyword, Script, Span, TextPart};
-use crate::lang::syntax::{keywords, parse};
+use crate::lang::syntax::parse;
 use crate::session::disk::read_limited;
 
 /// Files beside the one at hand that are searched for uses of it.
@@ -154,28 +152,4 @@ pub fn rename(document: &Document, position: &Value, name: &str, others: &Others
     let edits = |ranges: Vec<Value>| ranges.into_iter().map(|range| json!({ "range": range, "newText": name })).collect::<Vec<Value>>();
     let changes: serde_json::Map<String, Value> = all.into_iter().map(|(uri, ranges)| (uri, Value::Array(edits(ranges)))).collect();
     Ok(json!({ "changes": changes }))
-}
-
-/// What is known of a word of the language: function, field, keyword or setting.
-pub fn about_word(word: &str, behind_dot: bool, before_colon: bool) -> Option<String> {
-    if before_colon {
-        let settings = BLOCKS.iter().flat_map(|(_, settings)| settings.iter());
-        if let Some(setting) = settings.clone().find(|s| s.key == word) {
-            let default = if setting.default.is_empty() { String::new() } else { format!(" (default {})", setting.default) };
-            return Some(format!("```text\n{}: {}\n```\n{}{default}", setting.key, setting.ty.signature(), setting.docs.trim()));
-        }
-    }
-    let entry = |b: &&crate::lang::std::Builtin| b.name == word;
-    let found = if behind_dot {
-        fields().find(entry).or_else(|| builtins().find(entry))
-    } else {
-        builtins().find(entry).or_else(|| fields().find(entry))
-    };
-    match (found, keywords::find(word).filter(|_| !behind_dot)) {
-        (_, Some(keyword)) if found.is_none() || keyword.keyword.is_some() => {
-            Some(format!("```loft\n{}\n```\n{}", keyword.form, keyword.docs))
-        }
-        (Some(builtin), _) => Some(format!("```text\n{}\n```\n{}", builtin.signature(), builtin.docs.trim())),
-        _ => None,
-    }
 }

@@ -19,6 +19,8 @@ use crate::session::live::{Depth, Live};
 
 /// How long a text must rest before it is evaluated, and then before it is meshed.
 const REST: (Duration, Duration) = (Duration::from_millis(150), Duration::from_millis(300));
+/// How long a hover waits for the value of the text as it stands; then it is told the last one that is known.
+const PATIENCE: Duration = Duration::from_millis(400);
 /// How often a run is looked after.
 const LOOK: Duration = Duration::from_millis(2);
 
@@ -29,8 +31,8 @@ struct Open {
     facts: Facts,
     /// When values are due, and when meshes.
     due: [Option<Instant>; 2],
-    /// Requests that wait for the model.
-    waiting: Vec<Request>,
+    /// Requests that wait for the model, some not longer than to a moment.
+    waiting: Vec<(Request, Option<Instant>)>,
     /// Names that they ask for.
     wanted: BTreeSet<String>,
 }
@@ -64,7 +66,7 @@ impl Open {
             _ if !self.is_current() => Err(0),
             Need::Model => Ok(()),
             Need::Name(name) if !self.facts.covers(name) => Err(usize::from(full)),
-            Need::Name(name) if self.facts.is_mesh(name) && !full => Err(1),
+            // A mesh is not waited for.
             Need::Name(_) => Ok(()),
         }
     }
@@ -92,6 +94,7 @@ impl<'c> Server<'c> {
 
     /// Takes over a run that is over, starts what is due, and says when to come back; `None` when a message must come first.
     pub fn go_on(&mut self, now: Instant) -> Option<Duration> {
+        self.answer_impatient(now);
         if self.running.as_ref().is_some_and(Running::is_over)
             && let Some(running) = self.running.take()
         {
@@ -112,7 +115,8 @@ impl<'c> Server<'c> {
         if self.running.is_some() {
             return Some(LOOK);
         }
-        let first = self.open.values().flat_map(|open| open.due).flatten().min();
+        let patience = self.open.values().flat_map(|open| &open.waiting).filter_map(|waiting| waiting.1);
+        let first = self.open.values().flat_map(|open| open.due).flatten().chain(patience).min();
         first.map(|at| at.saturating_duration_since(now))
     }
 
@@ -151,7 +155,8 @@ impl<'c> Server<'c> {
             open.due[usize::from(depth == DEPTHS[1])].get_or_insert(now);
             return;
         };
-        open.facts = facts;
+        let before = std::mem::replace(&mut open.facts, facts);
+        told::remember(&mut open.facts, before);
         if depth == DEPTHS[0] {
             open.due[1].get_or_insert(now + REST.1);
         }
@@ -170,9 +175,19 @@ impl<'c> Server<'c> {
     fn answer_waiting(&mut self, uri: &str, now: Instant) {
         let Some(open) = self.open.get_mut(uri) else { return };
         open.wanted.clear();
-        for request in std::mem::take(&mut open.waiting) {
-            self.ask_at(request, now);
+        for (request, until) in std::mem::take(&mut open.waiting) {
+            self.ask_at(request, until, now);
         }
+    }
+
+    /// Answers what has waited long enough from what is known.
+    fn answer_impatient(&mut self, now: Instant) {
+        let over = |waiting: &(Request, Option<Instant>)| waiting.1.is_some_and(|until| until <= now);
+        let mut tired = Vec::new();
+        for open in self.open.values_mut() {
+            tired.extend(open.waiting.extract_if(.., |waiting| over(waiting)));
+        }
+        tired.into_iter().for_each(|(request, until)| self.ask_at(request, until, now));
     }
 
     pub fn note(&mut self, note: &Notification) {
@@ -196,7 +211,7 @@ impl<'c> Server<'c> {
                 open.document.version = version;
                 open.due = [Some(now + REST.0), None];
                 let waiting = std::mem::take(&mut open.waiting);
-                waiting.into_iter().for_each(|r| self.refuse(r.id, ErrorCode::ContentModified, "the text has changed"));
+                waiting.into_iter().for_each(|(r, _)| self.refuse(r.id, ErrorCode::ContentModified, "the text has changed"));
                 self.stop(uri);
                 self.touch_all(Some(uri), now + REST.0);
             }
@@ -230,7 +245,7 @@ impl<'c> Server<'c> {
 
     fn close(&mut self, uri: &str, why: &str) {
         let Some(open) = self.open.remove(uri) else { return };
-        open.waiting.into_iter().for_each(|r| self.refuse(r.id, ErrorCode::ContentModified, why));
+        open.waiting.into_iter().for_each(|(r, _)| self.refuse(r.id, ErrorCode::ContentModified, why));
         if let Some(running) = self.running.as_mut().filter(|running| running.uri == uri) {
             running.stop();
             // Its model goes with it, also when a file of this name is opened soon.
@@ -245,33 +260,37 @@ impl<'c> Server<'c> {
 
     fn cancel(&mut self, id: &Value) {
         let Ok(id) = serde_json::from_value::<RequestId>(id.clone()) else { return };
-        let waited = |open: &mut Open| open.waiting.iter().position(|request| request.id == id).map(|k| open.waiting.remove(k));
+        let waited = |open: &mut Open| open.waiting.iter().position(|(request, _)| request.id == id).map(|k| open.waiting.remove(k));
         if self.open.values_mut().find_map(waited).is_some() {
             self.refuse(id, ErrorCode::RequestCanceled, "taken back");
         }
     }
 
     pub fn ask(&mut self, request: Request) {
-        self.ask_at(request, Instant::now());
+        self.ask_at(request, None, Instant::now());
     }
 
-    fn ask_at(&mut self, request: Request, now: Instant) {
+    /// Answers a request, or lets it wait: a hover until some moment, given when it waited before.
+    fn ask_at(&mut self, request: Request, until: Option<Instant>, now: Instant) {
         let uri = request.params["textDocument"]["uri"].as_str().unwrap_or_default();
         if !SERVED.contains(&request.method.as_str()) {
             return self.refuse(request.id, ErrorCode::MethodNotFound, &format!("{} is not served", request.method));
         }
-        let Some(open) = self.open.get_mut(uri) else {
+        let Some(open) = self.open.get(uri) else {
             let words = format!("{uri:?} is not open");
             return self.refuse(request.id, ErrorCode::InvalidParams, &words);
         };
-        let need = need(&open.document, &request);
-        if let Err(depth) = open.knows(&need) {
+        let need = need(&open.document, &open.facts, &request, &Others::new(self.open.values().map(|open| &open.document)));
+        let Some(open) = self.open.get_mut(uri) else { return };
+        let tired = until.is_some_and(|until| until <= now);
+        if let (false, Err(depth)) = (tired, open.knows(&need)) {
             // A text that still changes is waited for.
             open.due[depth].get_or_insert(now);
+            let until = matches!(need, Need::Name(_)).then_some(until.unwrap_or(now + PATIENCE));
             if let Need::Name(name) = need {
                 open.wanted.insert(name);
             }
-            return open.waiting.push(request);
+            return open.waiting.push((request, until));
         }
         let Some(open) = self.open.get(uri) else { return };
         let others = Others::new(self.open.values().map(|open| &open.document));

@@ -4,8 +4,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::answers::Others;
 use super::document::Document;
-use crate::cli::repl::complete::{Known, call_at, candidates_in_script};
+use super::model::Facts;
+use crate::cli::repl::complete::files;
+use crate::lang::assist::{Script, Sort};
 use crate::lang::fmt::format;
 use crate::lang::syntax::ast::{Keyword, Span};
 use crate::lang::syntax::keywords::written;
@@ -101,30 +104,61 @@ pub fn layout(document: &Document) -> Value {
     json!([{ "range": document.range(whole), "newText": formatted.text }])
 }
 
-pub fn completion(document: &Document, position: &Value) -> Value {
-    let at = document.byte(position);
-    let before = &document.text[..at];
-    let known: Vec<Known> = outline(&document.text)
-        .iter()
-        .filter_map(|o| Some(Known { name: document.slice(o.name?).to_owned(), keyword: written(o.keyword?) }))
-        .collect();
-    let folder = document.path.as_deref().and_then(Path::parent).unwrap_or(Path::new("."));
-    let (start, found) = candidates_in_script(before, &known, folder);
-    let range = document.range(Span { start: start as u32, end: at as u32 });
-    let items = found.into_iter().map(|pair| {
-        let label = pair.replacement.trim_end_matches(['(', ' ', ':']).to_owned();
-        let kind = if pair.replacement.ends_with('(') { 3 } else { 6 };
-        json!({ "label": label, "kind": kind, "detail": pair.display, "textEdit": { "range": range, "newText": pair.replacement } })
+/// A document as the engine that helps while typing reads it, handed to `work`.
+pub fn assisted<T>(document: &Document, facts: &Facts, others: &Others<'_>, work: impl FnOnce(&Script<'_>) -> T) -> T {
+    let open = |from: &str, written: &str| {
+        let path = Path::new(from).parent()?.join(written).canonicalize().ok()?;
+        let module = others.find(&path)?;
+        Some((path.to_string_lossy().into_owned(), module.text))
+    };
+    let path = document.path.as_deref().map_or(String::new(), |path| path.to_string_lossy().into_owned());
+    work(&Script { text: &document.text, path: &path, open: &open, known: &facts.shapes, session: false })
+}
+
+/// The editor's number for what a candidate is.
+fn candidate_kind(sort: Sort) -> u8 {
+    match sort {
+        Sort::Function => 3,
+        Sort::Field => 5,
+        Sort::Name => 6,
+        Sort::Argument | Sort::Setting => 10,
+        Sort::Keyword => 14,
+        Sort::Word => 20,
+    }
+}
+
+pub fn completion(document: &Document, facts: &Facts, params: &Value, others: &Others<'_>) -> Value {
+    let at = document.byte(&params["position"]);
+    let offer = assisted(document, facts, others, |script| script.complete(at));
+    let range = document.range(Span { start: offer.start as u32, end: at as u32 });
+    if offer.file {
+        let folder = document.path.as_deref().and_then(Path::parent).unwrap_or(Path::new("."));
+        let (start, found) = files(&document.text[..at], offer.start, folder);
+        let range = document.range(Span { start: start as u32, end: at as u32 });
+        let item = |name: String| json!({ "label": name, "kind": 17, "textEdit": { "range": range, "newText": name } });
+        return found.into_iter().map(item).collect();
+    }
+    // A blank opens the list where few words are asked for, not wherever anything may stand.
+    let few = offer.candidates.first().is_some_and(|best| matches!(best.sort, Sort::Setting | Sort::Word));
+    if params["context"]["triggerCharacter"] == " " && !few {
+        return json!([]);
+    }
+    let items = offer.candidates.iter().enumerate().map(|(place, candidate)| {
+        let label = candidate.text.trim_end_matches(['(', ' ', ':']);
+        json!({
+            "label": label, "kind": candidate_kind(candidate.sort), "detail": candidate.about, "sortText": format!("{place:05}"),
+            "textEdit": { "range": range, "newText": candidate.text },
+        })
     });
     items.collect()
 }
 
-pub fn signature(document: &Document, position: &Value) -> Value {
-    let before = &document.text[..document.byte(position)];
-    let Some((builtin, active)) = call_at(before) else { return Value::Null };
-    let parameters: Vec<Value> = builtin.params.iter().map(|p| json!({ "label": p.name, "documentation": p.docs.trim() })).collect();
+pub fn signature(document: &Document, facts: &Facts, position: &Value, others: &Others<'_>) -> Value {
+    let at = document.byte(position);
+    let Some((function, active)) = assisted(document, facts, others, |script| script.call(at)) else { return Value::Null };
+    let parameters: Vec<Value> = function.params.iter().map(|p| json!({ "label": p.name, "documentation": p.docs })).collect();
     json!({
-        "signatures": [{ "label": builtin.signature(), "documentation": builtin.summary(), "parameters": parameters }],
-        "activeSignature": 0, "activeParameter": active.min(builtin.params.len().saturating_sub(1)),
+        "signatures": [{ "label": function.signature, "documentation": function.summary(), "parameters": parameters }],
+        "activeSignature": 0, "activeParameter": active.unwrap_or(function.params.len()),
     })
 }

@@ -3,11 +3,13 @@
 use serde_json::{Value, json};
 
 use super::document::Document;
-use super::model::Facts;
+use super::model::{Facts, Seen};
 use crate::base::fault::Severity;
+use crate::lang::assist::told;
 use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::lang::syntax::ast::{Keyword, Span};
 use crate::lang::syntax::fixes::Change;
+use crate::session::live::Depth;
 use crate::session::report::MeshRow;
 
 /// Lenses over one script.
@@ -106,14 +108,34 @@ fn of_mesh(row: &MeshRow) -> String {
     parts.join(", ")
 }
 
-/// What is known of a declared name; `None` when it has no value.
-pub fn hover(facts: &Facts, name: &str) -> Option<String> {
-    let about = facts.names.get(name)?;
-    let line = match facts.meshes.get(name) {
-        Some(row) => format!("mesh {name}: {}", of_mesh(row)),
-        None => about.line.clone(),
+/// A declared name: its value where one is known, marked when that is of an earlier text, else how it is declared.
+pub fn hover(facts: &Facts, document: &Document, name: &str, (line, docs): (&str, &str)) -> String {
+    let current = facts.revision == document.revision && facts.depth.is_some();
+    let (line, note) = match facts.seen.get(name) {
+        Some(seen) if seen.revision == document.revision => (seen.line.as_str(), ""),
+        Some(seen) => (seen.line.as_str(), "*Stale: from before the last change of the text.*"),
+        None if current && facts.is_mesh(name) && facts.depth != Some(Depth::Report) => (line, "*Not meshed yet.*"),
+        None if current => (line, ""),
+        None => (line, "*Not evaluated yet.*"),
     };
-    Some(format!("```text\n{line}\n```\n{}", about.doc))
+    told(line, &format!("{docs}\n\n{note}"))
+}
+
+/// Takes over what a run told into what was told before it.
+pub fn remember(facts: &mut Facts, before: Facts) {
+    let mut seen = before.seen;
+    if facts.knows_all() {
+        seen.retain(|name, _| facts.names.contains_key(name));
+    }
+    for (name, about) in &facts.names {
+        let line = match (about.keyword, facts.meshes.get(name)) {
+            (_, Some(row)) => format!("mesh {name}: {}", of_mesh(row)),
+            (Keyword::Mesh, None) => continue,
+            _ => about.line.clone(),
+        };
+        seen.insert(name.clone(), Seen { line, revision: facts.revision });
+    }
+    facts.seen = seen;
 }
 
 /// Quick fixes of reports in a stretch.

@@ -1,21 +1,64 @@
 //! What could stand at the cursor: commands, keywords, names, fields, functions, arguments, files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rustyline::completion::Pair;
 
-use crate::lang::std::{Builtin, builtins, fields};
-use crate::lang::syntax::keywords::WORDS;
-use crate::session::notebook::COMMANDS;
+use crate::base::limits;
+use crate::lang::assist::{Function, Known, Script};
+use crate::lang::syntax::keywords::written;
+use crate::session::disk::read_limited;
+use crate::session::notebook::{COMMANDS, Notebook};
 
 /// Most files offered.
 const FILES: usize = 200;
 
-/// A name of the session, with the keyword that declares it.
-#[derive(Clone, Debug)]
-pub struct Known {
-    pub name: String,
-    pub keyword: &'static str,
+/// What is known of a session while a line is typed.
+#[derive(Default)]
+pub struct Session {
+    /// The script as it stands.
+    text: String,
+    /// Names with their keywords.
+    names: Vec<(String, &'static str)>,
+    /// What the last run showed of them.
+    known: Known,
+    /// The file that it began with.
+    script: Option<PathBuf>,
+}
+
+impl Session {
+    pub fn of(notebook: &Notebook) -> Self {
+        let symbols = || notebook.symbols().iter().filter_map(|s| Some((s.name.clone()?, s)));
+        Self {
+            text: notebook.text().to_owned(),
+            names: symbols().map(|(name, s)| (name, written(s.keyword))).collect(),
+            known: symbols().map(|(name, s)| (name, s.shape.clone())).collect(),
+            script: notebook.script().map(Path::to_owned),
+        }
+    }
+
+    fn folder(&self) -> &Path {
+        self.script.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    }
+
+    /// The session with a line behind it, handed to `work` with the first byte of that line.
+    fn with<T>(&self, line: &str, work: impl FnOnce(&Script<'_>, usize) -> T) -> T {
+        let text = format!("{}{line}", self.text);
+        let path = self.folder().join("session.loft").to_string_lossy().into_owned();
+        work(&Script { text: &text, path: &path, open: &module, known: &self.known, session: true }, self.text.len())
+    }
+
+    /// The call that a line ends in.
+    pub fn call(&self, line: &str) -> Option<Function> {
+        self.with(line, |script, start| Some(script.call(start + line.len())?.0))
+    }
+}
+
+/// A module on the disk: its path and text.
+fn module(from: &str, written: &str) -> Option<(String, String)> {
+    let path = Path::new(from).parent()?.join(written).canonicalize().ok()?;
+    let text = String::from_utf8(read_limited(&path, limits::SOURCE_BYTES).ok()?).ok()?;
+    Some((path.to_string_lossy().into_owned(), text))
 }
 
 fn pair(replacement: &str, shown: String) -> Pair {
@@ -31,25 +74,9 @@ fn word_start(before: &str) -> usize {
     before.char_indices().rev().take_while(|(_, c)| is_word(*c)).last().map_or(before.len(), |(at, _)| at)
 }
 
-/// Whether the cursor is inside a string, and where its text begins.
-fn open_text(before: &str) -> Option<usize> {
-    let line = before.rfind('\n').map_or(0, |at| at + 1);
-    let mut open = None;
-    let mut escaped = false;
-    for (at, c) in before[line..].char_indices() {
-        match c {
-            _ if escaped => escaped = false,
-            '\\' => escaped = true,
-            '"' => open = if open.is_some() { None } else { Some(line + at + 1) },
-            _ => {}
-        }
-    }
-    open
-}
-
 /// The start of what is replaced and what it may be replaced by, in a session: commands too.
-pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
-    let here = Path::new(".");
+pub fn candidates(before: &str, session: &Session) -> (usize, Vec<Pair>) {
+    let named = |(start, names): (usize, Vec<String>)| (start, names.into_iter().map(|name| pair(&name, name.clone())).collect());
     if let Some(word) = before.trim_start().strip_prefix(':')
         && !word.contains(char::is_whitespace)
     {
@@ -59,67 +86,27 @@ pub fn candidates(before: &str, known: &[Known]) -> (usize, Vec<Pair>) {
     }
     let is_file_command = [":load ", ":save "].iter().find(|c| before.trim_start().starts_with(*c));
     if let Some(start) = is_file_command.map(|c| before.find(c).unwrap_or(0) + c.len()) {
-        return files(before, start, here);
+        return named(files(before, start, Path::new(".")));
     }
     if before.trim_start().starts_with(':') {
         let start = word_start(before);
-        let fits = known.iter().filter(|k| k.name.starts_with(&before[start..]));
-        return (start, fits.map(|k| pair(&k.name, format!("{}  {}", k.name, k.keyword))).collect());
+        let fits = session.names.iter().filter(|(name, _)| name.starts_with(&before[start..]));
+        return (start, fits.map(|(name, keyword)| pair(name, format!("{name}  {keyword}"))).collect());
     }
-    candidates_in_script(before, known, here)
-}
-
-/// The start of what is replaced and what it may be replaced by; files are named as seen from `folder`.
-pub fn candidates_in_script(before: &str, known: &[Known], folder: &Path) -> (usize, Vec<Pair>) {
-    if let Some(start) = open_text(before) {
-        return files(before, start, folder);
+    let (from, offer) = session.with(before, |script, start| (start, script.complete(script.text.len())));
+    let start = offer.start.saturating_sub(from);
+    if offer.file {
+        return named(files(before, start, session.folder()));
     }
-    let start = word_start(before);
-    let word = &before[start..];
-    let mut out: Vec<Pair> = Vec::new();
-    if before[..start].ends_with('.') && !before[..start].ends_with("..") {
-        out.extend(fields().filter(|f| f.name.starts_with(word)).map(|f| pair(f.name, format!("{}  {}", f.name, f.summary()))));
-        let methods = builtins().filter(|b| b.name.starts_with(word) && !b.params.is_empty());
-        out.extend(methods.map(|b| pair(&format!("{}(", b.name), b.signature())));
-    } else {
-        if let Some((builtin, _)) = call_at(before) {
-            let arguments = builtin.params.iter().filter(|p| p.name.starts_with(word));
-            out.extend(arguments.map(|p| pair(&format!("{}: ", p.name), format!("{}: {}", p.name, p.ty.signature()))));
-        }
-        let names = known.iter().filter(|k| k.name.starts_with(word));
-        out.extend(names.map(|k| pair(&k.name, format!("{}  {}", k.name, k.keyword))));
-        out.extend(WORDS.iter().filter(|w| w.word.starts_with(word)).map(|w| pair(w.word, w.word.to_owned())));
-        out.extend(builtins().filter(|b| b.name.starts_with(word)).map(|b| pair(&format!("{}(", b.name), b.signature())));
-    }
-    out.sort_by(|a, b| a.replacement.cmp(&b.replacement));
-    out.dedup_by(|a, b| a.replacement == b.replacement);
-    (start, out)
-}
-
-/// The function whose brackets the cursor is in, and how many arguments stand before the one at the cursor.
-pub fn call_at(before: &str) -> Option<(&'static Builtin, usize)> {
-    let (mut depth, mut arguments) = (0usize, 0);
-    for (at, c) in before.char_indices().rev() {
-        match c {
-            ')' | ']' | '}' => depth += 1,
-            '(' | '[' | '{' if depth > 0 => depth -= 1,
-            '(' | '[' | '{' => {
-                let name = &before[word_start(&before[..at])..at];
-                if c == '(' && !name.is_empty() {
-                    return builtins().find(|b| b.name == name).map(|b| (b, arguments));
-                }
-                // A tuple or list is one argument of what is around it.
-                arguments = 0;
-            }
-            ',' if depth == 0 => arguments += 1,
-            _ => {}
-        }
-    }
-    None
+    let shown = |text: &str, about: &str| {
+        let label = text.trim_end_matches(['(', ' ', ':']);
+        if about.starts_with(label) { about.to_owned() } else { format!("{label}  {about}") }
+    };
+    (start, offer.candidates.iter().map(|c| pair(&c.text, shown(&c.text, &c.about))).collect())
 }
 
 /// Files and folders whose names begin as written.
-fn files(before: &str, start: usize, home: &Path) -> (usize, Vec<Pair>) {
+pub fn files(before: &str, start: usize, home: &Path) -> (usize, Vec<String>) {
     let written = &before[start..];
     let (folder, stem) = written.rfind('/').map_or(("", written), |at| (&written[..=at], &written[at + 1..]));
     let Ok(entries) = std::fs::read_dir(home.join(folder)) else {
@@ -135,7 +122,7 @@ fn files(before: &str, start: usize, home: &Path) -> (usize, Vec<Pair>) {
         .collect();
     names.sort();
     names.truncate(FILES);
-    (start + folder.len(), names.into_iter().map(|name| pair(&name, name.clone())).collect())
+    (start + folder.len(), names)
 }
 
 #[cfg(test)]
@@ -143,8 +130,10 @@ mod tests {
     use super::*;
 
     fn offered(before: &str) -> Vec<String> {
-        let known = [Known { name: "south".to_owned(), keyword: "curve" }, Known { name: "span".to_owned(), keyword: "param" }];
-        candidates(before, &known).1.into_iter().map(|p| p.replacement).collect()
+        let names = [("south", "curve"), ("span", "param")].map(|(name, keyword)| (name.to_owned(), keyword)).into();
+        let text = "curve south = line((0, 0, 0), (1, 0, 0))\nparam span = 40m in 20m to 80m\n".to_owned();
+        let session = Session { text, names, ..Session::default() };
+        candidates(before, &session).1.into_iter().map(|p| p.replacement).collect()
     }
 
     #[test]
@@ -154,18 +143,14 @@ mod tests {
         has(":show so", "south");
         has("curve a = li", "line(");
         has("let x = so", "south");
+        has("so", "south");
         has("south.le", "length");
         has("sur", "surface");
         has("surface s = coons(south, repa", "reparam: ");
         has("import \"Car", "Cargo.toml");
+        has("mesh m of s { el", "elements: ");
+        has("mesh m of s { elements: ", "quads");
         assert!(offered("south.len").iter().all(|o| !o.starts_with("span")));
-        assert!(offered("linspace(0, 1").is_empty() || !offered("0..").contains(&"length".to_owned()));
-    }
-
-    #[test]
-    fn the_call_at_the_cursor_is_found() {
-        assert_eq!(call_at("curve a = line((0, 0, 0), (1, 2").map(|(b, n)| (b.name, n)), Some(("line", 1)));
-        assert_eq!(call_at("curve a = line((0, 0, 0)").map(|(b, n)| (b.name, n)), Some(("line", 0)));
-        assert!(call_at("let a = [1, ").is_none());
+        assert!(offered("linspace(0, 1").is_empty() && !offered("0..").contains(&"length".to_owned()));
     }
 }

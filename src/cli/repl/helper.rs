@@ -8,10 +8,8 @@ use rustyline::hint::Hinter;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
 
-use super::complete::{Known, call_at, candidates};
+use super::complete::{Session, candidates};
 use crate::base::text::columns;
-use crate::lang::symbols::Symbol;
-use crate::lang::syntax::keywords::written;
 use crate::lang::syntax::outline::{Paint, painted};
 use crate::session::notebook::Notebook;
 
@@ -20,7 +18,7 @@ const COLOURED: usize = 20_000;
 
 /// What the editor knows of the session.
 pub struct Line {
-    known: Vec<Known>,
+    session: Session,
     color: bool,
     /// Columns of the terminal beside the prompt.
     columns: usize,
@@ -28,13 +26,13 @@ pub struct Line {
 
 impl Line {
     pub fn new(color: bool) -> Self {
-        Self { known: Vec::new(), color, columns: usize::MAX }
+        Self { session: Session::default(), color, columns: usize::MAX }
     }
 
-    /// Takes over the names of the session, and how many columns the terminal has beside the prompt.
-    pub fn learn(&mut self, symbols: &[Symbol], columns: usize) {
+    /// Takes over what is in the session, and how many columns the terminal has beside the prompt.
+    pub fn learn(&mut self, notebook: &Notebook, columns: usize) {
         self.columns = columns;
-        self.known = symbols.iter().filter_map(|s| Some(Known { name: s.name.clone()?, keyword: written(s.keyword) })).collect();
+        self.session = Session::of(notebook);
     }
 }
 
@@ -52,7 +50,7 @@ impl Completer for Line {
     type Candidate = Pair;
 
     fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
-        Ok(candidates(&line[..at], &self.known))
+        Ok(candidates(&line[..at], &self.session))
     }
 }
 
@@ -64,7 +62,8 @@ impl Hinter for Line {
             return None;
         }
         let used = line.lines().last().map_or(0, columns);
-        call_at(line).map(|(builtin, _)| fitting(format!("   {}", builtin.signature()), self.columns.saturating_sub(used + 1)))
+        let call = self.session.call(line)?;
+        Some(fitting(format!("   {}", call.signature), self.columns.saturating_sub(used + 1)))
     }
 }
 

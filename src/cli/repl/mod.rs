@@ -125,7 +125,7 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     loop {
         let columns = editor.dimensions().map_or(usize::MAX, |(columns, _)| usize::from(columns).saturating_sub(PROMPT.len()));
         if let Some(line) = editor.helper_mut() {
-            line.learn(notebook.symbols(), columns);
+            line.learn(&notebook, columns);
         }
         match editor.readline(PROMPT) {
             Ok(entry) => {

@@ -35,9 +35,10 @@ use crate::lang::names::Names;
 use ast::{Bound, Script, Span};
 use matching::Marks;
 use mistake::Mistake;
-pub(crate) use scan::Tokens;
+pub(crate) use scan::{Tokens, scan};
 use shape::{Filler, Shape, Shapes};
 use split::Piece;
+pub(crate) use split::split;
 pub(crate) use token::Kind;
 
 /// What pest makes of `grammar/loft.pest`.

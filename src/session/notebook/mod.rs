@@ -141,6 +141,11 @@ impl Notebook {
         &self.state.text
     }
 
+    /// The file that the session went on with.
+    pub fn script(&self) -> Option<&Path> {
+        self.live.script()
+    }
+
     /// Declarations of the last run.
     pub fn symbols(&self) -> &[Symbol] {
         &self.symbols
