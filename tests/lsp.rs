@@ -422,6 +422,40 @@ fn names_are_found_and_changed_across_files() {
 }
 
 #[test]
+fn a_param_is_renamed_in_the_scripts_that_give_it() {
+    let folder = folder("params");
+    fs::create_dir_all(folder.join("parts/deep")).unwrap();
+    let texts = [
+        ("parts/deep/rib.loft", "units m\nparam rise = 3m\nlet top = rise\n"),
+        ("parts/frame.loft", "use \"deep/rib.loft\" (rise: 2m) as rib\nlet a = rib.rise\n"),
+        (
+            "hall.loft",
+            "use \"parts/frame.loft\" as frame\nuse \"parts/deep/rib.loft\" (rise: 4m) as own\nlet b = frame.rib.rise + own.rise\nlet rise = 1m\n",
+        ),
+    ];
+    for (name, text) in texts {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let uri = |name: &str| format!("file://{}", folder.join(name).display());
+    let mut editor = Editor::start();
+    editor.open(&uri("hall.loft"), texts[2].1);
+    // From the argument of `use`.
+    let at = json!({ "textDocument": { "uri": uri("hall.loft") }, "position": { "line": 1, "character": 29 }, "newName": "crown" });
+    let edits = editor.ask("textDocument/rename", at);
+    let places = |name: &str| -> Vec<(u64, u64)> {
+        let list = edits["changes"][uri(name)].as_array().unwrap();
+        list.iter().map(|e| (e["range"]["start"]["line"].as_u64().unwrap(), e["range"]["start"]["character"].as_u64().unwrap())).collect()
+    };
+    assert_eq!(places("parts/deep/rib.loft"), [(1, 6), (2, 10)]);
+    assert_eq!(places("parts/frame.loft"), [(0, 21), (1, 12)]);
+    // The name of the same text in the script itself stays.
+    assert_eq!(places("hall.loft"), [(1, 27), (2, 18), (2, 29)]);
+    let found = editor.at("textDocument/definition", &uri("hall.loft"), 2, 19);
+    assert_eq!((&found["uri"], &found["range"]["start"]["line"]), (&json!(uri("parts/deep/rib.loft")), &json!(1)));
+    editor.stop();
+}
+
+#[test]
 fn help_follows_the_place() {
     let mut editor = Editor::start();
     let uri = "file:///nowhere/place.loft";

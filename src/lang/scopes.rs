@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::names::Name;
-use super::syntax::ast::{Arg, Clause, Declaration, DeclarationKind, Expr, ExprId, For, Script, Span, TextPart};
+use super::syntax::ast::{Arg, Clause, Declaration, DeclarationKind, Expr, ExprId, For, Keyword, Script, Span, TextPart};
 
 /// What a name is bound to where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,8 +25,10 @@ pub struct Occurrence {
     pub span: Span,
     /// What it means.
     pub binding: Binding,
-    /// The name before the dot, for `ribs` in `ribs.arch`: with its declaration when it has one.
+    /// The name before the dot, for `ribs` in `ribs.arch`: with its declaration when it has one. Of a param that `use` gives, that `use`.
     pub of: Option<usize>,
+    /// The module of that module which the name belongs to: `parts` in `ribs.parts.arch`.
+    pub through: Option<Name>,
     /// It stands where it is bound.
     pub binds: bool,
 }
@@ -39,9 +41,16 @@ pub fn occurrences(script: &Script) -> Vec<Occurrence> {
         script.declarations.iter().enumerate().rev().filter_map(|(i, d)| Some((bound(d)?.name, i))).collect();
     let mut out = Vec::new();
     for (index, declaration) in script.declarations.iter().enumerate() {
-        let mut walker = Walker { declaration, declared: &declared, script, locals: Vec::new(), out: &mut out };
+        let mut walker = Walker { declaration, index, declared: &declared, script, locals: Vec::new(), out: &mut out };
         if let Some(b) = bound(declaration) {
-            walker.out.push(Occurrence { name: b.name, span: b.span, binding: Binding::Declaration(index), of: None, binds: true });
+            walker.out.push(Occurrence {
+                name: b.name,
+                span: b.span,
+                binding: Binding::Declaration(index),
+                of: None,
+                through: None,
+                binds: true,
+            });
         }
         walker.declaration();
     }
@@ -51,6 +60,7 @@ pub fn occurrences(script: &Script) -> Vec<Occurrence> {
 
 struct Walker<'s> {
     declaration: &'s Declaration,
+    index: usize,
     declared: &'s BTreeMap<Name, usize>,
     script: &'s Script,
     locals: Vec<(Name, Span)>,
@@ -65,7 +75,13 @@ impl Walker<'_> {
             DeclarationKind::Snap(e) => self.expr(*e),
             DeclarationKind::Load { path, args, .. } => {
                 self.expr(*path);
-                args.iter().for_each(|a| self.expr(a.value));
+                for arg in args {
+                    if let Some((name, span)) = arg.name.filter(|_| self.declaration.keyword == Keyword::Use) {
+                        let of = Some(self.index);
+                        self.out.push(Occurrence { name, span, binding: Binding::Free, of, through: None, binds: false });
+                    }
+                    self.expr(arg.value);
+                }
             }
             DeclarationKind::Param { value, allowed, .. } => {
                 self.expr(*value);
@@ -105,7 +121,7 @@ impl Walker<'_> {
 
     fn bind(&mut self, name: Name, span: Span) {
         self.locals.push((name, span));
-        self.out.push(Occurrence { name, span, binding: Binding::Local(span), of: None, binds: true });
+        self.out.push(Occurrence { name, span, binding: Binding::Local(span), of: None, through: None, binds: true });
     }
 
     fn family(&mut self, family: &[For]) {
@@ -125,16 +141,23 @@ impl Walker<'_> {
             (None, Some(d)) => Binding::Declaration(d),
             (None, None) => Binding::Free,
         };
-        self.out.push(Occurrence { name, span, binding, of: None, binds: false });
+        self.out.push(Occurrence { name, span, binding, of: None, through: None, binds: false });
     }
 
     /// A name behind a dot: a function of the script, or a name of the module before the dot.
     fn behind_dot(&mut self, of: ExprId, name: Name, span: Span) {
         self.says(name, span, false);
-        let Expr::Name(before) = self.declaration.nodes[of.index()].expr else { return };
+        let (before, through) = match self.declaration.nodes[of.index()].expr {
+            Expr::Name(before) => (before, None),
+            Expr::Field { of, name, .. } => match self.declaration.nodes[of.index()].expr {
+                Expr::Name(before) => (before, Some(name)),
+                _ => return,
+            },
+            _ => return,
+        };
         let module = self.declared.get(&before).filter(|_| !self.locals.iter().any(|l| l.0 == before));
         if let (Some(last), Some(module)) = (self.out.last_mut(), module) {
-            last.of = Some(*module);
+            (last.of, last.through) = (Some(*module), through);
         }
     }
 

@@ -14,8 +14,10 @@ use crate::lang::syntax::ast::{DeclarationKind, Expr, Keyword, Script, Span, Tex
 use crate::lang::syntax::parse;
 use crate::session::disk::read_limited;
 
-/// Files beside the one at hand that are searched for uses of it.
+/// Files beside the one at hand, and in each folder above it, that are searched for uses of it.
 const NEIGHBOURS: usize = 500;
+/// Folders above the one at hand that are searched.
+const FOLDERS_ABOVE: usize = 4;
 
 /// A text with its tree.
 pub struct Read {
@@ -52,6 +54,16 @@ impl Read {
         self.found.iter().find(|o| o.binds && matches!(o.binding, Binding::Declaration(_)) && self.text_of(o) == name)
     }
 
+    /// The file whose name an occurrence is, when that is another one.
+    fn home(&self, occurrence: &Occurrence, from: &Path, others: &Others<'_>) -> Option<PathBuf> {
+        let module = self.module(occurrence.of?, from)?;
+        let Some(through) = occurrence.through else { return Some(module) };
+        let inside = Self::new(&others.find(&module)?.text);
+        let declared = inside.declared(self.names.text(through))?.binding;
+        let Binding::Declaration(declared) = declared else { return None };
+        inside.module(declared, &module)
+    }
+
     /// The file that a `use` loads.
     fn module(&self, declaration: usize, from: &Path) -> Option<PathBuf> {
         let declaration = self.script.declarations.get(declaration).filter(|d| d.keyword == Keyword::Use)?;
@@ -75,7 +87,7 @@ pub fn on_disk(path: &Path) -> Option<Document> {
 pub fn definition(document: &Document, position: &Value, others: &Others<'_>) -> Value {
     let read = Read::new(&document.text);
     let Some(found) = read.at(document.byte(position)) else { return Value::Null };
-    if let Some(path) = found.of.zip(document.path.as_deref()).and_then(|(of, path)| read.module(of, path)) {
+    if let Some(path) = document.path.as_deref().and_then(|path| read.home(found, path, others)) {
         let Some(module) = others.find(&path) else { return Value::Null };
         let span = Read::new(&module.text).declared(read.text_of(found)).map_or(Span::default(), |o| o.span);
         return json!({ "uri": module.uri, "range": module.range(span) });
@@ -93,7 +105,7 @@ type Places = Vec<(String, Vec<Value>)>;
 fn meanings(document: &Document, position: &Value, others: &Others<'_>) -> Option<(Places, Read)> {
     let read = Read::new(&document.text);
     let found = *read.at(document.byte(position))?;
-    if let Some(path) = found.of.zip(document.path.as_deref()).and_then(|(of, path)| read.module(of, path)) {
+    if let Some(path) = document.path.as_deref().and_then(|path| read.home(&found, path, others)) {
         let module = others.find(&path)?;
         let inside = Read::new(&module.text);
         let declared = *inside.declared(read.text_of(&found))?;
@@ -111,9 +123,7 @@ fn meanings_of(document: &Document, read: &Read, found: &Occurrence, others: &Ot
         for file in around(&own, others) {
             let Some(other) = others.find(&file) else { continue };
             let inside = Read::new(&other.text);
-            let means = |o: &&Occurrence| {
-                inside.text_of(o) == wanted && o.of.is_some_and(|of| inside.module(of, &file).as_deref() == Some(own.as_path()))
-            };
+            let means = |o: &&Occurrence| inside.text_of(o) == wanted && inside.home(o, &file, others).as_deref() == Some(own.as_path());
             let ranges: Vec<Value> = inside.found.iter().filter(means).map(|o| other.range(o.span)).collect();
             if !ranges.is_empty() {
                 out.push((other.uri.clone(), ranges));
@@ -123,11 +133,15 @@ fn meanings_of(document: &Document, read: &Read, found: &Occurrence, others: &Ot
     out
 }
 
-/// Scripts that may use one: those of its folder, and those that are open.
+/// Scripts that may use one: those of its folder and of folders above it, since modules stay below what uses them, and
+/// those that are open.
 fn around(own: &Path, others: &Others<'_>) -> BTreeSet<PathBuf> {
-    let beside = own.parent().and_then(|folder| std::fs::read_dir(folder).ok());
-    let beside = beside.into_iter().flatten().flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "loft"));
-    let mut found: BTreeSet<PathBuf> = beside.take(NEIGHBOURS).filter_map(|p| p.canonicalize().ok()).collect();
+    let mut found = BTreeSet::new();
+    for folder in own.ancestors().skip(1).take(1 + FOLDERS_ABOVE) {
+        let beside = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
+        let scripts = beside.filter(|p| p.extension().is_some_and(|e| e == "loft")).take(NEIGHBOURS);
+        found.extend(scripts.filter_map(|p| p.canonicalize().ok()));
+    }
     found.extend(others.paths().map(Path::to_owned));
     found.remove(own);
     found
