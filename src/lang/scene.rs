@@ -146,7 +146,7 @@ impl Scene {
 /// Whether two surfaces are one: `Some(false)`, or `Some(true)` when `other` is the other side of it.
 ///
 /// One expression may make many (a comprehension, the faces of a file), so their points are compared as well.
-fn side_of(surface: &Surface, other: &Surface) -> Option<bool> {
+pub(crate) fn side_of(surface: &Surface, other: &Surface) -> Option<bool> {
     if surface.origin() != other.origin() {
         return None;
     }

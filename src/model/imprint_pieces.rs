@@ -1,33 +1,32 @@
 //! Faces cut by each other where they touch, so that a shell or mesh of the pieces conforms.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
 use super::imprint::Met;
-use super::measure;
+use super::measure::area_within;
 use super::topology::{EdgeId, Model, SurfaceId};
+use crate::base::bbox::Box3;
 use crate::base::fault::{CurveFault, CutFault, Fault, Result};
 use crate::base::job::Job;
 use crate::base::origin::Origin;
 use crate::base::par;
-use crate::base::tolerance::{SIGN_ACCURACY, Tolerance};
+use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::meet::with_curve;
-use crate::surface::{Domain, Nearest, Surface, divide, trim};
+use crate::surface::{Domain, Nearest, Surface, split, trim};
 
 /// Places along a curve at which it is compared with another one.
 const SAMPLES: usize = 9;
-/// Places along each direction of a face that are looked at, one grid after the other until enough is known.
-const GRIDS: [usize; 3] = [12, 48, 192];
-/// Points of a face that tell whether another one covers it, at the least.
+/// Points of a face that tell whether another one covers it.
 const ENOUGH: usize = 8;
 
 impl Model {
     /// The pieces into which some surfaces cut each other, surface by surface as listed; one that nothing cuts stays as it is.
     /// Of what several surfaces cover the first one's piece is taken alone. `origin` is given to the curves of cuts.
     ///
-    /// Fails with E413 when the work exceeds its limit.
+    /// Fails with E413 when the work exceeds its limit, and when the areas of the pieces of a surface do not add up to its own.
     pub fn imprinted(
         &self,
         listed: &[SurfaceId],
@@ -41,19 +40,24 @@ impl Model {
             let cutters = self.cutters(listed[k], &met, network, tolerance)?;
             parts(&self.surfaces[listed[k].index()].surface, cutters, tolerance)
         })?;
-        let mut out = Vec::new();
+        let surface = |k: usize| &self.surfaces[listed[k].index()].surface;
+        let hulls: Vec<Box3> = (0..listed.len()).map(|k| surface(k).hull()).collect();
+        let (mut out, mut known): (Vec<Surface>, BTreeMap<usize, Nearest>) = Default::default();
         for (k, own) in pieces.into_iter().enumerate() {
             for piece in own {
                 let hull = piece.hull();
-                let before = listed[..k].iter().map(|s| &self.surfaces[s.index()].surface);
-                let near: Vec<&Surface> = before.filter(|s| s.hull().touches(&hull, tolerance.point)).collect();
+                let near: Vec<usize> = (0..k).filter(|n| hulls[*n].touches(&hull, tolerance.point)).collect();
                 let places = if near.is_empty() { Vec::new() } else { inner_points(&piece, tolerance)? };
-                let covers = |s: &&Surface| {
-                    let nearest = Nearest::new(s);
-                    places.iter().all(|p| nearest.at(*p).distance <= tolerance.point)
-                };
-                if places.is_empty() || !near.iter().any(covers) {
+                let on = |nearest: &Nearest| places.iter().all(|p| nearest.at(*p).distance <= tolerance.point);
+                let covered = !places.is_empty() && near.iter().any(|n| on(known.entry(*n).or_insert_with(|| Nearest::new(surface(*n)))));
+                if !covered {
                     out.push(piece);
+                    continue;
+                }
+                // The first one's piece stands for this one too.
+                let mut kept = out.iter_mut().filter(|o| o.hull().touches(&hull, tolerance.point));
+                if let Some(kept) = kept.find(|other| on(&Nearest::new(other))) {
+                    *kept = kept.cut_from(std::slice::from_ref(surface(k)));
                 }
             }
         }
@@ -105,7 +109,7 @@ fn lies_on(chain: &Chain, others: &[Chain], tolerance: &Tolerance) -> bool {
 /// A surface divided by curves; those that hang loose cut nothing and are left out.
 fn parts(surface: &Surface, mut cutters: Vec<Chain>, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     while !cutters.is_empty() {
-        match all_parts(surface, &cutters, tolerance) {
+        match split(surface, &cutters, surface.origin(), tolerance) {
             Err(Fault::Cut(fault)) => {
                 let CutFault::CutOpen { ends, .. } = &*fault else { return Err(Fault::Cut(fault)) };
                 let loose = |c: &Chain| [c.start(), c.end()].into_iter().any(|p| ends.iter().any(|end| tolerance.same_point(p, *end)));
@@ -115,64 +119,72 @@ fn parts(surface: &Surface, mut cutters: Vec<Chain>, tolerance: &Tolerance) -> R
                     return Err(Fault::Cut(fault));
                 }
             }
-            found => return found,
+            Ok(mut found) => {
+                // Of a surface with holes these may be told as parts too.
+                if surface.loops().len() > 1 {
+                    let (nearest, mut kept) = (Nearest::new(surface), Vec::new());
+                    for part in found {
+                        if inner_points(&part, tolerance)?.iter().any(|p| nearest.at(*p).distance <= tolerance.point) {
+                            kept.push(part);
+                        }
+                    }
+                    found = kept;
+                }
+                return whole(surface, found, tolerance);
+            }
+            Err(fault) => return Err(fault),
         }
     }
     Ok(vec![surface.clone()])
 }
 
-/// All parts into which curves divide a surface: the part round each of many places, until their areas add up to the whole.
-fn all_parts(surface: &Surface, cutters: &[Chain], tolerance: &Tolerance) -> Result<Vec<Surface>> {
-    let whole = measure::area(surface);
-    let bordered = bordered(surface, tolerance)?;
-    let (mut found, mut nearest, mut area): (Vec<Surface>, Vec<Nearest>, f64) = (Vec::new(), Vec::new(), 0.0);
-    for steps in GRIDS {
-        for place in places(&bordered, steps) {
-            let p = bordered.point(place.x, place.y);
-            if nearest.iter().any(|n| n.at(p).distance <= tolerance.point) {
-                continue;
-            }
-            match divide(surface, cutters, p, surface.origin(), tolerance) {
-                Ok(part) => {
-                    area += measure::area(&part);
-                    nearest.push(Nearest::new(&part));
-                    found.push(part);
-                }
-                // On a cut: another place tells.
-                Err(Fault::Cut(fault)) if matches!(*fault, CutFault::KeepOff { .. }) => {}
-                Err(fault) => return Err(fault),
-            }
-            if (area - whole).abs() <= SIGN_ACCURACY * SIGN_ACCURACY * whole {
-                return Ok(found);
-            }
-        }
+/// The parts of a surface, if their areas add up to its own as far as their borders are known; E413 otherwise.
+fn whole(surface: &Surface, parts: Vec<Surface>, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    /// Sums are told apart where they differ by so many times their estimated errors.
+    const SURE: f64 = 10.0;
+    let (area, error) = area_within(surface);
+    let (sum, errors) = parts.iter().map(area_within).fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    // Where curves follow each other they meet within the tolerance only.
+    let corners: usize = parts.iter().map(Surface::n_sides).sum();
+    let ends = corners as f64 * tolerance.point * surface.hull().diagonal();
+    if (sum - area).abs() <= ends + SURE * (error + errors + MEASURE_ACCURACY * area) {
+        return Ok(parts);
     }
-    let at = bordered.point(0.5, 0.5);
+    let at = parts.first().and_then(|part| part.border_start(0)).unwrap_or_default();
     Err(CurveFault::NotConverged { of: surface.origin(), what: "the pieces of the surface".to_owned(), at }.into())
 }
 
-/// A plane without a map as one whose loops are known in (u, v); any other surface as it is.
-fn bordered(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
-    let bare = surface.domain() == Domain::Loop && surface.outlines().is_empty();
-    if bare { trim(surface, &[], &[], surface.origin(), tolerance) } else { Ok(surface.clone()) }
-}
-
-/// Places inside a face at the middles of a grid.
-fn places(surface: &Surface, steps: usize) -> Vec<DVec2> {
-    let outlines = surface.outlines();
-    let trimmed = surface.domain() == Domain::Loop;
-    let start = if trimmed { (DVec2::INFINITY, DVec2::NEG_INFINITY) } else { (DVec2::ZERO, DVec2::ONE) };
-    let (low, high) = outlines.iter().flatten().fold(start, |(l, h), p| (l.min(*p), h.max(*p)));
-    let middle = |k: usize| (k as f64 + 0.5) / steps as f64;
-    let all = (0..steps * steps).map(|k| DVec2::new(middle(k % steps), middle(k / steps)));
-    let narrow = if surface.domain() == Domain::Triangle { 1.0 } else { 0.0 };
-    let at = all.map(|p| low + (high - low) * DVec2::new(p.x * (1.0 - narrow * p.y), p.y));
-    at.filter(|p| !trimmed || surface.holds(p.x, p.y)).collect()
-}
-
-/// Some points inside a face, too many to lie on a line by chance; none where none was found.
+/// Some points inside a face, too many to lie on a line by chance.
 fn inner_points(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec3>> {
-    let surface = &bordered(surface, tolerance)?;
-    let found = GRIDS.iter().map(|steps| places(surface, *steps)).find(|found| found.len() >= ENOUGH).unwrap_or_default();
-    Ok(found.iter().step_by(found.len().div_ceil(2 * ENOUGH).max(1)).map(|p| surface.point(p.x, p.y)).collect())
+    // A plane without a map as one whose loops are known in (u, v).
+    let bare = surface.domain() == Domain::Loop && surface.outlines().is_empty();
+    let surface = &if bare { trim(surface, &[], &[], surface.origin(), tolerance)? } else { surface.clone() };
+    let outlines = match surface.domain() {
+        Domain::Triangle => vec![vec![DVec2::ZERO, DVec2::X, DVec2::Y]],
+        Domain::Loop => surface.outlines(),
+        _ => vec![vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y]],
+    };
+    let places: Vec<DVec2> = inner_places(&outlines);
+    // Of a face thinner than its borders bend between their places none may be left.
+    let sure: Vec<DVec2> = places.iter().copied().filter(|p| surface.holds(p.x, p.y)).collect();
+    let places = if sure.is_empty() { places } else { sure };
+    Ok(places.into_iter().map(|p| surface.point(p.x, p.y)).collect())
+}
+
+/// A place on each of several rows across loops: a third of the way over the widest stretch inside.
+fn inner_places(outlines: &[Vec<DVec2>]) -> Vec<DVec2> {
+    let all = outlines.iter().flatten();
+    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.y), high.max(p.y)));
+    let row = |k: usize| {
+        let v = low + (high - low) * (k as f64 + 0.5) / ENOUGH as f64;
+        let steps = outlines.iter().flat_map(|loop_| (0..loop_.len()).map(move |i| (loop_[i], loop_[(i + 1) % loop_.len()])));
+        let through = steps.filter(|(a, b)| (a.y <= v) != (b.y <= v));
+        let mut us: Vec<f64> = through.map(|(a, b)| a.x + (b.x - a.x) * (v - a.y) / (b.y - a.y)).collect();
+        us.sort_by(f64::total_cmp);
+        let inside = us.chunks_exact(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+        // Rows take their place by turns on either side of the middle.
+        let share = if k % 2 == 0 { 1.0 / 3.0 } else { 2.0 / 3.0 };
+        Some(DVec2::new(inside[0] + (inside[1] - inside[0]) * share, v))
+    };
+    (0..ENOUGH).filter_map(row).collect()
 }

@@ -46,6 +46,12 @@ pub fn area(surface: &Surface) -> f64 {
     over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
 }
 
+/// Area of one surface as [`area`] has it, and the estimate of its error, both square model units.
+pub fn area_within(surface: &Surface) -> (f64, f64) {
+    let (area, error) = over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]);
+    (area[0], error[0])
+}
+
 /// Area of the part of a surface between two values of u and two of v, square model units; of a plane without a map and
 /// of a triangle that of the whole.
 pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {

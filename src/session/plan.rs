@@ -7,14 +7,14 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::{MeshSpec, RuleSpec};
-use crate::lang::scene::Scene;
+use crate::lang::scene::{Scene, side_of};
 use crate::lang::value::{ModuleId, Value};
 use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::carry::Stage;
 use crate::model::{Model, SharedEdge, SurfaceId};
 use crate::network::Chain;
-use crate::surface::{Domain, Surface, closest};
+use crate::surface::Surface;
 
 /// Finds what the values of a mesh stand for.
 struct Finder<'s> {
@@ -232,13 +232,13 @@ impl Finder<'_> {
         Ok(())
     }
 
-    /// Surfaces as targets, and pieces of them that the scene holds: parts of the same surface cut by others.
+    /// Surfaces as targets, and pieces of them that the scene holds: what `split` and `imprint` cut from them.
     fn faces<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<Target>, Stop> {
         let mut found = Vec::new();
         for surface in surfaces {
             let (own, _) = self.scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
             let all = self.scene.model.surfaces.iter().enumerate();
-            let pieces = all.filter(|(n, named)| *n != own.index() && is_piece(&named.surface, surface, &self.tolerance));
+            let pieces = all.filter(|(n, named)| *n != own.index() && is_piece(&named.surface, surface));
             found.extend(std::iter::once(own).chain(pieces.map(|(n, _)| SurfaceId::at(n))).map(Target::Surface));
         }
         Ok(found)
@@ -294,11 +294,9 @@ pub(super) fn chain_of(cx: &mut Cx, module: ModuleId, edge: &SharedEdge) -> Resu
     Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
 }
 
-/// Whether a surface is a part that was cut out of another one: made by the same expression, with all corners on it.
-fn is_piece(part: &Surface, whole: &Surface, tolerance: &Tolerance) -> bool {
-    let corners: Vec<_> = (0..part.n_sides()).filter_map(|k| part.border_start(k)).collect();
-    let on = |p: &glam::DVec3| closest(whole, *p).distance <= tolerance.point;
-    part.origin() == whole.origin() && part.domain() == Domain::Loop && !corners.is_empty() && corners.iter().all(on)
+/// Whether a surface is a part that was cut out of another one, on either side of it.
+fn is_piece(part: &Surface, whole: &Surface) -> bool {
+    part.part_of().iter().any(|known| side_of(known, whole).is_some())
 }
 
 fn wrong(value: &Value) -> Stop {

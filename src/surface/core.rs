@@ -166,6 +166,8 @@ pub struct Surface(Arc<Whole>);
 struct Whole {
     parts: Parts,
     ready: Ready,
+    /// The surfaces that it is a part of.
+    part_of: Vec<Surface>,
 }
 
 /// Everything a surface is made of; what builders fill in.
@@ -210,7 +212,26 @@ impl Content for Surface {
 
 impl Surface {
     pub(super) fn new(parts: Parts) -> Self {
-        Self(Arc::new(Whole { parts, ready: Ready::default() }))
+        Self(Arc::new(Whole { parts, ready: Ready::default(), part_of: Vec::new() }))
+    }
+
+    /// The surfaces that this one was cut from, and those that they were cut from; none of what was moved since.
+    pub fn part_of(&self) -> &[Self] {
+        &self.0.part_of
+    }
+
+    /// The same as a part cut from some surfaces.
+    pub fn cut_from(&self, wholes: &[Self]) -> Self {
+        let before = wholes.iter().flat_map(|w| w.part_of().iter().cloned());
+        // What is kept holds no list of its own: a row of cuts makes no row of surfaces within surfaces.
+        let own = wholes.iter().map(|w| if w.part_of().is_empty() { w.clone() } else { Self::new(w.0.parts.clone()) });
+        let part_of = own.chain(before).chain(self.part_of().iter().cloned()).collect();
+        Self(Arc::new(Whole { parts: self.0.parts.clone(), ready: Ready::default(), part_of }))
+    }
+
+    /// Other parts of the same surface: it stays a part of what it is a part of.
+    fn remade(&self, parts: Parts) -> Self {
+        Self(Arc::new(Whole { parts, ready: Ready::default(), part_of: self.0.part_of.clone() }))
     }
 
     pub(super) fn ready(&self) -> &Ready {
@@ -233,7 +254,7 @@ impl Surface {
 
     /// The same made by another expression.
     pub fn with_origin(&self, origin: Origin) -> Self {
-        Self::new(Parts { origin, ..self.0.parts.clone() })
+        self.remade(Parts { origin, ..self.0.parts.clone() })
     }
 
     /// The word it was made with.
@@ -504,7 +525,7 @@ impl Surface {
         } else {
             (us.clone(), vs.iter().rev().map(|v| 1.0 - v).collect())
         };
-        Self::new(Parts { borders, kinks, trim, flipped: !parts.flipped, ..parts.clone() })
+        self.remade(Parts { borders, kinks, trim, flipped: !parts.flipped, ..parts.clone() })
     }
 
     /// Carried by a motion, exactly.

@@ -32,11 +32,12 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
 }
 
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
-pub fn split(base: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
-    let base = &plane::unmapped(base, tolerance)?;
+pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    let base = &plane::unmapped(whole, tolerance)?;
     let (pieces, edges) = dividing(base, cutters, tolerance)?;
     let division = Division::new(base, &pieces, &edges, tolerance);
-    division.faces().into_iter().map(|face| assembled(base, division.walks(face), origin)).collect()
+    let part = |face| Ok(assembled(base, division.walks(face), origin)?.cut_from(std::slice::from_ref(whole)));
+    division.faces().into_iter().map(part).collect()
 }
 
 /// The pieces of the border and of curves that divide a surface, loose ends left out.

@@ -351,7 +351,8 @@ builtins! {
     /// All parts into which curves or surfaces divide a surface.
     ///
     /// They are the parts of which `trim(s, by:, keep:)` keeps one, in the order of their centres along x, then y, then z,
-    /// whatever the order of the cutters; their areas add up to that of the surface.
+    /// whatever the order of the cutters; their areas add up to that of the surface. In a mesh of the parts a group of the surface,
+    /// and a rule on it, speaks of all of them, and of a part of that part alone.
     /// ```loft
     /// surface floor = plane(circle(center: (0, 0, 0), radius: 1m))
     /// curve wall = line((-1m, 0, 0), (1m, 0, 0))
