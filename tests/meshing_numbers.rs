@@ -475,3 +475,21 @@ fn looser_limits_never_take_more_elements_of_a_mapped_face() {
         }
     }
 }
+
+#[test]
+fn every_pair_of_places_of_a_cell_keeps_the_angle() {
+    // a x² + b y² + t x y: the normals are farthest apart between two corners, neither of them the first or the farthest from it.
+    let mut state = 5;
+    for case in 0..8 {
+        let mut of = |least: f64, most: f64| least + (most - least) * random(&mut state);
+        let (a, b, t) = if case == 0 { (0.2, 0.2, -0.08) } else { (of(0.1, 0.3), of(0.1, 0.3), of(-0.15, 0.15)) };
+        let pole = |x: f64, y: f64| format!("({x}, {y}, {:.6})", a * x.floor() + b * y.floor() + t * x * y);
+        let row = |x: f64| format!("[{}, {}, {}]", pole(x, 0.0), pole(x, 0.5), pole(x, 1.0));
+        let surface = format!("surface s = bezier_surface([{}, {}, {}])\n", row(0.0), row(0.5), row(1.0));
+        for limit in [1.0, 2.0, 5.0, 9.0] {
+            let text = format!("units m\n{surface}mesh m of s {{ size: 10m  angle_error: {limit}deg  method: mapped  elements: quads }}\n");
+            let mesh = meshes(&text).remove(0);
+            assert!(turn(&mesh) <= f64::to_radians(limit) * 1.002, "{text}{}", turn(&mesh).to_degrees());
+        }
+    }
+}

@@ -8,7 +8,7 @@ use super::build::Input;
 use super::counts::for_size;
 use super::layout::Layout;
 use crate::base::fault::Result;
-use crate::base::math::{self, angle_between};
+use crate::base::math::{self, widest_angle};
 use crate::base::tolerance::{Tolerance, WHOLE_NUMBER};
 use crate::geometry::Curve;
 use crate::geometry::nurbs::projected;
@@ -279,7 +279,7 @@ fn turn_of(mut pieces: Vec<(Bezier, f64)>, enough: f64) -> f64 {
             tangents.extend(own.first().into_iter().chain(own.last()).copied());
             legs.extend(own);
         }
-        let (sure, bound) = (apart(&tangents), apart(&legs));
+        let (sure, bound) = (widest_angle(&tangents), widest_angle(&legs));
         // Tangents that are more than a right angle apart may have more between them.
         if sure > enough || left == 0 || bound <= enough && bound <= FRAC_PI_2 {
             return sure.max(bound);
@@ -293,13 +293,6 @@ fn turn_of(mut pieces: Vec<(Bezier, f64)>, enough: f64) -> f64 {
 fn halved(piece: &Bezier) -> impl Iterator<Item = Bezier> + use<> {
     let (a, b) = if piece.poles.len() > 2 { piece.halves() } else { (piece.clone(), piece.clone()) };
     [a, b].into_iter()
-}
-
-/// The largest angle between unit vectors.
-fn apart(all: &[DVec3]) -> f64 {
-    let pairs = all.iter().enumerate().flat_map(|(k, a)| all[k + 1..].iter().map(move |b| (*a, *b)));
-    let farthest = pairs.min_by(|(a, b), (c, d)| a.dot(*b).total_cmp(&c.dot(*d)));
-    farthest.map_or(0.0, |(a, b)| angle_between(a, b))
 }
 
 /// Share of a step within which curves without an exact NURBS form are converted for their bound.

@@ -13,7 +13,7 @@ use super::proof::{self, Proof};
 use super::reuse::{Known, recalled};
 use super::rows::{SIZE_ROOM, Wish};
 use crate::base::digest::{Digest, Digester};
-use crate::base::math::angle_between;
+use crate::base::math::widest_angle;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::surface::{Lean, Surface};
@@ -234,11 +234,11 @@ fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
     for j in 0..nv {
         lines.extend((1..=kv).map(|y| line(j, y)));
         for i in 0..nu {
-            let along = lines.iter().map(|line| spread(&line[i * ku..=(i + 1) * ku]));
-            let across = (i * ku..=(i + 1) * ku).map(|n| spread(&lines.iter().map(|line| line[n]).collect::<Vec<_>>()));
+            let along = lines.iter().map(|line| widest_angle(&line[i * ku..=(i + 1) * ku]));
+            let across = (i * ku..=(i + 1) * ku).map(|n| widest_angle(&lines.iter().map(|line| line[n]).collect::<Vec<_>>()));
             let (along, across) = (along.fold(0.0, f64::max), across.fold(0.0, f64::max));
             let all: Vec<DVec3> = lines.iter().flat_map(|line| &line[i * ku..=(i + 1) * ku]).copied().collect();
-            worst = [worst[0].max(along), worst[1].max(across), worst[2].max(spread(&all))];
+            worst = [worst[0].max(along), worst[1].max(across), worst[2].max(widest_angle(&all))];
         }
         lines.drain(..kv);
     }
@@ -271,20 +271,7 @@ fn turn_of_cells(surface: &Surface, shape: &Shape) -> f64 {
                 own.extend(corners[k + 1..].iter().map(|b| surface.normal(0.5 * (uv[*a].0 + uv[*b].0), 0.5 * (uv[*a].1 + uv[*b].1))));
             }
         }
-        worst = worst.max(spread(&own));
+        worst = worst.max(widest_angle(&own));
     });
     worst
-}
-
-/// How far normals are apart: from the first to the farthest, and from that to the farthest of all.
-fn spread(all: &[DVec3]) -> f64 {
-    let farthest = |from: DVec3| all.iter().copied().filter(|n| *n != DVec3::ZERO).min_by(|a, b| from.dot(*a).total_cmp(&from.dot(*b)));
-    let first = all.iter().copied().find(|n| *n != DVec3::ZERO);
-    let a = first.and_then(farthest);
-    let b = a.and_then(farthest);
-    a.zip(b).map_or(0.0, |(a, b)| turn(a, b))
-}
-
-fn turn(a: DVec3, b: DVec3) -> f64 {
-    if a == DVec3::ZERO || b == DVec3::ZERO { 0.0 } else { angle_between(a, b) }
 }

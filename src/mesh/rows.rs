@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::edges::Limits;
-use crate::base::math::angle_between;
+use crate::base::math::widest_angle;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::surface::{Domain, Surface};
 
@@ -137,12 +137,7 @@ impl Sample {
     fn least_for_turns(&self, along_u: bool, most: f64) -> f64 {
         let row = |k: usize| (0..Self::N).map(|n| if along_u { self.normal(n, k) } else { self.normal(k, n) }).collect();
         let rows: Vec<Vec<Option<DVec3>>> = (1..CELLS).map(row).collect();
-        // Of small angles a cosine is not close enough.
-        let turn = |row: &[Option<DVec3>]| {
-            let all = row.iter().flatten().enumerate();
-            let pairs = all.flat_map(|(k, a)| row.iter().flatten().skip(k + 1).map(move |b| (*a, *b)));
-            pairs.min_by(|(a, b), (c, d)| a.dot(*b).total_cmp(&c.dot(*d))).map_or(0.0, |(a, b)| angle_between(a, b))
-        };
+        let turn = |row: &[Option<DVec3>]| widest_angle(&row.iter().copied().flatten().collect::<Vec<_>>());
         let keeps = |n: &usize| {
             let step = |k: usize| (k * CELLS).div_ceil(*n)..=(k + 1) * CELLS / n;
             rows.iter().all(|row| (0..*n).all(|k| turn(&row[step(k)]) <= most))
