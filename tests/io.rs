@@ -150,6 +150,54 @@ fn bulk_data_word_by_word() {
     assert!(text.contains("SET 1 = 31 THRU 630\n") && text.lines().all(|line| line.len() <= 73));
 }
 
+/// Line elements of one curve through points, of order 2 with each middle node off its chord by a share of its length.
+fn frame(points: &[DVec3], bow: Option<DVec3>) -> Mesh {
+    let n = points.len() as u32 - 1;
+    let mut mesh = Mesh { name: "frame".into(), order: if bow.is_some() { 2 } else { 1 }, nodes: points.to_vec(), ..Mesh::default() };
+    mesh.lines = (0..n).map(|k| [k, k + 1]).collect();
+    for (k, w) in points.windows(2).enumerate().filter(|_| bow.is_some()) {
+        mesh.line_mids.push(n + 1 + k as u32);
+        mesh.nodes.push((w[0] + w[1]) / 2.0 + bow.unwrap_or_default() * w[0].distance(w[1]));
+    }
+    mesh.faces.push(FaceRange { name: "leg".into(), triangles: 0..0, quads: 0..0, lines: 0..n });
+    mesh
+}
+
+#[test]
+fn no_beam_of_nastran_runs_along_its_orientation() {
+    let legs: &[&[[f64; 3]]] = &[
+        &[[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0]],
+        &[[0.0, 0.0, 0.0], [0.1, 0.0, 1.0], [0.2, 1.0, 1.05], [-1.0, 1.1, 1.1], [-2.0, 0.0, 1.0]],
+        &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]],
+        &[[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [0.0, 2.0, 3.0]],
+    ];
+    let axis = |line: &str| {
+        let fields: Vec<&str> = line.as_bytes().chunks(8).map(|f| std::str::from_utf8(f).unwrap().trim()).collect();
+        let first = fields.iter().position(|f| *f == "0.0" || *f == "1.0").unwrap();
+        DVec3::from_slice(&fields[first..].iter().map(|f| f.parse().unwrap()).collect::<Vec<f64>>())
+    };
+    for (leg, bow) in legs.iter().flat_map(|leg| [None, Some(DVec3::ZERO), Some(DVec3::new(0.2, 0.1, 0.25))].map(|bow| (leg, bow))) {
+        let points: Vec<DVec3> = leg.iter().map(|p| DVec3::from(*p)).collect();
+        let mesh = frame(&points, bow);
+        let (text, losses) = text_of("a.bdf", &mesh);
+        assert!(losses.is_empty(), "{losses:?}");
+        let axes: Vec<DVec3> = text.lines().filter(|line| line.starts_with("CB")).map(axis).collect();
+        assert_eq!(axes.len(), mesh.lines.len(), "{text}");
+        for (k, [a, b]) in mesh.lines.iter().enumerate() {
+            let (a, b) = (mesh.nodes[*a as usize], mesh.nodes[*b as usize]);
+            let mid = mesh.line_mids.get(k).map_or((a + b) / 2.0, |mid| mesh.nodes[*mid as usize]);
+            for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let along = (4.0 * t - 3.0) * a + 4.0 * (1.0 - 2.0 * t) * mid + (4.0 * t - 1.0) * b;
+                let angle = math::angle_between(along, axes[k]).to_degrees();
+                assert!(angle.min(180.0 - angle) >= 14.9, "element {}: {along} along {}\n{text}", k + 1, axes[k]);
+            }
+        }
+    }
+    // One direction does for what leaves an axis free, whatever way each part runs.
+    let flat = frame(&[DVec3::ZERO, DVec3::X, DVec3::ONE], None);
+    assert_eq!(text_of("a.bdf", &flat).0.matches("0.0     0.0     1.0").count(), 2);
+}
+
 #[test]
 fn settings_that_do_not_fit_are_errors() {
     let mesh = sheet(2, 1, true, 1);

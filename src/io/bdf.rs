@@ -47,8 +47,11 @@ const PROPERTIES: &[(&str, &str, bool)] =
     &[("CBAR", "PBAR", true), ("CBEAM", "PBEAM", false), ("CROD", "PROD", false), ("CBEAM3", "PBEAM3", false), ("CSHEAR", "PSHEAR", false)];
 /// The property of all other cards.
 const SHELL: (&str, bool) = ("PSHELL", true);
-/// The direction of z is that of a beam's first plane, unless a part of its curve runs within 15° of it: its cosine.
+/// A beam may not run along the direction of its first plane; closer to it than 15° counts as along it: its cosine.
 const STEEP: f64 = 0.965_925_826_289_068_3;
+
+/// Parts of a beam with a middle node between places at which its direction is asked for.
+const BENT: u32 = 8;
 
 /// Elements of one surface or curve, with their card and the number of their property.
 struct Section {
@@ -56,8 +59,17 @@ struct Section {
     card: &'static str,
     property: u64,
     /// Direction in the first plane of the beams, for cards that have one.
-    upright: Option<[f64; 3]>,
+    upright: Option<Upright>,
     elements: std::ops::Range<usize>,
+}
+
+/// The axis in the first plane of beams.
+#[derive(Clone, Copy)]
+enum Upright {
+    /// The same for all of them: 0 is x, 1 y, 2 z.
+    Same(usize),
+    /// No axis is off all of them: each has its own.
+    Each,
 }
 
 impl Section {
@@ -161,28 +173,35 @@ fn write_properties(deck: &Deck, properties: &[Property], out: &mut dyn Write) -
         let card = card(deck, kind);
         for run in runs(deck.mesh, kind) {
             let of = properties.iter().position(|known| known.card == property_of(card).0 && known.of == run.name);
-            let upright = matches!(card, "CBAR" | "CBEAM" | "CBEAM3").then(|| upright(deck, run.elements.clone()));
+            let upright = matches!(card, "CBAR" | "CBEAM" | "CBEAM3").then(|| upright(deck.mesh, run.elements.clone()));
             sections.push(Section { kind, card, property: of.unwrap_or(0) as u64 + 1, upright, elements: run.elements });
         }
     }
     Ok(sections)
 }
 
-/// The axis that beams along a curve take for their first plane: z, and where a part of them runs along it, the axis that
-/// all of them stand furthest from.
-fn upright(deck: &Deck, lines: std::ops::Range<usize>) -> [f64; 3] {
-    let mesh = deck.mesh;
-    let mut along = [0.0_f64; 3];
-    for [a, b] in &mesh.lines[lines] {
-        let run = (mesh.nodes[*b as usize] - mesh.nodes[*a as usize]).normalize_or_zero().abs().to_array();
-        along.iter_mut().zip(run).for_each(|(most, share)| *most = most.max(share));
-    }
-    let mut best = 2;
-    if along[2] > STEEP {
-        best = if along[1] <= along[0] { 1 } else { 0 };
-        best = if along[2] < along[best] { 2 } else { best };
-    }
-    std::array::from_fn(|axis| if axis == best { 1.0 } else { 0.0 })
+/// The direction of the first plane of the beams along a curve: one for all of them where some axis is off each.
+fn upright(mesh: &Mesh, lines: std::ops::Range<usize>) -> Upright {
+    let along = lines.map(|line| along_axes(mesh, line)).fold([0.0_f64; 3], |most, own| std::array::from_fn(|k| most[k].max(own[k])));
+    let axis = off_axis(along);
+    if along[axis] > STEEP { Upright::Each } else { Upright::Same(axis) }
+}
+
+/// How far a line element runs along each axis: the largest cosines of its directions, with a middle node at places along it.
+fn along_axes(mesh: &Mesh, line: usize) -> [f64; 3] {
+    let node = |n: u32| mesh.nodes[n as usize];
+    let [a, b] = mesh.lines[line].map(node);
+    let bent = mesh.line_mids.get(line).map(|mid| 4.0 * node(*mid)).map(|mid| (mid - 3.0 * a - b, a + 3.0 * b - mid));
+    let (from, to) = bent.unwrap_or((b - a, b - a));
+    let runs = (0..=BENT).map(|k| from.lerp(to, f64::from(k) / f64::from(BENT)).normalize_or_zero().abs().to_array());
+    runs.fold([0.0; 3], |most, own| std::array::from_fn(|k| own[k].max(most[k])))
+}
+
+/// The axis for what runs so far along each: z, and where that is too close the one that it stands furthest from. A beam, which
+/// is straight or bent in one plane, has one that it is off.
+fn off_axis(along: [f64; 3]) -> usize {
+    let level = if along[1] <= along[0] { 1 } else { 0 };
+    if along[2] <= STEEP || along[2] < along[level] { 2 } else { level }
 }
 
 /// An element: eight fields on a line, the rest on a continuation.
@@ -203,8 +222,12 @@ fn push_card(mesh: &Mesh, section: &Section, (element, number): (usize, u64), te
         Kind::Line if section.drops_mids(mesh) => mesh.lines[element].iter().for_each(|node| push(*node)),
         kind => kind.nodes(mesh, element, &mut push),
     }
-    for x in section.upright.into_iter().flatten() {
-        text.extend_from_slice(if x == 0.0 { b"0.0     " } else { b"1.0     " });
+    let axis = section.upright.map(|upright| match upright {
+        Upright::Same(axis) => axis,
+        Upright::Each => off_axis(along_axes(mesh, element)),
+    });
+    for own in axis.into_iter().flat_map(|axis| [0, 1, 2].map(|k| k == axis)) {
+        text.extend_from_slice(if own { b"1.0     " } else { b"0.0     " });
     }
     while text.last() == Some(&b' ') {
         text.pop();
