@@ -179,7 +179,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
             }
             if let Some((f, defect)) = verify::unsound(input, (&*layout, &nodes), &prepared, &mesh) {
                 if !closes(&layout.faces[f]) || layout.faces[f].halved == HALVED {
-                    return Err(verify::fault(input, &layout.faces[f], (&prepared[f], defect), &mesh));
+                    return Err(verify::fault(input, (&layout.faces[f], &nodes), (&prepared[f], defect), &mesh));
                 }
                 // Where a face closes on itself, elements from one of its sides to another may be the same ones.
                 layout.faces[f].halved += 1;

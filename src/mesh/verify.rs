@@ -329,13 +329,15 @@ pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepare
 }
 
 /// E999 for a face whose elements are not what it asks for; E720 where it closes on itself and its size leaves no room.
-pub(super) fn fault(input: &Input, face: &Face, (ready, defect): (&Prepared, Defect), mesh: &Mesh) -> Fault {
+pub(super) fn fault(input: &Input, (face, nodes): (&Face, &Nodes), (ready, defect): (&Prepared, Defect), mesh: &Mesh) -> Fault {
     let at = defect.node().and_then(|n| mesh.nodes.get(n as usize).copied());
     let at = at.unwrap_or_else(|| super::faces::middle(input, face));
     let surface = input.model.surfaces[face.surface.index()].surface.origin();
     let method = if face.free { word(face.method) } else { "mapped" };
     if face.halved > 0 {
-        return MeshFault::ClosesTooNear { surface, method, at }.into();
+        let is_pole = |n: u32| face.sides.iter().any(|side| side.pole.is_some_and(|pole| nodes.of_junction(pole) == n));
+        let tip = defect.node().is_some_and(is_pole);
+        return MeshFault::ClosesTooNear { surface, method, at, tip }.into();
     }
     MeshFault::Unsound {
         mesh: (input.plan.origin, input.plan.name.clone()),

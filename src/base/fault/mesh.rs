@@ -286,6 +286,8 @@ pub enum MeshFault {
         method: &'static str,
         /// Where.
         at: DVec3,
+        /// Whether that is at a tip, which is as narrow for elements of every size.
+        tip: bool,
     },
     /// E703 without a count: an edge glued so far beside a face that no step keeps the chord error.
     GapTooWide {
@@ -555,7 +557,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "this face")
         .help("keep the borders further apart, or divide them more finely there"),
-        F::ClosesTooNear { surface, method, at } => Report::new(
+        F::ClosesTooNear { surface, method, at, tip } => Report::new(
             "E720",
             format!(
                 "{} closes on itself more narrowly at {} than elements made by `method: {method}` keep apart",
@@ -564,7 +566,11 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             ),
         )
         .at(*surface, "this face")
-        .help(if *method == "mapped" { "a smaller `size`" } else { "a smaller `size`, or `method: mapped`" }),
+        .help(match *method {
+            "mapped" => "a smaller `size`",
+            _ if *tip => "`method: mapped` goes round the tip in rows",
+            _ => "a smaller `size`, or `method: mapped`",
+        }),
         F::Unsound { mesh: (mesh, name), surface, method, elements: [triangles, quads], what, at } => Report::new(
             "E999",
             format!("a bug in loft: the mesh `{name}` is not right on {}: {what}, at {}", say.quoted(*surface, "a face"), say.point(*at)),

@@ -1,7 +1,8 @@
-//! Edges inside two faces between the same nodes of their borders: four elements would meet in one.
+//! Edges inside faces that are one edge of the mesh in two places, where four elements would meet.
 //!
-//! Two faces that share the borders on both sides of a corner may both cut the corner off by the same edge. Such an edge is
-//! divided in all faces of triangles but one.
+//! Two faces that share the borders on both sides of a corner may both cut the corner off by the same edge; a face that closes on
+//! itself may have the same edge on both sides of its seam, as round the tip of a steep cone. Such an edge is divided in all
+//! places but one, where elements are triangles.
 
 use std::collections::BTreeSet;
 
@@ -11,21 +12,77 @@ use crate::mesh::chart::Shape;
 use crate::mesh::data::Mesh;
 use crate::mesh::faces::{Frame, Prepared};
 
-/// An edge by its nodes, the lower first.
+/// An edge by its nodes in the mesh, or by its places in a chart, the lower first.
 type Edge = (u32, u32);
 
 /// Divides such edges at their middles in (u, v); whether there were any. Nodes have to be numbered again then.
 pub(in crate::mesh) fn divide(made: &Made, prepared: &mut [Prepared], mesh: &Mesh) -> bool {
+    // The mesh knows nothing yet of what is divided here.
+    let shared = twins(made, prepared, mesh);
     let mut any = false;
-    for (edge, faces) in twins(made, prepared, mesh) {
+    for ready in prepared.iter_mut() {
+        for edge in own_twins(ready) {
+            any |= divide_edge(ready, edge);
+        }
+    }
+    for (edge, faces) in shared {
         let mut able: Vec<usize> = faces.iter().copied().filter(|f| divides(&prepared[*f])).collect();
         // One face may keep it.
         able.truncate(faces.len() - 1);
         for f in able {
-            any |= divide_edge(&mut prepared[f], edge);
+            let local = local(&prepared[f], edge);
+            any |= local.is_some_and(|edge| divide_edge(&mut prepared[f], edge));
         }
     }
     any
+}
+
+/// Edges inside a face, by their places in its chart, that are one edge of the mesh with another one, which stays.
+fn own_twins(ready: &Prepared) -> Vec<Edge> {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return Vec::new() };
+    let border = ids.len() - ready.inner as usize;
+    let mut on_border = ids[..border].to_vec();
+    on_border.sort_unstable();
+    if !divides(ready) || on_border.windows(2).all(|w| w[0] != w[1]) {
+        return Vec::new();
+    }
+    let sides = free.triangles.iter().flat_map(|t| (0..3).map(|k| ordered(t[k], t[(k + 1) % 3]))).filter(|(a, _)| (*a as usize) < border);
+    let mut all: Vec<(Edge, Edge)> = sides.map(|(a, b)| (ordered(ids[a as usize], ids[b as usize]), (a, b))).collect();
+    all.sort_unstable();
+    let mut out = Vec::new();
+    for same in all.chunk_by(|a, b| a.0 == b.0) {
+        let mut places: Vec<(usize, Edge)> = same.chunk_by(|a, b| a.1 == b.1).map(|uses| (uses.len(), uses[0].1)).collect();
+        // A piece of the border is used once, and stays; of others the shortest way over the surface.
+        places.sort_by(|a, b| a.0.cmp(&b.0).then(way(ready, a.1).total_cmp(&way(ready, b.1))));
+        let seam = places.iter().filter(|p| p.0 == 1).count();
+        out.extend(places.into_iter().skip(seam.max(1)).map(|(_, edge)| edge));
+    }
+    out
+}
+
+/// The length of the way over the surface from one end of an edge to the other, by two chords.
+fn way(ready: &Prepared, (a, b): Edge) -> f64 {
+    let Shape::Free(free) = &ready.chart.shape else { return 0.0 };
+    let point = |(u, v): (f64, f64)| ready.chart.surface.point(u, v);
+    let (p, q) = (free.uv[a as usize], free.uv[b as usize]);
+    let top = point(middle(p, q));
+    top.distance(point(p)) + top.distance(point(q))
+}
+
+fn middle(p: (f64, f64), q: (f64, f64)) -> (f64, f64) {
+    (0.5 * (p.0 + q.0), 0.5 * (p.1 + q.1))
+}
+
+/// The place in the chart of an edge inside a face.
+fn local(ready: &Prepared, edge: Edge) -> Option<Edge> {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return None };
+    let sides = free.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
+    let mut found = sides.filter(|(a, b)| ordered(ids[*a as usize], ids[*b as usize]) == edge);
+    found.next().map(|(a, b)| ordered(a, b))
+}
+
+fn ordered(a: u32, b: u32) -> Edge {
+    (a.min(b), a.max(b))
 }
 
 /// Edges that lie inside two faces or more, with these.
@@ -44,7 +101,7 @@ fn twins(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<(Edge, Vec<usiz
             for (k, &a) in corners.iter().enumerate() {
                 let b = corners[(k + 1) % corners.len()];
                 if a < border && b < border {
-                    edges.push((a.min(b), a.max(b)));
+                    edges.push(ordered(a, b));
                 }
             }
         };
@@ -66,7 +123,7 @@ fn lines(made: &Made) -> BTreeSet<Edge> {
     let stretches: BTreeSet<usize> = made.layout.faces.iter().flat_map(|face| face.lines.iter().copied()).collect();
     let edges = |stretch: usize| {
         let ids = made.nodes.of_stretch(made.layout, stretch, false);
-        ids.windows(2).map(|w| (w[0].min(w[1]), w[0].max(w[1]))).collect::<Vec<Edge>>()
+        ids.windows(2).map(|w| ordered(w[0], w[1])).collect::<Vec<Edge>>()
     };
     stretches.into_iter().flat_map(edges).collect()
 }
@@ -76,22 +133,16 @@ fn divides(ready: &Prepared) -> bool {
     matches!(&ready.chart.shape, Shape::Free(free) if free.quads.is_empty())
 }
 
-/// Divides an edge between two triangles; whether it is there.
-fn divide_edge(ready: &mut Prepared, edge: Edge) -> bool {
+/// Divides an edge between two triangles, given by its places in the chart; whether it is there.
+fn divide_edge(ready: &mut Prepared, (a, b): Edge) -> bool {
     let (Shape::Free(free), Frame::Free(ids)) = (&mut ready.chart.shape, &mut ready.chart.frame) else { return false };
-    let is_edge = |a: u32, b: u32| {
-        let (a, b) = (ids[a as usize], ids[b as usize]);
-        (a.min(b), a.max(b)) == edge
-    };
-    let side = |t: &[u32; 3]| (0..3).find(|k| is_edge(t[*k], t[(k + 1) % 3]));
+    let side = |t: &[u32; 3]| (0..3).find(|k| ordered(t[*k], t[(k + 1) % 3]) == (a, b));
     let found: Vec<(usize, usize)> = free.triangles.iter().enumerate().filter_map(|(n, t)| side(t).map(|k| (n, k))).collect();
-    let &[(one, k), (other, _)] = found.as_slice() else { return false };
-    let (a, b) = (free.triangles[one][k], free.triangles[one][(k + 1) % 3]);
-    if ![a, b].iter().all(|n| free.triangles[other].contains(n)) {
+    if found.len() != 2 {
         return false;
     }
     let (p, q) = (free.uv[a as usize], free.uv[b as usize]);
-    let uv = (0.5 * (p.0 + q.0), 0.5 * (p.1 + q.1));
+    let uv = middle(p, q);
     let new = free.uv.len() as u32;
     free.uv.push(uv);
     ids.push(u32::MAX);
