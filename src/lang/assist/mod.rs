@@ -3,6 +3,7 @@
 //! Everything is found in the text, in the modules it names and in what the last run showed; nothing is evaluated. So it
 //! works in half-typed text, at once, and for session and language server alike.
 
+mod around;
 mod frames;
 mod function;
 mod infer;
