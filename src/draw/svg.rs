@@ -133,23 +133,17 @@ fn write_item(item: &Item, out: &mut dyn Write) -> io::Result<()> {
             writeln!(out, "<path fill=\"{}\" fill-opacity=\"{}\" d=\"{}Z\"/>", color.hex(), short(*opacity), data(points))
         }
         Item::Text { at, size, text, color, halo } => {
-            let rim = if *halo {
-                format!(" stroke=\"#ffffff\" stroke-width=\"{}\" paint-order=\"stroke\"", short(HALO * size))
-            } else {
-                String::new()
-            };
             // Whatever font the viewer has, the words take the room that was kept for them.
             let room = font::width(text, *size);
-            writeln!(
-                out,
-                "<text x=\"{}\" y=\"{}\" font-size=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\" fill=\"{}\"{rim}>{}</text>",
-                short(at.x),
-                short(at.y),
-                short(*size),
-                short(room),
-                color.hex(),
-                escaped(text)
-            )
+            let place = format!("x=\"{}\" y=\"{}\" font-size=\"{}\"", short(at.x), short(at.y), short(*size));
+            let fit = format!("textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"", short(room));
+            let words = escaped(text);
+            // The rim is a text of its own below the words: not every viewer knows `paint-order`.
+            if *halo {
+                let rim = format!("fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"{}\" aria-hidden=\"true\"", short(HALO * size));
+                writeln!(out, "<text {place} {fit} {rim}>{words}</text>")?;
+            }
+            writeln!(out, "<text {place} {fit} fill=\"{}\">{words}</text>", color.hex())
         }
     }
 }
