@@ -25,6 +25,11 @@ const BAND: usize = 16;
 const BATCH: usize = 16_384;
 /// Nothing is seen.
 const NONE: u32 = u32::MAX;
+/// How far apart along their normal two faces that lie on each other may be drawn, pixels: each is triangles that are within a
+/// quarter of a pixel of its surface.
+const SAME: f64 = 0.5;
+/// Steepest face that is reckoned with, pixels of depth a pixel: beyond it nothing but its edge is seen.
+const STEEPEST: f64 = 20.0;
 
 /// A thick line between two places, or a dot where they are one.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +63,15 @@ impl Image {
     /// Whether something nearer than the spot covers it.
     pub fn hides(&self, spot: &Spot, lift: f64) -> bool {
         let inside = spot.x >= 0.0 && spot.y >= 0.0 && spot.x < self.width as f64 && spot.y < self.height as f64;
-        inside && f64::from(self.near[spot.y as usize * self.width + spot.x as usize]) > spot.near + lift
+        if !inside {
+            return false;
+        }
+        // A face seen from the side rises fast: what lies on it is hidden where all around is nearer.
+        let (x, y) = (spot.x as usize, spot.y as usize);
+        let (left, right) = (x.saturating_sub(1), (x + 1).min(self.width - 1));
+        let rows = y.saturating_sub(1)..=(y + 1).min(self.height - 1);
+        let limit = spot.near + lift;
+        rows.flat_map(|row| &self.near[row * self.width + left..=row * self.width + right]).all(|near| f64::from(*near) > limit)
     }
 
     /// Whether faces or lines are seen anywhere.
@@ -144,7 +157,7 @@ pub fn draw(scene: &Scene, camera: &Camera, lines: &[Thick], edges: (f64, f64), 
         let rows = BAND.min(height - band * BAND);
         let mut buffer = Buffer::new(width, band * BAND, rows);
         for &id in &projected.bands[band] {
-            buffer.triangle(id, projected.corners(scene, id));
+            buffer.triangle((id, projected.triangles[id as usize].sheet), projected.corners(scene, id));
         }
         for &k in &line_bands[band] {
             buffer.line(k, &lines[k as usize]);
@@ -166,7 +179,11 @@ struct Buffer {
     /// First row of places in the whole picture.
     top: usize,
     near: Vec<f32>,
+    /// How fast the face there rises, pixels of depth a pixel.
+    steep: Vec<f32>,
     face: Vec<u32>,
+    /// The sheet of that face.
+    sheet: Vec<u32>,
     line: Vec<u32>,
 }
 
@@ -174,7 +191,16 @@ impl Buffer {
     fn new(width: usize, first: usize, rows: usize) -> Self {
         let (width, rows) = (width * SAMPLES, rows * SAMPLES);
         let n = width * rows;
-        Self { width, rows, top: first * SAMPLES, near: vec![f32::NEG_INFINITY; n], face: vec![NONE; n], line: vec![NONE; n] }
+        Self {
+            width,
+            rows,
+            top: first * SAMPLES,
+            near: vec![f32::NEG_INFINITY; n],
+            steep: vec![0.0; n],
+            face: vec![NONE; n],
+            sheet: vec![NONE; n],
+            line: vec![NONE; n],
+        }
     }
 
     /// Rows of places between two heights, as indices of this band.
@@ -191,9 +217,9 @@ impl Buffer {
         first..index(high).max(first)
     }
 
-    /// Marks the places where a triangle is nearer than what was there. Sides are cut the same way from both of their
-    /// triangles, so nothing shows between neighbours.
-    fn triangle(&mut self, id: u32, corners: [Spot; 3]) {
+    /// Marks the places where a triangle is nearer than what was there; of sheets that lie on each other the later one is seen. Sides
+    /// are cut the same way from both of their triangles, so nothing shows between neighbours.
+    fn triangle(&mut self, (id, sheet): (u32, u32), corners: [Spot; 3]) {
         let n = SAMPLES as f64;
         let p = corners.map(|s| (s.x * n, s.y * n, s.near));
         let area = (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);
@@ -205,6 +231,9 @@ impl Buffer {
         let (d1, d2) = (p[1].2 - p[0].2, p[2].2 - p[0].2);
         let by_x = (d1 * (p[2].1 - p[0].1) - d2 * (p[1].1 - p[0].1)) / area;
         let by_y = (d2 * (p[1].0 - p[0].0) - d1 * (p[2].0 - p[0].0)) / area;
+        let steep = (by_x * by_x + by_y * by_y).sqrt() * n;
+        let same = (SAME * (1.0 + steep.min(STEEPEST))) as f32;
+        let steep = steep.min(STEEPEST) as f32;
         for row in self.rows_between(low, high) {
             let y = (self.top + row) as f64 + 0.5;
             let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -224,9 +253,11 @@ impl Buffer {
             for place in places {
                 // Seen nearly from the side, a plane runs off between its corners.
                 let near = (base + by_x * place as f64).clamp(far, close) as f32;
-                if near > self.near[start + place] {
-                    self.near[start + place] = near;
-                    self.face[start + place] = id;
+                let at = start + place;
+                let over = if self.sheet[at] == sheet { 0.0 } else { same };
+                if near > self.near[at] - over {
+                    self.near[at] = near.max(self.near[at]);
+                    (self.steep[at], self.face[at], self.sheet[at]) = (steep, id, sheet);
                 }
             }
         }
@@ -247,12 +278,15 @@ impl Buffer {
             for place in self.places_between(x0.min(x1) - half, x0.max(x1) + half) {
                 let from = glam::DVec2::new(place as f64 + 0.5, y) - a;
                 let t = if length2 > 0.0 { (from.dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
-                if (from - along * t).length_squared() > half * half {
+                let aside = (from - along * t).length_squared();
+                if aside > half * half {
                     continue;
                 }
                 let near = (line.a.near + (line.b.near - line.a.near) * t + line.lift) as f32;
                 let at = row * self.width + place;
-                if near >= self.near[at] {
+                // Beside its middle a line on a face that is seen from the side is behind that face by its own width.
+                let rise = if self.line[at] == NONE { self.steep[at] * ((aside.sqrt() / n) as f32 + SAME as f32) } else { 0.0 };
+                if near >= self.near[at] - rise {
                     self.near[at] = near;
                     self.line[at] = id;
                 }
