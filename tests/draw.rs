@@ -367,3 +367,193 @@ fn pictures_of_the_guide_are_what_their_commands_draw() {
     assert!(seen >= 6, "{seen} pictures");
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+/// Pixels of a picture of a script, without words around it.
+fn pixels_of(name: &str, script: &str, arguments: &[&str]) -> Vec<u8> {
+    let drawn = [&["render", "model.loft", "-o", "a.png", "--size", "400x300", "--title", "a", "--bare"], arguments].concat();
+    let (status, said, folder) = loft(name, script, &drawn);
+    assert_eq!(status, 0, "{said}");
+    let pixels = decoded(&std::fs::read(folder.join("a.png")).unwrap()).2;
+    std::fs::remove_dir_all(folder).unwrap();
+    pixels
+}
+
+/// A vector picture of a script seen from above.
+fn svg_of(name: &str, script: &str, arguments: &[&str]) -> String {
+    let (status, said, folder) = loft(name, script, &[&["render", "model.loft", "-o", "a.svg", "--view", "top"], arguments].concat());
+    assert_eq!(status, 0, "{said}");
+    let text = std::fs::read_to_string(folder.join("a.svg")).unwrap();
+    std::fs::remove_dir_all(folder).unwrap();
+    text
+}
+
+/// Places across, to a pixel, where lines of a colour begin or end.
+fn columns(svg: &str, color: lofting::draw::color::Rgb) -> Vec<i64> {
+    let wanted = format!("stroke=\"{}\"", color.hex());
+    let paths = svg.lines().filter(|line| line.starts_with("<path fill=\"none\"") && line.contains(&wanted) && line.contains("M"));
+    // The key of the legend is a short line of its own.
+    let data = paths.map(|line| line.split(" d=\"").nth(1).unwrap().trim_end_matches("\"/>").to_owned());
+    let mut found: Vec<i64> = data
+        .flat_map(|d| {
+            d.split(['M', 'L'])
+                .filter(|p| !p.is_empty())
+                .map(|p| p.split(' ').next().unwrap().parse::<f64>().unwrap().round() as i64)
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    found.sort_unstable();
+    found.dedup_by(|a, b| (*a - *b).abs() < 3);
+    found
+}
+
+const PARTS: &str = "units m
+curve a = line((0, 0, 0), (4, 0, 0))
+curve b = arc((0, 3, 0), (4, 3, 0), through: (2, 3, 1))
+surface roof = ruled(a, b)
+curve hole = project(circle(center: (2, 1.5, 2), radius: 600mm), onto: roof, along: (0, 0, 1))
+";
+
+#[test]
+fn what_a_part_was_cut_from_is_not_drawn_over_it() {
+    let trimmed = format!("{PARTS}surface panel = trim(roof, holes: [hole])\n");
+    let all = pixels_of("trimmed", &trimmed, &[]);
+    assert!(all == pixels_of("panel", &trimmed, &["--of", "panel"]));
+    assert!(all != pixels_of("both", &trimmed, &["--of", "roof", "--of", "panel"]));
+    // Its rims are free, which those that it shares with the whole would not be.
+    let svg = svg_of("rims", &trimmed, &["--bare"]);
+    let rims = columns(&svg, lofting::draw::color::FREE);
+    assert!(rims.len() > 6, "{rims:?}");
+    // Pieces of a list, a plane, and a part that is meshed while the whole is not.
+    let split = format!("{PARTS}surface halves for i in 0..2 = split(roof, by: hole)[i]\n");
+    assert!(pixels_of("halves", &split, &[]) == pixels_of("halves2", &split, &["--of", "halves"]));
+    let plane = "units m\ncurve rim = circle(center: (0, 0, 0), radius: 2m)\ncurve h = circle(center: (0, 0, 0), radius: 1m)\nsurface disc = plane(rim)\nsurface ring = trim(disc, holes: h)\n";
+    assert!(pixels_of("ring", plane, &[]) == pixels_of("ring2", plane, &["--of", "ring"]));
+    let meshed = format!("{trimmed}mesh m of panel {{ size: 300mm }}\n");
+    assert!(pixels_of("meshed", &meshed, &[]) == pixels_of("meshed2", &meshed, &["--of", "m"]));
+    // A shell that is made of the whole shows it, and so does what only touches it.
+    let shell = format!("{trimmed}shell hall of roof\n");
+    assert!(pixels_of("shell", &shell, &[]) == pixels_of("shell2", &shell, &["--of", "roof", "--of", "panel"]));
+    let beside =
+        "units m\ncurve a = line((0, 0, 0), (4, 0, 0))\nsurface one = extrude(a, by: (0, 2, 0))\nsurface two = move(one, by: (0, 2, 0))\n";
+    assert!(pixels_of("beside", beside, &[]) == pixels_of("beside2", beside, &["--of", "one", "--of", "two"]));
+}
+
+#[test]
+fn folds_are_orange_between_surfaces_too() {
+    let folded = "units m
+curve a = polyline([(0, 0, 0), (2, 0, 1), (4, 0, 0)])
+surface folded = extrude(a, by: (0, 3, 0))
+surface side = extrude(line((4, 0, 0), (4, 3, 0)), by: (1, 0, -2))
+surface smooth = extrude(line((0, 0, 0), (0, 3, 0)), by: (-2, 0, -1))
+";
+    use lofting::draw::color::{FREE, KINK};
+    let meshed = format!("{folded}mesh m of folded, side, smooth {{ size: 500mm }}\n");
+    for (name, script) in [("folds", folded), ("folds-meshed", &meshed)] {
+        let svg = svg_of(name, script, &["--bare"]);
+        // The ridge at x = 2 and the edge at x = 4; at x = 0 the tangent plane goes on.
+        assert_eq!(columns(&svg, KINK).len(), 2, "{name}: {:?}", columns(&svg, KINK));
+        // The rims at x = -2 and x = 5.
+        let rims = columns(&svg, FREE);
+        let kinks = columns(&svg, KINK);
+        assert!(rims[0] < kinks[0] - 100 && rims[rims.len() - 1] > kinks[1] + 20, "{name}: {rims:?} {kinks:?}");
+    }
+    // A round wall of coarse elements has no kink, not at its seam either.
+    let round = "units m\nsurface wall = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 1))\nmesh m of wall { size: 900mm }\n";
+    assert!(columns(&svg_of("round", round, &["--bare"]), KINK).is_empty());
+}
+
+#[test]
+fn of_several_meshes_the_last_of_each_surface_is_drawn() {
+    let faces = "units m
+curve a = line((0, 0, 0), (4, 0, 0))
+curve b = line((0, 3, 0), (4, 3, 0))
+curve c = line((0, 6, 1), (4, 6, 1))
+surface roof = ruled(a, b)
+surface wing = ruled(b, c)
+";
+    let both = format!("{faces}mesh coarse of roof, wing {{ size: 1m }}\nmesh fine of roof {{ size: 250mm }}\n");
+    let apart = format!("{faces}mesh coarse of wing {{ size: 1m }}\nmesh fine of roof {{ size: 250mm }}\n");
+    assert!(pixels_of("several", &both, &[]) == pixels_of("apart", &apart, &[]));
+    assert!(
+        pixels_of("named", &both, &["--of", "coarse", "--of", "fine"]) == pixels_of("named2", &apart, &["--of", "coarse", "--of", "fine"])
+    );
+    // The first is drawn where it is asked for alone, and one that was moved lies elsewhere.
+    assert!(pixels_of("coarse", &both, &["--of", "coarse"]) != pixels_of("fine", &both, &["--of", "fine"]));
+    let moved = format!("{faces}mesh m of roof {{ size: 1m }}\nlet twin = move(m, by: (0, 0, 2))\n");
+    assert!(pixels_of("moved", &moved, &["--of", "m", "--of", "twin"]) != pixels_of("twin", &moved, &["--of", "twin"]));
+}
+
+#[test]
+fn imported_curves_have_their_names() {
+    let script =
+        "units m\ncurve deck = line((0, 0, 0), (4, 0, 0))\ncurve keel = line((0, 2, 0), (4, 3, 0))\nexport deck, keel to \"hull.igs\"\n";
+    let (status, said, folder) = loft("imported", script, &["run", "model.loft"]);
+    assert_eq!(status, 0, "{said}");
+    let import = "units m\nimport \"hull.igs\" as hull\ncurve bow = line((4, 0, 0), (4, 3, 0))\ncurve bottom = hull.curves[1]\npicture hull.curves, bow to \"a.svg\"\n";
+    std::fs::write(folder.join("model.loft"), import).unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_loft")).current_dir(&folder).args(["run", "model.loft"]).output().unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let svg = std::fs::read_to_string(folder.join("a.svg")).unwrap();
+    for name in [">deck<", ">bottom<", ">bow<"] {
+        assert!(svg.contains(name), "{name}: {}", svg.lines().filter(|l| l.starts_with("<text")).collect::<Vec<_>>().join("\n"));
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn rims_of_words_in_svg_are_texts_below_them() {
+    let mut out = Vec::new();
+    Picture::new(&ball(12), &everything(), Format::Svg).write(Format::Svg, &mut out).unwrap();
+    let text = String::from_utf8(out).unwrap();
+    assert!(!text.contains("paint-order"));
+    let lines: Vec<&str> = text.lines().collect();
+    let rims: Vec<usize> =
+        (0..lines.len()).filter(|k| lines[*k].starts_with("<text") && lines[*k].contains("stroke=\"#ffffff\"")).collect();
+    assert!(rims.len() > 3, "{rims:?}");
+    for k in rims {
+        let words = |line: &str| line.split('>').nth(1).unwrap().to_owned();
+        assert!(
+            lines[k].contains("aria-hidden") && !lines[k + 1].contains("stroke=") && words(lines[k]) == words(lines[k + 1]),
+            "{}",
+            lines[k]
+        );
+    }
+}
+
+#[test]
+fn faces_that_lie_on_each_other_do_not_flicker() {
+    let painted = |mut s: Sheet, color: lofting::draw::color::Rgb| {
+        s.paint = Paint::Even(color);
+        s
+    };
+    let (red, blue) = (lofting::draw::color::Rgb(255, 0, 0), lofting::draw::color::Rgb(0, 0, 255));
+    // The same square cut along its other diagonal, and bent by less than a picture shows.
+    let e = 1e-3;
+    let other = sheet(&[[0., 0., e], [1., 0., 0.], [1., 1., e], [0., 1., 0.]], &[[0, 1, 3], [1, 2, 3]]);
+    for view in ["isometric", "top"] {
+        let scene = Scene { sheets: vec![painted(square(1.0, 0.0), red), painted(other.clone(), blue)], ..Scene::default() };
+        let (_, image) = drawn(&scene, view, (200, 200));
+        let count = |c: usize| image.rgb.chunks(3).filter(|p| p[c] > 40 && p[2 - c] < 20).count();
+        assert!(count(2) > 5_000 && count(0) < 150, "{view}: {} blue, {} red", count(2), count(0));
+    }
+}
+
+#[test]
+fn a_line_on_a_face_seen_from_the_side_is_whole() {
+    // Along the middle of a face that is seen at 2 degrees.
+    let line = Line { kind: Kind::Free, points: vec![DVec3::new(0.1, 0.5, 0.0), DVec3::new(0.9, 0.5, 0.0)] };
+    let scene = Scene { sheets: vec![square(1.0, 0.0)], lines: vec![line], ..Scene::default() };
+    let view = View { eye: DVec3::new(0.0, -1.0, 0.035), up: None, perspective: false };
+    let red = |format: Format| {
+        let picture = Picture::new(&scene, &Settings { view, ..settings(400, 400) }, format);
+        let mut out = Vec::new();
+        picture.write(format, &mut out).unwrap();
+        out
+    };
+    let pixels = decoded(&red(Format::Png)).2;
+    let seen = pixels.chunks(3).filter(|p| p[0] > 150 && p[1] < 110).count();
+    // 0.8 of 400 pixels less the margins, at least two pixels high.
+    assert!(seen > 500, "{seen}");
+    let svg = String::from_utf8(red(Format::Svg)).unwrap();
+    assert_eq!(svg.lines().filter(|l| l.contains("stroke=\"#d6121e\"")).map(|l| l.matches('M').count()).sum::<usize>(), 1);
+}

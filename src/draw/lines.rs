@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::scene::{Kind, Line};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::model::{Meeting, Model, SurfaceId, Track};
+use crate::model::{Meeting, Model, Stretch, SurfaceId, Track};
 use crate::network::{Chain, Network};
 
 /// Parts that a smooth piece is looked at in before it may count as straight.
@@ -74,14 +74,58 @@ pub fn borders(
     tolerance: &Tolerance,
 ) -> Vec<Line> {
     let stretches = model.stretches(members, near, network, tolerance);
-    par::map(stretches.len(), |k| {
-        let stretch = &stretches[k];
-        let kind = match stretch.meeting {
-            Meeting::Free => Kind::Free,
-            Meeting::Kink => Kind::Kink,
-            Meeting::Seam | Meeting::Joined => Kind::Border,
-            Meeting::Crowded => Kind::Crowded,
-        };
-        Line { kind, points: track(&stretch.track, stretch.s, fine) }
+    par::map(stretches.len(), |k| Line {
+        kind: kind_of(&stretches[k], tolerance),
+        points: track(&stretches[k].track, stretches[k].s, fine),
     })
+}
+
+/// What a stretch tells: a fold is a kink, between surfaces and at a seam too.
+fn kind_of(stretch: &Stretch, tolerance: &Tolerance) -> Kind {
+    match (stretch.meeting, stretch.turn) {
+        (Meeting::Free, _) => Kind::Free,
+        (Meeting::Crowded, _) => Kind::Crowded,
+        // Faces that lie on each other end there, both.
+        (Meeting::Joined, Some(turn)) if turn > std::f64::consts::PI - tolerance.angle => Kind::Free,
+        (_, Some(turn)) if turn > tolerance.angle => Kind::Kink,
+        (Meeting::Kink, _) => Kind::Kink,
+        (Meeting::Seam | Meeting::Joined, _) => Kind::Border,
+    }
+}
+
+/// Where the faces of meshes fold: what the borders of their surfaces tell, for the edges of elements along them.
+#[derive(Debug, Default)]
+pub struct Folds {
+    /// Names of two surfaces, the first not after the second; what the border tells, and points along it.
+    borders: Vec<(String, String, Kind, Vec<DVec3>)>,
+}
+
+/// Places along a border that are compared with edges of elements.
+const COMPARED: usize = 33;
+
+impl Folds {
+    /// Of some surfaces; borders up to `near` apart meet.
+    pub fn new((model, network): (&Model, &Network), (members, near): (&BTreeSet<SurfaceId>, f64), tolerance: &Tolerance) -> Self {
+        let stretches = model.stretches(members, near, network, tolerance);
+        let name = |id: SurfaceId| model.surfaces[id.index()].name.clone();
+        let border = |stretch: &Stretch| {
+            let [a, b] = stretch.surfaces.as_slice() else { return None };
+            let (a, b) = (name(*a).min(name(*b)), name(*a).max(name(*b)));
+            let place = |k: usize| stretch.s.0 + (stretch.s.1 - stretch.s.0) * k as f64 / (COMPARED - 1) as f64;
+            Some((a, b, kind_of(stretch, tolerance), (0..COMPARED).map(|k| stretch.track.point(place(k))).collect()))
+        };
+        Self { borders: stretches.iter().filter_map(border).collect() }
+    }
+
+    /// What the border of two surfaces tells at a place; `None` where they are not known to meet.
+    pub fn at(&self, (a, b): (&str, &str), place: DVec3) -> Option<Kind> {
+        let (a, b) = (a.min(b), a.max(b));
+        let own = || self.borders.iter().filter(|border| border.0 == a && border.1 == b);
+        let first = own().next()?.2;
+        if own().all(|border| border.2 == first) {
+            return Some(first);
+        }
+        let distance = |points: &[DVec3]| points.iter().map(|p| p.distance_squared(place)).fold(f64::INFINITY, f64::min);
+        own().min_by(|x, y| distance(&x.3).total_cmp(&distance(&y.3))).map(|border| border.2)
+    }
 }

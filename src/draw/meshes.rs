@@ -4,12 +4,15 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use std::collections::BTreeSet;
+
 use super::color::FACE;
+use super::lines::Folds;
 use super::scene::{Kind, Line, Paint, Sheet};
 use crate::base::math;
 use crate::mesh::{FaceRange, Mesh};
 
-/// Turn between two elements above which their edge counts as a kink in a mesh that knows no faces, radians.
+/// Turn between two elements above which their edge counts as a kink where nothing is known of their faces, radians.
 const TURN: f64 = std::f64::consts::FRAC_PI_6;
 
 /// What elements show.
@@ -116,8 +119,25 @@ fn mean_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
 /// A side of an element: its nodes ascending in one number, and the element.
 type Use = (u64, u32);
 
-/// Free and crowded edges, edges between faces, and line elements.
-pub fn lines(mesh: &Mesh) -> Vec<Line> {
+/// The mesh without the elements of some faces; its nodes stay.
+pub fn without(mesh: &Mesh, faces: &BTreeSet<&str>) -> Mesh {
+    let mut out =
+        Mesh { name: mesh.name.clone(), order: mesh.order, nodes: mesh.nodes.clone(), points: mesh.points.clone(), ..Mesh::default() };
+    let wide = |r: &Range<u32>| r.start as usize..r.end as usize;
+    for range in mesh.faces.iter().filter(|range| !faces.contains(range.name.as_str())) {
+        let before = (out.triangles.len() as u32, out.quads.len() as u32, out.lines.len() as u32);
+        out.triangles.extend(&mesh.triangles[wide(&range.triangles)]);
+        out.quads.extend(&mesh.quads[wide(&range.quads)]);
+        out.lines.extend(&mesh.lines[wide(&range.lines)]);
+        let (triangles, quads, lines) =
+            (before.0..out.triangles.len() as u32, before.1..out.quads.len() as u32, before.2..out.lines.len() as u32);
+        out.faces.push(FaceRange { name: range.name.clone(), triangles, quads, lines });
+    }
+    out
+}
+
+/// Free and crowded edges, edges between faces, and line elements; those of some faces alone, by their names, are left out.
+pub fn lines(mesh: &Mesh, folds: &Folds, left_out: &BTreeSet<&str>) -> Vec<Line> {
     let count = mesh.triangles.len() + mesh.quads.len();
     let face_of = faces_of(mesh);
     let mut uses: Vec<Use> = Vec::with_capacity(3 * mesh.triangles.len() + 4 * mesh.quads.len());
@@ -129,9 +149,16 @@ pub fn lines(mesh: &Mesh) -> Vec<Line> {
         }
     }
     uses.sort_unstable();
+    let is_shown = |element: u32| match face_of.get(element as usize).and_then(|k| mesh.faces.get(*k as usize)) {
+        Some(face) => !left_out.contains(face.name.as_str()),
+        None => true,
+    };
     let mut out: Vec<Line> = mesh.lines.iter().map(|ends| segment(mesh, Kind::Curve, *ends)).collect();
     for edge in uses.chunk_by(|a, b| a.0 == b.0) {
-        if let Some(kind) = kind_of(mesh, edge, &face_of) {
+        if !edge.iter().any(|(_, element)| is_shown(*element)) {
+            continue;
+        }
+        if let Some(kind) = kind_of(mesh, edge, &face_of, folds) {
             out.push(segment(mesh, kind, [(edge[0].0 >> 32) as u32, edge[0].0 as u32]));
         }
     }
@@ -156,23 +183,28 @@ fn faces_of(mesh: &Mesh) -> Vec<u32> {
 }
 
 /// What an edge tells; `None` for one inside a face.
-fn kind_of(mesh: &Mesh, edge: &[Use], face_of: &[u32]) -> Option<Kind> {
+fn kind_of(mesh: &Mesh, edge: &[Use], face_of: &[u32], folds: &Folds) -> Option<Kind> {
     let [(_, a), (_, b)] = *edge else {
         return Some(if edge.len() == 1 { Kind::Free } else { Kind::Crowded });
     };
-    match (face_of.get(a as usize), face_of.get(b as usize)) {
-        (Some(a), Some(b)) if a == b => None,
-        (Some(a), Some(b)) => {
-            let name = |k: &u32| mesh.faces.get(*k as usize).map(|f| f.name.as_str());
-            Some(if name(a) == name(b) { Kind::Kink } else { Kind::Border })
+    let face = |element: u32| face_of.get(element as usize).and_then(|k| Some((*k, mesh.faces.get(*k as usize)?.name.as_str())));
+    match (face(a), face(b)) {
+        (Some((a, _)), Some((b, _))) if a == b => None,
+        (Some((_, one)), Some((_, other))) => {
+            let ends = [(edge[0].0 >> 32) as usize, edge[0].0 as u32 as usize].map(|n| mesh.nodes[n]);
+            let known = folds.at((one, other), 0.5 * (ends[0] + ends[1])).filter(|kind| matches!(kind, Kind::Kink | Kind::Border));
+            Some(known.unwrap_or(if one == other || is_bent(mesh, a, b) { Kind::Kink } else { Kind::Border }))
         }
-        _ => {
-            let normal = |e: u32| {
-                let p: Vec<DVec3> = corners(mesh, e as usize).iter().map(|n| mesh.nodes[*n as usize]).collect();
-                crate::base::triangulate::newell(&p)
-            };
-            let (m, n) = (normal(a), normal(b));
-            (m.length() > 0.0 && n.length() > 0.0 && math::angle_between(m, n) > TURN).then_some(Kind::Kink)
-        }
+        _ => is_bent(mesh, a, b).then_some(Kind::Kink),
     }
+}
+
+/// Whether two elements meet at such an angle that it is hardly the bend of a smooth surface.
+fn is_bent(mesh: &Mesh, a: u32, b: u32) -> bool {
+    let normal = |e: u32| {
+        let p: Vec<DVec3> = corners(mesh, e as usize).iter().map(|n| mesh.nodes[*n as usize]).collect();
+        crate::base::triangulate::newell(&p)
+    };
+    let (m, n) = (normal(a), normal(b));
+    m.length() > 0.0 && n.length() > 0.0 && math::angle_between(m, n) > TURN
 }

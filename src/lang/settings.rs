@@ -205,7 +205,7 @@ pub const PICTURE: &[Setting] = &[
     Setting { key: "elements", docs: "Edges of elements are drawn.", default: "true", ty: Ty::Bool },
     Setting {
         key: "borders",
-        docs: "Edges of faces are drawn: free ones red, kinks orange, edges of three faces or more purple.",
+        docs: "Edges of faces are drawn: free ones red, folds (inside a surface and between two) orange, edges of three faces or more purple.",
         default: "true",
         ty: Ty::Bool,
     },

@@ -21,6 +21,8 @@ use crate::surface::{Lean, Surface};
 const STEPS: usize = 200;
 /// Steps of each span of it, at the least.
 const STEPS_A_SPAN: usize = 20;
+/// Steps of a stretch that is shown.
+const SEEN: usize = 24;
 /// Projections before a foot point is taken as it is.
 const ROUNDS: usize = 20;
 
@@ -129,13 +131,25 @@ impl Model {
         let borders = self.borders((&faces, &loops), (&edges, &joins));
         let order = borders_in_order(&borders);
         let found = par::map(order.len(), |n| match borders[order[n]].as_slice() {
-            [a, b] => most_turn(a, b).map(|turn| {
+            [a, b] => most_turn(a, b, STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()))).map(|turn| {
                 let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.atom == order[n]));
                 Turn { edge: a.edge, s: place.map_or(0.0, |u| 0.5 * (u.s.0 + u.s.1)), turn }
             }),
             _ => None,
         });
         found.into_iter().flatten().collect()
+    }
+
+    /// The largest turn of the normal across each of the joined stretches at a few places, otherwise as in [`Model::turns`]; `None` where
+    /// not two faces meet, or one has no normal.
+    pub(super) fn turns_across(&self, members: &[SurfaceId], (edges, joins): (&[EdgeId], &Joins)) -> Vec<Option<f64>> {
+        let faces = self.faces_of(members);
+        let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
+        let borders = self.borders((&faces, &loops), (edges, joins));
+        par::map(borders.len(), |atom| match borders[atom].as_slice() {
+            [a, b] => most_turn(a, b, SEEN),
+            _ => None,
+        })
     }
 
     /// Patches of some surfaces, in the order of the list, each once.
@@ -188,8 +202,7 @@ fn borders_in_order(borders: &[Vec<Border>]) -> Vec<usize> {
 }
 
 /// The largest turn of the normal from one face to the other along a stretch; `None` where one has no normal anywhere.
-fn most_turn(a: &Border, b: &Border) -> Option<f64> {
-    let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
+fn most_turn(a: &Border, b: &Border, steps: usize) -> Option<f64> {
     // Faces of one side run along a stretch in opposite senses.
     let turned = (a.ends.0 < a.ends.1) == (b.ends.0 < b.ends.1);
     let at = |k: usize| {

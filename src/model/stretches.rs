@@ -32,6 +32,10 @@ pub struct Stretch {
     pub s: (f64, f64),
     /// What it is to the faces around it.
     pub meeting: Meeting,
+    /// The surfaces of these faces, in the order of the model.
+    pub surfaces: Vec<SurfaceId>,
+    /// How far the normal turns across it at most, 0 to a half turn, radians; `None` where not two faces meet, or one has no normal.
+    pub turn: Option<f64>,
 }
 
 impl Model {
@@ -62,10 +66,14 @@ impl Model {
             [_, _] => Meeting::Seam,
             _ => Meeting::Crowded,
         };
+        let members: Vec<SurfaceId> = members.iter().copied().collect();
+        let turns = self.turns_across(&members, (&edges, &joins));
         let stretch = |(k, atom): (usize, &super::atoms::Atom)| Stretch {
             track: joins.parts[atom.track].track.clone(),
             s: atom.s,
             meeting: meeting(k),
+            surfaces: users[k].clone(),
+            turn: turns[k],
         };
         joins.pieces.atoms.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()).map(stretch).collect()
     }

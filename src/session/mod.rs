@@ -2,6 +2,7 @@
 
 pub mod cache;
 mod collect;
+mod consumed;
 mod cuts;
 pub mod disk;
 mod export;

@@ -5,8 +5,13 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::pictures::{Stage, Things};
+use crate::base::fault::Say;
 use crate::draw::{Label, Scene as Drawing};
+use crate::lang::cx::Cx;
 use crate::lang::plans::PictureSpec;
+use crate::lang::syntax::ast::Keyword;
+use crate::lang::value::{ModuleId, Value};
+use crate::network::chain::same_curve;
 use crate::network::{Chain, LinkId, Network};
 
 /// Places along a curve where its name may stand, as fractions, the best first.
@@ -24,6 +29,63 @@ pub(super) fn of_link(network: &Network, link: LinkId) -> String {
         Some(k) => format!("{}.links[{k}]", curve.name),
         None => curve.name.clone(),
     }
+}
+
+/// Curves with the names by which a script can say them, by the bits of where they begin.
+type Named = BTreeMap<[u64; 3], Vec<(Chain, String)>>;
+
+/// Names of the curves of imported files, read when first asked for.
+#[derive(Default)]
+pub(super) struct Imported {
+    curves: Option<Named>,
+}
+
+fn start(chain: &Chain) -> [u64; 3] {
+    chain.start().to_array().map(f64::to_bits)
+}
+
+impl Imported {
+    /// The name of a curve: as declared; of one that was imported the name in its file, or its place there.
+    pub fn name(&mut self, cx: &mut Cx, chain: &Chain) -> String {
+        let name = cx.name(chain.origin());
+        // What a file holds comes from the path of its import.
+        if !name.starts_with('"') {
+            return name;
+        }
+        let curves = self.curves.get_or_insert_with(|| read(cx));
+        let same = |other: &Chain| match (other.whole_curve(), chain.whole_curve()) {
+            (Some(a), Some(b)) => same_curve(a, b),
+            _ => false,
+        };
+        let found = curves.get(&start(chain)).and_then(|list| list.iter().find(|(other, _)| same(other)));
+        found.map_or(name, |(_, name)| name.clone())
+    }
+}
+
+/// Declared names first, then names in the files, then places in their lists.
+fn read(cx: &mut Cx) -> Named {
+    let mut curves = Named::new();
+    let mut put = |chain: &Chain, name: String| curves.entry(start(chain)).or_default().push((chain.clone(), name));
+    if let Ok(sound) = cx.sound(ModuleId::MAIN) {
+        sound.parts.curves.iter().for_each(|declared| put(&declared.value, declared.name.to_string()));
+    }
+    let imports = cx.symbols().into_iter().filter(|s| s.keyword == Keyword::Import).filter_map(|s| s.name);
+    for import in imports.collect::<Vec<String>>() {
+        let Some(Value::Record(record)) = cx.value_of(&import) else { continue };
+        for (key, value) in record.keys.iter().zip(&record.values) {
+            if let Value::Curve(chain) = value {
+                put(chain, cx.names.text(*key).to_owned());
+            }
+        }
+        let list = record.keys.iter().position(|key| cx.names.text(*key) == "curves");
+        let Some(Value::List(items)) = list.and_then(|k| record.values.get(k)) else { continue };
+        for (k, item) in items.iter().enumerate() {
+            if let Value::Curve(chain) = item {
+                put(chain, format!("{import}.curves[{k}]"));
+            }
+        }
+    }
+    curves
 }
 
 fn along(chain: &Chain) -> Vec<DVec3> {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::consumed;
 use super::disk::Outputs;
 use super::picture_names as names;
 use super::picture_paths::{ASKED, is_name};
@@ -13,7 +14,7 @@ use super::report::OutputRow;
 use super::run::Wanted;
 use super::shades;
 use crate::base::bbox::Box3;
-use crate::base::fault::{FileFault, Say};
+use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::draw::picture::{FORMATS, Format, Picture, Settings};
@@ -45,8 +46,8 @@ pub(super) struct Things {
     pub surfaces: Vec<(SurfaceId, bool)>,
     /// Patches by themselves.
     pub patches: Vec<(Scene, crate::model::PatchId)>,
-    /// Meshes.
-    pub meshes: Vec<Arc<Mesh>>,
+    /// Meshes, those that the script declares with `true`.
+    pub meshes: Vec<(Arc<Mesh>, bool)>,
     /// Curves, links and edges with their names.
     pub curves: Vec<(String, Chain)>,
     /// Edges that no curve carries.
@@ -171,7 +172,7 @@ fn scene_of(cx: &mut Cx, spec: &PictureSpec, sound: &Sound) -> Result<Scene, Sto
 
 /// Sorts values out by what they are.
 fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Tolerance) -> Result<Things, Stop> {
-    let mut things = Things::default();
+    let (mut things, mut imported) = (Things::default(), names::Imported::default());
     for (value, origin) in values {
         match value {
             Value::Surface(surface) if surface.domain() == Domain::Unbounded => {
@@ -186,9 +187,9 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
                 }
                 Err(_) => scene.find_all(&shell.surfaces)?,
             }),
-            Value::Mesh(mesh) => things.meshes.push(cx.mesh(mesh)?),
+            Value::Mesh(mesh) => things.meshes.push((cx.mesh(mesh)?, matches!(**mesh, MeshValue::Declared { .. }))),
             Value::Patch(module, patch) => things.patches.push((own(cx, *module)?, *patch)),
-            Value::Curve(chain) => things.curves.push((cx.name(chain.origin()), chain.clone())),
+            Value::Curve(chain) => things.curves.push((imported.name(cx, chain), chain.clone())),
             Value::Link(module, link) => {
                 let network = cx.network(*module)?;
                 things.curves.push((names::of_link(&network, *link), network.link_chain(*link)));
@@ -224,7 +225,7 @@ fn outline(things: &Things, scene: &Scene) -> Vec<DVec3> {
         let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / 8.0;
         out.extend((0..81).map(|k| surface.point(at(patch.u, k % 9), at(patch.v, k / 9))));
     }
-    things.meshes.iter().for_each(|mesh| out.extend(corners(&Box3::of(mesh.nodes.iter().copied()))));
+    things.meshes.iter().for_each(|(mesh, _)| out.extend(corners(&Box3::of(mesh.nodes.iter().copied()))));
     let mut along = |chain: &Chain| out.extend((0..LOOKS).map(|k| chain.point(k as f64 / (LOOKS - 1) as f64)));
     things.curves.iter().for_each(|(_, chain)| along(chain));
     if let Some(network) = &things.network {
@@ -262,7 +263,7 @@ fn around(focus: &[DVec3], everything: &Box3) -> Box3 {
 fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Result<Drawing, Stop> {
     let mut drawing = Drawing::default();
     let (model, fine) = (&stage.scene.model, stage.fine);
-    let covered: BTreeSet<&str> = things.meshes.iter().flat_map(|m| &m.faces).map(|f| f.name.as_str()).collect();
+    let covered: BTreeSet<&str> = things.meshes.iter().flat_map(|(m, _)| &m.faces).map(|f| f.name.as_str()).collect();
     let is_covered = |id: SurfaceId| covered.contains(model.surfaces[id.index()].name.as_str());
     let of_surfaces = shades::is_of_surfaces(spec);
     // What is meshed and drawn as a mesh is not drawn twice.
@@ -285,10 +286,14 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
         let near = things.near.max(model.reach(drawn.iter().copied(), None, &stage.tolerance));
         drawing.lines.extend(lines::borders((model, &stage.scene.network), (&drawn, near), fine, &stage.tolerance));
     }
-    let meshes: Vec<&Arc<Mesh>> = things.meshes.iter().filter(|m| !of_surfaces || !drawn_as_surface(m, stage, &drawn)).collect();
-    for mesh in &meshes {
-        drawing.sheets.extend(shades::mesh_sheets(spec, mesh));
-        drawing.lines.extend(meshes::lines(mesh).into_iter().filter(|l| borders || l.kind == Kind::Curve));
+    let meshes = latest(&things.meshes);
+    let meshes: Vec<&(Arc<Mesh>, BTreeSet<&str>)> =
+        meshes.iter().filter(|(m, _)| !of_surfaces || !drawn_as_surface(m, stage, &drawn)).collect();
+    let folds = if borders { folds(&meshes, things.near, stage) } else { lines::Folds::default() };
+    for (mesh, left_out) in &meshes {
+        let part = if left_out.is_empty() { mesh.clone() } else { Arc::new(meshes::without(mesh, left_out)) };
+        drawing.sheets.extend(shades::mesh_sheets(spec, &part));
+        drawing.lines.extend(meshes::lines(mesh, &folds, left_out).into_iter().filter(|l| borders || l.kind == Kind::Curve));
         drawing.marks.extend(mesh.points.iter().map(|n| Mark { at: mesh.nodes[*n as usize], node: false }));
     }
     for (_, chain) in &things.curves {
@@ -303,6 +308,35 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
     shades::paint(cx, spec, &mut drawing)?;
     names::add(spec, things, stage, &mut drawing);
     Ok(drawing)
+}
+
+/// Meshes that are drawn, each with the names of its faces that a later mesh of the script shows as well: of those the last one is seen.
+fn latest(meshes: &[(Arc<Mesh>, bool)]) -> Vec<(Arc<Mesh>, BTreeSet<&str>)> {
+    let mut later: BTreeSet<&str> = BTreeSet::new();
+    let mut out = Vec::new();
+    for (mesh, declared) in meshes.iter().rev() {
+        let own = || mesh.faces.iter().map(|face| face.name.as_str());
+        // A mesh that was moved lies elsewhere.
+        let left_out: BTreeSet<&str> = own().filter(|name| *declared && later.contains(name)).collect();
+        if *declared {
+            later.extend(own());
+        }
+        if mesh.faces.is_empty() || own().any(|name| !left_out.contains(name)) {
+            out.push((mesh.clone(), left_out));
+        }
+    }
+    out.reverse();
+    out
+}
+
+/// Where the surfaces of meshes fold.
+fn folds(meshes: &[&(Arc<Mesh>, BTreeSet<&str>)], near: f64, stage: &Stage) -> lines::Folds {
+    let model = &stage.scene.model;
+    let names: BTreeSet<&str> = meshes.iter().flat_map(|(mesh, _)| &mesh.faces).map(|face| face.name.as_str()).collect();
+    let own = (0..model.surfaces.len()).map(SurfaceId::at);
+    let members: BTreeSet<SurfaceId> = own.filter(|id| names.contains(model.surfaces[id.index()].name.as_str())).collect();
+    let near = near.max(model.reach(members.iter().copied(), None, &stage.tolerance));
+    lines::Folds::new((model, &stage.scene.network), (&members, near), &stage.tolerance)
 }
 
 fn drawn_as_surface(mesh: &Mesh, stage: &Stage, drawn: &BTreeSet<SurfaceId>) -> bool {
@@ -327,7 +361,8 @@ fn add_network(drawing: &mut Drawing, network: &Network, stage: &Stage) {
 
 /// What a command line asks for: some names of the script, or everything it declares.
 ///
-/// Everything is its meshes, the surfaces that none of them covers, and its curves; without faces the network.
+/// Everything is its meshes, of each surface the last one, the surfaces that none of them covers but those that a part was cut from, and
+/// its curves; without faces the network.
 pub fn request(cx: &mut Cx, wanted: &Wanted) -> Result<PictureSpec, Box<Diagnostic>> {
     let mut spec = wanted.spec.clone();
     let mut asked = 0;
@@ -382,14 +417,13 @@ fn everything(cx: &mut Cx, spec: &mut PictureSpec) {
     for (_, value) in cx.mesh_values() {
         // A mesh that cannot be made was reported; its surfaces are drawn.
         let Ok(mesh) = cx.mesh(&value) else { continue };
-        if mesh.faces.iter().all(|face| !covered.contains(&face.name)) {
-            covered.extend(mesh.faces.iter().map(|face| face.name.clone()));
-            spec.things.push((Value::Mesh(Arc::new(MeshValue::Data(mesh, Origin::NONE))), Origin::NONE));
-        }
+        covered.extend(mesh.faces.iter().map(|face| face.name.clone()));
+        spec.things.push((Value::Mesh(Arc::new(value)), Origin::NONE));
     }
     let Ok(sound) = cx.sound(ModuleId::MAIN) else { return };
-    let bounded = |s: &Surface| s.domain() != Domain::Unbounded;
-    let surfaces = sound.parts.surfaces.iter().filter(|s| bounded(&s.value) && !covered.contains(&*s.name));
+    let consumed = consumed::surfaces(cx, &sound);
+    let is_drawn = |s: &Surface, name: &str| s.domain() != Domain::Unbounded && !covered.contains(name) && !consumed.contains(name);
+    let surfaces = sound.parts.surfaces.iter().filter(|s| is_drawn(&s.value, &s.name));
     spec.things.extend(surfaces.map(|s| (Value::Surface(s.value.clone()), Origin::NONE)));
     let faces = !spec.things.is_empty();
     if faces {

@@ -1,0 +1,96 @@
+//! Surfaces that parts were cut from: a picture shows the parts and not, over them, the whole again.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::base::bbox::Box3;
+use crate::lang::cx::{Cx, Sound};
+use crate::lang::symbols::Symbol;
+use crate::lang::syntax::ast::Keyword;
+use crate::lang::value::Value;
+use crate::surface::{Domain, Surface};
+
+/// Places (u, v) where two surfaces are compared.
+const PROBES: [(f64, f64); 3] = [(0.31, 0.23), (0.17, 0.71), (0.83, 0.59)];
+
+/// Names of the declared surfaces from which another surface of the script was trimmed, split or imprinted, but those that a shell is
+/// made of.
+pub(super) fn surfaces(cx: &mut Cx, sound: &Sound) -> BTreeSet<String> {
+    let symbols = cx.symbols();
+    let place: BTreeMap<&str, usize> = symbols.iter().enumerate().rev().filter_map(|(k, s)| Some((s.name.as_deref()?, k))).collect();
+    let mut made: Vec<(usize, Vec<Surface>)> = Vec::new();
+    let mut shelled: Vec<Surface> = Vec::new();
+    for (k, symbol) in symbols.iter().enumerate() {
+        let Some(name) = symbol.name.as_ref().filter(|_| matches!(symbol.keyword, Keyword::Surface | Keyword::Let | Keyword::Shell)) else {
+            continue;
+        };
+        let own = cx.value_of(name).map_or(Vec::new(), |value| surfaces_of(&value));
+        match symbol.keyword {
+            Keyword::Shell => shelled.extend(own),
+            _ => made.push((k, own)),
+        }
+    }
+    let mut out = BTreeSet::new();
+    for declared in &sound.parts.surfaces {
+        let whole = &declared.value;
+        let Some(&base) = place.get(declared.name.split('[').next().unwrap_or("")) else { continue };
+        if whole.domain() == Domain::Unbounded || shelled.iter().any(|s| s.is(whole)) {
+            continue;
+        }
+        let cut = |(k, own): &(usize, Vec<Surface>)| needs(&symbols, *k, base) && own.iter().any(|part| is_part(part, whole));
+        if made.iter().any(cut) {
+            out.insert(declared.name.to_string());
+        }
+    }
+    out
+}
+
+fn surfaces_of(value: &Value) -> Vec<Surface> {
+    let mut out = Vec::new();
+    let _ = value.for_each_flat::<()>(&mut |v| {
+        match v {
+            Value::Surface(surface) => out.push(surface.clone()),
+            Value::Shell(shell) => out.extend(shell.surfaces.iter().cloned()),
+            _ => {}
+        }
+        Ok(())
+    });
+    out
+}
+
+/// Whether a declaration depends on another one.
+fn needs(symbols: &[Symbol], from: usize, on: usize) -> bool {
+    let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(at) = open.pop() {
+        if !seen.insert(at) {
+            continue;
+        }
+        if at != from && at == on {
+            return true;
+        }
+        open.extend(symbols.get(at).into_iter().flat_map(|s| s.needs.iter().copied()));
+    }
+    false
+}
+
+/// Whether a surface is cut out of another one: a stretch of the same surface, and not the whole.
+fn is_part(part: &Surface, whole: &Surface) -> bool {
+    if part.is(whole) || part.domain() != Domain::Loop {
+        return false;
+    }
+    let (a, b) = (part.untrimmed(), whole.untrimmed());
+    let same = if part.is_flat() && whole.is_flat() {
+        // Planes may have parameters of their own.
+        let (normal, reach) = (b.normal(0.5, 0.5), crate::surface::bbox(whole));
+        let off = |p: glam::DVec3| normal.dot(p - b.point(0.5, 0.5)).abs();
+        let size = reach.diagonal() * crate::base::tolerance::PARALLEL;
+        PROBES.iter().all(|(u, v)| off(a.point(*u, *v)) <= size)
+    } else {
+        PROBES.iter().all(|(u, v)| a.point(*u, *v) == b.point(*u, *v))
+    };
+    same && inside(&crate::surface::bbox(part), &crate::surface::bbox(whole))
+}
+
+fn inside(part: &Box3, whole: &Box3) -> bool {
+    let slack = whole.diagonal() * crate::base::tolerance::BOX;
+    (part.min + slack).cmpge(whole.min).all() && (part.max - slack).cmple(whole.max).all()
+}
