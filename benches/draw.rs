@@ -4,10 +4,12 @@
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput};
 use glam::DVec3;
+use lofting::draw::lines::Folds;
 use lofting::draw::meshes::{self, Measure};
 use lofting::draw::{Format, Picture, Scene, Settings, View};
 use lofting::mesh::{FaceRange, Mesh};
@@ -36,7 +38,11 @@ fn sheet() -> Mesh {
 
 /// From the mesh to the bytes of the file.
 fn picture(mesh: &Mesh, format: Format) -> usize {
-    let scene = Scene { sheets: vec![meshes::whole(mesh, Measure::Light)], lines: meshes::lines(mesh), ..Scene::default() };
+    let scene = Scene {
+        sheets: vec![meshes::whole(mesh, Measure::Light)],
+        lines: meshes::lines(mesh, &Folds::default(), &BTreeSet::new()),
+        ..Scene::default()
+    };
     let settings = Settings {
         view: View::named("isometric").unwrap(),
         width: 1200,
