@@ -28,12 +28,10 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
     }
     let borders: Vec<Box<dyn Fn(f64) -> DVec2 + '_>> = (0..surface.n_sides()).filter_map(|k| border(surface, k)).collect();
     let outlines = surface.outlines();
-    let closed = surface.closed();
     let limited = input.plan.chord_error.is_some();
     let mut parts = Vec::new();
-    for (axis, lines, others, turns) in [(0, us, vs, closed.0), (1, vs, us, closed.1)] {
-        let shifts: &[f64] = if turns { &[-1.0, 0.0, 1.0] } else { &[0.0] };
-        for at in lines.iter().flat_map(|x| shifts.iter().map(move |s| x + s)) {
+    for (axis, lines, others) in [(0, us, vs), (1, vs, us)] {
+        for at in lines.iter().flat_map(|x| surface.copies_along(axis, *x)) {
             let mut ends: Vec<f64> = borders.iter().flat_map(|border| crossings(border, axis, at)).collect();
             ends.sort_by(f64::total_cmp);
             for w in ends.windows(2) {
@@ -50,7 +48,7 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
                 if trace.length() <= 2.0 * input.tolerance.point {
                     continue;
                 }
-                let inner = others.iter().filter(|x| **x > w[0] && **x < w[1]);
+                let inner = others.iter().flat_map(|x| surface.copies_along(1 - axis, *x)).filter(|x| *x > w[0] && *x < w[1]);
                 let cuts = inner.map(|x| trace.length_at((x - w[0]) / (w[1] - w[0]))).collect();
                 parts.push(Part { track: Track::Iso(trace), cuts, rank: RANK, near: input.tolerance.point });
             }

@@ -92,11 +92,8 @@ pub fn trace(surface: &Surface, patch: &Patch, points: &[DVec3]) -> Vec<(f64, f6
 /// The place moved by whole turns into the loops of a trimmed surface.
 fn unwrapped(surface: &Surface, (u, v): (f64, f64)) -> (f64, f64) {
     let outlines = surface.outlines();
-    let turns = |closed: bool| if closed { vec![0.0, 1.0, -1.0] } else { vec![0.0] };
-    let (closed_u, closed_v) = surface.closed();
-    let mut all = turns(closed_u).into_iter().flat_map(|x| turns(closed_v).into_iter().map(move |y| (u + x, v + y)));
-    let kept = |at: &(f64, f64)| surround(&outlines, DVec2::new(at.0, at.1));
-    all.find(kept).unwrap_or((u, v))
+    let kept = |at: &DVec2| surround(&outlines, *at);
+    surface.copies((u, v)).into_iter().find(kept).map_or((u, v), |at| (at.x, at.y))
 }
 
 /// Whether polygons, the holes of others among them, have a point inside.

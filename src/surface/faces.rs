@@ -47,7 +47,8 @@ pub(super) fn loops(next: &BTreeMap<Half, Half>) -> Vec<Vec<Half>> {
         let mut at = start;
         while seen.insert(at, ()).is_none() {
             row.push(at);
-            at = next[&at];
+            let Some(then) = next.get(&at) else { break };
+            at = *then;
         }
         if !row.is_empty() {
             out.push(row);
@@ -56,24 +57,21 @@ pub(super) fn loops(next: &BTreeMap<Half, Half>) -> Vec<Vec<Half>> {
     out
 }
 
-/// Edges without those that hang on one vertex only, again and again; `true` for those that stay.
-pub(super) fn without_tails(edges: &[Edge]) -> Vec<bool> {
+/// Edges without those that hang on one site only, again and again; `true` for those that stay. A site is where vertices are one
+/// point; edges that are `bare` stand for none and stay.
+pub(super) fn without_tails(edges: &[Edge], sites: &[usize], bare: &[bool]) -> Vec<bool> {
     let mut stays = vec![true; edges.len()];
+    let ends = |k: usize| [sites[edges[k].ends.0], sites[edges[k].ends.1]];
     loop {
         let mut degree: BTreeMap<usize, usize> = BTreeMap::new();
-        for (edge, _) in edges.iter().zip(&stays).filter(|(_, s)| **s) {
-            *degree.entry(edge.ends.0).or_default() += 1;
-            *degree.entry(edge.ends.1).or_default() += 1;
+        let held = |stays: &[bool]| (0..edges.len()).filter(|k| stays[*k] && !bare[*k]).collect::<Vec<_>>();
+        for site in held(&stays).into_iter().flat_map(ends) {
+            *degree.entry(site).or_default() += 1;
         }
-        let mut changed = false;
-        for (k, edge) in edges.iter().enumerate() {
-            if stays[k] && (degree[&edge.ends.0] == 1 || degree[&edge.ends.1] == 1) {
-                stays[k] = false;
-                changed = true;
-            }
-        }
-        if !changed {
+        let loose: Vec<usize> = held(&stays).into_iter().filter(|k| ends(*k).iter().any(|site| degree[site] == 1)).collect();
+        if loose.is_empty() {
             return stays;
         }
+        loose.into_iter().for_each(|k| stays[k] = false);
     }
 }

@@ -86,7 +86,7 @@ impl Holes<'_> {
         let touched = |a: usize, b: usize| touches.get(&(a.min(b), a.max(b))).and_then(|t| t.places.first().copied());
         // Numbers of the loops that lie in (u, v) as they are, and of those that divide a closed surface.
         let (mut plain, mut apart): (Vec<usize>, Vec<usize>) = ((1..new).collect(), Vec::new());
-        let outline = walks.first().map(Walk::polygon).unwrap_or_default();
+        let outline = walks.first().map(Walk::copied);
         for (k, walk) in cutting.into_iter().enumerate() {
             let ring = &rings[new + k];
             let (place, at) = walk.place_off(base, touched(0, new + k));
@@ -99,7 +99,7 @@ impl Holes<'_> {
             if let Some(by) = moved {
                 walks.push(walk.shifted(by));
                 plain.push(new + k);
-            } else if shifts(base).len() > 1 && walk.lies_within(base, &outline) {
+            } else if shifts(base).len() > 1 && outline.as_ref().is_some_and(|outline| walk.lies_within(base, outline)) {
                 apart.push(k);
             } else {
                 return Err(LoopFault::Outside { hole: ring.of, outer: rings[0].of, trimming: origin, at }.into());
@@ -141,7 +141,7 @@ impl Holes<'_> {
             let inside = |p: DVec2| hairs.iter().any(|hair| outer.goes_round(self.base, p + *by + *hair));
             inside(place) && walk.courses.iter().flat_map(Course::places).all(inside)
         };
-        Ok(shifts(self.base).into_iter().find(all))
+        Ok(outer.copies(self.base, place).into_iter().map(|at| at - place).find(all))
     }
 }
 

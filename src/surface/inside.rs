@@ -4,20 +4,43 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Side, Surface};
 use super::pull::{Course, foot};
-use super::trim::shifts;
 use crate::base::math;
+use crate::base::tolerance::NUDGE;
 use crate::network::Chain;
+
+/// A value and those whole steps away that are between two others, those between 0 and 1 first.
+pub(super) fn within(x: f64, (low, high): (f64, f64)) -> Vec<f64> {
+    let (first, last) = ((low - x - NUDGE).ceil() as i64, (high - x + NUDGE).floor() as i64);
+    let mut turns: Vec<i64> = (first..=last).collect();
+    turns.sort_by_key(|n| (n.abs(), -n));
+    turns.into_iter().map(|n| x + n as f64).collect()
+}
 
 /// Halvings of a stretch of a border.
 const DEEPEST: u32 = 40;
 
 impl Surface {
+    /// A place and the same place whole turns away, round a surface that closes: of a trimmed surface all that its loops may hold.
+    pub fn copies(&self, (u, v): (f64, f64)) -> Vec<DVec2> {
+        let vs = self.copies_along(1, v);
+        self.copies_along(0, u).into_iter().flat_map(|u| vs.iter().map(move |v| DVec2::new(u, *v))).collect()
+    }
+
+    /// The same of u alone (axis 0) or of v (axis 1).
+    pub fn copies_along(&self, axis: usize, x: f64) -> Vec<f64> {
+        let closed = if axis == 0 { self.closed().0 } else { self.closed().1 };
+        match &self.parts().trim {
+            _ if !closed => vec![x],
+            None => vec![x, x + 1.0, x - 1.0],
+            Some(trim) => within(x, (trim.reach.0[axis], trim.reach.1[axis])),
+        }
+    }
+
     /// Whether a place of a trimmed surface lies in the kept part; borders count as they run, not as polygons. `true` for a
     /// surface that is not trimmed.
     pub fn holds(&self, u: f64, v: f64) -> bool {
         let Some(trim) = &self.parts().trim else { return true };
-        shifts(self).into_iter().any(|by| {
-            let p = DVec2::new(u, v) + by;
+        self.copies((u, v)).into_iter().any(|p| {
             let turns: f64 = trim.courses.iter().enumerate().map(|(k, course)| self.turning(k, course, p)).sum();
             turns > std::f64::consts::PI
         })

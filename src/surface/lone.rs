@@ -7,7 +7,7 @@ use super::closest::closest;
 use super::core::{Side, Surface};
 use super::divide::divide;
 use super::pull::Course;
-use super::trim::{Walk, inside, natural, shifts};
+use super::trim::{Walk, inside, natural};
 use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -43,11 +43,11 @@ impl Walk {
         closed.0 && turns.x != 0.0 || closed.1 && turns.y != 0.0
     }
 
-    /// Whether every place of it is inside a polygon, each moved by turns of its own; a place on a seam is.
-    pub fn lies_within(&self, base: &Surface, bounds: &[DVec2]) -> bool {
+    /// Whether every place of it is inside another one, each moved by turns of its own; a place on a seam is.
+    pub fn lies_within(&self, base: &Surface, bounds: &Walk) -> bool {
         let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
-        let by = shifts(base);
-        let place = |p: DVec2| by.iter().any(|by| hairs.iter().any(|hair| inside(bounds, p + *by + *hair)));
+        let outline = bounds.polygon();
+        let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| hairs.iter().any(|hair| inside(&outline, at + *hair)));
         self.courses.iter().flat_map(Course::places).all(place)
     }
 }

@@ -8,9 +8,10 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::core::{Side, Surface};
+use super::inside::within;
 use super::pull::Course;
 use super::strands::of_border;
-use super::trim::{Walk, shifts};
+use super::trim::{Walk, reach};
 use crate::base::bbox::Box3;
 use crate::base::fault::{LoopFault, Result};
 use crate::base::origin::Origin;
@@ -172,33 +173,31 @@ impl Walk {
         places.fold(None, first).unwrap_or((DVec2::ZERO, DVec3::ZERO))
     }
 
-    /// Whether it goes round a place, by its curves and not by polygons.
-    pub fn goes_round(&self, base: &Surface, p: DVec2) -> bool {
+    /// The angle by which it turns about a place, by its curves and not by polygons.
+    pub fn turning(&self, base: &Surface, p: DVec2) -> f64 {
         let turn = |k: usize| match &self.borders[k].side {
             Side::Chain { chain, .. } => base.turn_along(&self.courses[k], Some(chain), p),
             _ => base.turn_along(&self.courses[k], None, p),
         };
-        (0..self.courses.len()).map(turn).sum::<f64>().abs() > std::f64::consts::PI
+        (0..self.courses.len()).map(turn).sum::<f64>()
+    }
+
+    /// Whether it goes round a place.
+    pub fn goes_round(&self, base: &Surface, p: DVec2) -> bool {
+        self.turning(base, p).abs() > std::f64::consts::PI
+    }
+
+    /// A place and the same place whole turns round the surface away, as far as the walk reaches.
+    pub fn copies(&self, base: &Surface, p: DVec2) -> Vec<DVec2> {
+        let (low, high) = reach(&self.courses);
+        let along = |closed: bool, axis: usize| if closed { within(p[axis], (low[axis], high[axis])) } else { vec![p[axis]] };
+        let vs = along(base.closed().1, 1);
+        along(base.closed().0, 0).into_iter().flat_map(|u| vs.iter().map(move |v| DVec2::new(u, *v))).collect()
     }
 
     /// The whole turns by which a place must be moved to lie inside it, if it does.
     pub fn holds_moved(&self, base: &Surface, p: DVec2) -> Option<DVec2> {
-        shifts(base).into_iter().find(|by| self.goes_round(base, p + *by))
-    }
-
-    /// A box in (u, v) that holds it: between two places a curve is nowhere farther from its chord than the chord is long.
-    fn reach(&self) -> (DVec2, DVec2) {
-        let (mut low, mut high, mut longest) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0_f64);
-        for course in &self.courses {
-            let places = course.places();
-            for w in places.windows(2) {
-                longest = longest.max(w[0].distance(w[1]));
-            }
-            for p in places {
-                (low, high) = (low.min(p), high.max(p));
-            }
-        }
-        (low - DVec2::splat(longest), high + DVec2::splat(longest))
+        self.copies(base, p).into_iter().find(|at| self.goes_round(base, *at)).map(|at| at - p)
     }
 }
 
@@ -208,12 +207,12 @@ pub(super) fn nested(
     holes: &[(usize, &Walk)],
     touched: impl Fn(usize, usize) -> Option<DVec3>,
 ) -> Option<(usize, usize, DVec3)> {
-    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| walk.reach()).collect();
-    let within = |p: DVec2, (low, high): (DVec2, DVec2)| low.cmple(p).all() && p.cmple(high).all();
+    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| reach(&walk.courses)).collect();
+    let near = |p: DVec2, (low, high): (DVec2, DVec2)| low.cmple(p).all() && p.cmple(high).all();
     for (inner, walk) in holes {
         let (first, _) = walk.place_off(base, None);
         for ((around, other), reach) in holes.iter().zip(&reaches) {
-            if inner == around || !within(first, *reach) {
+            if inner == around || !near(first, *reach) {
                 continue;
             }
             let (place, at) = walk.place_off(base, touched(*inner, *around));

@@ -5,6 +5,7 @@ mod blend;
 mod blend_spread;
 mod breaks;
 pub mod carry;
+mod cells;
 pub mod closest;
 mod compose;
 pub mod coons;

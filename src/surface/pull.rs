@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::core::{Jet2, Surface};
 use super::foot::{Footing, step};
 use super::quick::Quick;
-use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
+use crate::base::tolerance::{EPSILON, NUDGE, POLE_STEP, SINGULAR};
 use crate::network::Chain;
 
 /// Steps between two breaks of a curve at the least.
@@ -157,6 +157,33 @@ impl Pull {
     /// This way and then another that goes on from its end.
     pub fn then(mut self, more: &Self) -> Self {
         self.at.extend(more.at.iter().skip(1));
+        self
+    }
+
+    /// The same with an end, the last one or the first, at another place.
+    pub fn ending(mut self, last: bool, place: DVec2) -> Self {
+        let k = if last { self.at.len() - 1 } else { 0 };
+        self.at[k].1 = place;
+        self
+    }
+
+    /// The same with its ends at poles where the way before them points: there every u (or v) is the same point.
+    pub fn into_poles(mut self, surface: &Surface, chain: &Chain) -> Self {
+        for last in [false, true] {
+            let end = if last { self.ends().1 } else { self.ends().0 };
+            if !is_pole(surface, end) {
+                continue;
+            }
+            let before = |k: f64| {
+                let f = self.fraction(if last { 1.0 - k * POLE_STEP } else { k * POLE_STEP });
+                foot((surface, None), chain.point(f), self.guess(f)).0
+            };
+            let held = surface.hold(end);
+            let jet = surface.jet(held.x, held.y);
+            let limit = before(1.0) * 3.0 - before(2.0) * 3.0 + before(3.0);
+            let place = if jet.du.length() < jet.dv.length() { DVec2::new(limit.x, end.y) } else { DVec2::new(end.x, limit.y) };
+            self = self.ending(last, place);
+        }
         self
     }
 

@@ -1,16 +1,17 @@
 //! What divides a surface: its border and the curves that cut it, parted where they meet.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::carry::{Way, carried};
-use super::core::{Border, Side, Surface};
+use super::core::{Border, Domain, Side, Surface};
 use super::pull::{Course, Off, Pull, is_pole};
-use super::trim::natural;
+use super::trim::{Walk, natural};
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::{Hit, build, self_intersect};
 use crate::network::{Chain, meet};
 
@@ -42,12 +43,26 @@ pub(super) struct Piece {
     pub p: (DVec3, DVec3, DVec3),
     /// Whether the face goes on across it, round a closed surface.
     pub seam: bool,
+    /// Part of the border of the surface, seams and poles included: the surface lies on its left.
+    pub rim: bool,
 }
 
 impl Piece {
     /// The chain whose fractions its course in (u, v) knows.
     pub fn own_chain(&self) -> Option<&Chain> {
         if let Side::Chain { chain, .. } = &self.border.side { Some(chain) } else { None }
+    }
+
+    /// Puts an end, the last one or the first, at another place of a pole.
+    fn end_at(&mut self, last: bool, place: DVec2) {
+        if last {
+            self.uv.1 = place
+        } else {
+            self.uv.0 = place
+        }
+        if let Course::Pull(pull) = &self.course {
+            self.course = Course::Pull(Arc::new(pull.as_ref().clone().ending(last, place)));
+        }
     }
 }
 
@@ -68,6 +83,25 @@ pub(super) fn strands(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) 
     }
     part(&mut all, tolerance)?;
     Ok(all)
+}
+
+/// Both sides of a seam are cut at the same places.
+fn mirror_cuts(all: &mut [Strand], tolerance: &Tolerance) {
+    let seams: Vec<usize> = (0..all.len()).filter(|k| all[*k].seam && all[*k].chain.is_some()).collect();
+    for &i in &seams {
+        let Some(own) = all[i].chain.clone() else { continue };
+        let places: Vec<DVec3> = all[i].cuts.iter().map(|f| own.point(*f)).collect();
+        for &j in seams.iter().filter(|j| **j != i) {
+            let Some(other) = all[j].chain.clone() else { continue };
+            for p in &places {
+                let (f, _, distance) = other.closest(*p);
+                let known = |g: &f64| other.point(*g).distance(*p) <= 2.0 * tolerance.point;
+                if distance <= tolerance.point && !all[j].cuts.iter().any(known) {
+                    all[j].cuts.push(f);
+                }
+            }
+        }
+    }
 }
 
 pub(super) fn of_border(
@@ -123,6 +157,7 @@ fn part(all: &mut [Strand], tolerance: &Tolerance) -> Result<()> {
             }
         }
     }
+    mirror_cuts(all, tolerance);
     for strand in all {
         let Some(chain) = &strand.chain else { continue };
         let near = tolerance.point / chain.length();
@@ -135,9 +170,11 @@ fn part(all: &mut [Strand], tolerance: &Tolerance) -> Result<()> {
     Ok(())
 }
 
-/// The parts of all strands; cutters that run along a border or an earlier cutter count once.
-pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) -> Result<Vec<Piece>> {
-    let mut out: Vec<Piece> = Vec::new();
+/// The parts of all strands; cutters that run along a border or an earlier cutter count once, those beyond the border not at
+/// all. With the numbers of the cutters of which a part runs along something else.
+pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) -> Result<(Vec<Piece>, BTreeSet<usize>)> {
+    let (mut out, mut along): (Vec<Piece>, BTreeSet<usize>) = (Vec::new(), BTreeSet::new());
+    let loops = if bounded(base) { natural(base, tolerance)? } else { Vec::new() };
     for (k, strand) in strands.iter().enumerate() {
         let Some(chain) = &strand.chain else { continue };
         for w in strand.cuts.windows(2) {
@@ -145,7 +182,10 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
             let run = if whole { chain.clone() } else { chain.slice(w[0], w[1], tolerance)? };
             let middle = run.point(MIDDLE);
             let lies_on = |other: &Strand| other.chain.as_ref().is_some_and(|c| c.closest(middle).2 <= 2.0 * tolerance.point);
-            if strand.cutter.is_some() && strands[..k].iter().any(lies_on) {
+            if let Some(cutter) = strand.cutter
+                && strands[..k].iter().any(lies_on)
+            {
+                along.insert(cutter);
                 continue;
             }
             // A cutter along a seam makes a border of it.
@@ -153,7 +193,10 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
             let piece = match &strand.border {
                 Some((border, course)) if whole => of_whole(k, border, course, run, seam),
                 Some((border, course)) => of_part(base, (k, strand.drawn), (border, course), (run, (w[0], w[1])), tolerance, seam)?,
-                None => of_cutter(base, k, run, tolerance)?,
+                None => match within(base, &loops, middle) {
+                    Some(start) => of_cutter(base, k, run, start, tolerance)?,
+                    None => continue,
+                },
             };
             out.push(piece);
         }
@@ -162,10 +205,26 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
         if strand.chain.is_none()
             && let Some((border, Course::Line(a, b))) = &strand.border
         {
-            out.extend(at_pole(base, (k, border), (DVec2::from(*a), DVec2::from(*b)), &out, tolerance));
+            let added = at_pole(base, (k, border), (DVec2::from(*a), DVec2::from(*b)), &mut out, tolerance);
+            out.extend(added);
         }
     }
-    Ok(out)
+    Ok((out, along))
+}
+
+/// Whether a surface is bounded by curves in (u, v), and not by the square or triangle of its parameters.
+fn bounded(base: &Surface) -> bool {
+    base.domain() == Domain::Loop
+}
+
+/// Where in (u, v) a point of a surface lies inside its loops; `None` beyond them.
+fn within(base: &Surface, loops: &[Walk], p: DVec3) -> Option<DVec2> {
+    let near = base.flat_uv(p).unwrap_or_else(|| super::closest::closest(&base.untrimmed(), p).uv);
+    if !bounded(base) {
+        return Some(near.into());
+    }
+    let inside = |at: &DVec2| loops.iter().map(|walk| walk.turning(base, *at)).sum::<f64>().abs() > std::f64::consts::PI;
+    base.copies(near).into_iter().find(inside)
 }
 
 /// Where a piece is asked where it lies: no place that is special for anything.
@@ -175,7 +234,7 @@ fn of_whole(strand: usize, border: &Border, course: &Course, run: Chain, seam: b
     let places = course.places();
     let p = (run.start(), run.point(MIDDLE), run.end());
     let uv = (places[0], places[places.len() - 1]);
-    Piece { strand, border: border.clone(), course: course.clone(), uv, p, seam }
+    Piece { strand, border: border.clone(), course: course.clone(), uv, p, seam, rim: true }
 }
 
 fn of_part(
@@ -198,10 +257,11 @@ fn of_part(
     } else {
         Pull::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point)
     }
-    .map_err(off)?;
+    .map_err(off)?
+    .into_poles(base, &run);
     if !drawn {
         let (uv, course) = (pull.ends(), Course::Pull(Arc::new(pull)));
-        return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam });
+        return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam, rim: true });
     }
     // The border is straight in (u, v): its parts are.
     let (a, b) = (about(0.0), about(1.0));
@@ -211,19 +271,18 @@ fn of_part(
     };
     let uv = (onto(pull.ends().0, from), onto(pull.ends().1, to));
     let course = Course::Line(uv.0.into(), uv.1.into());
-    Ok(Piece { strand, border: Border::straight(border.side.clone()), course, uv, p, seam })
+    Ok(Piece { strand, border: Border::straight(border.side.clone()), course, uv, p, seam, rim: true })
 }
 
-fn of_cutter(base: &Surface, strand: usize, run: Chain, tolerance: &Tolerance) -> Result<Piece> {
-    let near = super::closest::closest(&base.untrimmed(), run.point(MIDDLE)).uv;
+/// A piece of a cutter, with the place of its middle.
+fn of_cutter(base: &Surface, strand: usize, run: Chain, start: DVec2, tolerance: &Tolerance) -> Result<Piece> {
     let off = |off: Off| outside(base, &run, off, tolerance);
-    let start = DVec2::new(near.0, near.1);
     let before = Pull::follow(base, (&run, MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
     let after = Pull::follow(base, (&run, MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
-    let pull = before.turned().then(&after);
+    let pull = before.turned().then(&after).into_poles(base, &run);
     let p = (run.start(), run.point(MIDDLE), run.end());
     let (uv, border) = (pull.ends(), Border::chain(run.clone(), false));
-    Ok(Piece { strand, border, course: Course::Pull(Arc::new(pull)), uv, p, seam: false })
+    Ok(Piece { strand, border, course: Course::Pull(Arc::new(pull)), uv, p, seam: false, rim: false })
 }
 
 fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Fault {
@@ -231,25 +290,36 @@ fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Faul
     SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point }.into()
 }
 
-/// A pole, parted where cutters run into it.
+/// A pole, parted where cutters run into it; ends beside an end of it are put there.
 fn at_pole(
     base: &Surface,
     (strand, border): (usize, &Border),
     (a, b): (DVec2, DVec2),
-    pieces: &[Piece],
+    pieces: &mut [Piece],
     tolerance: &Tolerance,
 ) -> Vec<Piece> {
     let p = base.point(a.x, a.y);
-    let ends = pieces.iter().flat_map(|piece| [(piece.uv.0, piece.p.0), (piece.uv.1, piece.p.2)]);
-    let share = |uv: DVec2| (uv - a).dot(b - a) / (b - a).length_squared();
-    let at = ends.filter(|(uv, q)| q.distance(p) <= 2.0 * tolerance.point && is_pole(base, *uv)).map(|(uv, _)| share(uv));
-    let mut cuts: Vec<f64> = at.filter(|s| *s > tolerance.parameter && *s < 1.0 - tolerance.parameter).chain([0.0, 1.0]).collect();
+    let mut cuts = vec![0.0, 1.0];
+    for piece in pieces {
+        for last in [false, true] {
+            let (uv, q) = if last { (piece.uv.1, piece.p.2) } else { (piece.uv.0, piece.p.0) };
+            if q.distance(p) > 2.0 * tolerance.point || !is_pole(base, uv) {
+                continue;
+            }
+            let share = (uv - a).dot(b - a) / (b - a).length_squared();
+            if share > NUDGE && share < 1.0 - NUDGE {
+                cuts.push(share);
+            } else if share.abs().min((share - 1.0).abs()) <= NUDGE {
+                piece.end_at(last, if share < 0.5 { a } else { b });
+            }
+        }
+    }
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|b, a| *b - *a <= tolerance.parameter);
     let piece = |w: &[f64]| {
         let uv = (a.lerp(b, w[0]), a.lerp(b, w[1]));
         let course = Course::Line(uv.0.into(), uv.1.into());
-        Piece { strand, border: border.clone(), course, uv, p: (p, p, p), seam: false }
+        Piece { strand, border: border.clone(), course, uv, p: (p, p, p), seam: false, rim: true }
     };
     cuts.windows(2).map(piece).collect()
 }

@@ -25,10 +25,27 @@ pub(super) struct Trim {
     pub loops: Vec<usize>,
     /// One a border.
     pub courses: Vec<Course>,
+    /// Corners of a box in (u, v) that holds the loops; where a surface closes they may lie whole turns away.
+    pub reach: (DVec2, DVec2),
 }
 
 // Where it lies in (u, v) follows from the borders and the surface below.
-crate::content!(Trim { loops } but { ground, courses });
+crate::content!(Trim { loops } but { ground, courses, reach });
+
+/// A box in (u, v) that holds some courses: between two places a curve is nowhere farther from its chord than the chord is long.
+pub(super) fn reach(courses: &[Course]) -> (DVec2, DVec2) {
+    let (mut low, mut high, mut longest) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0_f64);
+    for course in courses {
+        let places = course.places();
+        if matches!(course, Course::Pull(_)) {
+            longest = places.windows(2).map(|w| w[0].distance(w[1])).fold(longest, f64::max);
+        }
+        for p in places {
+            (low, high) = (low.min(p), high.max(p));
+        }
+    }
+    (low - DVec2::splat(longest), high + DVec2::splat(longest))
+}
 
 impl Trim {
     pub fn flipped(&self) -> Self {
@@ -39,7 +56,7 @@ impl Trim {
             courses.extend(self.courses[first..first + n].iter().rev().map(|c| c.flipped(&turn)));
             first += n;
         }
-        Self { courses, ..self.clone() }
+        Self { reach: reach(&courses), courses, ..self.clone() }
     }
 }
 
@@ -100,7 +117,7 @@ pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
 pub(super) fn assembled(base: &Surface, walks: Vec<Walk>, origin: Origin) -> Result<Surface> {
     let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
     (parts.borders, parts.chains) = (Vec::new(), Vec::new());
-    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), courses: Vec::new() };
+    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), courses: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE) };
     for (k, walk) in walks.into_iter().enumerate() {
         // Outer loops run counter-clockwise in (u, v), the others clockwise.
         let ascending = area2(&walk.polygon()) > 0.0;
@@ -110,6 +127,7 @@ pub(super) fn assembled(base: &Surface, walks: Vec<Walk>, origin: Origin) -> Res
         parts.borders.extend(walk.borders);
         parts.chains.extend(walk.chains);
     }
+    trim.reach = reach(&trim.courses);
     parts.trim = Some(Arc::new(trim));
     Ok(Surface::new(parts))
 }
@@ -283,10 +301,7 @@ impl Surface {
     /// Whether a place lies in the kept part, by the polygons of [`Surface::outlines`].
     pub fn keeps(&self, u: f64, v: f64) -> bool {
         let outlines = self.outlines();
-        shifts(self).into_iter().any(|by| {
-            let p = DVec2::new(u, v) + by;
-            outlines.iter().fold(false, |kept, polygon| kept != inside(polygon, p))
-        })
+        self.copies((u, v)).into_iter().any(|p| outlines.iter().fold(false, |kept, polygon| kept != inside(polygon, p)))
     }
 
     /// The nearest place at which the surface is defined; directions in which it closes go on without end.

@@ -59,6 +59,17 @@ pub enum CutFault {
         surface: Origin,
         /// Its ends that lie inside; none where it runs from border to border and still divides nothing.
         ends: Vec<DVec3>,
+        /// All of it lies beyond the border of the surface.
+        outside: bool,
+    },
+    /// E999: what curves bound on a surface is not the surface again, whatever the curves are.
+    NotDivided {
+        /// The surface.
+        surface: Origin,
+        /// What is wrong, in words that follow "for".
+        what: &'static str,
+        /// Where.
+        at: DVec3,
     },
     /// E660 `keep-off`: the point that says which part to keep is not on the surface, or on a cut.
     KeepOff {
@@ -114,9 +125,16 @@ impl Describe for CutFault {
             .at(*a, "this surface")
             .at(*b, "and this one")
             .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
-            Self::CutOpen { cutter, surface, ends } => {
+            Self::NotDivided { surface, what, at } => {
+                let name = say.quoted(*surface, "the surface");
+                Report::new("E999", format!("a bug in loft: {name} is not divided right, for {what} at {}", say.point(*at)))
+                    .at(*surface, "this surface")
+                    .help("please report it with this script; curves moved by a little may do meanwhile")
+            }
+            Self::CutOpen { cutter, surface, ends, outside } => {
                 let places: Vec<String> = ends.iter().map(|p| say.point(*p)).collect();
                 let why = match ends.len() {
+                    _ if *outside => "all of it lies beyond the border".to_owned(),
                     0 => "both ends are on the border, and what lies beside it goes on round the surface".to_owned(),
                     1 => format!("it ends inside at {}", places[0]),
                     _ => format!("both its ends lie inside, at {}", places.join(" and ")),
