@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use std::fs;
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
@@ -182,4 +183,50 @@ fn a_killed_accept_leaves_whole_goldens() {
     assert!(caught > 0, "no run was caught");
     assert!(accept().status().unwrap().success());
     assert_eq!(outputs(&folder), [("model.golden".to_owned(), new)]);
+}
+
+/// The script of a session that works for long, and the entry that does.
+const LONG: &[(&str, &str)] = &[
+    ("mesh m of roof { size: 8mm  method: delaunay }\nexport m to \"m.msh\"\npicture m to \"m.png\"\n", ":run"),
+    ("mesh m of roof { size: 3mm  elements: quads  order: 2 }\nexport m to \"m.vtu\" { encoding: text }\npicture m to \"m.svg\"\n", ":run"),
+    ("mesh m of roof { size: 16mm  elements: quads  method: delaunay }\n", ":mesh m"),
+    ("", "sum([for i in 0..400000: distance(roof, (i * 0.1mm, 1, 1))])"),
+    ("", "sum([for i in 0..1000: sum([for c in meet(roof, move(roof, by: (i * 0.1mm, 0.1, 0.02))): c.length])])"),
+];
+
+/// Starts a session, interrupts the entry after `wait` and waits for the answer to the next one; how long that took.
+fn interrupted(folder: &Path, (script, entry): (&str, &str), wait: Duration) -> Option<Duration> {
+    let model: String = SCRIPT.lines().take_while(|line| !line.starts_with("mesh")).map(|line| format!("{line}\n")).collect();
+    fs::write(folder.join("long.loft"), format!("{model}{script}")).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_loft"));
+    let mut child = child.arg("repl").current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    // Read as a whole before it is begun.
+    child.stdin.take().unwrap().write_all(format!(":load long.loft\n{entry}\n20 + 22\n").as_bytes()).unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.next().is_some_and(|line| line.starts_with("long.loft: ")));
+    sleep(wait);
+    let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    let begun = Instant::now();
+    let rest: Vec<String> = lines.collect();
+    let took = begun.elapsed();
+    child.wait().unwrap();
+    assert_eq!(rest.last().map(String::as_str), Some("42"), "{entry} after {wait:?}: {rest:?}");
+    rest.iter().any(|line| line.starts_with("interrupted; ")).then_some(took)
+}
+
+#[test]
+fn a_session_comes_back_soon_whatever_it_does() {
+    let folder = folder("session");
+    let (mut dice, mut caught, mut worst) = (11_u64, vec![0; LONG.len()], (Duration::ZERO, String::new()));
+    for round in 0..2 * LONG.len() {
+        dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let (k, wait) = (round % LONG.len(), Duration::from_millis(100 + (dice >> 33) % 2_000));
+        if let Some(took) = interrupted(&folder, LONG[k], wait) {
+            caught[k] += 1;
+            worst = worst.max((took, format!("{} after {wait:?}", LONG[k].1)));
+        }
+    }
+    assert!(caught.iter().all(|n| *n > 0), "not every entry was caught: {caught:?}");
+    // A second is wanted; tests run beside others.
+    assert!(worst.0 < Duration::from_secs(3), "{worst:?}");
 }

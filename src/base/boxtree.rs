@@ -10,6 +10,7 @@
 use glam::DVec3;
 
 use super::bbox::Box3;
+use super::job;
 
 /// Children of a node.
 const FAN: usize = 8;
@@ -76,6 +77,7 @@ impl BoxTree {
             stack.extend((a..n).map(|b| (top, a, b)));
         }
         while let Some((level, a, b)) = stack.pop() {
+            job::look();
             let boxes = &self.levels[level];
             if a != b && !boxes[a].touches(&boxes[b], margin) {
                 continue;
@@ -106,6 +108,7 @@ impl BoxTree {
             stack.extend((0..other.levels[other_top].len()).map(|b| (top, a, other_top, b)));
         }
         while let Some((level, a, other_level, b)) = stack.pop() {
+            job::look();
             if !self.levels[level][a].touches(&other.levels[other_level][b], margin) {
                 continue;
             }

@@ -1,17 +1,106 @@
 //! How long work is told to stop and tells how far it is.
+//!
+//! Work that a [`Job`] watches ([`Job::watch`]) asks at each row, face or round whether it should go on: by [`Job::go_on`]
+//! where it has the job and may fail, by [`look`] anywhere else. A look at a cancelled job unwinds to the watch around
+//! the work, so that functions without errors can be stopped as well, and no half result gets anywhere.
 
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::fault::{Fault, Result};
+use super::par;
 
-/// A stop flag and two counters, shared between the work and whoever waits for it.
-///
-/// Work asks [`Job::go_on`] at each row, face or round. Counters never change a result.
 #[derive(Debug, Default)]
-pub struct Job {
+struct Shared {
     stop: AtomicBool,
     done: AtomicU64,
     total: AtomicU64,
+}
+
+/// A stop flag and two counters, shared between the work and whoever waits for it.
+///
+/// Counters never change a result.
+#[derive(Debug, Default)]
+pub struct Job {
+    shared: Arc<Shared>,
+}
+
+/// What unwinds from a look to the watch.
+struct Cancelled;
+
+thread_local! {
+    static WATCHED: RefCell<Watched> = const { RefCell::new(Watched(None)) };
+}
+
+/// The job that watches the work of a thread, to be handed to the threads that help it.
+#[derive(Clone, Debug, Default)]
+pub struct Watched(Option<Arc<Shared>>);
+
+/// Work of this thread belongs to a job until this is dropped.
+#[derive(Debug)]
+pub struct Entered {
+    before: Watched,
+}
+
+/// The job of this thread's work.
+pub fn watched() -> Watched {
+    WATCHED.with_borrow(Clone::clone)
+}
+
+impl Watched {
+    /// Work of this thread belongs to the job from now on.
+    pub fn enter(&self) -> Entered {
+        Entered { before: WATCHED.replace(self.clone()) }
+    }
+}
+
+impl Drop for Entered {
+    fn drop(&mut self) {
+        WATCHED.replace(std::mem::take(&mut self.before));
+    }
+}
+
+/// Goes on unless the job of this thread was cancelled; costs a few nanoseconds. To be called at least every few
+/// milliseconds of work.
+#[inline]
+pub fn look() {
+    if WATCHED.with_borrow(|watched| watched.0.as_ref().is_some_and(|job| job.stop.load(Ordering::Relaxed))) {
+        leave();
+    }
+}
+
+#[cold]
+fn leave() {
+    // What is dropped on the way, such as a full buffer, is let through.
+    if !par::is_unwinding() {
+        resume_unwind(Box::new(Cancelled));
+    }
+}
+
+/// The items of a long loop whose rounds are short: looks now and then ([`look`]).
+pub fn looking<I: IntoIterator>(items: I) -> impl Iterator<Item = I::Item> {
+    const ROUNDS: usize = 1024;
+    items.into_iter().enumerate().map(|(k, item)| {
+        if k % ROUNDS == 0 {
+            look();
+        }
+        item
+    })
+}
+
+/// Sorts a long list; looks now and then ([`look`]). What is equal may change places.
+pub fn sort<T: Ord>(items: &mut [T]) {
+    const COMPARISONS: u32 = 1 << 14;
+    let done = Cell::new(0_u32);
+    items.sort_unstable_by(|a, b| {
+        done.set(done.get().wrapping_add(1));
+        if done.get() % COMPARISONS == 0 {
+            look();
+        }
+        a.cmp(b)
+    });
 }
 
 impl Job {
@@ -22,26 +111,80 @@ impl Job {
 
     /// Asks the work to stop at its next question.
     pub fn cancel(&self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.shared.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Does work that every [`look`] in it may end; then it is [`Fault::Interrupted`].
+    pub fn watch<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
+        let _entered = Watched(Some(self.shared.clone())).enter();
+        match catch_unwind(AssertUnwindSafe(work)) {
+            Ok(done) => Ok(done),
+            Err(payload) if payload.is::<Cancelled>() => Err(Fault::Interrupted),
+            Err(payload) => resume_unwind(payload),
+        }
     }
 
     /// `Ok` to go on, or [`Fault::Interrupted`].
     pub fn go_on(&self) -> Result<()> {
-        if self.stop.load(Ordering::Relaxed) { Err(Fault::Interrupted) } else { Ok(()) }
+        if self.shared.stop.load(Ordering::Relaxed) { Err(Fault::Interrupted) } else { Ok(()) }
     }
 
     /// Announces `n` more steps of work.
     pub fn expect(&self, n: u64) {
-        self.total.fetch_add(n, Ordering::Relaxed);
+        self.shared.total.fetch_add(n, Ordering::Relaxed);
     }
 
     /// Says that `n` steps are done.
     pub fn advance(&self, n: u64) {
-        self.done.fetch_add(n, Ordering::Relaxed);
+        self.shared.done.fetch_add(n, Ordering::Relaxed);
     }
 
     /// Steps done and steps announced.
     pub fn progress(&self) -> (u64, u64) {
-        (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
+        (self.shared.done.load(Ordering::Relaxed), self.shared.total.load(Ordering::Relaxed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_look_ends_cancelled_work_on_every_thread() {
+        let job = Job::new();
+        assert_eq!(job.watch(|| par::map(9, |k| k * k).len()).ok(), Some(9));
+        let ended = job.watch(|| {
+            par::map(1_000, |k| {
+                if k == 500 {
+                    job.cancel();
+                }
+                (0..1_000_000).map(|n| std::hint::black_box(n) + k).sum::<usize>()
+            })
+        });
+        assert!(matches!(ended, Err(Fault::Interrupted)));
+        // Another job, and none, go on.
+        look();
+        assert!(matches!(Job::new().watch(look), Ok(())));
+        assert!(matches!(job.watch(look), Err(Fault::Interrupted)));
+    }
+
+    #[test]
+    fn long_loops_and_sorts_look() {
+        let job = Job::new();
+        let sum = || looking(0..5_000_u32).sum::<u32>();
+        // Sorting what is sorted backwards takes few comparisons.
+        let mut list: Vec<u32> = (0..100_000).map(|n: u32| n.wrapping_mul(2_654_435_761)).collect();
+        assert_eq!(job.watch(sum).ok(), Some(12_497_500));
+        assert!(job.watch(|| sort(&mut list)).is_ok() && list.is_sorted());
+        job.cancel();
+        assert!(job.watch(sum).is_err());
+        list.iter_mut().for_each(|n| *n = n.wrapping_mul(2_246_822_519).rotate_left(7));
+        assert!(job.watch(|| sort(&mut list)).is_err());
+    }
+
+    #[test]
+    fn other_panics_pass_a_watch() {
+        let caught = catch_unwind(|| Job::new().watch(|| resume_unwind(Box::new("seven"))).is_ok());
+        assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"seven"));
     }
 }

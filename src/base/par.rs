@@ -1,8 +1,10 @@
 //! Work on several threads with results in order: the same bytes whatever the number of threads.
 //!
-//! The only place that knows rayon. Without the feature `parallel` every function here is a plain loop.
+//! Whoever helps works for the job of the thread that asked, and looks at it before each item. The only place that knows rayon. Without the feature `parallel` every function here is a plain loop.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::job;
 
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
@@ -27,10 +29,19 @@ pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if n > 1 {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
-            return pool.install(|| (0..n).into_par_iter().map(&f).collect());
+            let watched = job::watched();
+            let item = |_: &mut job::Entered, k: usize| {
+                job::look();
+                f(k)
+            };
+            return pool.install(|| (0..n).into_par_iter().map_init(|| watched.enter(), item).collect());
         }
     }
-    (0..n).map(f).collect()
+    let item = |k: usize| {
+        job::look();
+        f(k)
+    };
+    (0..n).map(item).collect()
 }
 
 /// Like [`map`] for work that may fail; the failure of the smallest index wins.
@@ -45,11 +56,24 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
     if items.len() > size {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
-            pool.install(|| items.par_chunks_mut(size).enumerate().for_each(|(k, part)| f(k, part)));
+            let watched = job::watched();
+            let one = |_: &mut job::Entered, (k, part): (usize, &mut [T])| {
+                job::look();
+                f(k, part);
+            };
+            pool.install(|| items.par_chunks_mut(size).enumerate().for_each_init(|| watched.enter(), one));
             return;
         }
     }
-    items.chunks_mut(size).enumerate().for_each(|(k, part)| f(k, part));
+    for (k, part) in items.chunks_mut(size).enumerate() {
+        job::look();
+        f(k, part);
+    }
+}
+
+/// Whether this thread leaves its work by unwinding: another reason to leave would end the program.
+pub fn is_unwinding() -> bool {
+    std::thread::panicking()
 }
 
 /// Runs `work` on a thread of its own with a stack of so many bytes; on this one when no thread can be had.
@@ -59,8 +83,11 @@ pub fn on_stack<T: Send>(bytes: usize, work: impl FnOnce() -> T + Send) -> T {
     let mut work = Some(work);
     let mut result = None;
     let started = std::thread::scope(|scope| {
-        let (work, result) = (&mut work, &mut result);
-        let body = move || *result = work.take().map(|w| w());
+        let (work, result, watched) = (&mut work, &mut result, job::watched());
+        let body = move || {
+            let _entered = watched.enter();
+            *result = work.take().map(|w| w());
+        };
         match std::thread::Builder::new().stack_size(bytes).spawn_scoped(scope, body) {
             Ok(handle) => handle.join(),
             Err(_) => Ok(()),

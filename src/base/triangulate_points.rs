@@ -1,6 +1,8 @@
 //! The constrained Delaunay triangulation of points in a plane, as plain arrays.
 
 use glam::DVec2;
+
+use super::job;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// Why points and edges have no triangulation.
@@ -28,6 +30,9 @@ pub struct Triangles {
 /// Where there is no triangle.
 pub const NO_TRIANGLE: u32 = u32::MAX;
 
+/// One of so many nodes looks whether the triangulation should go on when it is asked where it is.
+const LOOKS: u32 = 32;
+
 #[derive(Clone, Copy)]
 struct Node {
     at: Point2<f64>,
@@ -37,6 +42,10 @@ struct Node {
 impl HasPosition for Node {
     type Scalar = f64;
     fn position(&self) -> Point2<f64> {
+        // The only place of ours that a long triangulation comes by: every predicate asks for its points.
+        if self.index % LOOKS == 0 {
+            job::look();
+        }
         self.at
     }
 }
@@ -73,7 +82,7 @@ pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsF
     }
     let n = cdt.num_inner_faces();
     let mut result = Triangles { corners: Vec::with_capacity(n), across: Vec::with_capacity(n), given: Vec::with_capacity(n) };
-    for face in cdt.inner_faces() {
+    for face in job::looking(cdt.inner_faces()) {
         let sides = face.adjacent_edges();
         // Side k runs from corner k to the next one: opposite the third.
         let corners = sides.map(|s| s.from().data().index);

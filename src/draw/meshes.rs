@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use super::color::FACE;
 use super::lines::Folds;
 use super::scene::{Kind, Line, Paint, Sheet};
+use crate::base::job;
 use crate::base::math;
 use crate::mesh::{FaceRange, Mesh};
 
@@ -46,18 +47,18 @@ pub fn whole(mesh: &Mesh, measure: Measure) -> Sheet {
 fn of_elements(mesh: &Mesh, triangles: &Range<usize>, quads: &Range<usize>, measure: Measure) -> Sheet {
     let n = triangles.len() + 2 * quads.len();
     let (mut out, mut edges, mut values) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::new());
-    for t in &mesh.triangles[triangles.clone()] {
+    for t in job::looking(&mesh.triangles[triangles.clone()]) {
         out.push(*t);
         edges.push(0b111);
     }
-    for [a, b, c, d] in &mesh.quads[quads.clone()] {
+    for [a, b, c, d] in job::looking(&mesh.quads[quads.clone()]) {
         out.extend([[*a, *b, *c], [*a, *c, *d]]);
         edges.extend([0b011, 0b110]);
     }
     if measure != Measure::Light {
         let of = |nodes: &[u32]| of_element(mesh, nodes, measure) as f32;
-        values.extend(mesh.triangles[triangles.clone()].iter().map(|t| of(t)));
-        values.extend(mesh.quads[quads.clone()].iter().flat_map(|q| [of(q); 2]));
+        values.extend(job::looking(&mesh.triangles[triangles.clone()]).map(|t| of(t)));
+        values.extend(job::looking(&mesh.quads[quads.clone()]).flat_map(|q| [of(q); 2]));
     }
     let paint = if values.is_empty() { Paint::Even(FACE) } else { Paint::OfTriangles(values) };
     Sheet { name: String::new(), points: Vec::new(), normals: Vec::new(), triangles: out, edges, paint }
@@ -83,7 +84,7 @@ pub fn by_face(mesh: &Mesh, smooth: bool) -> Vec<Sheet> {
         let mut sheet = of_elements(mesh, &wide(&range.triangles), &wide(&range.quads), Measure::Light);
         sheet.name = range.name.clone();
         let mut used = Vec::new();
-        for corner in sheet.triangles.iter_mut().flatten() {
+        for corner in job::looking(sheet.triangles.iter_mut().flatten()) {
             let n = *corner as usize;
             if place[n] == u32::MAX {
                 place[n] = used.len() as u32;
@@ -108,7 +109,7 @@ fn has_faces(range: &FaceRange) -> bool {
 /// Normals at points: those of the triangles around, weighted by their areas.
 fn mean_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; points.len()];
-    for t in triangles {
+    for t in job::looking(triangles) {
         let [a, b, c] = t.map(|k| points[k as usize]);
         let normal = (b - a).cross(c - a);
         t.iter().for_each(|k| sums[*k as usize] += normal);
@@ -141,20 +142,20 @@ pub fn lines(mesh: &Mesh, folds: &Folds, left_out: &BTreeSet<&str>) -> Vec<Line>
     let count = mesh.triangles.len() + mesh.quads.len();
     let face_of = faces_of(mesh);
     let mut uses: Vec<Use> = Vec::with_capacity(3 * mesh.triangles.len() + 4 * mesh.quads.len());
-    for element in 0..count {
+    for element in job::looking(0..count) {
         let nodes = corners(mesh, element);
         for k in 0..nodes.len() {
             let (a, b) = (nodes[k], nodes[(k + 1) % nodes.len()]);
             uses.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), element as u32));
         }
     }
-    uses.sort_unstable();
+    job::sort(&mut uses);
     let is_shown = |element: u32| match face_of.get(element as usize).and_then(|k| mesh.faces.get(*k as usize)) {
         Some(face) => !left_out.contains(face.name.as_str()),
         None => true,
     };
     let mut out: Vec<Line> = mesh.lines.iter().map(|ends| segment(mesh, Kind::Curve, *ends)).collect();
-    for edge in uses.chunk_by(|a, b| a.0 == b.0) {
+    for edge in job::looking(uses.chunk_by(|a, b| a.0 == b.0)) {
         if !edge.iter().any(|(_, element)| is_shown(*element)) {
             continue;
         }

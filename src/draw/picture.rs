@@ -8,6 +8,7 @@ use super::page::{self, Item};
 use super::raster::{self, Image, Thick};
 use super::scene::{Kind, Scene};
 use super::{color, png, svg};
+use crate::base::job;
 
 /// Edges of elements shorter than this on average, in pixels, are not drawn: they would hide the faces.
 const DENSE: f64 = 3.0;
@@ -142,7 +143,7 @@ fn thick_lines(scene: &Scene, camera: &Camera, size: f64) -> Vec<Thick> {
     let mut out = Vec::new();
     for kind in Kind::ALL {
         let half = 0.5 * kind.width() * size / annotate::SIZE;
-        for line in scene.lines.iter().filter(|l| l.kind == kind) {
+        for line in job::looking(scene.lines.iter().filter(|l| l.kind == kind)) {
             let spots: Vec<_> = line.points.iter().map(|p| camera.project(*p)).collect();
             let pairs = spots.windows(2).map(|w| Thick { a: w[0], b: w[1], half, color: kind.color(), lift: lift(kind) });
             out.extend(pairs);

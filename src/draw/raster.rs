@@ -15,6 +15,7 @@ use super::camera::{Camera, Spot};
 use super::color::{Rgb, WHITE};
 use super::scene::{Paint, Scene};
 use super::shade::Shader;
+use crate::base::job;
 use crate::base::par;
 
 /// Places along each side of a pixel where it is asked what is seen.
@@ -111,7 +112,7 @@ impl Projected {
             Self { spots, triangles: Vec::with_capacity(scene.triangles()), bands: vec![Vec::new(); height.div_ceil(BAND)] };
         for (s, sheet) in scene.sheets.iter().enumerate() {
             let spots = &projected.spots[s];
-            for (t, corners) in sheet.triangles.iter().enumerate() {
+            for (t, corners) in job::looking(sheet.triangles.iter().enumerate()) {
                 let ys = corners.map(|c| spots[c as usize].y);
                 let (low, high) = (ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
                 if let Some(range) = bands_of(low, high, height) {
@@ -146,7 +147,7 @@ fn bands_of(low: f64, high: f64, height: usize) -> Option<std::ops::Range<usize>
 pub fn draw(scene: &Scene, camera: &Camera, lines: &[Thick], edges: (f64, f64), (width, height): (usize, usize)) -> Image {
     let projected = Projected::new(scene, camera, height);
     let mut line_bands: Vec<Vec<u32>> = vec![Vec::new(); height.div_ceil(BAND)];
-    for (k, line) in lines.iter().enumerate() {
+    for (k, line) in job::looking(lines.iter().enumerate()) {
         let (low, high) = (line.a.y.min(line.b.y) - line.half, line.a.y.max(line.b.y) + line.half);
         if let Some(range) = bands_of(low, high, height) {
             range.for_each(|band| line_bands[band].push(k as u32));
@@ -156,10 +157,10 @@ pub fn draw(scene: &Scene, camera: &Camera, lines: &[Thick], edges: (f64, f64), 
     let bands = par::map(height.div_ceil(BAND), |band| {
         let rows = BAND.min(height - band * BAND);
         let mut buffer = Buffer::new(width, band * BAND, rows);
-        for &id in &projected.bands[band] {
+        for &id in job::looking(&projected.bands[band]) {
             buffer.triangle((id, projected.triangles[id as usize].sheet), projected.corners(scene, id));
         }
-        for &k in &line_bands[band] {
+        for &k in job::looking(&line_bands[band]) {
             buffer.line(k, &lines[k as usize]);
         }
         buffer.resolve(&shader, lines)

@@ -14,6 +14,7 @@ use super::picture::{Picture, lift};
 use super::raster::Image;
 use super::scene::{Kind, Scene};
 use super::{font, png};
+use crate::base::job;
 use crate::base::text::real;
 use crate::base::xml::escaped;
 
@@ -37,7 +38,7 @@ pub fn paths(scene: &Scene, camera: &Camera, image: &Image, (strength, line): (f
         if kind == Kind::Element && strength > 0.0 {
             element_edges(scene, camera, &mut seen);
         }
-        for line in scene.lines.iter().filter(|l| l.kind == kind) {
+        for line in job::looking(scene.lines.iter().filter(|l| l.kind == kind)) {
             let spots: Vec<Spot> = line.points.iter().map(|p| camera.project(*p)).collect();
             spots.windows(2).for_each(|w| seen.segment(w[0], w[1]));
         }
@@ -54,13 +55,13 @@ fn element_edges(scene: &Scene, camera: &Camera, seen: &mut Seen) {
     for sheet in &scene.sheets {
         let spots: Vec<Spot> = sheet.points.iter().map(|p| camera.project(*p)).collect();
         let sides = sheet.triangles.iter().zip(&sheet.edges);
-        let mut edges: Vec<(u32, u32)> = sides
+        let mut edges: Vec<(u32, u32)> = job::looking(sides)
             .flat_map(|(t, bits)| (0..3).filter(move |k| bits & (1 << k) != 0).map(move |k| (t[k], t[(k + 1) % 3])))
             .map(|(a, b)| (a.min(b), a.max(b)))
             .collect();
-        edges.sort_unstable();
+        job::sort(&mut edges);
         edges.dedup();
-        edges.into_iter().for_each(|(a, b)| seen.segment(spots[a as usize], spots[b as usize]));
+        job::looking(edges).for_each(|(a, b)| seen.segment(spots[a as usize], spots[b as usize]));
     }
 }
 
@@ -166,7 +167,7 @@ fn short(x: f64) -> String {
 pub fn base64(bytes: &[u8]) -> String {
     const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for part in bytes.chunks(3) {
+    for part in job::looking(bytes.chunks(3)) {
         let word = part.iter().fold(0_u32, |w, b| w << 8 | u32::from(*b)) << (8 * (3 - part.len()));
         for k in 0..4 {
             let sign = SIGNS[(word >> (18 - 6 * k) & 63) as usize];

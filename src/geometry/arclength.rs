@@ -1,6 +1,7 @@
 //! Arc length and its inverse (math notes §4): adaptive Gauss–Kronrod panels, a monotone table, bracketed Newton.
 
 use super::curve::{Curve, Jet};
+use crate::base::job;
 use crate::base::quadrature::{KRONROD, NODES, Panel, RUNNING, chebyshev, kronrod, running_integral};
 use crate::base::solve;
 use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY, LENGTH_FLOOR};
@@ -45,6 +46,7 @@ impl Lengths {
             let most = table.t.len() + PANELS;
             open.push((span[0], span[1], DEPTH));
             while let Some((a, b, left)) = open.pop() {
+                job::look();
                 let panel = kronrod(a, b, |t| jet(t).d1.length());
                 let done = table.s[table.s.len() - 1];
                 if panel.error <= LENGTH_ACCURACY * (done + panel.integral) + LENGTH_FLOOR {

@@ -10,6 +10,7 @@ use super::curve::{Curve, Shape};
 use super::intersect::newton::{approach, foot, segments};
 use super::pieces::{Node, Piece, Pieces, Rates, View, children};
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::math;
 use crate::base::tolerance::{NEAREST, NEAREST_PAIR, ROUNDING_SHARE};
 
@@ -151,6 +152,7 @@ pub fn closest_pair(a: &Curve, b: &Curve) -> (f64, f64, f64) {
         }
     }
     for _ in 0..MOST_PAIRS {
+        job::look();
         let Some(pair) = heap.pop() else { break };
         if pair.bound >= best.2 * (1.0 - NEAREST_PAIR) - rounding {
             break;

@@ -10,6 +10,7 @@ use super::blocks::write_records;
 use super::deck::{Deck, Encoding, Format, Loss};
 use super::sets::{KINDS, Kind, Naming, Part, Set, parts, sets};
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::text::{push_count, push_real};
 use crate::mesh::Mesh;
 
@@ -85,6 +86,7 @@ fn points(mesh: &Mesh) -> Vec<Entity> {
     for (s, group) in mesh.groups.iter().enumerate() {
         for kind in KINDS {
             for element in kind.of_group(group) {
+                job::look();
                 kind.nodes(mesh, *element as usize, |node| held[node as usize] = s as u32);
             }
         }
@@ -114,13 +116,14 @@ fn own_nodes(mesh: &Mesh, entities: &mut Vec<Entity>) {
             *owner = (*owner).min(e as u32);
         };
         for (kind, elements) in &entity.parts {
+            job::look();
             match kind {
                 None => elements.iter().for_each(|node| take(*node)),
                 Some(kind) => elements.iter().for_each(|element| kind.nodes(mesh, *element as usize, &mut take)),
             }
         }
     }
-    for (node, owner) in owner.iter().enumerate() {
+    for (node, owner) in job::looking(owner.iter().enumerate()) {
         if let Some(entity) = entities.get_mut(*owner as usize) {
             entity.nodes.push(node as u32);
         }
@@ -154,7 +157,7 @@ impl Sink<'_> {
     }
 
     fn reals(&mut self, values: impl IntoIterator<Item = f64>) -> io::Result<()> {
-        for value in values {
+        for value in job::looking(values) {
             if self.text {
                 let mut text = Vec::new();
                 push_real(&mut text, value);

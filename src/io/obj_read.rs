@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::weld::weld;
 use crate::base::fault::Malformed;
+use crate::base::job;
 use crate::base::limits;
 use crate::base::math::unit;
 use crate::base::text::{parse_real, push_count, push_real};
@@ -52,6 +53,7 @@ pub fn read(bytes: &[u8]) -> Result<Obj, Malformed> {
     let mut joined = String::new();
     let mut start = 0;
     for (k, line) in text.lines().enumerate() {
+        job::look();
         if joined.is_empty() {
             start = k as u64 + 1;
         }
@@ -196,6 +198,7 @@ impl Scan {
         let mut all: Vec<&Element> = self.polygons.iter().chain(&self.polylines).chain(&self.points).collect();
         all.sort_by_key(|element| element.line);
         for element in all {
+            job::look();
             if let Some((k, index)) = element.indices.iter().enumerate().find(|(_, index)| **index as usize >= n) {
                 let what = format!("there is no vertex {}, the file has {n}", u64::from(*index) + 1);
                 return Err(Malformed::at(element.line, k as u64 + 2, what));
@@ -223,7 +226,7 @@ impl Scan {
     /// Different corner points and the polygons on them.
     fn through_tobj(&self) -> Result<(Vec<DVec3>, Vec<Vec<u32>>), Malformed> {
         let mut text = Vec::new();
-        for p in &self.vertices {
+        for p in job::looking(&self.vertices) {
             text.push(b'v');
             for x in p.to_array() {
                 text.push(b' ');
@@ -231,7 +234,7 @@ impl Scan {
             }
             text.push(b'\n');
         }
-        for element in &self.polygons {
+        for element in job::looking(&self.polygons) {
             text.push(b'f');
             for index in &element.indices {
                 text.push(b' ');
@@ -244,6 +247,7 @@ impl Scan {
         let mut corners: Vec<DVec3> = Vec::new();
         let mut polygons = Vec::with_capacity(self.polygons.len());
         for mesh in models.iter().map(|model| &model.mesh) {
+            job::look();
             let first = corners.len() as u32;
             corners.extend(mesh.positions.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)));
             // All triangles are said by no arities at all.
@@ -276,6 +280,7 @@ impl Obj {
         for group in self.groups.iter().filter(|group| !group.polygons.is_empty()) {
             let starts = (mesh.triangles.len() as u32, mesh.quads.len() as u32);
             for k in &group.polygons {
+                job::look();
                 if let Err(fault) = add(&mut mesh, &self.polygons[*k]) {
                     let what = match fault {
                         PolygonFault::NoArea => "the face has no area and is skipped",

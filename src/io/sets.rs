@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use super::deck::{Loss, Options, Renamed};
 use super::romanize::in_ascii;
+use crate::base::job;
 use crate::mesh::{FaceRange, Group, Mesh};
 
 /// Which names a format takes.
@@ -62,6 +63,7 @@ fn of_ranges(mesh: &Mesh, name: &str) -> Group {
     }
     for kind in KINDS {
         for element in kind.of_group(&group) {
+            job::look();
             kind.nodes(mesh, *element as usize, |node| {
                 nodes.insert(node);
             });
@@ -342,6 +344,7 @@ pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
     for (s, group) in mesh.groups.iter().enumerate() {
         let mut moved: BTreeMap<u32, u32> = BTreeMap::new();
         for element in kind.of_group(group) {
+            job::look();
             let Some(class) = class_of.get_mut(*element as usize) else { continue };
             *class = *moved.entry(*class).or_insert_with(|| {
                 let (face, mut sets) = classes[*class as usize].clone();
@@ -358,6 +361,7 @@ pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
     }
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); classes.len()];
     for (element, class) in class_of.iter().enumerate() {
+        job::look();
         members[*class as usize].push(element as u32);
     }
     let mut parts: Vec<Part> = classes

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use crate::base::fault::Malformed;
+use crate::base::job;
 use crate::base::limits;
 use crate::base::text::{parse_real, push_real};
 
@@ -293,6 +294,7 @@ fn read_separated(text: &str, reading: &Reading) -> Result<Table, Malformed> {
     let mut first = true;
     let mut lines = Lines { bytes: text.as_bytes(), at: 0, line: 1 };
     loop {
+        job::look();
         let more = reader.read_record(&mut record).map_err(|e| {
             let line = e.position().map_or(0, csv::Position::line);
             Malformed::line(line, "the line cannot be read as a row of cells")

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::base::job;
+
 /// The different points in order of first use, and for each given point its place among them.
 ///
 /// Points are equal when their bits are, zero of either sign being one.
@@ -11,13 +13,14 @@ pub fn weld(points: &[DVec3]) -> (Vec<DVec3>, Vec<u32>) {
     order.sort_unstable_by_key(|i| (bits(*i), *i));
     let mut first = vec![0_u32; points.len()];
     for run in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
+        job::look();
         for i in run {
             first[*i as usize] = run[0];
         }
     }
     let mut different = Vec::new();
     let mut places = vec![0_u32; points.len()];
-    for i in 0..points.len() {
+    for i in job::looking(0..points.len()) {
         places[i] = if first[i] as usize == i {
             different.push(points[i] + DVec3::ZERO);
             different.len() as u32 - 1

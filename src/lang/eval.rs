@@ -317,7 +317,8 @@ impl Cx<'_> {
         let (depth, room) = (self.machine.depth, self.machine.room);
 
         let code = Code { nodes: &declaration.nodes, module, declaration: index };
-        let mut result = self.declare(code, declaration);
+        let job = self.job;
+        let mut result = job.watch(|| self.declare(code, declaration)).unwrap_or_else(|fault| Err(fault.into()));
         if let Err(stop) = result {
             result = Err(self.settle(code, stop, declaration.span));
         }

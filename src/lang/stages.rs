@@ -167,7 +167,8 @@ fn once<T: Clone>(
     }
     // What a stage says is its own, whichever declaration asked first.
     let sink = std::mem::take(&mut cx.sink);
-    let made = make(cx);
+    let job = cx.job;
+    let made = job.watch(|| make(cx)).unwrap_or_else(|fault| Err(fault.into()));
     let said = std::mem::replace(&mut cx.sink, sink);
     cx.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     let (stage, result) = match made {

@@ -14,6 +14,7 @@ use super::layout::Face;
 use super::plan::Method;
 use super::sizing::{Remark, Sizing};
 use crate::base::fault::Cure;
+use crate::base::job;
 use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::text::real;
@@ -72,13 +73,13 @@ fn of_face(
     let halves = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
     let own = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
     let all = || own.clone().chain(halves.clone()).map(|t| (angle(mesh, t), t));
-    let least = all().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let least = job::looking(all()).min_by(|a, b| a.0.total_cmp(&b.0))?;
     if least.0 >= SHARP {
         return None;
     }
     let blame = Blame { made, sizing, face, mesh, edges: edges(made, face) };
     let pointed = blame.pointed();
-    let sharp = all().filter(|(angle, t)| *angle < SHARP && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let sharp = job::looking(all()).filter(|(angle, t)| *angle < SHARP && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
     let sharp = sharp.map(|(angle, t)| {
         let surface = made.input.model.surfaces[face.surface.index()].name.clone();
         Remark::Sharp { angle, at: mesh.nodes[t[0] as usize], surface, faces: 1, cure: blame.cure(foreseen, t) }

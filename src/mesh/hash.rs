@@ -5,6 +5,7 @@
 //! sorted colours of all elements and nodes: renumbering keeps it, a flipped edge or another group changes it.
 
 use super::data::{Group, Mesh};
+use crate::base::job;
 
 const ROUNDS: usize = 4;
 
@@ -95,16 +96,16 @@ impl Mesh {
     fn each_cell(&self, mut visit: impl FnMut(usize, Cell)) {
         let none: &[u32] = &[];
         let mut k = 0;
-        for (n, corners) in self.lines.iter().enumerate() {
+        for (n, corners) in job::looking(self.lines.iter().enumerate()) {
             let mids = self.line_mids.get(n).map_or(none, std::slice::from_ref);
             visit(k, Cell { kind: 2, corners, mids });
             k += 1;
         }
-        for (n, corners) in self.triangles.iter().enumerate() {
+        for (n, corners) in job::looking(self.triangles.iter().enumerate()) {
             visit(k, Cell { kind: 3, corners, mids: self.triangle_mids.get(n).map_or(none, |m| m) });
             k += 1;
         }
-        for (n, corners) in self.quads.iter().enumerate() {
+        for (n, corners) in job::looking(self.quads.iter().enumerate()) {
             visit(k, Cell { kind: 4, corners, mids: self.quad_mids.get(n).map_or(none, |m| m) });
             k += 1;
         }

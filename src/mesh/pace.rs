@@ -17,6 +17,7 @@ use super::narrow::Narrow;
 use super::plan::Method;
 use super::sources::{Body, STEEP, Source, Sources};
 use super::wanted::Wanted;
+use crate::base::job;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::base::{math, par};
 use crate::surface::Surface;
@@ -394,6 +395,7 @@ impl Walker<'_> {
         for w in pace.at.windows(2) {
             let mut open = vec![(place(w[0]), place(w[1]), DEEPEST)];
             while let Some((a, b, left)) = open.pop() {
+                job::look();
                 let middle = place(0.5 * (a.0 + b.0));
                 let size = a.2.min(b.2);
                 let straight = [(0.5, middle.1), (0.25, self.layout.point(k, 0.75 * a.0 + 0.25 * b.0))];

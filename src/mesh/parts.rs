@@ -1,6 +1,7 @@
 //! In how many pieces a mesh is.
 
 use super::data::Mesh;
+use crate::base::job;
 use crate::model::glue::root;
 
 impl Mesh {
@@ -17,8 +18,8 @@ impl Mesh {
             corners.iter().for_each(|n| used[*n as usize] = true);
         };
         self.lines.iter().for_each(|e| join(e));
-        self.triangles.iter().for_each(|e| join(e));
-        self.quads.iter().for_each(|e| join(e));
+        job::looking(&self.triangles).for_each(|e| join(e));
+        job::looking(&self.quads).for_each(|e| join(e));
         self.points.iter().for_each(|n| join(&[*n]));
         (0..self.nodes.len()).filter(|n| used[*n] && parent[*n] == *n).count()
     }

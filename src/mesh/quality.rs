@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::data::Mesh;
+use crate::base::job;
 use crate::base::math;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
@@ -157,7 +158,8 @@ impl Mesh {
         let faces = self.triangles.iter().map(|t| heavy(t.map(node))).chain(self.quads.iter().flat_map(halves));
         let lines = self.lines.iter().map(|l| (node(l[0]).distance(node(l[1])), 0.5 * (node(l[0]) + node(l[1]))));
         let center = |parts: &mut dyn Iterator<Item = (f64, DVec3)>| {
-            let (mass, moment) = parts.fold((0.0, DVec3::ZERO), |(mass, moment), (m, p)| (mass + m, moment + (p - about) * m));
+            let (mass, moment) =
+                job::looking(parts).fold((0.0, DVec3::ZERO), |(mass, moment), (m, p)| (mass + m, moment + (p - about) * m));
             (mass > 0.0).then(|| about + moment / mass)
         };
         let nodes = self.nodes.iter().map(|p| (1.0, *p));
@@ -174,14 +176,14 @@ impl Mesh {
     fn edge_uses(&self) -> Vec<(u32, u32, u32, u32)> {
         let mut sides: Vec<(u32, u32, bool)> = Vec::with_capacity(3 * self.triangles.len() + 4 * self.quads.len());
         let mut add = |a: u32, b: u32| sides.push((a.min(b), a.max(b), a > b));
-        self.triangles.iter().for_each(|t| (0..3).for_each(|k| add(t[k], t[(k + 1) % 3])));
-        self.quads.iter().for_each(|q| (0..4).for_each(|k| add(q[k], q[(k + 1) % 4])));
-        sides.sort_unstable();
+        job::looking(&self.triangles).for_each(|t| (0..3).for_each(|k| add(t[k], t[(k + 1) % 3])));
+        job::looking(&self.quads).for_each(|q| (0..4).for_each(|k| add(q[k], q[(k + 1) % 4])));
+        job::sort(&mut sides);
         let uses = |group: &[(u32, u32, bool)]| {
             let backwards = group.iter().filter(|s| s.2).count() as u32;
             (group[0].0, group[0].1, group.len() as u32 - backwards, backwards)
         };
-        sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(uses).collect()
+        job::looking(sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))).map(uses).collect()
     }
 
     /// Whether each edge of the faces is used once in each sense: a closed skin without gaps.
@@ -194,9 +196,9 @@ impl Mesh {
     pub fn edge_lengths(&self) -> Vec<f64> {
         let mut edges: Vec<(u32, u32)> = self.edge_uses().iter().map(|e| (e.0, e.1)).collect();
         edges.extend(self.lines.iter().map(|l| (l[0].min(l[1]), l[0].max(l[1]))));
-        edges.sort_unstable();
+        job::sort(&mut edges);
         edges.dedup();
-        edges.iter().map(|(a, b)| self.nodes[*a as usize].distance(self.nodes[*b as usize])).collect()
+        job::looking(&edges).map(|(a, b)| self.nodes[*a as usize].distance(self.nodes[*b as usize])).collect()
     }
 }
 

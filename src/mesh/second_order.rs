@@ -9,6 +9,7 @@ use super::data::Mesh;
 use super::faces::{Frame, Prepared};
 use super::layout::Layout;
 use super::nodes::Nodes;
+use crate::base::job;
 use crate::base::par;
 use crate::surface::{Surface, foot_within};
 
@@ -78,6 +79,7 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
             ready,
             &mesh.triangles[triangle..triangle + ready.triangles as usize],
             |corners, uv, is_quad| {
+                job::look();
                 let n = corners.len();
                 let mids: Vec<u32> = (0..n).map(|k| mid(corners[k], corners[(k + 1) % n], uv)).collect();
                 if is_quad {

@@ -9,6 +9,7 @@ use super::layout::Layout;
 use super::nodes::Nodes;
 use super::plan::{GroupRequest, Target};
 use crate::base::fault::{MeshFault, Result};
+use crate::base::job;
 use crate::model::{PatchId, SurfaceId};
 
 /// Where the elements of a face are in the mesh: its patch and surface, triangles, quads.
@@ -43,13 +44,13 @@ fn of_faces(mesh: &Mesh, ranges: &Ranges, name: &str, target: &Target) -> Group 
 fn nodes_of(mesh: &Mesh, group: &Group) -> Vec<u32> {
     let mut seen = vec![false; mesh.nodes.len()];
     let mut mark = |ids: &[u32]| ids.iter().for_each(|n| seen[*n as usize] = true);
-    for &t in &group.triangles {
+    for &t in job::looking(&group.triangles) {
         mark(&mesh.triangles[t as usize]);
         if let Some(mids) = mesh.triangle_mids.get(t as usize) {
             mark(mids);
         }
     }
-    for &q in &group.quads {
+    for &q in job::looking(&group.quads) {
         mark(&mesh.quads[q as usize]);
         if let Some(mids) = mesh.quad_mids.get(q as usize) {
             mark(mids);
@@ -119,8 +120,8 @@ fn mids_of(mesh: &Mesh, steps: &[(u32, u32)]) -> Vec<u32> {
             }
         }
     };
-    mesh.triangles.iter().zip(&mesh.triangle_mids).for_each(|(corners, mids)| look(corners, mids));
-    mesh.quads.iter().zip(&mesh.quad_mids).for_each(|(corners, mids)| look(corners, mids));
+    job::looking(mesh.triangles.iter().zip(&mesh.triangle_mids)).for_each(|(corners, mids)| look(corners, mids));
+    job::looking(mesh.quads.iter().zip(&mesh.quad_mids)).for_each(|(corners, mids)| look(corners, mids));
     mesh.lines.iter().zip(&mesh.line_mids).for_each(|(corners, mid)| look(corners, &[*mid]));
     found
 }

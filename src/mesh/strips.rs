@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use super::counts::{largest, share};
 use super::parity::{self, Sum};
+use crate::base::job;
 use crate::model::glue::root;
 
 /// One stretch (or one inner direction of a face without a side that could tell).
@@ -238,6 +239,7 @@ impl<'a> Solver<'a> {
         loop {
             let mut changed = false;
             for r in 0..self.relations.len() {
+                job::look();
                 changed |= match &self.relations[r] {
                     Relation::Equal(a, b) => self.pass_over(r, a, b)?,
                     Relation::EvenSum(_) => false,
@@ -378,6 +380,7 @@ impl<'a> Solver<'a> {
         loop {
             let mut changed = false;
             for r in 0..self.relations.len() {
+                job::look();
                 changed |= match &self.relations[r] {
                     Relation::Equal(a, b) => self.raise_over(r, a, b)?,
                     Relation::EvenSum(_) => false,

@@ -17,6 +17,7 @@ use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use super::plan::{Elements, Method};
 use crate::base::fault::{Fault, MeshFault};
+use crate::base::job;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::surface::{Domain, Surface};
@@ -162,8 +163,8 @@ impl Claim<'_> {
             }
             Ok(())
         };
-        self.triangles.iter().try_for_each(|t| one(t))?;
-        self.quads.iter().try_for_each(|q| one(q))?;
+        job::looking(self.triangles).try_for_each(|t| one(t))?;
+        job::looking(self.quads).try_for_each(|q| one(q))?;
         let loose = (0..own).find(|n| used[*n as usize / 64] >> (n % 64) & 1 == 0);
         loose.map_or(Ok(tally), |n| Err(Defect::Loose(first + n)))
     }
@@ -274,10 +275,10 @@ fn unfolded(ready: &Prepared, mesh: &Mesh) -> bool {
     match (shape, frame) {
         (Shape::Grid(grid), _) => grid.sides.iter().all(ascends),
         (Shape::Lattice(lattice), _) => lattice.sides.iter().all(ascends),
-        (Shape::Blocks(blocks), Frame::Blocks(ids)) => blocks.quads.iter().all(|q| faces_up(surface, (&blocks.uv, ids, mesh), q)),
+        (Shape::Blocks(blocks), Frame::Blocks(ids)) => job::looking(&blocks.quads).all(|q| faces_up(surface, (&blocks.uv, ids, mesh), q)),
         (Shape::Free(free), Frame::Free(ids)) => {
             let of = (free.uv.as_slice(), ids.as_slice(), mesh);
-            free.triangles.iter().all(|t| faces_up(surface, of, t)) && free.quads.iter().all(|q| faces_up(surface, of, q))
+            job::looking(&free.triangles).all(|t| faces_up(surface, of, t)) && job::looking(&free.quads).all(|q| faces_up(surface, of, q))
         }
         _ => false,
     }

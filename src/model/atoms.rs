@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::feet::{Index, Piece, stations};
 use super::gather::{Station, gather};
 use super::trace::Track;
+use crate::base::job;
 use crate::base::math::compare_points;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
@@ -88,6 +89,7 @@ pub fn atoms(parts: &[Part], anchors: &[Station], tolerance: &Tolerance) -> Atom
     // Of each part its first point among all.
     let mut first = Vec::with_capacity(parts.len());
     for part in parts {
+        job::look();
         first.push(points.len());
         let stops = [0.0, part.track.length()].into_iter().chain(part.cuts.iter().copied());
         points.extend(stops.map(|s| Station { point: part.track.point(s), reach: part.near }));
@@ -142,6 +144,7 @@ impl Joiner<'_> {
         let mut raw = Vec::new();
         for (part, stops) in stations.iter().enumerate() {
             for w in stops.windows(2) {
+                job::look();
                 raw.push(Raw { part, ends: (w[0].1, w[1].1), s: (w[0].0, w[1].0) });
             }
         }

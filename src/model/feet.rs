@@ -7,6 +7,7 @@ use super::gather::Station;
 use super::trace::Track;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
+use crate::base::job;
 
 /// Samples of a track for finding points on it; its spacing bounds how far a near point is from a sample.
 const SAMPLES: usize = 32;
@@ -49,6 +50,7 @@ pub fn stations(part: &Part, ends: (usize, usize), index: &Index) -> Vec<(f64, u
     index.tree.query(&Box3::of(samples.iter().map(|(_, p)| *p)), reach, |n| near.push(n));
     near.sort_unstable();
     for n in near {
+        job::look();
         let point = index.points[n];
         for (s, distance) in feet(&part.track, &samples, point.point, reach) {
             let allowed = part.near.min(point.reach);

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::glue::root;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
+use crate::base::job;
 use crate::base::math::compare_points;
 
 /// A cluster wider than this many reaches of its points is a chain of near ones, not one place.
@@ -29,6 +30,7 @@ pub fn gather(points: &[Station], least: f64) -> Vec<usize> {
     order.sort_by(|&a, &b| compare_points(points[a].point, points[b].point).then(a.cmp(&b)));
     let mut open = vec![(order, 1.0)];
     while let Some((ids, share)) = open.pop() {
+        job::look();
         let groups = linked(points, &ids, share, least);
         for group in groups {
             let reach = group.iter().map(|n| points[*n].reach).fold(0.0, f64::max);
@@ -62,6 +64,7 @@ fn linked(points: &[Station], ids: &[usize], share: f64, least: f64) -> Vec<Vec<
     let boxes: Vec<Box3> = ids.iter().map(|a| Box3::of([points[*a].point])).collect();
     let tree = BoxTree::build(&boxes);
     for (n, &a) in ids.iter().enumerate() {
+        job::look();
         let reach = (share * points[a].reach).max(least);
         tree.query(&boxes[n], reach, |m| {
             // Each pair once, and what is one already is not looked at again.

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::patches::{Pieces, RawEdge};
 use super::topology::{Edge, EdgeCurve, EdgeId, Model, Named, Patch, PatchId, PatchSide, SurfaceId, Vertex, VertexId};
+use crate::base::job;
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
@@ -144,6 +145,7 @@ pub(super) fn glue(surfaces: Vec<Named>, pieces: &[Pieces], network: &Network, t
     let mut patches = Vec::new();
     let mut base = 0;
     for (index, part) in pieces.iter().enumerate() {
+        job::look();
         let vertex = |corner: usize| VertexId::at(group[base + corner]);
         let ids: Vec<_> = part.edges.iter().map(|raw| table.add(raw, (vertex(raw.ends.0), vertex(raw.ends.1)))).collect();
         let around = surfaces[index].surface.domain() == Domain::Loop;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Side, Surface};
@@ -53,6 +54,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     known.reverse();
     let (mut sum, mut error, mut seen) = ([0.0; N], [0.0; N], 0);
     while let (Some(cell), Some(start)) = (open.pop(), known.pop()) {
+        job::look();
         seen += 1;
         let mut value = start.unwrap_or_else(|| product(surface, &cell, &rules[0], f).0);
         let mut apart = [f64::INFINITY; N];
@@ -177,6 +179,7 @@ pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl 
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
     let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
+        job::look();
         let (rough, value) = (round(&rules[0], run).0, round(&rules[1], run).0);
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
         if depth == DEEPEST || small(&apart, &scale, share) {

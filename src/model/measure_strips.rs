@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::measure_trimmed::Sums;
+use crate::base::job;
 use crate::base::math;
 use crate::base::quadrature::{RUNNING, chebyshev};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY};
@@ -36,6 +37,7 @@ impl<const N: usize> Strips<N> {
         }
         let mut running = Vec::with_capacity((vs.len() - 1) * us.len());
         for strip in vs.windows(2) {
+            job::look();
             let place = |m: usize| 0.5 * (strip[0] + strip[1]) + 0.5 * (strip[1] - strip[0]) * node(m);
             let rows: Vec<Vec<Sums<N>>> = (0..RUNNING).map(|m| sums_along(&us, rule, &|u| value(u, place(m)))).collect();
             running.extend((0..us.len()).map(|i| std::array::from_fn(|n| terms(&|m| rows[m][i][n]))));

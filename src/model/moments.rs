@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::measure::over;
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::MEASURE_ACCURACY;
 use crate::geometry::Curve;
@@ -104,6 +105,7 @@ impl Moments {
         let share = MEASURE_ACCURACY * whole / open.len().max(1) as f64;
         let mut sum = [0.0; N];
         while let Some((part, depth)) = open.pop() {
+            job::look();
             const DEEPEST: u32 = 20;
             let (rough, fine) = (rule_on(&rules[0], part), rule_on(&rules[1], part));
             if depth == DEEPEST || rough.iter().zip(&fine).all(|(a, b)| (a - b).abs() <= share) {

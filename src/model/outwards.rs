@@ -8,6 +8,7 @@ use super::sides::Component;
 use super::topology::{Model, SurfaceId};
 use crate::base::bbox::Box3;
 use crate::base::fault::{CutFault, Fault, SurfaceFault, Touching};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::build::line;
@@ -133,6 +134,7 @@ impl Skin {
         let mut out = 0_i32;
         for (surface, other) in &self.faces {
             for hit in with_curve(&ray, std::slice::from_ref(surface), tolerance).ok()? {
+                job::look();
                 let normal = surface.normal(hit.uv.0, hit.uv.1);
                 let sine = way.dot(normal) * if *other { -1.0 } else { 1.0 };
                 if hit.shared_to.is_some() || sine.abs() < CROSSES {

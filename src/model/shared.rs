@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::shells::Joins;
 use super::topology::{EdgeId, Model, PatchId, SurfaceId, VertexId};
 use super::trace::Track;
+use crate::base::job;
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
@@ -170,6 +171,7 @@ impl Model {
         let slivers = self.slivers(&members, (&edges, &joins.pieces), near);
         let mut faces: Vec<PatchId> = Vec::new();
         for surface in surfaces {
+            job::look();
             let own: Vec<PatchId> = self.patches_of(*surface).filter(|p| slivers.binary_search(p).is_err()).collect();
             if own.first().is_some_and(|p| !faces.contains(p)) {
                 faces.extend(own);
@@ -227,6 +229,7 @@ impl<'a> Sharing<'a> {
         let mut found = SharedEdges::default();
         let mut known: BTreeMap<usize, usize> = BTreeMap::new();
         for face in faces {
+            job::look();
             let mut border = Vec::new();
             for (edge, against) in self.model.border_of(*face) {
                 let Ok(track) = self.edges.binary_search(&edge) else { continue };

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::topology::EdgeCurve;
 use crate::base::digest::{Content, Digester};
+use crate::base::job;
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
@@ -52,6 +53,7 @@ impl Trace {
         let scale = start.distance(end).max(trace.speed(0.5)).max(rounding / MEASURE_ACCURACY);
         let mut open = vec![(0.0, 1.0, DEPTH)];
         while let Some((a, b, left)) = open.pop() {
+            job::look();
             let panel = quadrature::kronrod(a, b, |t| trace.speed(t));
             if left > 0 && panel.error > MEASURE_ACCURACY * scale.max(trace.length) {
                 let middle = 0.5 * (a + b);
@@ -119,6 +121,7 @@ impl Trace {
         let whole = self.panels.get(k + 1).map_or(self.length, |next| next.s) - panel.s;
         let (mut low, mut high, mut x) = (-1.0, 1.0, (2.0 * (s - panel.s) / whole - 1.0).clamp(-1.0, 1.0));
         for _ in 0..STEPS {
+            job::look();
             let (value, slope) = quadrature::chebyshev(&panel.running, x);
             let miss = value - wanted;
             if miss > 0.0 {

@@ -8,6 +8,7 @@ use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
 use super::meet::{closest_points, meet};
 use super::snap::may_snap;
 use crate::base::fault::{CurveEnd, Fault, NetworkFault, NoFlow, Result, SurfaceFault};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
@@ -198,6 +199,7 @@ fn ends_that_miss(chains: &[Chain], lists: &[NodeList], hints: &FlowOptions, tol
         |lists: &[NodeList], k: usize, last: bool| if last { lists[k].nodes.last().copied() } else { lists[k].nodes.first().copied() };
     let mut misses = Vec::new();
     for a in 0..chains.len() {
+        job::look();
         for b in a + 1..chains.len() {
             if !shared(&lists[a], &lists[b]).is_empty() {
                 continue;

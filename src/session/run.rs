@@ -174,8 +174,12 @@ impl<'r> Run<'r> {
     fn whole(mut self, look: &mut dyn FnMut(&mut Cx<'_>)) -> (Outcome, Memory) {
         match std::str::from_utf8(self.task.text) {
             Ok(text) => {
-                self.evaluate(text);
-                look(&mut self.cx);
+                let job = self.cx.job;
+                // Whether it was stopped is asked at the end.
+                let _ = job.watch(|| {
+                    self.evaluate(text);
+                    look(&mut self.cx);
+                });
                 self.finish(None)
             }
             Err(error) => {

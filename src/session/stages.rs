@@ -239,7 +239,7 @@ impl Stages<'_> {
         let mut reuse = std::mem::take(&mut kept().reuse);
         reuse.beside(kept().cache.clone().map(|cache| cache as Arc<dyn Shelf>));
         let faces = reuse.faces();
-        let built = outline.build(input, Some(&reuse), job);
+        let built = job.watch(|| outline.build(input, Some(&reuse), job)).and_then(|built| built);
         self.found().reused_faces += reuse.faces() - faces;
         let mut kept = kept();
         kept.reuse = reuse;

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::sweep::{sweep, temporary_name};
+use crate::base::job;
 
 /// Bytes gathered before the system is asked to write.
 const BUFFER: usize = 1 << 18;
@@ -132,7 +133,7 @@ fn fill_file(path: &Path, fill: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>
     Ok(out.bytes)
 }
 
-/// Counts what goes through.
+/// Counts what goes through, and looks whether it still should.
 pub(super) struct Counted<W> {
     pub(super) inner: W,
     pub(super) bytes: u64,
@@ -140,11 +141,13 @@ pub(super) struct Counted<W> {
 
 impl<W: Write> Write for Counted<W> {
     fn write(&mut self, data: &[u8]) -> io::Result<usize> {
+        job::look();
         let n = self.inner.write(data)?;
         self.bytes += n as u64;
         Ok(n)
     }
     fn write_all(&mut self, data: &[u8]) -> io::Result<()> {
+        job::look();
         self.inner.write_all(data)?;
         self.bytes += data.len() as u64;
         Ok(())

@@ -11,6 +11,7 @@ use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend};
 use super::quick::Quick;
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::tolerance::EPSILON;
 use crate::network::Chain;
 
@@ -93,6 +94,7 @@ impl Nearest {
         let (nx, ny) = (self.xs.len(), self.ys.len());
         for j in (0..ny).step_by(BLOCK) {
             for i in (0..nx).step_by(BLOCK) {
+                job::look();
                 let (rows, columns) = ((j, (j + BLOCK).min(ny)), (i, (i + BLOCK).min(nx)));
                 let mut block = Block { rows, columns, around: Box3::EMPTY, reach: 0.0 };
                 for k in block.samples(nx) {
@@ -116,6 +118,7 @@ impl Nearest {
 
     /// The nearest point of the surface.
     pub fn at(&self, p: DVec3) -> Closest {
+        job::look();
         match self.surface.domain() {
             Domain::Unbounded => self.foot(p),
             Domain::Loop if self.surface.is_flat() => self.inside_loop(p),
@@ -259,6 +262,7 @@ fn winding(chain: &Chain, whole: (f64, f64), about: DVec3, normal: DVec3) -> f64
     let mut open = vec![(whole, 0)];
     let mut turn = 0.0;
     while let Some(((f0, f1), depth)) = open.pop() {
+        job::look();
         let (a, b) = (chain.point(f0) - about, chain.point(f1) - about);
         if (f1 - f0) * chain.length() < a.length() + b.length() || depth == DEEPEST {
             turn += crate::base::math::atan2(a.cross(b).dot(normal), a.dot(b));

@@ -7,6 +7,7 @@ use super::core::{Domain, Side, Surface};
 use super::curve_extent::curve_bbox;
 use super::descent::{Local, descend};
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::tolerance::{BOX, EPSILON};
 
 /// The smallest box along the axes that holds the surface: no point of it stands out by more than [`BOX`] of the diagonal.
@@ -102,6 +103,7 @@ fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
         vs.windows(2).flat_map(|v| us.windows(2).map(move |u| ((u[0], u[1]), (v[0], v[1])))).collect();
     let (room, mut seen) = (DVec3::splat(BOX * bounds.diagonal()), 0);
     while let Some((u, v)) = open.pop_front() {
+        job::look();
         if triangle && u.0 + v.0 >= 1.0 {
             continue;
         }

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::quick::Quick;
 use super::{Domain, Jet2, Surface};
+use crate::base::job;
 use crate::base::tolerance::EPSILON;
 
 /// The step in the parameters whose image under two tangents is a vector's tangential part, to first order; `None` where
@@ -46,6 +47,7 @@ pub(super) trait Footing {
         let mut jet = self.jet(uv);
         let mut best = jet.p.distance_squared(p);
         for _ in 0..Self::STEPS {
+            job::look();
             let Some(full) = self.step(&jet, uv, p - jet.p) else { break };
             if self.is_last(&jet, p - jet.p, full) {
                 return (self.hold(uv + full), best.sqrt());

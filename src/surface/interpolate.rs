@@ -5,6 +5,7 @@ use glam::{DVec3, DVec4};
 use super::core::{Surface, SurfaceKind};
 use super::nurbs::NurbsSurface;
 use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault, ValueFault};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::nurbs::projected;
@@ -60,6 +61,7 @@ pub fn fitted(rows: &[Vec<DVec3>], tangents: &Tangents, origin: Origin, toleranc
     let (mu, mv) = (nu + 2, nv + 2);
     let mut net = vec![DVec4::ZERO; mu * mv];
     for i in 0..mu {
+        job::look();
         let column: Vec<DVec3> = lines.iter().map(|line| line[i]).collect();
         let ends = ends_v.as_ref().map_or([None, None], |(first, last)| [Some(first[i]), Some(last[i])]);
         for (j, p) in poles(&column, &spans_v, ends).into_iter().enumerate() {
@@ -121,6 +123,7 @@ fn spans(lines: &[Vec<DVec3>], word: &'static str, origin: Origin, tolerance: &T
     let total: f64 = mean.iter().sum();
     let mut worst: Option<(f64, usize, DVec3)> = None;
     for &k in &live {
+        job::look();
         let whole = length(&lines[k]);
         for i in 0..n {
             let (own, common) = (chord(&lines[k], i) / whole, mean[i] / total);

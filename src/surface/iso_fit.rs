@@ -10,6 +10,7 @@ use super::core::{Domain, Surface};
 use super::iso::IsoLine;
 use super::rail::Lean;
 use crate::base::fault::{CurveFault, Result};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::range::Ranges;
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -44,6 +45,7 @@ pub(super) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
     for w in stops.windows(2).filter(|w| w[0] < w[1]) {
         let mut open = vec![(w[0], w[1])];
         while let Some((a, b)) = open.pop() {
+            job::look();
             let cubic = fit.cubic(a, b);
             if fit.holds(&cubic, a, b) {
                 pieces.push(cubic);
@@ -94,6 +96,7 @@ impl Fit<'_> {
         let mut open = vec![(a, b)];
         let mut seen = 0;
         while let Some((a, b)) = open.pop() {
+            job::look();
             let (middle, h) = (0.5 * (a + b), 0.5 * (b - a));
             let (f, c) = (self.jet(middle, Lean::After), cubic.jet(middle));
             let (off, slope) = (f.p.distance(c.p), f.d1.distance(c.d1));

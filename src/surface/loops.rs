@@ -14,6 +14,7 @@ use super::strands::of_border;
 use super::trim::{Walk, reach};
 use crate::base::bbox::Box3;
 use crate::base::fault::{LoopFault, Result};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, meet};
@@ -120,8 +121,10 @@ pub(super) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Resu
     let mut found: BTreeMap<(usize, usize), Touch> = BTreeMap::new();
     let mut open: Vec<usize> = Vec::new();
     for k in 0..fences.len() {
+        job::look();
         open.retain(|j| fences[*j].reach.max.x + tolerance.point >= fences[k].reach.min.x);
         for &j in &open {
+            job::look();
             let (a, b) = if fences[j].ring < fences[k].ring { (&fences[j], &fences[k]) } else { (&fences[k], &fences[j]) };
             if a.ring == b.ring || b.ring < new || !a.reach.touches(&b.reach, tolerance.point) {
                 continue;

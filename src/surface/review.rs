@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::core::{Domain, Jet2, Surface, unit_normal};
 use super::rail::Lean;
 use crate::base::fault::{Fault, SurfaceFault};
+use crate::base::job;
 use crate::base::math;
 use crate::base::tolerance::{SINGULAR, Tolerance};
 
@@ -47,6 +48,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     };
     let mut worst: Option<(f64, usize)> = None;
     for k in 0..jets.len() {
+        job::look();
         let (i, j) = (k % us.len(), k / us.len());
         let right = (i + 1 < us.len() && !parted(us[i], us[i + 1], kink_u)).then_some(k + 1);
         let up = (j + 1 < vs.len() && !parted(vs[j], vs[j + 1], kink_v)).then_some(k + us.len());

@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::newton::{Near, approach, foot};
 use super::search::{END_REACH, Found, Rect, Search};
+use crate::base::job;
 use crate::base::solve;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::pieces::View;
@@ -57,6 +58,7 @@ fn runs(rects: &[Rect]) -> Vec<Run> {
         let mut joined = Run { a: rect.a, b: rect.b, parts: 1 };
         let mut i = 0;
         while i < open.len() {
+            job::look();
             let run = open[i];
             if run.a.1 < rect.a.0 {
                 done.push(open.swap_remove(i));
@@ -227,6 +229,7 @@ impl Contact<'_> {
         let mut rate = 0.0;
         let mut out: Vec<Sample> = Vec::with_capacity(count);
         for i in 0..count {
+            job::look();
             let ta = if i + 1 == count { extent.high } else { extent.low + (extent.high - extent.low) * i as f64 / (count - 1) as f64 };
             let sample = self.sample(ta, guess + rate);
             if let Some(before) = out.last() {

@@ -4,6 +4,7 @@ use super::damage::Damage;
 use super::faces::{Border, Face};
 use super::part::Part;
 use crate::base::fault::Malformed;
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
@@ -15,6 +16,7 @@ impl Part {
         let mut skipped = Vec::new();
         self.built = Vec::with_capacity(self.surfaces.len());
         for item in &self.surfaces {
+            job::look();
             self.built.push(match item.value.surface(origin, tolerance) {
                 Ok(surface) => Some(surface),
                 Err(Damage(why)) => {

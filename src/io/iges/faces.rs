@@ -10,6 +10,7 @@ use super::entities::{Data, EdgeData, LoopEdge, Pointer};
 use super::natural::is_natural;
 use super::surfaces::Base;
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::tolerance::{NEAR_MISS, NUDGE};
 use crate::geometry::{Curve, closest};
 use crate::surface::{Nearest, Side, Surface};
@@ -70,6 +71,7 @@ impl Book {
         let base = self.base(surface, 0).map_err(|Damage(why)| damage(format!("its surface at D{surface}: {why}")))?;
         let mut loops = Vec::with_capacity(borders.len());
         for border in borders {
+            job::look();
             let made = self.loop_of(d, *border, &base);
             loops.push(made.map_err(|Damage(why)| damage(format!("its border at D{border}: {why}")))?);
         }

@@ -14,6 +14,7 @@ use super::faces::Face;
 use super::records;
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
+use crate::base::job;
 use crate::base::limits;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
@@ -110,6 +111,7 @@ impl Opened {
     pub fn counts(&self) -> BTreeMap<u32, usize> {
         let mut counts = BTreeMap::new();
         for entry in &self.book.entries {
+            job::look();
             *counts.entry(entry.kind).or_insert(0) += 1;
         }
         counts
@@ -121,6 +123,7 @@ impl Opened {
         // Axes and the ground of faces reach beyond what is offered.
         let mut hidden = BTreeSet::new();
         for decoded in &self.book.decoded {
+            job::look();
             match &decoded.data {
                 Data::Revolution { axis, .. } => hidden.insert(*axis),
                 Data::Trimmed { surface, outer: Some(_), .. } | Data::Face { surface, has_outer: true, .. } => hidden.insert(*surface),
@@ -129,6 +132,7 @@ impl Opened {
             };
         }
         for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+            job::look();
             if entry.status.purpose == 5 || hidden.contains(&entry.d) {
                 continue;
             }
@@ -198,6 +202,7 @@ impl Maker {
         let (parts, members) = self.relations();
         let mut groups = Vec::new();
         for k in 0..self.book.entries.len() {
+            job::look();
             let entry = &self.book.entries[k];
             let (d, kind, status) = (entry.d, entry.kind, entry.status);
             let alone = !status.physically_dependent || members.contains(&d);

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use glam::DVec3;
 
 use super::lines::{CONTENT, DATA};
+use crate::base::job;
 use crate::base::text::push_real;
 use crate::io::deck::{Loss, Renamed};
 use crate::io::romanize::in_ascii;
@@ -201,6 +202,7 @@ impl Sheet {
         lines.section('D');
         let mut first = 1;
         for (entity, parameters) in self.entities.iter().zip(&parameters) {
+            job::look();
             let Entity { kind, form, transform, color, role, .. } = entity;
             let (n, status) = (parameters.len(), role.status());
             lines.put(&format!("{kind:>8}{first:>8}{0:>8}{0:>8}{0:>8}{0:>8}{transform:>8}{0:>8}{status}", 0))?;

@@ -23,6 +23,7 @@ use super::damage::{Damage, damage};
 use super::sheet::{Role, Sheet, Values, counted, real};
 use super::surfaces::Base;
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL, Tolerance};
 use crate::geometry::arc::EllipticArc;
 use crate::geometry::curve::Shape;
@@ -75,6 +76,7 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
     maker.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
     let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
     for thing in things {
+        job::look();
         let made = match &thing.shown {
             Shown::Point(p) => Ok(maker.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
             Shown::Curve(chain) => chain.to_curve().map_err(Damage::from).and_then(|curve| maker.curve(&curve, Role::Free, true)),

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
+use crate::base::job;
 use crate::geometry::build;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Angle, Length, Point};
@@ -21,11 +22,11 @@ fn quality(cx: &mut Cx, mesh: &MeshValue) -> Result<Quality, Stop> {
 
 /// Elements as lists of node numbers, from 1 as in files.
 fn elements<const N: usize>(elements: &[[u32; N]]) -> Vec<Value> {
-    elements.iter().map(|e| Value::list(e.iter().map(|n| Value::number(f64::from(*n) + 1.0)).collect())).collect()
+    job::looking(elements).map(|e| Value::list(e.iter().map(|n| Value::number(f64::from(*n) + 1.0)).collect())).collect()
 }
 
 fn points(mesh: &Mesh) -> Vec<Point> {
-    mesh.nodes.iter().map(|p| Point(*p)).collect()
+    job::looking(&mesh.nodes).map(|p| Point(*p)).collect()
 }
 
 builtins! {

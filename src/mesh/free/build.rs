@@ -11,7 +11,7 @@ use super::outline::Outline;
 use super::quadtree::{self, Plot};
 use super::web::Web;
 use crate::base::fault::Result;
-use crate::base::job::Job;
+use crate::base::job::{self, Job};
 use crate::base::triangulate_points::{NO_TRIANGLE, PointsFault, Triangles, points};
 
 /// Where inner nodes come from.
@@ -130,7 +130,7 @@ pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>
     let kept = inside(&all, outline);
     let mut p = outline.p.clone();
     p.extend(&grown.p);
-    let mut size: Vec<f64> = outline.p.iter().zip(&outline.xy).map(|(p, xy)| task.field.size(*xy, *p)).collect();
+    let mut size: Vec<f64> = job::looking(outline.p.iter().zip(&outline.xy)).map(|(p, xy)| task.field.size(*xy, *p)).collect();
     size.extend(&grown.size);
     drop(grown);
     Ok(Ok(Web::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
@@ -194,13 +194,14 @@ pub(in crate::mesh) fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {
     let crosses = |t: usize, k: usize| all.given[t] >> k & 1 == 1 && turns(all.corners[t][(k + 1) % 3], all.corners[t][(k + 2) % 3]);
     let mut state = vec![2_u8; all.corners.len()];
     let mut open = Vec::new();
-    for (t, across) in all.across.iter().enumerate() {
+    for (t, across) in job::looking(all.across.iter().enumerate()) {
         if let Some(k) = across.iter().position(|next| *next == NO_TRIANGLE) {
             state[t] = u8::from(crosses(t, k));
             open.push(t);
         }
     }
     while let Some(t) = open.pop() {
+        job::look();
         for k in 0..3 {
             let next = all.across[t][k];
             if next != NO_TRIANGLE && state[next as usize] == 2 {
@@ -220,7 +221,7 @@ fn seeds(coarse: &Triangles, kept: &[bool], outline: &Outline) -> Vec<(DVec2, DV
         let [a, b, c] = coarse.corners[t].map(|n| outline.p[n as usize]);
         (b - a).cross(c - a).length_squared()
     };
-    let mut order: Vec<(f64, usize)> = (0..kept.len()).filter(|t| kept[*t]).map(|t| (area(t), t)).collect();
+    let mut order: Vec<(f64, usize)> = job::looking(0..kept.len()).filter(|t| kept[*t]).map(|t| (area(t), t)).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let middle = |t: usize| coarse.corners[t].map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0;
     order.into_iter().map(|(_, t)| (middle(t), along)).collect()

@@ -15,7 +15,7 @@ use super::cells::Cells;
 use super::ground::{Field, Ground, Spot};
 use super::outline::{Outline, cross};
 use crate::base::fault::Result;
-use crate::base::job::Job;
+use crate::base::job::{self, Job};
 use crate::base::tolerance::NUDGE;
 
 /// Nearest distance between two nodes, as a share of the wanted length.
@@ -262,6 +262,7 @@ pub(super) fn samples(outline: &Outline, field: &dyn Field) -> Cells {
     let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
     let mut cells = Cells::new(unit, !field.is_even());
     for (k, [a, b]) in outline.edges().enumerate() {
+        job::look();
         let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
         let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
         let size = |t: f64| field.size(xa.lerp(xb, t), pa.lerp(pb, t));

@@ -11,6 +11,7 @@ use super::ground::{Field, Ground};
 use super::grow::{Grown, SIGHT, apart, samples};
 use super::outline::Outline;
 use super::tree::{Cell, Class, Halt, Tree};
+use crate::base::job;
 
 /// Side of a cell over the wanted length: its diagonal is then hardly longer than a side may be.
 const SIDE: f64 = 0.74;
@@ -90,6 +91,7 @@ fn corners(task: &Plot, tree: &Tree) -> Grown {
     let depth = tree.cells().iter().map(|c| c.level).max().unwrap_or(0);
     let mut found: Vec<Corner> = Vec::new();
     for (k, cell) in tree.cells().iter().enumerate().filter(|(_, c)| c.is_leaf() && c.class != Class::Exterior) {
+        job::look();
         let up = depth - cell.level;
         for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             found.push((((cell.at.0 + i) << up, (cell.at.1 + j) << up), k as u32));
@@ -100,6 +102,7 @@ fn corners(task: &Plot, tree: &Tree) -> Grown {
     found.sort_unstable_by_key(|((i, j), k)| (*j, *i, *k));
     let mut grown = Grown::default();
     for run in found.chunk_by(|a, b| a.0 == b.0) {
+        job::look();
         let leaves: Vec<&Cell> = run.iter().map(|(_, k)| &tree.cells()[*k as usize]).collect();
         let xy = tree.corner(depth, run[0].0);
         if leaves.iter().all(|c| c.class == Class::Partial) && !tree.holds(xy) {

@@ -5,6 +5,7 @@
 
 use glam::DVec2;
 
+use crate::base::job;
 use crate::base::predicates::orient;
 
 /// Deepest level under a root: its squares are a millionth of a root.
@@ -81,6 +82,7 @@ impl<'a> Tree<'a> {
         }
         let mut met = vec![Vec::new(); (roots.0 * roots.1) as usize];
         for (k, [a, b]) in segments.iter().enumerate() {
+            job::look();
             let (from, to) = (tree.column(a.min(*b)), tree.column(a.max(*b)));
             for j in from.1..=to.1 {
                 for i in from.0..=to.0 {
@@ -91,6 +93,7 @@ impl<'a> Tree<'a> {
             }
         }
         for (k, segments) in met.into_iter().enumerate() {
+            job::look();
             let at = (k as u32 % roots.0, k as u32 / roots.0);
             let class = if segments.is_empty() { tree.by_middle(0, at) } else { Class::Partial };
             tree.cells.push(Cell { level: 0, at, class, segments, child: 0 });
@@ -187,6 +190,7 @@ impl<'a> Tree<'a> {
     pub fn balance(&mut self) {
         let mut open: Vec<u32> = (0..self.cells.len() as u32).filter(|k| self.cells[*k as usize].is_leaf()).collect();
         while let Some(k) = open.pop() {
+            job::look();
             if !self.cells[k as usize].is_leaf() || self.cells[k as usize].level < 2 {
                 continue;
             }

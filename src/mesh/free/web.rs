@@ -9,6 +9,7 @@ pub use patch::Patch;
 
 use super::outline::area2;
 use super::shape::quality;
+use crate::base::job;
 use crate::base::triangulate_points::{NO_TRIANGLE, Triangles};
 
 /// A triangulation on a surface: border nodes first, which never move, then inner ones.
@@ -59,11 +60,12 @@ fn by_nodes(all: &Triangles, kept: &[bool], nodes: usize) -> Vec<u32> {
     let first = |t: usize| all.corners[t].into_iter().fold(u32::MAX, u32::min) as usize;
     let mut from = vec![0_u32; nodes + 1];
     (0..kept.len()).filter(|t| kept[*t]).for_each(|t| from[first(t) + 1] += 1);
-    for k in 0..nodes {
+    for k in job::looking(0..nodes) {
         from[k + 1] += from[k];
     }
     let mut order = vec![0; from[nodes] as usize];
     for t in (0..kept.len()).filter(|t| kept[*t]) {
+        job::look();
         let slot = &mut from[first(t)];
         order[*slot as usize] = t as u32;
         *slot += 1;
@@ -83,6 +85,7 @@ impl Web {
         web.across.reserve_exact(n);
         web.locked.reserve_exact(n);
         for k in order.into_iter().map(|k| k as usize) {
+            job::look();
             let across = all.across[k].map(|t| if t == NO_TRIANGLE { t } else { number[t as usize] });
             let open = (0..3).filter(|c| across[*c] == NO_TRIANGLE).fold(0, |bits, c| bits | 1 << c);
             for c in all.corners[k] {
@@ -229,6 +232,7 @@ impl Web {
         let mut number = vec![u32::MAX; self.p.len()];
         let mut next = 0;
         for n in 0..self.p.len() as u32 {
+            job::look();
             if n < self.fixed || self.at[n as usize] != NO_TRIANGLE {
                 number[n as usize] = next;
                 let (from, to) = (n as usize, next as usize);
@@ -248,7 +252,7 @@ impl Web {
         self.stamp = vec![0; live.len()];
         self.turn = 0;
         self.at = vec![NO_TRIANGLE; self.p.len()];
-        for (t, c) in self.tri.iter().enumerate() {
+        for (t, c) in job::looking(self.tri.iter().enumerate()) {
             c.iter().for_each(|n| self.at[*n as usize] = t as u32);
         }
         self.free_tri.clear();
@@ -258,6 +262,7 @@ impl Web {
     /// Neighbours know each other, corners turn the right way, every used node knows a triangle of its own.
     pub fn check(&self) -> Result<(), String> {
         for t in (0..self.tri.len() as u32).filter(|t| self.alive(*t)) {
+            job::look();
             if self.chart_area(t) <= 0.0 {
                 return Err(format!("triangle {t} is turned over"));
             }

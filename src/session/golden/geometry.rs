@@ -10,6 +10,7 @@ use super::words::rounded;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::fault::Malformed;
+use crate::base::job;
 use crate::io::{obj_read, stl_read};
 use crate::mesh::Mesh;
 
@@ -45,6 +46,7 @@ struct Places {
 
 impl Places {
     fn node(&mut self, p: DVec3) -> u32 {
+        job::look();
         let key = p.to_array().map(|x| (x + 0.0).to_bits());
         let nodes = &mut self.shape.nodes;
         *self.known.entry(key).or_insert_with(|| {
@@ -190,7 +192,7 @@ fn matched(old: &Shape, new: &Shape, within: f64) -> Matched {
     let boxes: Vec<Box3> = new.nodes.iter().map(|p| Box3::of([*p])).collect();
     let tree = BoxTree::build(&boxes);
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-    for (k, p) in old.nodes.iter().enumerate() {
+    for (k, p) in job::looking(old.nodes.iter().enumerate()) {
         tree.query(&Box3::of([*p]), within, |m| {
             let distance = p.distance(new.nodes[m]);
             if distance <= within {
@@ -226,8 +228,8 @@ fn canonical(cell: &Cell, number: impl Fn(u32) -> u32) -> Cell {
 
 /// What differs between cells on the same nodes.
 fn cells_differ(old: &Shape, new: &Shape, partner: &[u32], unit: &str) -> Option<String> {
-    let mut before: Vec<Cell> = old.cells.iter().map(|c| canonical(c, |n| partner[n as usize])).collect();
-    let mut after: Vec<Cell> = new.cells.iter().map(|c| canonical(c, |n| n)).collect();
+    let mut before: Vec<Cell> = job::looking(&old.cells).map(|c| canonical(c, |n| partner[n as usize])).collect();
+    let mut after: Vec<Cell> = job::looking(&new.cells).map(|c| canonical(c, |n| n)).collect();
     before.sort();
     after.sort();
     let (gone, come) = (without(&before, &after), without(&after, &before));
@@ -285,6 +287,7 @@ impl<'t> Near<'t> {
 
     /// Distance to the nearest one; infinite when there is none. `guess` is where the search begins.
     fn distance(&self, p: DVec3, guess: f64) -> f64 {
+        job::look();
         if self.triangles.is_empty() {
             return f64::INFINITY;
         }

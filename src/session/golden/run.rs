@@ -124,7 +124,7 @@ pub fn run_all(tests: &[Test], settings: &Settings, each: &mut dyn FnMut(&[CaseR
                     let k = next.fetch_add(1, Ordering::Relaxed);
                     let Some(test) = tests.get(k).filter(|_| settings.job.go_on().is_ok()) else { return };
                     // Whoever listens has gone only when everything ends.
-                    let _ = send.send((k, run_one(test, settings)));
+                    let _ = send.send((k, watched_one(test, settings)));
                 }
             });
         }
@@ -149,6 +149,12 @@ pub fn names(test: &Test) -> Vec<String> {
         Some((golden, _)) => golden.head.runs().iter().map(|(case, _)| name_of(test, case.as_deref())).collect(),
         None => vec![test.name.clone()],
     }
+}
+
+/// The same as [`run_one`], also stopped while it compares.
+fn watched_one(test: &Test, settings: &Settings) -> Vec<CaseResult> {
+    let stopped = |_| vec![CaseResult::new(&test.name, Verdict::Interrupted, "interrupted")];
+    settings.job.watch(|| run_one(test, settings)).unwrap_or_else(stopped)
 }
 
 /// Runs one model in all its cases.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Answer, Notebook, Part, State, bug_answer};
+use super::{Answer, Notebook, Part, State};
 use crate::base::limits;
 use crate::lang::symbols::Condition;
 use crate::session::disk::{read_limited, write_whole};
@@ -104,8 +104,13 @@ impl Notebook {
         let (mut past, mut future) = (std::mem::take(&mut self.past), std::mem::take(&mut self.future));
         let before = self.state.clone();
         let names = changed_names(&before.text, &state.text);
-        let mut answer = self.change(state, &names);
+        let mut answer = self.change(state.clone(), &names);
         let gone = self.state == before;
+        if answer.stopped {
+            if undo { &mut past } else { &mut future }.push(state);
+            (self.past, self.future) = (past, future);
+            return answer;
+        }
         if undo { &mut future } else { &mut past }.push(before);
         self.past = past;
         self.future = future;
@@ -141,11 +146,8 @@ impl Notebook {
         let state = self.state.clone();
         let outcome = match self.run(&state, Depth::Files, &mut |_| {}) {
             Ok(outcome) => outcome,
-            Err(bug) => return bug_answer(&bug),
+            Err(answer) => return answer,
         };
-        if outcome.interrupted {
-            return Answer::failure("interrupted: nothing was written");
-        }
         let mut answer = Answer { failed: !outcome.report.ok, ..Answer::default() };
         let drawn = outcome.drawn(self.color, false);
         if !drawn.is_empty() {
@@ -173,6 +175,9 @@ impl Notebook {
         };
         let Ok(text) = text else { return Answer::failure(format!("{} is not UTF-8 text", path.display())) };
         let mut answer = self.load(&path.to_string_lossy(), path, &text);
+        if answer.stopped {
+            return answer;
+        }
         let sound = self.symbols.iter().filter(|s| s.name.is_some() && s.condition == Condition::Sound).count();
         answer.say(format!("{}: {sound} names", path.display()));
         answer

@@ -1,6 +1,6 @@
 //! Entries that change the script: declarations put in, replaced and taken out.
 
-use super::{ANSWER, Answer, ENTRY, Notebook, Part, State, bug_answer, ended};
+use super::{ANSWER, Answer, ENTRY, Notebook, Part, State, ended};
 use crate::base::fault::Severity;
 use crate::lang::cx::Cx;
 use crate::lang::diag::{Diagnostic, FileId, Sources};
@@ -82,7 +82,7 @@ impl Notebook {
         }
         let mut sources = Sources::default();
         sources.add(ENTRY, entry);
-        Some(Answer { parts: vec![Part::Said(render_all(&said, &sources, self.color))], failed: true, quit: false })
+        Some(Answer { parts: vec![Part::Said(render_all(&said, &sources, self.color))], failed: true, ..Answer::default() })
     }
 
     /// The value of an expression.
@@ -104,11 +104,8 @@ impl Notebook {
         });
         let outcome = match result {
             Ok(outcome) => outcome,
-            Err(bug) => return bug_answer(&bug),
+            Err(answer) => return answer,
         };
-        if outcome.interrupted {
-            return Answer::failure("interrupted");
-        }
         let own = (base + head.len()) as u32;
         let said: Vec<Diagnostic> = outcome
             .diagnostics
@@ -144,7 +141,11 @@ impl Notebook {
         let mut sources = Sources::default();
         let file = sources.add(ENTRY, entry);
         let said: Vec<Diagnostic> = said.iter().map(|d| relabelled(d, head.len() as u32, file)).collect();
-        (!said.is_empty()).then(|| Answer { parts: vec![Part::Said(render_all(&said, &sources, self.color))], failed: true, quit: false })
+        (!said.is_empty()).then(|| Answer {
+            parts: vec![Part::Said(render_all(&said, &sources, self.color))],
+            failed: true,
+            ..Answer::default()
+        })
     }
 
     /// Reports about the hidden declaration of an expression, as reports about the entry; others keep their places.

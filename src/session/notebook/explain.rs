@@ -1,6 +1,6 @@
 //! How a name of the model came about: its statement, what it stands on, how it was ordered, counted and meshed.
 
-use super::{Answer, Notebook, Part, bug_answer};
+use super::{Answer, Notebook, Part};
 use crate::lang::cx::{Cx, Sound};
 use crate::lang::value::{ModuleId, Value};
 use crate::network::Network;
@@ -29,7 +29,7 @@ impl Notebook {
         });
         let outcome = match result {
             Ok(outcome) => outcome,
-            Err(bug) => return bug_answer(&bug),
+            Err(answer) => return answer,
         };
         let mut answer = Answer::text(format!("{}:{line}", self.live.name()));
         answer.parts.extend(symbol.doc.clone().map(Part::Text));
@@ -61,8 +61,8 @@ impl Notebook {
                 about(cx, &value, &mut details);
             }
         });
-        if let Err(bug) = result {
-            return bug_answer(&bug);
+        if let Err(answer) = result {
+            return answer;
         }
         details.into_iter().for_each(|line| answer.say(line));
         answer

@@ -49,6 +49,8 @@ pub struct Answer {
     pub failed: bool,
     /// The session ends.
     pub quit: bool,
+    /// It was interrupted.
+    pub stopped: bool,
 }
 
 impl Answer {
@@ -102,6 +104,8 @@ struct Last {
 
 /// Name of the pseudo-file that an entry stands in.
 const ENTRY: &str = "entry";
+/// What an interrupted entry is answered.
+const INTERRUPTED: &str = "interrupted; the session is as it was before";
 /// The name that an expression gets while it is evaluated.
 const ANSWER: &str = "answer_of_this_entry";
 
@@ -125,10 +129,14 @@ impl Notebook {
 
     /// The session goes on with a script read from a file.
     pub fn load(&mut self, name: &str, path: &Path, text: &str) -> Answer {
-        self.live = Live::new(name, Some(path), &[] as &[PathBuf], self.clock.clone());
-        self.said.clear();
-        self.conditions.clear();
-        self.change(State { text: ended(text), sets: Vec::new() }, &[])
+        let live = Live::new(name, Some(path), &[] as &[PathBuf], self.clock.clone());
+        let live = std::mem::replace(&mut self.live, live);
+        let (said, conditions) = (std::mem::take(&mut self.said), std::mem::take(&mut self.conditions));
+        let answer = self.change(State { text: ended(text), sets: Vec::new() }, &[]);
+        if answer.stopped {
+            (self.live, self.said, self.conditions) = (live, said, conditions);
+        }
+        answer
     }
 
     /// The flag that stops what is being computed; a new one for each entry.
@@ -172,11 +180,14 @@ impl Notebook {
         if found[0].keyword.is_some() || edit::is_meant_as_declaration(trimmed) { self.declare(trimmed) } else { self.ask(trimmed) }
     }
 
-    /// Runs a text in the place of the present one.
-    fn run(&mut self, state: &State, depth: Depth, look: &mut (dyn FnMut(&mut Cx<'_>) + Send)) -> Result<Outcome, Bug> {
+    /// Runs a text in the place of the present one; where it was stopped or met a bug, the answer says so.
+    fn run(&mut self, state: &State, depth: Depth, look: &mut (dyn FnMut(&mut Cx<'_>) + Send)) -> Result<Outcome, Answer> {
         let start = (self.clock)();
         let job = self.job.clone();
-        let outcome = self.live.run((&state.text, &state.sets), depth, &job, look)?;
+        let outcome = self.live.run((&state.text, &state.sets), depth, &job, look).map_err(|bug| bug_answer(&bug))?;
+        if outcome.interrupted {
+            return Err(Answer { stopped: true, ..Answer::failure(INTERRUPTED) });
+        }
         let timings = outcome.report.timings;
         self.last = Some(Last {
             seconds: (self.clock)() - start,
@@ -205,11 +216,8 @@ impl Notebook {
         });
         let outcome = match result {
             Ok(outcome) => outcome,
-            Err(bug) => return bug_answer(&bug),
+            Err(answer) => return answer,
         };
-        if outcome.interrupted {
-            return Answer::failure("interrupted; the session is as it was before");
-        }
         let mut answer = Answer::default();
         self.tell_new(&outcome, &mut answer);
         lines.into_iter().for_each(|line| answer.say(line));

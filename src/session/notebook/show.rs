@@ -1,7 +1,7 @@
 //! What a session tells about names: values, dependencies, meshes, and whether they may be removed.
 
 use super::edit::told;
-use super::{Answer, Notebook, Part, bug_answer, ended};
+use super::{Answer, Notebook, Part, ended};
 use crate::lang::symbols::{Condition, Symbol, about_mesh};
 use crate::lang::syntax::ast::{DeclarationKind, Keyword};
 use crate::lang::syntax::parse;
@@ -44,8 +44,8 @@ impl Notebook {
             line = cx.describe_name(name);
             table = cx.value_of(name).and_then(|value| cx.table_of(&value)).map(|t| told(cx, &t));
         });
-        if let Err(bug) = result {
-            return bug_answer(&bug);
+        if let Err(answer) = result {
+            return answer;
         }
         let mut answer = Answer::default();
         answer.parts.extend(symbol.doc.map(Part::Text));
@@ -188,11 +188,8 @@ impl Notebook {
         });
         let outcome = match result {
             Ok(outcome) => outcome,
-            Err(bug) => return bug_answer(&bug),
+            Err(answer) => return answer,
         };
-        if outcome.interrupted {
-            return Answer::failure("interrupted");
-        }
         if wrong {
             return Answer::failure(format!("`{name}` is no mesh"));
         }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Answer, Notebook, Part, bug_answer};
+use super::{Answer, Notebook, Part};
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::Cx;
 use crate::lang::value::{ModuleId, Value};
@@ -123,7 +123,7 @@ impl Notebook {
             }
         });
         match (result, made) {
-            (Err(bug), _) => bug_answer(&bug),
+            (Err(answer), _) => answer,
             (Ok(_), Ok(table)) => Answer { parts: vec![Part::Table(table)], ..Answer::default() },
             (Ok(_), Err(words)) => Answer::failure(words),
         }

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::pair::{Pair, Spot};
 use super::sheet::{Line, Patch};
+use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE};
 
 /// A line in which two patches meet: places in a row.
@@ -40,6 +41,7 @@ impl Pair<'_> {
         let mut spots = vec![start];
         let mut h = FIRST * size;
         while spots.len() < MOST {
+            job::look();
             let here = spots[spots.len() - 1];
             if h < NUDGE * NUDGE * size {
                 return Err(here.p);

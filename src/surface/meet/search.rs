@@ -11,6 +11,7 @@ use super::march::Branch;
 use super::pair::{Pair, Spot};
 use super::sheet::{Cell, Sheet};
 use crate::base::bbox::Box3;
+use crate::base::job;
 use crate::surface::foot::Footing;
 
 /// Pairs looked at before giving up; a solved place counts as many as it costs.
@@ -65,6 +66,7 @@ pub(super) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Res
     let mut search = Search { a, b, point, size, long, touched: Box3::EMPTY, common: Common::default(), looked_at: 0 };
     for i in roots_a {
         for j in &roots_b {
+            job::look();
             search.pair(i, *j)?;
         }
     }
@@ -133,6 +135,7 @@ impl Search<'_> {
         let mut gap = f64::INFINITY;
         let mut at = x.spread.mid.p;
         for _ in 0..ROUNDS {
+            job::look();
             b = y.hold(self.b.patch.foot(self.a.patch.jet(a).p, b).0);
             a = x.hold(self.a.patch.foot(self.b.patch.jet(b).p, a).0);
             at = self.a.patch.jet(a).p;

@@ -10,6 +10,7 @@ use super::sheet::{Sheet, grounded, patches};
 use super::{kept_stretches, long, with_loops};
 use crate::base::bbox::Box3;
 use crate::base::fault::{CurveFault, CutFault, Fault, Result};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curve::Shape;
@@ -89,6 +90,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     let (mut curves, mut touches) = (Vec::new(), Vec::new());
     for x in &mut sheets_a {
         for y in &mut sheets_b {
+            job::look();
             if !x.bounds().touches(&y.bounds(), tolerance.point) {
                 continue;
             }
@@ -134,6 +136,7 @@ fn clusters(boxes: &[Box3], point: f64) -> Vec<Box3> {
     for one in boxes {
         let mut whole = *one;
         loop {
+            job::look();
             let before = out.len();
             out.retain(|other| {
                 let near = other.touches(&whole, point);

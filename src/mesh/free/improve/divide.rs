@@ -3,7 +3,7 @@
 use super::mend::{Keep, Plan, Worth};
 use super::{Gardener, Guard};
 use crate::base::fault::Result;
-use crate::base::job::Job;
+use crate::base::job::{self, Job};
 use crate::mesh::free::pending::Pending;
 
 /// Divisions of triangles that break a limit.
@@ -53,6 +53,7 @@ impl<'a> Gardener<'a> {
             }
             let mut divided = false;
             for &t in &bad {
+                job::look();
                 if !self.web.alive(t) {
                     continue;
                 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Gardener;
+use crate::base::job;
 use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::outline::area2;
@@ -18,6 +19,7 @@ impl Gardener<'_> {
         open.reverse();
         let mut left = 4 * self.web.tri.len() + 64;
         while let Some(t) = open.pop() {
+            job::look();
             if !self.web.alive(t) {
                 continue;
             }

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::Gardener;
 use super::mend::{Plan, Worth};
 use crate::base::fault::Result;
-use crate::base::job::Job;
+use crate::base::job::{self, Job};
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::shape::Star;
 use crate::mesh::free::web::Patch;
@@ -81,6 +81,7 @@ impl Gardener<'_> {
         let mut best: Option<(usize, Swept)> = None;
         let changes = self.changes(t);
         for (k, change) in changes.iter().enumerate() {
+            job::look();
             let (nodes, _) = self.apply(change, &nodes);
             let most = best.as_ref().map_or(before.bad * LESS, |best| best.1.bad);
             if let Some(swept) = self.sweep(&nodes, (before, most)) {
@@ -171,6 +172,7 @@ impl Gardener<'_> {
             }
             let mut moved = false;
             for &node in nodes {
+                job::look();
                 if !self.web.is_free(node) {
                     continue;
                 }

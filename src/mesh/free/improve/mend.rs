@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::Gardener;
 use super::flips::GAIN;
+use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::outline::area2;
 use crate::mesh::free::shape::Star;
@@ -23,6 +24,7 @@ impl Gardener<'_> {
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut changes = 0;
         for (_, t) in bad {
+            job::look();
             for _ in 0..3 {
                 if !self.web.alive(t) || self.worth(t) >= self.care.wanted {
                     break;

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::Gardener;
+use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::ground::foot_near;
 
@@ -16,6 +17,7 @@ impl Gardener<'_> {
         for _ in 0..rounds {
             let mut moved = false;
             for node in self.active.take() {
+                job::look();
                 if !self.web.is_free(node) || self.web.at[node as usize] == NO_TRIANGLE {
                     continue;
                 }

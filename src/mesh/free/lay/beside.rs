@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::cut::Cut;
 use super::{Failure, Tried, Work};
+use crate::base::job;
 use crate::base::triangulate_points::{Triangles, points};
 use crate::mesh::free::build::{Trouble, inside};
 use crate::mesh::free::loads;
@@ -40,6 +41,7 @@ impl Work<'_> {
         self.worst = None;
         let mut bad: BTreeMap<u32, Cut> = BTreeMap::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
+            job::look();
             let c = all.corners[t];
             // At a pole the chart has edges that are points in space, and lines of the surface run into it: what stands on an edge,
             // or has its corners on a line, is no triangle in the end.

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Work;
+use crate::base::job;
 use crate::mesh::free::fill;
 use crate::mesh::free::marks::corners as box_corners;
 use crate::mesh::free::tree::Class;
@@ -64,6 +65,7 @@ impl Work<'_> {
     pub(super) fn corners(&self) -> Corners {
         let mut all: Vec<Corner> = Vec::new();
         for cell in self.cells.all().iter().filter(|c| c.is_leaf() && c.class != Class::Exterior) {
+            job::look();
             all.extend(box_corners((cell.low, cell.high)).map(|at| Corner { at, border: None, dropped: false }));
         }
         let near = self.cells.near;

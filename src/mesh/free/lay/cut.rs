@@ -4,6 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Failure, Tried, Work};
+use crate::base::job;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::explain::Why;
 use crate::mesh::free::build::Trouble;
@@ -33,6 +34,7 @@ impl Work<'_> {
     /// Cuts leaves, and theirs, until each is no longer than allowed and keeps the limits by itself.
     pub(super) fn settle(&mut self, mut open: Vec<u32>) -> Tried<()> {
         while let Some(k) = open.pop() {
+            job::look();
             if self.cells.all().len() > 8 * self.ask.most {
                 return Err(Failure::Trouble(Trouble::Full));
             }
@@ -52,6 +54,7 @@ impl Work<'_> {
     pub(super) fn cut(&mut self, bad: Vec<(u32, Cut)>) -> Tried<()> {
         let mut open = Vec::new();
         for (k, cut) in bad {
+            job::look();
             let first = self.cells.all().len() as u32;
             self.cells.split(k, cut, Why::Bends);
             self.fillings.remove(&k);

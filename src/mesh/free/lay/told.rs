@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Work;
 use super::corners::Corners;
+use crate::base::job;
 use crate::mesh::explain::{Decider, Tally, Why};
 use crate::mesh::free::marks::{corners, marks};
 use crate::mesh::free::tree::Class;
@@ -15,6 +16,7 @@ impl Work<'_> {
         let mut tally = Tally::default();
         let loops = self.ask.outline.loops.len() as u32;
         for cell in self.cells.all().iter().filter(|c| c.is_leaf()) {
+            job::look();
             match cell.class {
                 Class::Exterior => continue,
                 Class::Interior => tally.whole += 1,
@@ -40,6 +42,7 @@ impl Work<'_> {
     pub(super) fn deciders(&self, corners: &Corners, web: &Web) -> Vec<Decider> {
         let mut found: BTreeMap<Why, Decider> = BTreeMap::new();
         for (corner, node) in corners.all.iter().zip(&corners.node) {
+            job::look();
             let Some(n) = node.filter(|n| *n >= web.fixed) else { continue };
             let smallest = |k: &u32| self.cells.all()[*k as usize].width().element_product();
             let leaf = self.cells.around(corner.at).into_iter().min_by(|a, b| smallest(a).total_cmp(&smallest(b)));

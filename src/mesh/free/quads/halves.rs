@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::net::NONE;
+use crate::base::job;
 use crate::mesh::free::outline::Outline;
 
 /// A border with that of its cells.
@@ -81,12 +82,14 @@ fn halved(edges: &[[u32; 2]], place: &[u32]) -> Option<Halved> {
     // Edges into and out of each middle node; one that is run twice has two of each.
     let mut at: Vec<(Vec<usize>, Vec<usize>)> = vec![Default::default(); place.len()];
     for (k, [a, b]) in edges.iter().enumerate() {
+        job::look();
         at[*b as usize].0.push(k);
         at[*a as usize].1.push(k);
     }
     let mut done = vec![false; edges.len()];
     let (mut found, mut mids) = (Vec::new(), Vec::new());
     for (k, [a, b]) in edges.iter().enumerate() {
+        job::look();
         if done[k] {
             continue;
         }

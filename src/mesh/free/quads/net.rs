@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::halves::Halves;
 use super::pair::Alone;
+use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::web::Web;
 
@@ -97,6 +98,7 @@ impl Raw<'_> {
         net.normal = vec![DVec3::ZERO; fixed];
         net.size = vec![0.0; fixed];
         for n in 0..web.fixed as usize {
+            job::look();
             let at = halves.of[n] as usize;
             (net.normal[at], net.size[at]) = (self.normal[n], web.size[n]);
         }
@@ -106,6 +108,7 @@ impl Raw<'_> {
         let mut sides: Vec<[(u32, usize); 4]> = Vec::new();
         let mut side_of = vec![[NONE; 3]; web.tri.len()];
         for t in 0..web.tri.len() as u32 {
+            job::look();
             let mate = self.mate[t as usize];
             if self.flat[t as usize] || mate != NO_TRIANGLE && mate < t {
                 continue;
@@ -145,6 +148,7 @@ impl Raw<'_> {
         let web = self.web;
         let mut beyond = Beyond { side: None, locked: false, mid: NONE };
         for _ in 0..=web.tri.len() {
+            job::look();
             let c = web.tri[t as usize];
             if web.locked[t as usize] >> k & 1 == 1 {
                 beyond.locked = true;

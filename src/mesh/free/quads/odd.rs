@@ -8,6 +8,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::net::{NONE, Net};
+use crate::base::job;
 
 /// Cost of a cell that a row crosses from side to opposite side, round a corner, or of a triangle.
 const STRAIGHT: u32 = 2;
@@ -24,6 +25,7 @@ const ALL_WAYS: usize = 6;
 pub fn whole_sides(net: &Net) -> Option<Vec<u8>> {
     let mut rows = Rows { net, whole: vec![0; net.face.len()] };
     for f in 0..net.face.len() {
+        job::look();
         for k in 0..net.corners(f).len() {
             rows.whole[f] |= u8::from(rows.is_border(f, k) && net.mid[f][k] == NONE) << k;
         }
@@ -119,6 +121,7 @@ impl Rows<'_> {
         known[4 * start + first] = (0, usize::MAX);
         let mut last = None;
         while let Some(Step { cost, state }) = open.pop() {
+            job::look();
             let (f, from) = (state / 4, state % 4);
             if cost > known[state].0 {
                 continue;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::net::{NONE, Net};
 use super::smooth::{Over, Smoother};
+use crate::base::job;
 use crate::base::math::angle_between;
 use crate::mesh::free::ground::{Field, Ground, foot_spot};
 
@@ -33,6 +34,7 @@ pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Ov
     }
     let (mut busy, mut made) = (vec![false; net.p.len()], Vec::new());
     for Opening { node, towards, hinges, .. } in all {
+        job::look();
         let near: Vec<usize> =
             faces_of[node].iter().flat_map(|f| net.face[*f as usize]).filter(|n| *n != NONE).map(|n| n as usize).collect();
         if near.iter().any(|n| busy.get(*n).is_none_or(|busy| *busy)) {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::net::least_sine;
+use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::web::Web;
 
@@ -41,6 +42,7 @@ pub fn pair(web: &Web, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<u32
     let cost = costs(web, normal, flat, alone);
     let mut order: Vec<(f64, u32, u8)> = Vec::new();
     for (t, sides) in cost.iter().enumerate() {
+        job::look();
         for (k, c) in sides.iter().enumerate() {
             if c.is_finite() && web.across[t][k] > t as u32 {
                 order.push((*c, t as u32, k as u8));
@@ -80,6 +82,7 @@ fn costs(web: &Web, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<[f64; 
     };
     let mut all = vec![[f64::INFINITY; 3]; web.tri.len()];
     for t in 0..web.tri.len() {
+        job::look();
         for k in 0..3 {
             let other = web.across[t][k];
             all[t][k] = match (other as usize) < t {
@@ -101,6 +104,7 @@ impl Pairing<'_> {
     fn exchange(&mut self, flat: &[bool]) -> bool {
         let mut changed = false;
         for t in 0..self.web.tri.len() as u32 {
+            job::look();
             if self.mate[t as usize] != NO_TRIANGLE || flat[t as usize] {
                 continue;
             }

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::net::{NONE, Net};
+use crate::base::job;
 use crate::mesh::free::ground::{Field, Ground, foot_spot};
 
 /// Quads in place of all faces; sides of borders and lines get the nodes that are given for their middles. Neighbours are
@@ -10,12 +11,14 @@ use crate::mesh::free::ground::{Field, Ground, foot_spot};
 pub fn split(net: &Net, whole: &[u8], (ground, field): (&dyn Ground, &dyn Field)) -> Net {
     let mut fine = Net { p: net.p.clone(), xy: net.xy.clone(), normal: net.normal.clone(), fixed: net.fixed, ..Net::default() };
     for n in 0..net.fixed as usize {
+        job::look();
         if fine.normal[n] == DVec3::ZERO {
             fine.normal[n] = ground.spot(fine.xy[n]).normal();
         }
     }
     let mut mids = vec![[NONE; 4]; net.face.len()];
     for f in 0..net.face.len() {
+        job::look();
         let c = net.corners(f);
         for k in 0..c.len() {
             let other = net.across[f][k];
@@ -29,6 +32,7 @@ pub fn split(net: &Net, whole: &[u8], (ground, field): (&dyn Ground, &dyn Field)
         }
     }
     for (f, mids) in mids.iter().enumerate() {
+        job::look();
         let c = net.corners(f);
         let n = c.len();
         // The first of the sides that are not halved, the one before it halved where there are two in a row.

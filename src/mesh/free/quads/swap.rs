@@ -1,6 +1,7 @@
 //! Fewer irregular nodes: the side between two faces of a net is put elsewhere across the polygon they fill.
 
 use super::net::{NONE, Net, least_sine, least_sine_of_triangle};
+use crate::base::job;
 use crate::base::math;
 
 /// Rounds over all faces at most.
@@ -33,6 +34,7 @@ impl<'a> Swapper<'a> {
     pub fn new(net: &'a mut Net) -> Self {
         let (mut valence, mut angle) = (vec![0; net.p.len()], vec![0.0; net.fixed as usize]);
         for f in 0..net.face.len() {
+            job::look();
             let c = net.corners(f);
             for (k, n) in c.iter().enumerate() {
                 valence[*n as usize] += 1;
