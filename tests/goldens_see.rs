@@ -169,3 +169,17 @@ fn formatting_changes_no_golden() {
     assert_ne!(formatted, script);
     assert_eq!(folder.after(&formatted), "");
 }
+
+/// A tolerance of a check is compared as a share of itself: it may be far below the golden's own.
+#[test]
+fn a_tiny_tolerance_of_a_check_is_seen() {
+    let script = |share: &str, length: &str| {
+        let lines = "units m\ncurve a = line((0, 0, 0), (4, 0, 0))\n";
+        format!("{lines}check \"share\": a.length == 4m within {share}\ncheck \"length\": a.length == 4m within {length}\n")
+    };
+    let folder = Folder::accepted("tiny", &script("1e-6%", "1e-14m"));
+    assert_eq!(folder.after(&script("0.000001%", "1e-11mm")), "");
+    for (share, length) in [("1.001e-6%", "1e-14m"), ("1e-6%", "1.001e-14m"), ("1e-9%", "1e-14m")] {
+        assert!(folder.after(&script(share, length)).contains("within"), "{share} {length}");
+    }
+}

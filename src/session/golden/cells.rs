@@ -1,7 +1,11 @@
 //! Rows of reported tables: cells between ` | `, numbers with their unit.
 
-use super::compare::Allowance;
-use super::words::{Measure, end_of_quote, number, quoted, rounded, unquoted};
+use super::quotes::{end_of_quote, quoted, unquoted};
+use super::values::{number, rounded};
+use super::words::Measure;
+
+/// How many times the allowed change lies between two numbers of a measure; `None` when they are equal enough.
+type Apart<'a> = &'a dyn Fn(Measure, f64, f64) -> Option<f64>;
 use crate::base::digest::Digester;
 use crate::lang::units::length_unit;
 use crate::session::report::Cell;
@@ -96,29 +100,29 @@ impl Entry {
     }
 
     /// How many times the allowed change lies between the two; `None` when they are equal enough.
-    fn excess(&self, other: &Self, allowance: Allowance) -> Option<f64> {
+    fn excess(&self, other: &Self, apart: Apart<'_>) -> Option<f64> {
         match (self, other) {
             (Self::Numbers { all: a, unit: u, list: l }, Self::Numbers { all: b, unit: v, list: m })
                 if (u, l) == (v, m) && a.len() == b.len() =>
             {
                 let measure = measure_of(u);
-                a.iter().zip(b).filter_map(|(a, b)| allowance.excess(measure, *a, *b)).reduce(f64::max)
+                a.iter().zip(b).filter_map(|(a, b)| apart(measure, *a, *b)).reduce(f64::max)
             }
-            (Self::Text(a), Self::Text(b)) => texts(a, b, allowance),
+            (Self::Text(a), Self::Text(b)) => texts(a, b, apart),
             _ => (self != other).then_some(f64::INFINITY),
         }
     }
 }
 
 /// How far apart texts are that may hold numbers: lists, and quantities of different units.
-fn texts(a: &str, b: &str, allowance: Allowance) -> Option<f64> {
+fn texts(a: &str, b: &str, numbers: Apart<'_>) -> Option<f64> {
     let (one, other) = (pieces(a), pieces(b));
     if one.len() != other.len() {
         return Some(f64::INFINITY);
     }
     let apart = |(a, b): (&&str, &&str)| match (real(a), real(b)) {
         _ if a == b => None,
-        (Some(x), Some(y)) => allowance.excess(Measure::Length(1), x, y),
+        (Some(x), Some(y)) => numbers(Measure::Length(1), x, y),
         _ => Some(f64::INFINITY),
     };
     one.iter().zip(&other).filter_map(apart).reduce(f64::max)
@@ -208,15 +212,16 @@ pub fn parse(text: &str) -> Result<Vec<Entry>, String> {
 }
 
 /// The largest change of a row in allowed ones; infinite where nothing is allowed.
-pub fn excess(old: &[Entry], new: &[Entry], allowance: Allowance) -> Option<f64> {
+pub fn excess(old: &[Entry], new: &[Entry], apart: Apart<'_>) -> Option<f64> {
     if old.len() != new.len() {
         return Some(f64::INFINITY);
     }
-    old.iter().zip(new).filter_map(|(a, b)| a.excess(b, allowance)).reduce(f64::max)
+    old.iter().zip(new).filter_map(|(a, b)| a.excess(b, apart)).reduce(f64::max)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::compare::Allowance;
     use super::*;
 
     #[test]
@@ -233,7 +238,7 @@ mod tests {
     #[test]
     fn numbers_have_a_tolerance_and_words_have_none() {
         let allowance = Allowance { tolerance: 1e-9, size: 10.0 };
-        let check = |a: &str, b: &str| excess(&parse(a).unwrap(), &parse(b).unwrap(), allowance);
+        let check = |a: &str, b: &str| excess(&parse(a).unwrap(), &parse(b).unwrap(), &|measure, x, y| allowance.excess(measure, x, y));
         assert_eq!(check("12 m | a", "12.000000001 m | a"), None);
         assert!(check("12 m", "12.0000001 m").is_some_and(|times| times.is_finite() && times > 5.0));
         assert_eq!(check("1000 m3", "1000.0000005 m3"), None);

@@ -7,7 +7,8 @@ use super::file::TOLERANCE;
 use super::line::Line;
 use super::quote::tokens;
 use super::renames::Renames;
-use super::words::{self, Kind, Measure, Value};
+use super::values::Value;
+use super::words::{self, Kind, Measure};
 
 /// How much reals may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,9 +71,17 @@ impl Allowance {
 
     /// How many times the allowed change lies between the two; `None` when they are equal enough.
     pub(super) fn excess(&self, measure: Measure, old: f64, new: f64) -> Option<f64> {
-        let (change, allowed) = ((new - old).abs(), self.of(measure, old));
-        (change > allowed).then(|| if allowed > 0.0 { change / allowed } else { f64::INFINITY })
+        exceeding((new - old).abs(), self.of(measure, old))
     }
+
+    /// The same where the tolerance is a share of the number alone, however small it is.
+    pub(super) fn excess_of_itself(&self, old: f64, new: f64) -> Option<f64> {
+        exceeding((new - old).abs(), self.tolerance * old.abs())
+    }
+}
+
+fn exceeding(change: f64, allowed: f64) -> Option<f64> {
+    (change > allowed).then(|| if allowed > 0.0 { change / allowed } else { f64::INFINITY })
 }
 
 /// What changed: what was there in the old order, then what is new.
@@ -207,8 +216,8 @@ impl Pairing<'_> {
 /// Whether the words that two lines of any kinds share say the same of places and lengths.
 pub fn one_thing(one: &Line, other: &Line, size: f64) -> bool {
     let allowance = Allowance { tolerance: TOLERANCE, size };
-    let shared = words::fields_of(&one.kind).iter().filter_map(|f| Some((f.kind, one.get(f.word)?, other.get(f.word)?)));
-    shared.into_iter().all(|(kind, a, b)| excess(kind, a, b, allowance).is_none())
+    let mut shared = words::fields_of(&one.kind).filter_map(|f| Some((f.kind, one.get(f.word)?, other.get(f.word)?)));
+    shared.all(|(kind, a, b)| excess(kind, a, b, allowance).is_none())
 }
 
 /// Whether two lines of one kind say the same, names included where they have one.
@@ -218,7 +227,7 @@ fn same(old: &Line, new: &Line, allowance: Allowance) -> bool {
 
 /// Whether two lines of one kind say the same, whatever their names; names of groups included.
 fn same_but_name(old: &Line, new: &Line, allowance: Allowance) -> bool {
-    words::fields_of(&old.kind).iter().all(|field| match (old.get(field.word), new.get(field.word)) {
+    words::fields_of(&old.kind).all(|field| match (old.get(field.word), new.get(field.word)) {
         (None, None) => true,
         (Some(a), Some(b)) => excess(field.kind, a, b, allowance).is_none(),
         _ => false,
@@ -261,7 +270,8 @@ fn excess(kind: Kind, old: &Value, new: &Value, allowance: Allowance) -> Option<
             a.iter().zip(b).filter_map(|(a, b)| allowance.excess(measure, *a, *b)).reduce(f64::max)
         }
         (Kind::Source, Value::Word(a), Value::Word(b)) => (tokens(a) != tokens(b)).then_some(f64::INFINITY),
-        (Kind::Cells, Value::Cells(a), Value::Cells(b)) => cells::excess(a, b, allowance),
+        (Kind::Cells, Value::Cells(a), Value::Cells(b)) => cells::excess(a, b, &|measure, old, new| allowance.excess(measure, old, new)),
+        (Kind::Limit, Value::Cells(a), Value::Cells(b)) => cells::excess(a, b, &|_, old, new| allowance.excess_of_itself(old, new)),
         (Kind::Groups, Value::Groups(a), Value::Groups(b)) => {
             let sorted = |groups: &[(String, u64)]| groups.iter().cloned().collect::<BTreeMap<_, _>>();
             (sorted(a) != sorted(b)).then_some(f64::INFINITY)

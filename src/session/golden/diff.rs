@@ -11,7 +11,7 @@ use super::line::Line;
 use super::looks::{self, Looks};
 use super::section;
 use super::tell::{self, Said};
-use super::words::Value;
+use super::values::Value;
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::mesh::Mesh;
@@ -89,7 +89,7 @@ fn between(old: &Ran, new: &Ran, tolerance: f64) -> Vec<Said> {
         for (name, mesh) in &new.meshes {
             let Some((_, before)) = old.meshes.iter().find(|(other, _)| other == name) else { continue };
             let moved = geometry::differs(&Shape::from_mesh(before), &Shape::from_mesh(mesh), tolerance * size, &new.units);
-            said.extend(moved.map(|text| Said::Words(format!("mesh {}: {text}", super::words::label(name)))));
+            said.extend(moved.map(|text| Said::Words(format!("mesh {}: {text}", super::quotes::label(name)))));
         }
     }
     said

@@ -3,7 +3,8 @@
 use crate::lang::units::LengthUnit;
 
 use super::line::{Line, parse_line};
-use super::words::{end_of_quote, is_code, kind_of, unquoted};
+use super::quotes::{end_of_quote, unquoted};
+use super::words::{is_code, kind_of};
 
 /// Version of the grammar.
 pub const VERSION: u32 = 1;

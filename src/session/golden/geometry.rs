@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::tell::tolerances;
-use super::words::rounded;
+use super::values::rounded;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::fault::Malformed;

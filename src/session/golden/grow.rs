@@ -1,7 +1,7 @@
 //! Lines that are put together word by word.
 
 use super::line::Line;
-use super::words::Value;
+use super::values::Value;
 
 /// A line that grows word by word.
 pub struct Growing(pub Line);

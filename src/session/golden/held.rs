@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::looks::{Pairs, of_box, of_mass};
-use super::words::Value;
+use super::values::Value;
 use crate::base::bbox::Box3;
 use crate::lang::cx::Cx;
 use crate::lang::scene::Scene;

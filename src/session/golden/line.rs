@@ -1,6 +1,8 @@
 //! One line of a golden file: a kind, a name, then word–value pairs, two blanks apart.
 
-use super::words::{self, Field, Value, end_of_quote, is_code, kind_of, unquoted};
+use super::quotes::{end_of_quote, label, quoted, unquoted};
+use super::values::Value;
+use super::words::{self, Field, is_code, kind_of};
 
 /// A line of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,8 +44,8 @@ impl Line {
         } else if kind_of(&self.kind).is_some_and(|kind| kind.named) {
             let name = match self.kind.as_str() {
                 _ if self.loose => format!("`{}`", self.name.replace('`', "'")),
-                "check" => words::quoted(&self.name),
-                _ => words::label(&self.name),
+                "check" => quoted(&self.name),
+                _ => label(&self.name),
             };
             out.push(' ');
             out.push_str(&name);
@@ -102,15 +104,15 @@ fn name_of(kind: &str, name: &str) -> Result<String, String> {
 fn pair(kind: &str, part: &str) -> Result<(Field, Value), String> {
     let fields = words::fields_of(kind);
     let (word, text) = part.split_once(char::is_whitespace).map_or((part, ""), |(word, text)| (word, text.trim()));
-    let alone = fields.iter().find(|f| f.word.is_empty());
+    let alone = fields.clone().find(|f| f.word.is_empty());
     if let (Some(field), "pass" | "fail") = (alone, part) {
         return Ok((*field, Value::parse(field.kind, part)?));
     }
-    let Some(field) = fields.iter().find(|f| f.word == word && !word.is_empty()) else {
+    let Some(field) = fields.clone().find(|f| f.word == word && !word.is_empty()) else {
         if alone.is_some() {
             return Err(format!("a {kind} says `pass` or `fail`, got `{part}`"));
         }
-        let known: Vec<&str> = fields.iter().map(|f| f.word).collect();
+        let known: Vec<&str> = fields.map(|f| f.word).collect();
         return Err(format!("`{word}` is no word of a {kind} line; its words are {}", known.join(", ")));
     };
     match Value::parse(field.kind, text) {

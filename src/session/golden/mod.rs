@@ -17,6 +17,7 @@ mod junit;
 mod line;
 mod looks;
 mod quote;
+mod quotes;
 mod renames;
 mod requests;
 mod run;
@@ -24,6 +25,7 @@ mod scratch;
 mod section;
 mod tell;
 mod tokens;
+mod values;
 mod words;
 
 pub use diff::{Difference, NoDiff, diff};

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::line::Line;
 use super::quote::{is_name, tokens};
-use super::words::{Kind, Value, fields_of};
+use super::values::Value;
+use super::words::{Kind, fields_of};
 
 /// What is called otherwise now.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +83,7 @@ impl Renames {
     /// names of what has no line of its own.
     pub fn same_diagnostic(&mut self, old: &Line, new: &Line) -> bool {
         let plain = |line: &Line| -> Vec<Value> {
-            let fields = fields_of(&line.kind).iter().filter(|f| f.kind != Kind::Source);
+            let fields = fields_of(&line.kind).filter(|f| f.kind != Kind::Source);
             fields.filter_map(|f| line.get(f.word).cloned()).collect()
         };
         let at = |line: &Line| if let Some(Value::Word(at)) = line.get("at") { at.clone() } else { String::new() };

@@ -8,7 +8,8 @@ use super::grow::{Growing, line, yes};
 use super::line::{Line, on_one_line};
 use super::looks::{Look, Looks, Pairs};
 use super::quote;
-use super::words::{Kind, Measure, Value, fields_of, unit_of};
+use super::values::Value;
+use super::words::{Kind, Measure, fields_of, unit_of};
 use crate::base::tolerance::ROUNDING_SHARE;
 use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::session::report::{Cell, Column, Corners, CurveRow, MeshRow, ModelingRow, Report, ShellRow, SurfaceRow, Table};
@@ -93,11 +94,13 @@ fn clean(line: &mut Line, size: f64) {
         }
     };
     for (word, value) in &mut line.pairs {
-        let kind = fields_of(&line.kind).iter().find(|field| field.word == *word).map(|field| field.kind);
+        let kind = fields_of(&line.kind).find(|field| field.word == *word).map(|field| field.kind);
         match (value, kind) {
             (Value::Real(x, _), Some(Kind::Real(measure))) => put(x, measure),
             (Value::List(all, _), Some(Kind::List(measure))) => all.iter_mut().for_each(|x| put(x, measure)),
             (Value::Corners(corners, _), _) => corners.iter_mut().flatten().for_each(|x| put(x, Measure::Length(1))),
+            // A tolerance may be as small as one likes.
+            (Value::Cells(_), Some(Kind::Limit)) => {}
             (Value::Cells(row), _) => row.iter_mut().for_each(|entry| {
                 if let Entry::Numbers { all, unit, .. } = entry {
                     let measure = measure_of(unit);

@@ -2,7 +2,9 @@
 
 use super::compare::{Allowance, Change, Move};
 use super::line::Line;
-use super::words::{self, Kind, Measure, Value, kind_of, rounded};
+use super::quotes::{label, quoted};
+use super::values::{Value, rounded};
+use super::words::{Kind, Measure, kind_of};
 
 /// Changes of one run that are told; further ones are counted.
 pub const MOST: usize = 40;
@@ -49,7 +51,7 @@ fn one(change: &Change, allowance: Allowance) -> Vec<Said> {
         Change::Gone(line) => vec![Said::Old(text(line)), Said::Words(format!("{} is gone", subject(line)))],
         Change::New(line) => vec![Said::New(text(line)), Said::Words(format!("{} is new", subject(line)))],
         Change::Renamed { old, new } => {
-            let told = |line: &Line| if line.loose { format!("`{}`", line.name) } else { words::label(&line.name) };
+            let told = |line: &Line| if line.loose { format!("`{}`", line.name) } else { label(&line.name) };
             vec![Said::Words(format!("{} {} is called {} now; nothing else about it changed", old.kind, told(old), told(new)))]
         }
         Change::Changed { old, new, moves } => {
@@ -78,8 +80,8 @@ fn subject(line: &Line) -> String {
         Some(kind) if !kind.named => line.kind.clone(),
         _ if line.loose => format!("{} `{}`", line.kind, line.name),
         Some(kind) if !kind.spoken => line.name.clone(),
-        _ if line.kind == "check" => format!("check {}", words::quoted(&line.name)),
-        _ => format!("{} {}", line.kind, words::label(&line.name)),
+        _ if line.kind == "check" => format!("check {}", quoted(&line.name)),
+        _ => format!("{} {}", line.kind, label(&line.name)),
     }
 }
 
@@ -119,11 +121,11 @@ fn groups(old: &[(String, u64)], new: &[(String, u64)]) -> Vec<String> {
     let of = |groups: &[(String, u64)], name: &str| groups.iter().find(|g| g.0 == name).map(|g| g.1);
     let nodes = |n: u64| format!("{n} node{}", if n == 1 { "" } else { "s" });
     let was = old.iter().filter_map(|(name, n)| match of(new, name) {
-        None => Some(format!("group {} is gone, it had {}", words::label(name), nodes(*n))),
-        Some(m) => (m != *n).then(|| format!("group {} {n} → {}", words::label(name), nodes(m))),
+        None => Some(format!("group {} is gone, it had {}", label(name), nodes(*n))),
+        Some(m) => (m != *n).then(|| format!("group {} {n} → {}", label(name), nodes(m))),
     });
     let is = new.iter().filter(|(name, _)| of(old, name).is_none());
-    was.chain(is.map(|(name, n)| format!("group {} is new, with {}", words::label(name), nodes(*n)))).collect()
+    was.chain(is.map(|(name, n)| format!("group {} is new, with {}", label(name), nodes(*n)))).collect()
 }
 
 fn corners(old: &[[f64; 3]; 2], new: &[[f64; 3]; 2], unit: &str, times: Option<f64>) -> String {
@@ -188,7 +190,7 @@ pub fn two_numbers(a: f64, b: f64) -> (String, String) {
             return (short(&x, &y), short(&y, &x));
         }
     }
-    (words::rounded(a, 17), words::rounded(b, 17))
+    (rounded(a, 17), rounded(b, 17))
 }
 
 /// The text without zeros at the end of its decimals, as far as both have them.
