@@ -71,6 +71,7 @@ codes! {
     now "E221", "equality-without-within", "two quantities are compared by `==` without `within`";
     now "W222", "tolerance-of-module", "a module's own tolerance decides nothing";
     now "W223", "snap-moves-far", "`snap` moves an end by more than a hundredth of its curve";
+    now "W224", "group-not-meshed", "no mesh that is written holds anything of a group";
     now "E230", "not-in-this-version", "a word of a later version";
     now "E301", "argument-missing", "an argument is missing";
     now "E302", "too-many-arguments", "too many arguments";

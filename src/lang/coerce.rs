@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::cx::{Cx, Stop};
 use super::eval::Code;
+use super::settings::DECK_ELEMENTS;
 use super::syntax::ast::{Expr, ExprId};
 use super::types::Ty;
 use super::units;
@@ -306,8 +307,11 @@ impl Cx<'_> {
     /// E213: a word that is none of those allowed.
     #[cold]
     pub(super) fn no_choice(&mut self, code: Code<'_>, id: ExprId, word: &str, words: &[&str], subject: &str) -> Stop {
-        let near = super::elsewhere::meant(word, words.iter().copied()).map(str::to_owned);
-        let list = words.join(", ");
+        // Of the element names of all decks those that this export may say.
+        let at_hand = if words == DECK_ELEMENTS { self.element_words(code) } else { None };
+        let shown = at_hand.as_deref().unwrap_or(words);
+        let near = super::elsewhere::meant(word, shown.iter().copied()).map(str::to_owned);
+        let list = shown.join(", ");
         let draft = self.error(code, "E213", format!("{subject} is one of {list}, got `{word}`"), code.span(id), "no such choice");
         match near {
             Some(near) => draft.help(format!("`{near}`")).put(code.span(id), near).stop(),

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::coerce::flatten_into;
 use super::cx::{Cx, Stop};
 use super::elsewhere::meant;
 use super::eval::{Code, Gather};
@@ -12,7 +13,7 @@ use super::module::bound;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::settings::{self, Setting};
 use super::std::imprint::pieces;
-use super::syntax::ast::{self, ClauseWord, Declaration, ExprId, For, Keyword, MeshClause, Span};
+use super::syntax::ast::{self, ClauseWord, Declaration, Expr, ExprId, For, Keyword, MeshClause, Span};
 use super::units;
 use super::value::{MeshValue, ShellValue, Value};
 use crate::base::fault::ValueFault;
@@ -163,6 +164,16 @@ impl Cx<'_> {
 
     /// Things of a collection, nested lists flattened, each of a kind that may be there.
     pub(super) fn things(&mut self, code: Code<'_>, things: &[ExprId], keyword: Keyword) -> Result<Vec<(Value, Origin)>, Stop> {
+        self.things_for(code, things, (keyword, later::keyword_word(keyword)))
+    }
+
+    /// The same, with the word for what the things are for.
+    pub(super) fn things_for(
+        &mut self,
+        code: Code<'_>,
+        things: &[ExprId],
+        (keyword, word): (Keyword, &'static str),
+    ) -> Result<Vec<(Value, Origin)>, Stop> {
         let (wanted, fits): (&str, fn(&Value) -> bool) = match keyword {
             Keyword::Shell => ("surfaces", |v| matches!(v, Value::Surface(_) | Value::Shell(_))),
             Keyword::Mesh => ("surfaces, shells, curves and points", |v| {
@@ -211,15 +222,15 @@ impl Cx<'_> {
                 )
             }),
         };
-        let (mut out, mut gather, word) = (Vec::new(), Gather::default(), later::keyword_word(keyword));
+        let (mut out, mut gather) = (Vec::new(), Gather::default());
         for &thing in things {
             let Some(value) = gather.take(self.eval(code, thing)) else { continue };
             let origin = self.origin_at(thing);
-            let flat = self.flattened(code, thing, value)?;
             // What a mesh or shell is of may well be empty in some variants of a model.
-            if flat.is_empty() && !matches!(keyword, Keyword::Shell | Keyword::Mesh) {
-                self.say(&ValueFault::NothingSelected { of: origin, keyword: word }.into());
+            if !matches!(keyword, Keyword::Shell | Keyword::Mesh) {
+                self.say_empty(code, thing, &value, word);
             }
+            let flat = self.flattened(code, thing, value)?;
             for value in flat {
                 if fits(&value) {
                     // A bare tuple is a point here.
@@ -241,6 +252,23 @@ impl Cx<'_> {
             }
         }
         gather.done().map(|()| out)
+    }
+
+    /// W728 where a selection is empty: the whole expression, or one that is written inside a list.
+    fn say_empty(&mut self, code: Code<'_>, thing: ExprId, value: &Value, word: &'static str) {
+        let mut flat = Vec::new();
+        flatten_into(value.clone(), &mut flat);
+        match (value, code.expr(thing)) {
+            (Value::List(values), Expr::List(items)) if items.len() == values.len() && !values.is_empty() => {
+                let pairs = items.iter().zip(values.iter()).filter(|(_, value)| matches!(value, Value::List(_) | Value::Range(..)));
+                pairs.for_each(|(item, value)| self.say_empty(code, *item, value, word));
+            }
+            _ if flat.is_empty() => {
+                let of = self.origin_at(thing);
+                self.say(&ValueFault::NothingSelected { of, keyword: word }.into());
+            }
+            _ => {}
+        }
     }
 
     /// Settings of a block, each key known, given once and of its type.
@@ -324,7 +352,7 @@ impl Cx<'_> {
     }
 
     fn rule_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Stop> {
-        let found = self.things(code, things, Keyword::Group)?;
+        let found = self.things_for(code, things, (Keyword::Group, "rule"))?;
         let wrong = found.iter().find(|(v, _)| matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Mesh(_)));
         match wrong {
             None => Ok(found),

@@ -13,6 +13,7 @@ mod declare;
 pub mod diag;
 pub mod diag_render;
 mod drafts;
+mod element_words;
 mod elsewhere;
 pub mod eval;
 mod expr;

@@ -75,7 +75,11 @@ impl Cx<'_> {
         settings: &[ast::Setting],
     ) -> Result<ExportSpec, Stop> {
         let mut gather = Gather::default();
-        let things = gather.take(self.things(code, things, Keyword::Export));
+        let things = match self.things(code, things, Keyword::Export) {
+            // What settings may say depends on the things.
+            Err(Stop::NotYet) => return Err(Stop::NotYet),
+            things => gather.take(things),
+        };
         let path = gather.take(self.path(code, to));
         let written = settings;
         let settings = gather.take(self.settings(code, "export", settings::EXPORT, written));

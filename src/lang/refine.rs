@@ -37,7 +37,7 @@ impl Cx<'_> {
     }
 
     fn near_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Stop> {
-        let found = self.things(code, things, Keyword::Group)?;
+        let found = self.things_for(code, things, (Keyword::Group, "clause `near`"))?;
         let fits = |v: &Value| {
             matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Curve(_) | Value::Link(..) | Value::Edge(..))
         };

@@ -35,6 +35,11 @@ pub struct Group {
 }
 
 impl Group {
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty() && self.lines.is_empty() && self.triangles.is_empty() && self.quads.is_empty()
+    }
+
     /// Highest dimension of what it holds: 2 faces, 1 lines, 0 nodes.
     pub fn dimension(&self) -> u8 {
         if !self.triangles.is_empty() || !self.quads.is_empty() { 2 } else { u8::from(!self.lines.is_empty()) }

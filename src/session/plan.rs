@@ -85,6 +85,10 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
                 }
             }
         }
+        // That nothing was selected was said where it is written.
+        if at.is_empty() {
+            continue;
+        }
         plan.refines.push(Refine { at, size: refine.size, radius: refine.radius, origin: refine.origin });
     }
     let shells = spec.things.iter().filter_map(|(value, _)| if let Value::Shell(shell) = value { Some((shell, value)) } else { None });

@@ -12,7 +12,7 @@ use super::pictures;
 use super::report::{OutputRow, Report, Timings, VERSION};
 use super::stages::Stages;
 use crate::base::bbox::Box3;
-use crate::base::fault::{Fault, Severity};
+use crate::base::fault::{Fault, Severity, ValueFault};
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Sound, Stop};
@@ -21,7 +21,7 @@ use crate::lang::diag_render::render_all;
 use crate::lang::memory::Memory;
 use crate::lang::plans::PictureSpec;
 use crate::lang::run::{Entry, TableRow};
-use crate::lang::value::ModuleId;
+use crate::lang::value::{ModuleId, Value};
 use crate::mesh::Mesh;
 
 /// What is to be run.
@@ -318,6 +318,7 @@ impl<'r> Run<'r> {
             let row = export::write(&mut self.cx, &spec, self.disk);
             self.written(row);
         }
+        self.say_absent_groups();
         let model = self.model_name();
         for spec in self.cx.pictures() {
             if self.cx.job.go_on().is_err() {
@@ -328,6 +329,31 @@ impl<'r> Run<'r> {
             }
             let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
             self.written(row);
+        }
+    }
+
+    /// W224: groups of which no mesh that is written holds anything.
+    fn say_absent_groups(&mut self) {
+        let exports = self.cx.exports();
+        let values = exports.iter().flat_map(|spec| &spec.things);
+        let mut meshes: Vec<Arc<Mesh>> = Vec::new();
+        for value in values.filter_map(|(value, _)| if let Value::Mesh(mesh) = value { Some(mesh) } else { None }) {
+            let mesh = self.cx.mesh(value);
+            meshes.extend(self.take(mesh));
+        }
+        if meshes.is_empty() {
+            return;
+        }
+        meshes.dedup_by(|a, b| Arc::ptr_eq(a, b));
+        let groups = self.cx.groups(ModuleId::MAIN);
+        for group in self.take(groups).unwrap_or_default() {
+            let own = |mesh: &Arc<Mesh>| mesh.groups.iter().any(|g| *g.name == *group.name && !g.is_empty());
+            if !group.value.is_empty() && !meshes.iter().any(own) {
+                let mut names: Vec<String> = meshes.iter().map(|mesh| mesh.name.clone()).collect();
+                names.dedup();
+                let fault = ValueFault::NotMeshed { of: group.origin, group: group.name.to_string(), meshes: names };
+                self.cx.say(&fault.into());
+            }
         }
     }
 

@@ -66,6 +66,15 @@ pub enum ValueFault {
         /// What they are selected for: "group", "picture".
         keyword: &'static str,
     },
+    /// W224: a group of which the meshes that are written hold nothing.
+    NotMeshed {
+        /// The group.
+        of: Origin,
+        /// Its name.
+        group: String,
+        /// The meshes, by name.
+        meshes: Vec<String>,
+    },
     /// W729: `all` or `any` of no condition inside a check.
     OfNothing {
         /// The call.
@@ -155,6 +164,13 @@ impl Describe for ValueFault {
             Self::NothingSelected { of, keyword } => Report::new("W728", format!("this selects nothing for the {keyword}"))
                 .at(*of, "an empty list")
                 .help("`report` what it selects from, or remove it"),
+            Self::NotMeshed { of, group, meshes } => {
+                let meshes: Vec<String> = meshes.iter().map(|mesh| format!("`{mesh}`")).collect();
+                let message = format!("nothing of the group `{group}` is in {}: no file has a set of it", meshes.join(" or "));
+                Report::new("W224", message)
+                    .at(*of, "its things are not meshed")
+                    .help("mesh what it holds as well, or group what is meshed")
+            }
             Self::OfNothing { of, function, result } => {
                 Report::new("W729", format!("`{function}` of no condition is {result}: this check looks at nothing"))
                     .at(*of, "an empty list")
