@@ -174,8 +174,8 @@ impl Cx<'_> {
         match value {
             Value::Vector(v, dim) => Ok((v, dim)),
             Value::Node(p) => Ok((p, Dim::LENGTH)),
-            Value::Vertex(module, id) => {
-                let model = self.model(module)?;
+            Value::Vertex(home, id) => {
+                let model = self.model(&home)?;
                 Ok((model.vertices.get(id.index()).map_or(DVec3::ZERO, |v| v.point), Dim::LENGTH))
             }
             _ => Err(Stop::Bug("not a vector")),

@@ -12,7 +12,7 @@ use super::origins::Origins;
 use super::plans::MeshSpec;
 use super::syntax::ast::Keyword;
 use super::units::LengthUnit;
-use super::value::{MeshValue, ModuleId, Record, ShellValue, Value};
+use super::value::{Home, MeshValue, ModuleId, Record, ShellValue, Value};
 use crate::base::bbox::Box3;
 use crate::base::fault::Fault;
 use crate::base::job::Job;
@@ -253,9 +253,12 @@ impl<'w> Cx<'w> {
         super::stages::network(self, module)
     }
 
-    /// The surface model of a script; evaluates all its surfaces first.
-    pub fn model(&mut self, module: ModuleId) -> Result<Arc<Model>, Stop> {
-        super::stages::model(self, module)
+    /// The surface model of a script, whose surfaces are evaluated first, or the one that things are numbered in.
+    pub fn model(&mut self, of: impl Into<Home>) -> Result<Arc<Model>, Stop> {
+        match of.into() {
+            Home { annex: Some(model), .. } => Ok(model),
+            Home { module, annex: None } => super::stages::model(self, module),
+        }
     }
 
     /// What is sound of a script's geometry, for showing it; asked after everything was evaluated.

@@ -107,6 +107,8 @@ pub(super) struct Module {
     pub parts: Stage<Arc<Parts>>,
     pub network: Stage<Arc<Network>>,
     pub model: Stage<Arc<Model>>,
+    /// Models of surfaces that are not all declared, of which patches or edges were asked.
+    pub annexes: Vec<Arc<Model>>,
     pub meshes: Vec<Arc<MeshSpec>>,
     pub mesh_stages: Vec<Stage<Arc<Mesh>>>,
     pub checks: Vec<(u32, CheckResult)>,
@@ -151,6 +153,7 @@ impl Module {
             parts: Stage::Waiting,
             network: Stage::Waiting,
             model: Stage::Waiting,
+            annexes: Vec::new(),
             meshes: Vec::new(),
             mesh_stages: Vec::new(),
             checks: Vec::new(),

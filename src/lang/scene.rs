@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::cx::{Cx, Stop};
-use super::value::{ModuleId, ShellValue};
+use super::value::{Home, ModuleId, ShellValue};
 use crate::base::fault::{Fault, Say};
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
@@ -30,20 +30,53 @@ impl Scene {
         Self { model, network }.with(cx, surfaces)
     }
 
+    /// The scene of `surfaces`, and where its patches, edges and vertices are numbered: the script's own where that declares them all,
+    /// else one of these surfaces alone, on the script's network. The same surfaces are at home in one place.
+    pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, Home), Stop> {
+        let own = Self { model: cx.model(module)?, network: cx.network(module)? };
+        if surfaces.iter().all(|surface| own.find(surface).is_some()) {
+            return Ok((own, module.into()));
+        }
+        let nothing = Self { model: Arc::default(), ..own };
+        let asked = nothing.missing(cx, surfaces);
+        let same = |model: &Arc<Model>| {
+            let mut pairs = model.surfaces.iter().zip(&asked);
+            model.surfaces.len() == asked.len() && pairs.all(|(a, b)| side_of(&a.surface, &b.surface) == Some(false))
+        };
+        let known = cx.machine.at(module).annexes.iter().find(|model| same(model)).cloned();
+        let scene = match known {
+            Some(model) => Self { model, ..nothing },
+            None => {
+                let scene = nothing.extended(cx, asked)?;
+                cx.machine.at_mut(module).annexes.push(scene.model.clone());
+                scene
+            }
+        };
+        let annex = Some(scene.model.clone());
+        Ok((scene, Home { module, annex }))
+    }
+
     /// This scene, extended by those of `surfaces` that it does not hold.
     pub fn with<'s>(self, cx: &mut Cx, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
-        let scene = self;
+        let extra = self.missing(cx, surfaces);
+        if extra.is_empty() { Ok(self) } else { self.extended(cx, extra) }
+    }
+
+    /// Those of `surfaces` that the scene does not hold, each once.
+    fn missing<'s>(&self, cx: &Cx, surfaces: impl IntoIterator<Item = &'s Surface>) -> Vec<Named> {
         let mut extra: Vec<Named> = Vec::new();
         for surface in surfaces {
             let known = extra.iter().any(|named| side_of(&named.surface, surface).is_some());
-            if !known && scene.find(surface).is_none() {
+            if !known && self.find(surface).is_none() {
                 let name = cx.name(surface.origin());
                 extra.push(Named { name, surface: surface.clone() });
             }
         }
-        if extra.is_empty() {
-            return Ok(scene);
-        }
+        extra
+    }
+
+    fn extended(self, cx: &mut Cx, extra: Vec<Named>) -> Result<Self, Stop> {
+        let scene = self;
         let tolerance = cx.tolerance()?;
         let all = scene.model.surfaces.iter().cloned().chain(extra).collect();
         let model = Model::build(all, &scene.network, &tolerance, cx.job)?;

@@ -8,7 +8,7 @@ use super::names::Name;
 use super::table::Table;
 use crate::base::origin::Origin;
 use crate::mesh::Mesh;
-use crate::model::{PatchId, SharedEdge, VertexId};
+use crate::model::{Model, PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
 
@@ -106,6 +106,43 @@ impl Quantity {
     }
 }
 
+/// The surface model that patches, edges and vertices are numbered in: that of a script, or one of a few surfaces of which the script
+/// does not declare all (written inside a shell, cut, moved).
+#[derive(Clone, Debug)]
+pub struct Home {
+    /// The script, whose network it stands on.
+    pub module: ModuleId,
+    /// The model of those surfaces; `None` for the script's own.
+    pub annex: Option<Arc<Model>>,
+}
+
+impl From<ModuleId> for Home {
+    fn from(module: ModuleId) -> Self {
+        Self { module, annex: None }
+    }
+}
+
+impl From<&Home> for Home {
+    fn from(home: &Home) -> Self {
+        home.clone()
+    }
+}
+
+impl PartialEq for Home {
+    fn eq(&self, other: &Self) -> bool {
+        let same = match (&self.annex, &other.annex) {
+            (None, None) => true,
+            // Of two runs each has built its own from the same surfaces.
+            (Some(a), Some(b)) => {
+                let pairs = || a.surfaces.iter().zip(&b.surfaces);
+                Arc::ptr_eq(a, b) || a.surfaces.len() == b.surfaces.len() && pairs().all(|(a, b)| a.surface.is(&b.surface))
+            }
+            _ => false,
+        };
+        self.module == other.module && same
+    }
+}
+
 /// `{a: 1, b: 2}`, or a row of a table, which has places as well as names.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
@@ -194,12 +231,12 @@ pub enum Value {
     Node(DVec3),
     /// A link of a script's network.
     Link(ModuleId, LinkId),
-    /// An edge of a script's surface model.
-    Edge(ModuleId, Arc<SharedEdge>),
-    /// A vertex of a script's surface model.
-    Vertex(ModuleId, VertexId),
-    /// A patch of a script's surface model.
-    Patch(ModuleId, PatchId),
+    /// An edge of a surface model.
+    Edge(Home, Arc<SharedEdge>),
+    /// A vertex of a surface model.
+    Vertex(Home, VertexId),
+    /// A patch of a surface model.
+    Patch(Home, PatchId),
     /// A surface.
     Surface(Surface),
     /// A shell.

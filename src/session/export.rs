@@ -142,8 +142,8 @@ fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, 
     for (value, origin) in &spec.things {
         let (chain, name) = match value {
             Value::Curve(chain) => (chain.clone(), cx.name(chain.origin())),
-            Value::Edge(module, edge) => {
-                let chain = super::plan::chain_of(cx, *module, edge)?;
+            Value::Edge(home, edge) => {
+                let chain = super::plan::chain_of(cx, home, edge)?;
                 let name = super::plan::edge_name(cx, &chain, edge);
                 (chain, name)
             }
@@ -199,8 +199,8 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
                 things.push(Thing { name: String::new(), ..one(cx, *origin, Shown::Point(*p)) })
             }
             Value::Curve(chain) => things.push(one(cx, chain.origin(), Shown::Curve(chain.clone()))),
-            Value::Edge(module, edge) => {
-                let chain = super::plan::chain_of(cx, *module, edge)?;
+            Value::Edge(home, edge) => {
+                let chain = super::plan::chain_of(cx, home, edge)?;
                 let name = super::plan::edge_name(cx, &chain, edge);
                 things.push(Thing { name, group: String::new(), shown: Shown::Curve(chain) });
             }

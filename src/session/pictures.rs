@@ -25,7 +25,7 @@ use crate::lang::cx::{Cx, Sound, Stop};
 use crate::lang::diag::Diagnostic;
 use crate::lang::plans::{PictureSpec, Show};
 use crate::lang::scene::Scene;
-use crate::lang::value::{MeshValue, ModuleId, Value};
+use crate::lang::value::{Home, MeshValue, ModuleId, Value};
 use crate::mesh::Mesh;
 use crate::model::SurfaceId;
 use crate::network::chain::same_curve;
@@ -188,15 +188,15 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
                 Err(_) => scene.find_all(&shell.surfaces)?,
             }),
             Value::Mesh(mesh) => things.meshes.push((cx.mesh(mesh)?, matches!(**mesh, MeshValue::Declared { .. }))),
-            Value::Patch(module, patch) => things.patches.push((own(cx, *module)?, *patch)),
+            Value::Patch(home, patch) => things.patches.push((own(cx, home)?, *patch)),
             Value::Curve(chain) => things.curves.push((imported.name(cx, chain), chain.clone())),
             Value::Link(module, link) => {
                 let network = cx.network(*module)?;
                 things.curves.push((names::of_link(&network, *link), network.link_chain(*link)));
             }
-            Value::Edge(module, edge) => things.edges.push((own(cx, *module)?, edge.clone())),
-            Value::Vertex(module, vertex) => {
-                let point = cx.model(*module)?.vertices[vertex.index()].point;
+            Value::Edge(home, edge) => things.edges.push((own(cx, home)?, edge.clone())),
+            Value::Vertex(home, vertex) => {
+                let point = cx.model(home)?.vertices[vertex.index()].point;
                 things.points.push((String::new(), point));
             }
             Value::Node(p) | Value::Vector(p, _) => things.points.push((String::new(), *p)),
@@ -210,8 +210,8 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
 }
 
 /// The surface model that edges and patches of a script are numbered in.
-fn own(cx: &mut Cx, module: ModuleId) -> Result<Scene, Stop> {
-    Ok(Scene { model: cx.model(module)?, network: cx.network(module)? })
+fn own(cx: &mut Cx, home: &Home) -> Result<Scene, Stop> {
+    Ok(Scene { model: cx.model(home)?, network: cx.network(home.module)? })
 }
 
 /// Points that things lie between, for framing them.

@@ -8,7 +8,7 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::{Scene, side_of};
-use crate::lang::value::{ModuleId, Value};
+use crate::lang::value::{Home, ModuleId, Value};
 use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::carry::Stage;
@@ -73,7 +73,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         let mut at: Vec<Place> = refine.boxes.iter().copied().map(Place::Box).collect();
         for (value, _) in &refine.things {
             match value {
-                Value::Edge(module, edge) => at.push(Place::Chain(chain_of(cx, *module, edge)?)),
+                Value::Edge(home, edge) => at.push(Place::Chain(chain_of(cx, home, edge)?)),
                 _ => {
                     for target in finder.targets(cx, value)? {
                         match target {
@@ -217,8 +217,8 @@ impl Finder<'_> {
             }
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),
             Value::Node(p) | Value::Vector(p, _) => plan.points.push(*p),
-            Value::Edge(module, edge) => {
-                let chain = chain_of(cx, *module, edge)?;
+            Value::Edge(home, edge) => {
+                let chain = chain_of(cx, home, edge)?;
                 let name = edge_name(cx, &chain, edge);
                 plan.curves.push((name, chain));
             }
@@ -260,20 +260,20 @@ impl Finder<'_> {
             Value::Shell(shell) => self.faces(&shell.surfaces)?,
             Value::Curve(chain) => vec![Target::Chain(chain.clone())],
             Value::Link(_, link) => vec![Target::Chain(self.scene.network.link_chain(*link))],
-            Value::Edge(module, edge) => {
-                let (model, network) = (cx.model(*module)?, cx.network(*module)?);
+            Value::Edge(home, edge) => {
+                let (model, network) = (cx.model(home)?, cx.network(home.module)?);
                 let place = |id: SurfaceId| self.place(&model, id);
                 let stage = Stage { model: &self.scene.model, network: &self.scene.network };
                 vec![Target::Edge(model.carried(&network, &edge.courses, stage, &place))]
             }
-            Value::Patch(module, patch) => {
-                let model = cx.model(*module)?;
+            Value::Patch(home, patch) => {
+                let model = cx.model(home)?;
                 let own = model.patches[patch.index()].surface;
                 let rank = model.patches_of(own).position(|p| p == *patch).unwrap_or(0);
                 let there = self.place(&model, own).and_then(|id| self.scene.model.patches_of(id).nth(rank));
                 vec![Target::Patches(there.into_iter().collect())]
             }
-            Value::Vertex(module, vertex) => vec![Target::Point(cx.model(*module)?.vertices[vertex.index()].point)],
+            Value::Vertex(home, vertex) => vec![Target::Point(cx.model(home)?.vertices[vertex.index()].point)],
             Value::Node(p) | Value::Vector(p, _) => vec![Target::Point(*p)],
             other => return Err(wrong(other)),
         })
@@ -291,9 +291,9 @@ pub(super) fn edge_name(cx: &Cx, chain: &Chain, edge: &SharedEdge) -> String {
 }
 
 /// The curve along an edge.
-pub(super) fn chain_of(cx: &mut Cx, module: ModuleId, edge: &SharedEdge) -> Result<Chain, Stop> {
+pub(super) fn chain_of(cx: &mut Cx, home: &Home, edge: &SharedEdge) -> Result<Chain, Stop> {
     let tolerance = cx.tolerance()?;
-    let scene = Scene { model: cx.model(module)?, network: cx.network(module)? };
+    let scene = Scene { model: cx.model(home)?, network: cx.network(home.module)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
 }

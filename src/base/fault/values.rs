@@ -42,11 +42,6 @@ pub enum ValueFault {
         /// The curve.
         of: Origin,
     },
-    /// E211: patches are asked of a surface that is not in the model.
-    NoPatches {
-        /// The surface.
-        of: Origin,
-    },
     /// E211: the shape of elements of a mesh that has no known faces.
     NoFaces {
         /// Name of the mesh.
@@ -143,11 +138,6 @@ impl Describe for ValueFault {
                 let message = format!("{} is construction geometry and has no links", say.quoted(*of, "this curve"));
                 let report = Report::new("E211", message).label(Subject::Call, "links are asked for here").at(*of, "made here");
                 report.help("bind it with `curve`: then it joins the network")
-            }
-            Self::NoPatches { of } => {
-                let message = format!("{} is construction geometry and has no patches", say.quoted(*of, "this surface"));
-                let report = Report::new("E211", message).label(Subject::Call, "asked for here").at(*of, "made here");
-                report.help("bind it with `surface`: then it joins the model")
             }
             Self::NoFaces { mesh } => {
                 Report::new("E211", format!("`{mesh}` has no faces on surfaces")).label(Subject::Call, "asked for here")

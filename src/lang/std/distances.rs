@@ -29,9 +29,9 @@ fn figure(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Figure, S
     Ok(match value {
         Value::Vector(..) | Value::Node(_) | Value::Vertex(..) => Figure::Point(vector(cx, value, argument)?),
         Value::Curve(_) | Value::Link(..) => Figure::Curve(cx.as_chain(value)?),
-        Value::Edge(module, edge) => {
+        Value::Edge(home, edge) => {
             let tolerance = cx.tolerance()?;
-            let scene = Scene { model: cx.model(module)?, network: cx.network(module)? };
+            let scene = Scene { model: cx.model(&home)?, network: cx.network(home.module)? };
             let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
             Figure::Curve(scene.shared_chain(&edge, &tolerance)?.ok_or_else(later)?)
         }

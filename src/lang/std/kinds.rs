@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::lang::types::{FromValue, IntoValue, Ty};
-use crate::lang::value::{MeshValue, ModuleId, Plane, ShellValue, Value};
+use crate::lang::value::{Home, MeshValue, ModuleId, Plane, ShellValue, Value};
 use crate::model::{PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
@@ -223,31 +223,36 @@ macro_rules! entity {
 entity! {
     /// A link of a script's network.
     LinkOf = Link(LinkId);
-    /// A vertex of a script's surface model.
-    VertexOf = Vertex(VertexId);
-    /// A patch of a script's surface model.
-    PatchOf = Patch(PatchId);
     /// The network of a script.
     NetworkOf = Network();
 }
 
-/// An edge of a script's surface model.
-#[derive(Clone, Debug)]
-pub struct EdgeOf(pub ModuleId, pub Arc<SharedEdge>);
-
-impl FromValue for EdgeOf {
-    const TY: Ty = Ty::Edge;
-    fn from_value(value: Value) -> Option<Self> {
-        match value {
-            Value::Edge(module, edge) => Some(Self(module, edge)),
-            _ => None,
+/// Declares a struct for what is numbered in a surface model.
+macro_rules! in_model {
+    ($($(#[$doc:meta])* $name:ident = $kind:ident($id:ty);)+) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        pub struct $name(pub Home, pub $id);
+        impl FromValue for $name {
+            const TY: Ty = Ty::$kind;
+            fn from_value(value: Value) -> Option<Self> {
+                match value { Value::$kind(home, id) => Some(Self(home, id)), _ => None }
+            }
         }
-    }
+        impl IntoValue for $name {
+            const TY: Ty = Ty::$kind;
+            fn into_value(self) -> Value {
+                Value::$kind(self.0, self.1)
+            }
+        }
+    )+ };
 }
 
-impl IntoValue for EdgeOf {
-    const TY: Ty = Ty::Edge;
-    fn into_value(self) -> Value {
-        Value::Edge(self.0, self.1)
-    }
+in_model! {
+    /// A vertex of a surface model.
+    VertexOf = Vertex(VertexId);
+    /// A patch of a surface model.
+    PatchOf = Patch(PatchId);
+    /// An edge of a surface model.
+    EdgeOf = Edge(Arc<SharedEdge>);
 }

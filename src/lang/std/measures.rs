@@ -58,7 +58,7 @@ fields! {
     fn area(of: Surface) -> Area = |_, of| Ok(Area(measure::area(&of)));
     /// Area of a patch.
     fn area(of: PatchOf) -> Area = |cx, of| {
-        let model = cx.model(of.0)?;
+        let model = cx.model(&of.0)?;
         let patch = &model.patches[of.1.index()];
         Ok(Area(measure::area_between(&model.surfaces[patch.surface.index()].surface, (patch.u, patch.v))))
     };

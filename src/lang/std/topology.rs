@@ -12,7 +12,7 @@ use crate::base::origin::Origin;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Direction, Length, Point};
-use crate::lang::value::{ModuleId, ShellValue, Value};
+use crate::lang::value::{Home, ShellValue, Value};
 use crate::model::contact::Turn;
 use crate::model::{EdgeId, Model, PatchId, SharedEdges, SharedTrack, SurfaceId};
 use crate::network::Chain;
@@ -21,52 +21,47 @@ use crate::surface::{IsoLine, Nearest, Surface, SurfaceKind};
 use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
-fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(ModuleId, Arc<Model>, Vec<PatchId>), Stop> {
+fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Stop> {
     let module = cx.module();
-    let model = cx.model(module)?;
-    let scene = Scene { network: cx.network(module)?, model: model.clone() };
-    let mut patches = Vec::new();
-    for surface in surfaces {
-        let undeclared = || ValueFault::NoPatches { of: surface.origin() };
-        let (id, _) = scene.find(surface).ok_or_else(undeclared)?;
-        patches.extend(model.patches_of(id));
-    }
-    Ok((module, model, patches))
+    let (scene, home) = Scene::at_home(cx, module, surfaces)?;
+    let places = scene.find_all(surfaces)?;
+    let patches = places.iter().flat_map(|(id, _)| scene.model.patches_of(*id)).collect();
+    Ok((home, scene.model, patches))
 }
 
 /// An edge of the model as a value.
-fn whole(module: ModuleId, model: &Model, edge: EdgeId) -> EdgeOf {
-    EdgeOf(module, Arc::new(model.whole_edge(edge)))
+fn whole(home: &Home, model: &Model, edge: EdgeId) -> EdgeOf {
+    EdgeOf(home.clone(), Arc::new(model.whole_edge(edge)))
 }
 
 /// Edges of some surfaces, along the border of each patch.
 fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Stop> {
-    let (module, model, patches) = patches(cx, surfaces)?;
-    Ok(model.edges_along(&patches).into_iter().map(|edge| whole(module, &model, edge)).collect())
+    let (home, model, patches) = patches(cx, surfaces)?;
+    Ok(model.edges_along(&patches).into_iter().map(|edge| whole(&home, &model, edge)).collect())
 }
 
 fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Stop> {
-    let (module, model, patches) = patches(cx, surfaces)?;
-    Ok(model.vertices_of(&patches).into_iter().map(|vertex| VertexOf(module, vertex)).collect())
+    let (home, model, patches) = patches(cx, surfaces)?;
+    Ok(model.vertices_of(&patches).into_iter().map(|vertex| VertexOf(home.clone(), vertex)).collect())
 }
 
 /// Edges of each patch's loop in order.
 fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Stop> {
-    let (module, model, patches) = patches(cx, surfaces)?;
-    let of_patch = |patch: &PatchId| model.border_of(*patch).into_iter().map(|(e, _)| whole(module, &model, e)).collect();
+    let (home, model, patches) = patches(cx, surfaces)?;
+    let of_patch = |patch: &PatchId| model.border_of(*patch).into_iter().map(|(e, _)| whole(&home, &model, e)).collect();
     Ok(patches.iter().map(of_patch).collect())
 }
 
 /// The edges of a shell, as values in the order of its skin, and the skin.
 fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Stop> {
     let (surfaces, stated) = (faces.surfaces(), faces.snap());
-    let (module, model, _) = patches(cx, &surfaces)?;
-    let (tolerance, network) = (cx.tolerance()?, cx.network(module)?);
+    let (home, model, _) = patches(cx, &surfaces)?;
+    let (tolerance, network) = (cx.tolerance()?, cx.network(home.module)?);
     let scene = Scene { model, network };
     let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
     let near = scene.model.reach(places.iter().copied(), stated, &tolerance);
     let skin = scene.model.shared_edges(&places, near, (&scene.network, &tolerance));
-    Ok((skin.edges.iter().map(|edge| EdgeOf(module, Arc::new(edge.clone()))).collect(), skin))
+    Ok((skin.edges.iter().map(|edge| EdgeOf(home.clone(), Arc::new(edge.clone()))).collect(), skin))
 }
 
 /// Some edges of a skin by their places.
@@ -77,8 +72,8 @@ fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
 /// Edges at which faces turn by more than an angle, radians.
 fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Stop> {
     let (all, _) = skin(cx, faces)?;
-    let Some(module) = all.first().map(|edge| edge.0) else { return Ok(all) };
-    let (model, network, tolerance) = (cx.model(module)?, cx.network(module)?, cx.tolerance()?);
+    let Some(home) = all.first().map(|edge| edge.0.clone()) else { return Ok(all) };
+    let (model, network, tolerance) = (cx.model(&home)?, cx.network(home.module)?, cx.tolerance()?);
     let scene = Scene { model, network };
     let surfaces = faces.surfaces();
     let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
@@ -106,11 +101,11 @@ fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&SharedTrack, f64) -> 
     while let Some(value) = open.pop() {
         match value {
             Value::List(items) => open.extend(items.iter().rev().cloned()),
-            Value::Edge(module, edge) => {
-                let (model, network) = (cx.model(module)?, cx.network(module)?);
+            Value::Edge(home, edge) => {
+                let (model, network) = (cx.model(&home)?, cx.network(home.module)?);
                 let track = model.shared_track(&edge, &network);
                 if track.is_some_and(|track| wanted(&track, track.length())) {
-                    found.push(EdgeOf(module, edge));
+                    found.push(EdgeOf(home, edge));
                 }
             }
             other => {
@@ -164,7 +159,7 @@ fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Stop> {
 
 /// The geometry of an edge at the middle of its length.
 fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
-    let (model, network) = (cx.model(edge.0)?, cx.network(edge.0)?);
+    let (model, network) = (cx.model(&edge.0)?, cx.network(edge.0.module)?);
     let track = model.shared_track(&edge.1, &network).ok_or(Stop::Bug("an edge without geometry"))?;
     Ok(track.point(0.5 * track.length()))
 }
@@ -172,8 +167,8 @@ fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
 /// The one edge of some surfaces that lies on a curve or at a point.
 fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Stop> {
     let tolerance = cx.tolerance()?;
-    let (module, model, patches) = patches(cx, surfaces)?;
-    let network = cx.network(module)?;
+    let (home, model, patches) = patches(cx, surfaces)?;
+    let network = cx.network(home.module)?;
     let lies = |edge: &EdgeId| {
         let (track, length) = (model.track(*edge, &network), model.edges[edge.index()].length);
         match key {
@@ -189,7 +184,7 @@ fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, S
         EdgeKey::Curve(_) => Vec::new(),
     };
     match (found.as_slice(), swept.as_slice()) {
-        ([one], _) | (_, [one]) => Ok(whole(module, &model, *one)),
+        ([one], _) | (_, [one]) => Ok(whole(&home, &model, *one)),
         _ => {
             let of = surfaces.first().map_or(Origin::NONE, Surface::origin);
             let places = found.iter().map(|e| model.track(*e, &network).point(0.5 * model.edges[e.index()].length)).collect();
@@ -223,7 +218,7 @@ pub(super) fn on_track(jet: impl Fn(f64) -> (DVec3, DVec3), length: f64, p: DVec
 /// The modeling curve along an edge.
 fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
     let tolerance = cx.tolerance()?;
-    let scene = Scene { model: cx.model(edge.0)?, network: cx.network(edge.0)? };
+    let scene = Scene { model: cx.model(&edge.0)?, network: cx.network(edge.0.module)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(&edge.1, &tolerance)?.ok_or_else(later)?)
 }
@@ -422,8 +417,8 @@ builtins! {
 fields! {
     /// The patches of a surface: its smooth pieces.
     fn patches(of: Surface) -> Vec<PatchOf> = |cx, of| {
-        let (module, _, patches) = patches(cx, &[of])?;
-        Ok(patches.into_iter().map(|p| PatchOf(module, p)).collect())
+        let (home, _, patches) = patches(cx, &[of])?;
+        Ok(patches.into_iter().map(|p| PatchOf(home.clone(), p)).collect())
     };
     /// The edges of a surface, patch by patch along the border of each.
     fn edges(of: Surface) -> Vec<EdgeOf> = |cx, of| edges(cx, &[of]);
@@ -433,8 +428,8 @@ fields! {
     fn loops(of: Surface) -> Vec<Vec<EdgeOf>> = |cx, of| loops(cx, &[of]);
     /// The faces of a shell: the patches of its surfaces.
     fn faces(of: Arc<ShellValue>) -> Vec<PatchOf> = |cx, of| {
-        let (module, _, patches) = patches(cx, &of.surfaces)?;
-        Ok(patches.into_iter().map(|p| PatchOf(module, p)).collect())
+        let (home, _, patches) = patches(cx, &of.surfaces)?;
+        Ok(patches.into_iter().map(|p| PatchOf(home.clone(), p)).collect())
     };
     /// The edges of a shell, as they are after its faces were glued.
     ///
@@ -447,7 +442,7 @@ fields! {
         for edge in skin(cx, &Faces::of_shell(of))?.0 {
             for vertex in [edge.1.ends.0, edge.1.ends.1] {
                 if found.iter().all(|v| v.1 != vertex) {
-                    found.push(VertexOf(edge.0, vertex));
+                    found.push(VertexOf(edge.0.clone(), vertex));
                 }
             }
         }
@@ -474,34 +469,34 @@ fields! {
     };
     /// The edges around a patch, in order.
     fn edges(of: PatchOf) -> Vec<EdgeOf> = |cx, of| {
-        let model = cx.model(of.0)?;
-        Ok(model.border_of(of.1).into_iter().map(|(e, _)| whole(of.0, &model, e)).collect())
+        let model = cx.model(&of.0)?;
+        Ok(model.border_of(of.1).into_iter().map(|(e, _)| whole(&of.0, &model, e)).collect())
     };
     /// The corners of a patch.
     fn vertices(of: PatchOf) -> Vec<VertexOf> = |cx, of| {
-        Ok(cx.model(of.0)?.vertices_of(&[of.1]).into_iter().map(|v| VertexOf(of.0, v)).collect())
+        Ok(cx.model(&of.0)?.vertices_of(&[of.1]).into_iter().map(|v| VertexOf(of.0.clone(), v)).collect())
     };
     /// The surface a patch lies on.
     fn surface(of: PatchOf) -> Surface = |cx, of| {
-        let model = cx.model(of.0)?;
+        let model = cx.model(&of.0)?;
         Ok(model.surfaces[model.patches[of.1.index()].surface.index()].surface.clone())
     };
     /// Arc length of an edge.
     fn length(of: EdgeOf) -> Length = |_, of| Ok(Length(of.1.length()));
     /// The patches on both sides of an edge.
-    fn faces(of: EdgeOf) -> Vec<PatchOf> = |_, of| Ok(of.1.faces.iter().map(|p| PatchOf(of.0, *p)).collect());
+    fn faces(of: EdgeOf) -> Vec<PatchOf> = |_, of| Ok(of.1.faces.iter().map(|p| PatchOf(of.0.clone(), *p)).collect());
     /// The two ends of an edge.
-    fn vertices(of: EdgeOf) -> Vec<VertexOf> = |_, of| Ok([of.1.ends.0, of.1.ends.1].map(|v| VertexOf(of.0, v)).to_vec());
+    fn vertices(of: EdgeOf) -> Vec<VertexOf> = |_, of| Ok([of.1.ends.0, of.1.ends.1].map(|v| VertexOf(of.0.clone(), v)).to_vec());
     /// The point halfway along an edge.
     fn mid(of: EdgeOf) -> Point = |cx, of| Ok(Point(middle(cx, &of)?));
     /// The curve that an edge lies on.
     fn curve(of: EdgeOf) -> Chain = |cx, of| curve_of(cx, of);
     /// The edges that end in a vertex.
     fn edges(of: VertexOf) -> Vec<EdgeOf> = |cx, of| {
-        let model = cx.model(of.0)?;
+        let model = cx.model(&of.0)?;
         let ends = |e: &usize| model.edges[*e].vertices.0 == of.1 || model.edges[*e].vertices.1 == of.1;
-        Ok((0..model.edges.len()).filter(ends).map(|e| whole(of.0, &model, EdgeId::at(e))).collect())
+        Ok((0..model.edges.len()).filter(ends).map(|e| whole(&of.0, &model, EdgeId::at(e))).collect())
     };
     /// Where a vertex is.
-    fn point(of: VertexOf) -> Value = |cx, of| Ok(Value::point(cx.model(of.0)?.vertices[of.1.index()].point));
+    fn point(of: VertexOf) -> Value = |cx, of| Ok(Value::point(cx.model(&of.0)?.vertices[of.1.index()].point));
 }

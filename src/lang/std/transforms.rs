@@ -44,7 +44,7 @@ fn carried(cx: &mut Cx, value: &Value, motion: &Motion) -> Result<Value, Stop> {
             let normal = motion.vector(plane.normal) / motion.scale();
             Value::Plane(Arc::new(Plane { at: motion.point(plane.at), normal }))
         }
-        Value::Vertex(module, vertex) => Value::point(motion.point(cx.model(*module)?.vertices[vertex.index()].point)),
+        Value::Vertex(home, vertex) => Value::point(motion.point(cx.model(home)?.vertices[vertex.index()].point)),
         Value::List(items) => Value::list(items.iter().map(|item| carried(cx, item, motion)).collect::<Result<_, _>>()?),
         other => {
             return Err(ValueFault::WrongKind { argument: "of", wanted: MOVABLE, found: other.ty().words() }.into());

@@ -88,14 +88,14 @@ impl Held {
                     self.chain(&network.link_chain(*link));
                 }
             }
-            Thing::Vertex(module, vertex) => {
-                if let Ok(model) = cx.model(*module) {
+            Thing::Vertex(home, vertex) => {
+                if let Ok(model) = cx.model(home) {
                     self.point(model.vertices[vertex.index()].point);
                 }
             }
-            Thing::Patch(module, patch) => {
+            Thing::Patch(home, patch) => {
                 self.surfaces += 1;
-                if let Ok(model) = cx.model(*module) {
+                if let Ok(model) = cx.model(home) {
                     let patch = &model.patches[patch.index()];
                     let surface = &model.surfaces[patch.surface.index()].surface;
                     let (u, v) = (patch.u, patch.v);
@@ -103,8 +103,8 @@ impl Held {
                     self.spots(places.map(|(u, v)| surface.point(u, v)).to_vec());
                 }
             }
-            Thing::Edge(module, edge) => {
-                let (Ok(model), Ok(network), Ok(tolerance)) = (cx.model(*module), cx.network(*module), cx.tolerance()) else { return };
+            Thing::Edge(home, edge) => {
+                let (Ok(model), Ok(network), Ok(tolerance)) = (cx.model(home), cx.network(home.module), cx.tolerance()) else { return };
                 let scene = Scene { model, network };
                 match scene.shared_chain(edge, &tolerance) {
                     Ok(Some(chain)) => self.chain(&chain),
