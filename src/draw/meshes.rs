@@ -154,7 +154,12 @@ pub fn lines(mesh: &Mesh, folds: &Folds, left_out: &BTreeSet<&str>) -> Vec<Line>
         Some(face) => !left_out.contains(face.name.as_str()),
         None => true,
     };
-    let mut out: Vec<Line> = mesh.lines.iter().map(|ends| segment(mesh, Kind::Curve, *ends)).collect();
+    let mut shown = vec![true; mesh.lines.len()];
+    for range in mesh.faces.iter().filter(|range| left_out.contains(range.name.as_str())) {
+        (range.lines.start as usize..range.lines.end as usize).for_each(|k| shown[k] = false);
+    }
+    let drawn = mesh.lines.iter().zip(shown).filter(|(_, shown)| *shown);
+    let mut out: Vec<Line> = drawn.map(|(ends, _)| segment(mesh, Kind::Curve, *ends)).collect();
     for edge in job::looking(uses.chunk_by(|a, b| a.0 == b.0)) {
         if !edge.iter().any(|(_, element)| is_shown(*element)) {
             continue;

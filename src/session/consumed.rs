@@ -30,15 +30,18 @@ pub(super) fn surfaces(cx: &mut Cx, sound: &Sound) -> BTreeSet<String> {
         }
     }
     let mut out = BTreeSet::new();
-    for declared in &sound.parts.surfaces {
-        let whole = &declared.value;
-        let Some(&base) = place.get(declared.name.split('[').next().unwrap_or("")) else { continue };
-        if whole.domain() == Domain::Unbounded || shelled.iter().any(|s| s.is(whole)) {
+    for (k, own) in &made {
+        let parts: Vec<&Surface> = own.iter().filter(|part| part.domain() == Domain::Loop).collect();
+        if parts.is_empty() {
             continue;
         }
-        let cut = |(k, own): &(usize, Vec<Surface>)| needs(&symbols, *k, base) && own.iter().any(|part| is_part(part, whole));
-        if made.iter().any(cut) {
-            out.insert(declared.name.to_string());
+        let below = needed(&symbols, *k);
+        for declared in &sound.parts.surfaces {
+            let (whole, name) = (&declared.value, declared.name.split('[').next().unwrap_or(""));
+            let is_base = place.get(name).is_some_and(|base| below.contains(base)) && whole.domain() != Domain::Unbounded;
+            if is_base && !shelled.iter().any(|s| s.is(whole)) && parts.iter().any(|part| is_part(part, whole)) {
+                out.insert(declared.name.to_string());
+            }
         }
     }
     out
@@ -57,24 +60,19 @@ fn surfaces_of(value: &Value) -> Vec<Surface> {
     out
 }
 
-/// Whether a declaration depends on another one.
-fn needs(symbols: &[Symbol], from: usize, on: usize) -> bool {
+/// The declarations that one depends on.
+fn needed(symbols: &[Symbol], from: usize) -> BTreeSet<usize> {
     let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
     while let Some(at) = open.pop() {
-        if !seen.insert(at) {
-            continue;
-        }
-        if at != from && at == on {
-            return true;
-        }
-        open.extend(symbols.get(at).into_iter().flat_map(|s| s.needs.iter().copied()));
+        let direct = symbols.get(at).into_iter().flat_map(|s| s.needs.iter().copied());
+        open.extend(direct.filter(|next| *next != from && seen.insert(*next)));
     }
-    false
+    seen
 }
 
 /// Whether a surface is cut out of another one: a stretch of the same surface, and not the whole.
 fn is_part(part: &Surface, whole: &Surface) -> bool {
-    if part.is(whole) || part.domain() != Domain::Loop {
+    if part.is(whole) {
         return false;
     }
     let (a, b) = (part.untrimmed(), whole.untrimmed());

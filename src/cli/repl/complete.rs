@@ -89,10 +89,22 @@ pub fn candidates(before: &str, session: &Session) -> (usize, Vec<Pair>) {
         return named(files(before, start, Path::new(".")));
     }
     if before.trim_start().starts_with(':') {
+        // What a command speaks of may be a path: `:show ribs[0].length`.
+        let argument = before.find(char::is_whitespace).map_or(before.len(), |at| at + 1);
+        if before[argument..].contains(['.', '(']) {
+            let (start, found) = of_script(&before[argument..], session);
+            return (argument + start, found);
+        }
         let start = word_start(before);
         let fits = session.names.iter().filter(|(name, _)| name.starts_with(&before[start..]));
         return (start, fits.map(|(name, keyword)| pair(name, format!("{name}  {keyword}"))).collect());
     }
+    of_script(before, session)
+}
+
+/// What may stand at the end of a line of a script.
+fn of_script(before: &str, session: &Session) -> (usize, Vec<Pair>) {
+    let named = |(start, names): (usize, Vec<String>)| (start, names.into_iter().map(|name| pair(&name, name.clone())).collect());
     let (from, offer) = session.with(before, |script, start| (start, script.complete(script.text.len())));
     let start = offer.start.saturating_sub(from);
     if offer.file {
@@ -141,6 +153,7 @@ mod tests {
         let has = |before: &str, word: &str| assert!(offered(before).iter().any(|o| o == word), "{before}: {:?}", offered(before));
         has(":no", "nodes ");
         has(":show so", "south");
+        has(":show south.le", "length");
         has("curve a = li", "line(");
         has("let x = so", "south");
         has("so", "south");
