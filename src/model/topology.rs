@@ -127,7 +127,7 @@ pub struct Named {
 /// Patches, edges and vertices of all declared surfaces.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
-    /// Surfaces in order of declaration.
+    /// Surfaces as given.
     pub surfaces: Vec<Named>,
     /// Patches, surface by surface, u fastest.
     pub patches: Vec<Patch>,

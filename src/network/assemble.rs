@@ -292,7 +292,7 @@ fn lonely_rings(curves: &[NetCurve], parts: &Parts, stations: &mut Stations) {
     }
 }
 
-/// Numbers nodes and links in order of declaration, then along curves.
+/// Numbers nodes and links in the order of curves as given, then along curves.
 fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Shared) -> (Vec<Node>, Vec<Link>, Vec<Fault>) {
     const NONE: u32 = u32::MAX;
     let mut number_of = vec![NONE; stations.points.len()];

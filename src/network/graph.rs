@@ -79,10 +79,10 @@ pub struct Input {
 /// For each link before a change, the links that stand in its place, in its direction.
 pub type LinkMap = Vec<Vec<LinkId>>;
 
-/// The curves of a model, their nodes and links; numbered in order of declaration, then along curves.
+/// The curves of a model, their nodes and links; numbered in the order in which curves are given, then along curves.
 #[derive(Clone, Debug, Default)]
 pub struct Network {
-    /// Curves in order of declaration.
+    /// Curves as given.
     pub curves: Vec<NetCurve>,
     /// Nodes.
     pub nodes: Vec<Node>,

@@ -1,6 +1,6 @@
 //! From a model to the rows of its report.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Say, Severity};
@@ -26,15 +26,32 @@ pub fn network_counts(network: &Network) -> NetworkCounts {
     NetworkCounts { curves: network.curves.len(), links: network.links.len(), nodes: network.nodes.len() }
 }
 
+/// Places of the curves of a network in order of declaration, those that no declaration names behind.
+pub fn curves_in_order(parts: &Parts, network: &Network) -> Vec<usize> {
+    in_order(parts.curves.iter().map(|c| &*c.name), network.curves.iter().map(|c| &*c.name))
+}
+
+/// Places of the surfaces of a model in order of declaration.
+pub fn surfaces_in_order(parts: &Parts, model: &Model) -> Vec<usize> {
+    in_order(parts.surfaces.iter().map(|s| &*s.name), model.surfaces.iter().map(|s| &*s.name))
+}
+
+fn in_order<'n>(declared: impl Iterator<Item = &'n str>, all: impl Iterator<Item = &'n str>) -> Vec<usize> {
+    let rank: BTreeMap<&str, usize> = declared.enumerate().map(|(n, name)| (name, n)).collect();
+    let mut found: Vec<(usize, usize)> = all.map(|name| rank.get(name).copied().unwrap_or(usize::MAX)).zip(0..).collect();
+    found.sort_unstable();
+    found.into_iter().map(|(_, place)| place).collect()
+}
+
 /// Curves of the network.
-pub fn curves(network: &Network) -> Vec<CurveRow> {
+pub fn curves(parts: &Parts, network: &Network) -> Vec<CurveRow> {
     let row = |c: &crate::network::graph::NetCurve| CurveRow {
         name: c.name.clone(),
         kind: c.curve.kind().name(),
         length: c.curve.length(),
         links: c.links.len(),
     };
-    network.curves.iter().map(row).collect()
+    curves_in_order(parts, network).into_iter().map(|k| row(&network.curves[k])).collect()
 }
 
 /// Modeling curves.
@@ -51,18 +68,24 @@ pub fn modeling(cx: &Cx, parts: &Parts, network: &Network, tolerance: &Tolerance
 /// Declared chains, then the unnamed ones that surfaces stand on, each with how many links it runs over; chains with the same
 /// links are one.
 pub fn chains<'p>(cx: &Cx, parts: &'p Parts, network: &Network, tolerance: &Tolerance) -> Vec<(String, usize, &'p Chain)> {
-    let mut seen = BTreeSet::new();
-    let mut rows = Vec::new();
-    let mut add = |name: String, chain: &'p Chain| {
+    let mut places = BTreeMap::new();
+    let mut rows: Vec<(String, usize, &'p Chain)> = Vec::new();
+    let declared = parts.modeling.len();
+    let curves: BTreeSet<&str> = parts.curves.iter().map(|c| &*c.name).collect();
+    let rank = |name: &str| (!curves.contains(name), name.to_owned());
+    let named = parts.modeling.iter().map(|m| (m.name.to_string(), &m.value));
+    let below = parts.surfaces.iter().flat_map(|s| s.value.chains()).map(|chain| (cx.name(chain.origin()), chain));
+    for (n, (name, chain)) in named.chain(below).enumerate() {
         let key = identity(chain, network, tolerance);
-        let links = if key.1.is_empty() { 1 } else { key.1.len() };
-        if seen.insert(key) {
-            rows.push((name, links, chain));
+        let links = key.1.len().max(1);
+        let (place, first) = *places.entry(key).or_insert((rows.len(), n));
+        match rows.get_mut(place) {
+            None => rows.push((name, links, chain)),
+            // Of several texts that make one chain a declared name is told, then the first by name, whoever was declared first.
+            Some(row) if first >= declared && rank(&name) < rank(&row.0) => *row = (name, links, chain),
+            Some(_) => {}
         }
-    };
-    parts.modeling.iter().for_each(|m| add(m.name.to_string(), &m.value));
-    let below = parts.surfaces.iter().flat_map(|s| s.value.chains());
-    below.for_each(|chain| add(cx.name(chain.origin()), chain));
+    }
     rows
 }
 
@@ -85,8 +108,9 @@ fn identity(chain: &Chain, network: &Network, tolerance: &Tolerance) -> (Vec<[u6
 }
 
 /// Declared surfaces; `area` measures one.
-pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> Option<f64>) -> Vec<SurfaceRow> {
-    let row = |(n, named): (usize, &crate::model::topology::Named)| {
+pub fn surfaces(parts: &Parts, model: &Model, area: &mut dyn FnMut(&Surface) -> Option<f64>) -> Vec<SurfaceRow> {
+    let row = |n: usize| {
+        let named = &model.surfaces[n];
         let patches: Vec<_> = model.patches_of(SurfaceId::at(n)).collect();
         let flow = named.surface.flow();
         SurfaceRow {
@@ -100,7 +124,7 @@ pub fn surfaces(model: &Model, area: &mut dyn FnMut(&Surface) -> Option<f64>) ->
             corners: None,
         }
     };
-    model.surfaces.iter().enumerate().map(row).collect()
+    surfaces_in_order(parts, model).into_iter().map(row).collect()
 }
 
 /// A box as plain numbers; `None` when it is empty or has no end.
@@ -110,9 +134,10 @@ pub fn corners(bounds: Box3) -> Option<Corners> {
     found.then(|| [bounds.min, bounds.max].map(|p| p.to_array().map(|x| x + 0.0)))
 }
 
-/// The box of each surface.
-pub fn boxes(model: &Model) -> Vec<Box3> {
-    model.surfaces.iter().map(|named| measure::bounds(std::slice::from_ref(&named.surface))).collect()
+/// The box of each surface, in order of declaration.
+pub fn boxes(parts: &Parts, model: &Model) -> Vec<Box3> {
+    let of = |n: usize| measure::bounds(std::slice::from_ref(&model.surfaces[n].surface));
+    surfaces_in_order(parts, model).into_iter().map(of).collect()
 }
 
 /// Counts of the surface model.
@@ -245,7 +270,7 @@ fn diagnostic_row(found: &Diagnostic, count: usize, sources: &Sources) -> Diagno
 }
 
 /// What was found of each surface: its flow, the curves along u and v in order, poles and which way it closes.
-pub fn flows(cx: &Cx, model: &Model) -> Vec<String> {
+pub fn flows(cx: &Cx, parts: &Parts, model: &Model) -> Vec<String> {
     let words = |family: &[Option<&Chain>]| {
         let word = |chain: &Option<&Chain>| {
             chain.map_or_else(
@@ -271,5 +296,5 @@ pub fn flows(cx: &Cx, model: &Model) -> Vec<String> {
         }
         format!("surface {}: {}, {}", named.name, surface.kind().name(), parts.join("; "))
     };
-    model.surfaces.iter().map(line).collect()
+    surfaces_in_order(parts, model).into_iter().map(|n| line(&model.surfaces[n])).collect()
 }

@@ -1,6 +1,7 @@
 //! Floor 8: a model from script to files, as commands and other programs use it.
 
 pub mod cache;
+mod canonical;
 mod collect;
 mod consumed;
 mod cuts;

@@ -269,16 +269,16 @@ impl<'r> Run<'r> {
     fn geometry(&mut self, sound: &Sound, tolerance: &Tolerance) -> Box3 {
         let Sound { parts, network, model } = sound;
         self.report.network = collect::network_counts(network);
-        self.report.curves = collect::curves(network);
+        self.report.curves = collect::curves(parts, network);
         self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
-        self.report.surfaces = collect::surfaces(model, &mut |surface| (!self.light).then(|| self.stages.area(surface)));
-        self.flows = collect::flows(&self.cx, model);
+        self.report.surfaces = collect::surfaces(parts, model, &mut |surface| (!self.light).then(|| self.stages.area(surface)));
+        self.flows = collect::flows(&self.cx, parts, model);
         self.report.topology = collect::topology(model, 0);
         if !self.task.full {
             return Box3::EMPTY;
         }
         let mut bounds = network.curves.iter().fold(Box3::EMPTY, |bounds, c| bounds.union(c.curve.bbox()));
-        for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(model)) {
+        for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(parts, model)) {
             row.corners = collect::corners(found);
             bounds = row.corners.map_or(bounds, |_| bounds.union(found));
         }

@@ -9,6 +9,7 @@ use crate::base::fault::{CurveEnd, Fault, Say};
 use crate::base::job::Job;
 use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD};
 use crate::base::tolerance::Tolerance;
+use crate::geometry::Curve;
 use crate::lang::cx::{Cx, Parts, Pipeline, Snapping, Stop, Turn};
 use crate::lang::plans::MeshSpec;
 use crate::lang::scene::Scene;
@@ -26,7 +27,7 @@ use crate::surface::Surface;
 
 use super::kept::{KeptMesh, KeptModel, KeptNetwork, KeptStages, Place};
 use super::report::MeshRow;
-use super::{collect, plan};
+use super::{canonical, collect, plan};
 
 /// The pipeline of a session; remembers how things were found and how long meshes took.
 pub struct Stages<'c> {
@@ -157,7 +158,7 @@ impl Pipeline for Stages<'_> {
 
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop> {
         let tolerance = cx.tolerance()?;
-        let inputs = inputs(cx, parts);
+        let inputs = inputs(cx, parts, &tolerance);
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
         if let Some(kept) = self.kept()
             && let Some(before) = kept.networks.get(&module).filter(|before| before.fits(&inputs, &points, &tolerance))
@@ -183,7 +184,8 @@ impl Pipeline for Stages<'_> {
     fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop> {
         let (tolerance, network) = (cx.tolerance()?, cx.network(module)?);
         let named = |s: &crate::lang::cx::Declared<crate::surface::Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
-        let surfaces: Vec<Named> = parts.surfaces.iter().map(named).collect();
+        let mut surfaces: Vec<Named> = parts.surfaces.iter().map(named).collect();
+        canonical::sort_surfaces(&mut surfaces, &tolerance);
         if let Some(kept) = self.kept()
             && let Some(before) = kept.models.get(&module).filter(|before| before.fits(&surfaces, &network, &tolerance))
         {
@@ -281,57 +283,66 @@ struct Shapes {
 }
 
 impl Shapes {
-    fn key(curve: &crate::geometry::Curve) -> [u64; 6] {
+    fn key(curve: &Curve) -> [u64; 6] {
         let (a, b) = (curve.start(), curve.end());
         // Adding zero makes the two zeros one.
         [a.x, a.y, a.z, b.x, b.y, b.z].map(|x| (x + 0.0).to_bits())
     }
 
-    fn find(&self, curve: &crate::geometry::Curve, inputs: &[Input]) -> Option<usize> {
+    fn find(&self, curve: &Curve, inputs: &[Input]) -> Option<usize> {
         self.by_ends.get(&Self::key(curve))?.iter().copied().find(|&i| same_curve(&inputs[i].curve, curve))
     }
 
-    fn add(&mut self, curve: &crate::geometry::Curve, index: usize) {
+    fn add(&mut self, curve: &Curve, index: usize) {
         self.by_ends.entry(Self::key(curve)).or_default().push(index);
     }
 }
 
-/// What goes into the network: declared curves, then nameless and `let` ones that declared surfaces stand on, with cuts
-/// where runs of modeling curves end. Other `let` curves are construction geometry and stay out.
-fn inputs(cx: &Cx, parts: &Parts) -> Vec<Input> {
+/// What goes into the network, in canonical order: declared curves, nameless and `let` ones that declared surfaces stand on,
+/// with cuts where runs of modeling curves end. Other `let` curves are construction geometry and stay out.
+fn inputs(cx: &Cx, parts: &Parts, tolerance: &Tolerance) -> Vec<Input> {
     let whole = |c: &crate::lang::cx::Declared<Chain>| {
         let curve = c.value.whole_curve().cloned().or_else(|| c.value.runs().first().map(|run| run.curve.clone()))?;
         Some(Input { name: c.name.to_string(), curve, cuts: Vec::new() })
     };
     let mut inputs: Vec<Input> = parts.curves.iter().filter_map(whole).collect();
-    let modeling = parts.modeling.iter().map(|m| (&m.value, false));
-    let below = parts.surfaces.iter().flat_map(|s| s.value.chains().iter().map(|c| (c, true)));
-    let mut chains = modeling.chain(below).peekable();
-    if chains.peek().is_none() {
+    canonical::sort_curves(&mut inputs, tolerance);
+    let modeling = parts.modeling.iter().map(|m| &m.value);
+    let below = || parts.surfaces.iter().flat_map(|s| s.value.chains().iter());
+    if modeling.len() == 0 && below().next().is_none() {
         return inputs;
     }
     let mut shapes = Shapes::default();
     inputs.iter().enumerate().for_each(|(i, input)| shapes.add(&input.curve, i));
+    add_nameless(cx, below(), (&mut inputs, &mut shapes), tolerance);
+    for run in modeling.chain(below()).flat_map(Chain::runs) {
+        let Some(index) = shapes.find(&run.curve, &inputs) else { continue };
+        let length = run.curve.length();
+        let inside = [run.s0, run.s1].into_iter().map(|s| if s > length { s - length } else { s });
+        inputs[index].cuts.extend(inside.filter(|s| *s > 0.0 && *s < length));
+    }
+    inputs.iter_mut().for_each(|input| input.cuts.sort_by(f64::total_cmp));
+    canonical::sort_curves(&mut inputs, tolerance);
+    inputs
+}
+
+/// Adds the curves of chains that no input is, under the text they were made by.
+fn add_nameless<'p>(
+    cx: &Cx,
+    chains: impl Iterator<Item = &'p Chain>,
+    (inputs, shapes): (&mut Vec<Input>, &mut Shapes),
+    tolerance: &Tolerance,
+) {
+    let runs = chains.flat_map(Chain::runs).filter(|run| shapes.find(&run.curve, inputs).is_none());
+    let mut nameless: Vec<(Curve, String)> = runs.map(|run| (run.curve.clone(), cx.name(run.curve.origin()))).collect();
+    canonical::sort_named(&mut nameless, tolerance);
     let mut names: BTreeMap<String, usize> = inputs.iter().map(|i| (i.name.clone(), 1)).collect();
-    for (chain, joins) in chains {
-        for run in chain.runs() {
-            let found = shapes.find(&run.curve, &inputs);
-            let index = match found {
-                Some(index) => index,
-                None if !joins => continue,
-                None => {
-                    let name = unique(&mut names, cx.name(run.curve.origin()));
-                    inputs.push(Input { name, curve: run.curve.clone(), cuts: Vec::new() });
-                    shapes.add(&run.curve, inputs.len() - 1);
-                    inputs.len() - 1
-                }
-            };
-            let length = run.curve.length();
-            let inside = [run.s0, run.s1].into_iter().map(|s| if s > length { s - length } else { s });
-            inputs[index].cuts.extend(inside.filter(|s| *s > 0.0 && *s < length));
+    for (curve, name) in nameless {
+        if shapes.find(&curve, inputs).is_none() {
+            shapes.add(&curve, inputs.len());
+            inputs.push(Input { name: unique(&mut names, name), curve, cuts: Vec::new() });
         }
     }
-    inputs
 }
 
 /// The name, or with a number behind it where it is taken.

@@ -81,8 +81,9 @@ pub fn of(cx: &mut Cx) -> Looks {
         let modeling = names(parts.modeling.iter().map(|c| &*c.name).collect());
         looks.declared.extend(curves.iter().cloned());
         looks.declared.extend(names(parts.surfaces.iter().map(|s| &*s.name).collect()));
-        looks.curves = par::map(network.curves.len(), |k| {
-            let curve = &network.curves[k];
+        let order = collect::curves_in_order(parts, network);
+        looks.curves = par::map(order.len(), |k| {
+            let curve = &network.curves[order[k]];
             let whole = Chain::of_curve(&curve.curve);
             let mut look = of_chain(&whole, &Moments::of_curve(&curve.curve), !curves.contains(&curve.name), (&tolerance, unit));
             look.pairs.extend(of_box(curve.curve.bbox(), unit));
@@ -94,8 +95,9 @@ pub fn of(cx: &mut Cx) -> Looks {
             let declared = modeling.contains(name) || curves.contains(name);
             of_chain(chain, &Moments::of_chain(chain), !declared, (&tolerance, unit))
         });
-        looks.surfaces = par::map(model.surfaces.len(), |k| {
-            let moments = Moments::of_surface(&model.surfaces[k].surface);
+        let order = collect::surfaces_in_order(parts, model);
+        looks.surfaces = par::map(order.len(), |k| {
+            let moments = Moments::of_surface(&model.surfaces[order[k]].surface);
             Look { loose: false, pairs: of_sheet(&moments, unit) }
         });
     }

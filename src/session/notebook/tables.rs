@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use super::{Answer, Notebook, Part};
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::Cx;
+use crate::lang::cx::{Cx, Parts};
 use crate::lang::value::{ModuleId, Value};
 use crate::network::{LinkId, Network};
+use crate::session::collect;
 use crate::session::live::Depth;
 use crate::session::report::{Cell, Column, Table};
 
@@ -37,14 +38,14 @@ fn meeting(network: &Network) -> Vec<Vec<&str>> {
     names
 }
 
-fn curves(network: &Network, unit: &str) -> Table {
+fn curves(parts: &Parts, network: &Network, unit: &str) -> Table {
     let row = |c: &crate::network::graph::NetCurve| {
         let links: Vec<String> = c.links.iter().map(|(l, _)| (l.0 + 1).to_string()).collect();
         vec![text(&c.name), text(c.curve.kind().name()), Cell::Number(c.curve.length()), text(links.join(" "))]
     };
     let title = format!("{} curves, {} links, {} nodes", network.curves.len(), network.links.len(), network.nodes.len());
     let columns = vec![column("curve", None), column("kind", None), column("length", Some(unit)), column("links", None)];
-    Table { title, columns, rows: network.curves.iter().map(row).collect() }
+    Table { title, columns, rows: collect::curves_in_order(parts, network).into_iter().map(|k| row(&network.curves[k])).collect() }
 }
 
 fn nodes(network: &Network, (unit, tolerance): (&str, &Tolerance)) -> Table {
@@ -89,7 +90,10 @@ fn title_before(title: &str) -> String {
 
 impl Notebook {
     pub(super) fn network(&mut self, _: &str) -> Answer {
-        self.tabled(&mut |cx, network| Ok(curves(network, cx.unit().name)))
+        self.tabled(&mut |cx, network| {
+            let parts = cx.sound(ModuleId::MAIN).map(|sound| sound.parts).unwrap_or_default();
+            Ok(curves(&parts, network, cx.unit().name))
+        })
     }
 
     pub(super) fn nodes(&mut self, _: &str) -> Answer {
