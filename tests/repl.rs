@@ -106,3 +106,22 @@ fn hostile_entries_leave_the_session_alive() {
     assert!(out.trim_end().ends_with('8'), "{out}{err}");
     assert_eq!(status, Some(1));
 }
+
+#[test]
+fn a_session_draws_and_reads_again() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("repl-draw");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let script = folder.join("roof.loft");
+    fs::write(&script, "units m\ncurve a = line((0, 0, 0), (4, 0, 0))\nsurface s = extrude(a, by: (0, 3, 0))\n").unwrap();
+    let (load, picture) = (format!(":load {}", script.display()), folder.join("s.png"));
+    let (out, _, status) = piped(&format!("{load}\n:reload\n:render s {}\ncurve b = a\n:reload\nb\n", picture.display()));
+    assert_eq!(status, Some(1), "{out}");
+    assert!(out.contains("is read again: nothing changed") && out.contains("is read again: b removed"), "{out}");
+    assert!(out.contains(&format!("{}: 1200 × 800 pixels, ", picture.display())), "{out}");
+    assert_eq!(&fs::read(&picture).unwrap()[1..4], b"PNG");
+    // What failed is not written.
+    let saved = folder.join("saved.loft");
+    piped(&format!("curve a = line((0, 0, 0), (1, 0, 0))\ncurve b = line(a.end, nowhere)\n:save {}\n", saved.display()));
+    assert_eq!(fs::read_to_string(&saved).unwrap(), "curve a = line((0, 0, 0), (1, 0, 0))\n");
+}

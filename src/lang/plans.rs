@@ -179,6 +179,25 @@ pub struct PictureSpec {
     pub origin: Origin,
 }
 
+impl PictureSpec {
+    /// A picture seen from somewhere with all other settings left alone, in a file of this name.
+    pub fn of_file(path: &str, view: View) -> Self {
+        Self {
+            things: Vec::new(),
+            named: String::new(),
+            path: path.to_owned(),
+            path_origin: Origin::NONE,
+            view,
+            size: PICTURE_SIZE,
+            shade: None,
+            zoom: Vec::new(),
+            title: None,
+            show: Show::default(),
+            origin: Origin::NONE,
+        }
+    }
+}
+
 /// What a picture shows beside faces; `None` where it was left to what is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Show {

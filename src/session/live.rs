@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::disk::{Disk, Outputs, Unsaved};
 use super::guard::{Bug, guarded};
 use super::kept::Kept;
-use super::run::{Again, Outcome, Task, run_again};
+use super::run::{Again, Outcome, Task, Wanted, run_again};
 use crate::base::job::Job;
 use crate::lang::cx::Cx;
 
@@ -67,7 +67,30 @@ impl Live {
         look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
     ) -> Result<Outcome, Bug> {
         let outputs = if depth == Depth::Files { Outputs::Written } else { Outputs::Counted };
-        let disk = Disk::new(self.script.as_deref(), None, &self.allow, outputs).map_err(|error| Bug { what: error.to_string() })?;
+        self.go((text, sets), (None, None, outputs), depth, job, look)
+    }
+
+    /// Runs the text and writes one picture into a folder, and nothing else.
+    ///
+    /// Fails as [`Live::run`].
+    pub fn draw(
+        &mut self,
+        (text, sets): (&str, &[(String, String)]),
+        (folder, wanted): (&Path, &Wanted),
+        job: &Job,
+    ) -> Result<Outcome, Bug> {
+        self.go((text, sets), (Some(folder), Some(wanted), Outputs::Written), Depth::Values, job, &mut |_| {})
+    }
+
+    fn go(
+        &mut self,
+        (text, sets): (&str, &[(String, String)]),
+        (folder, picture, outputs): (Option<&Path>, Option<&Wanted>, Outputs),
+        depth: Depth,
+        job: &Job,
+        look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
+    ) -> Result<Outcome, Bug> {
+        let disk = Disk::new(self.script.as_deref(), folder, &self.allow, outputs).map_err(|error| Bug { what: error.to_string() })?;
         let disk = disk.with_unsaved(self.unsaved.clone());
         let clock = self.clock.clone();
         let clock = move || clock();
@@ -79,7 +102,7 @@ impl Live {
             strict: false,
             keep_going: false,
             full: false,
-            picture: None,
+            picture,
             clock: &clock,
         };
         let mut kept = std::mem::take(&mut self.kept);

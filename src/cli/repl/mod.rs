@@ -3,6 +3,7 @@
 pub(super) mod complete;
 mod helper;
 mod history;
+mod inline;
 mod script;
 
 use std::io::{IsTerminal, Read};
@@ -71,6 +72,14 @@ pub(super) fn opened(model: &str, terminal: &Terminal) -> Result<Notebook, Exit>
 /// Shows an answer; whether the session goes on.
 fn print(answer: &Answer, terminal: &Terminal, watched: bool) {
     terminal.print(&text_of(answer, terminal.color_out && watched));
+    let shows = if watched { inline::Way::of_terminal() } else { None };
+    if let Some(way) = shows {
+        for part in &answer.parts {
+            if let Part::Picture(bytes) = part {
+                terminal.print(&way.text(bytes));
+            }
+        }
+    }
 }
 
 /// An answer as text.
@@ -80,6 +89,8 @@ pub(super) fn text_of(answer: &Answer, color: bool) -> String {
         match part {
             Part::Text(text) | Part::Said(text) => out.push_str(text),
             Part::Table(table) => summary::print_table(table, &mut out, color),
+            // Only a terminal that is watched shows pictures.
+            Part::Picture(_) => {}
             Part::Summary(report, tolerance) => out.push_str(&summary::text(report, *tolerance, color)),
         }
         if !out.is_empty() && !out.ends_with('\n') {
@@ -109,6 +120,26 @@ fn from_pipe(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     exit
 }
 
+/// A text after the user's editor; the error says why there is none.
+fn edited(text: &str) -> Result<String, String> {
+    let set = |name: &str| std::env::var(name).ok().filter(|editor| !editor.trim().is_empty());
+    let editor = set("VISUAL").or_else(|| set("EDITOR")).ok_or("no editor is known: set VISUAL or EDITOR, as in `export EDITOR=vi`")?;
+    let path = std::env::temp_dir().join(format!("loft-session-{}.loft", std::process::id()));
+    let cannot = |error: std::io::Error| format!("cannot use {}: {error}", path.display());
+    std::fs::write(&path, text).map_err(cannot)?;
+    let mut words = editor.split_whitespace();
+    let program = words.next().unwrap_or_default();
+    let ended = std::process::Command::new(program).args(words).arg(&path).status();
+    let read = std::fs::read_to_string(&path);
+    // Nothing can be done about a temporary file that does not go.
+    let _ = std::fs::remove_file(&path);
+    match ended {
+        Ok(status) if status.success() => read.map_err(|error| format!("cannot read what {program} left: {error}")),
+        Ok(_) => Err(format!("{program} failed; nothing was changed")),
+        Err(error) => Err(format!("cannot start {program} (from VISUAL or EDITOR): {error}")),
+    }
+}
+
 fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     let config = Config::builder().completion_type(CompletionType::List).auto_add_history(false).build();
     let mut editor: Editor<Line, FileHistory> = match Editor::with_config(config) {
@@ -121,6 +152,7 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
         // Without a history of earlier sessions this one begins.
         let _ = editor.load_history(path);
     }
+    notebook.edit_with(Box::new(edited));
     terminal.print(GREETING);
     loop {
         let columns = editor.dimensions().map_or(usize::MAX, |(columns, _)| usize::from(columns).saturating_sub(PROMPT.len()));

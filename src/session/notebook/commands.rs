@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-use super::{Answer, Notebook, Part, State};
+use super::{Answer, Notebook, Part, State, bug_answer, ended, stopped, told};
 use crate::base::limits;
+use crate::draw::View;
+use crate::lang::plans::PictureSpec;
 use crate::lang::symbols::Condition;
 use crate::session::disk::{read_limited, write_whole};
 use crate::session::live::Depth;
 use crate::session::lookup;
+use crate::session::run::Wanted;
 
 /// One command.
 #[derive(Debug)]
@@ -36,13 +39,21 @@ pub const COMMANDS: &[Command] = &[
         docs: "Takes out a declaration and all that stands on it",
         run: |n, name| n.remove(name, true),
     },
-    Command { word: "undo", takes: "", docs: "Goes back by one change", run: |n, _| n.back(true) },
+    Command { word: "undo", takes: "", docs: "Goes back by one change, and says which", run: |n, _| n.back(true) },
     Command { word: "redo", takes: "", docs: "Takes an undo back", run: |n, _| n.back(false) },
     Command { word: "set", takes: "PARAM=VALUE", docs: "Gives a param another value", run: Notebook::set },
     Command { word: "mesh", takes: "NAME", docs: "Builds a mesh and tells its counts and quality", run: Notebook::mesh },
     Command { word: "view", takes: "", docs: "The model in a browser: comes with `loft view`, not in this version", run: |_, _| not_yet() },
     Command { word: "run", takes: "", docs: "Runs the whole model and writes its files", run: Notebook::whole_run },
     Command { word: "time", takes: "", docs: "How long the last entry took and what was reused", run: Notebook::time },
+    Command {
+        word: "render",
+        takes: "NAME [FILE]",
+        docs: "Draws a thing into a file, and on terminals that can, here",
+        run: Notebook::render,
+    },
+    Command { word: "edit", takes: "", docs: "Opens the script in $VISUAL or $EDITOR and goes on with what is saved", run: Notebook::edit },
+    Command { word: "reload", takes: "", docs: "Reads the loaded file again (`:undo` takes that back)", run: Notebook::reload },
     Command { word: "load", takes: "FILE", docs: "Goes on with a script", run: |n, file| n.load_file(file) },
     Command { word: "save", takes: "FILE", docs: "Writes a script that gives this model", run: Notebook::save },
     Command {
@@ -103,9 +114,10 @@ impl Notebook {
         };
         let (mut past, mut future) = (std::mem::take(&mut self.past), std::mem::take(&mut self.future));
         let before = self.state.clone();
-        let names = changed_names(&before.text, &state.text);
+        let words =
+            if undo { format!("undid: {}", told::change(&state, &before)) } else { format!("redid: {}", told::change(&before, &state)) };
+        let names = told::changed_names(&before.text, &state.text);
         let mut answer = self.change(state.clone(), &names);
-        let gone = self.state == before;
         if answer.stopped {
             if undo { &mut past } else { &mut future }.push(state);
             (self.past, self.future) = (past, future);
@@ -114,9 +126,7 @@ impl Notebook {
         if undo { &mut future } else { &mut past }.push(before);
         self.past = past;
         self.future = future;
-        if !gone && answer.parts.is_empty() {
-            answer.say("done");
-        }
+        answer.parts.insert(0, Part::Text(words));
         answer
     }
 
@@ -127,15 +137,12 @@ impl Notebook {
         let mut sets = self.state.sets.clone();
         sets.retain(|(n, _)| *n != name);
         sets.push((name.clone(), value));
-        let before = self.state.clone();
-        let said = self.said.clone();
-        let (conditions, symbols) = (self.conditions.clone(), self.symbols.clone());
-        let mut answer = self.change(State { text: before.text.clone(), sets }, std::slice::from_ref(&name));
+        let before = self.before();
+        let mut answer = self.change(State { text: before.state.text.clone(), sets }, std::slice::from_ref(&name));
         let refused = self.conditions.get(&name) != Some(&Condition::Sound);
-        if answer.failed && refused && self.state != before {
+        if answer.failed && refused && self.state != before.state {
             // A value that the param refuses changes nothing.
-            self.past.pop();
-            (self.state, self.said, self.conditions, self.symbols) = (before, said, conditions, symbols);
+            self.put_back(before);
             answer.parts.retain(|part| matches!(part, Part::Said(_)));
             answer.say("nothing was changed");
         }
@@ -183,6 +190,72 @@ impl Notebook {
         answer
     }
 
+    /// Reads the loaded file again; `:undo` takes that back.
+    fn reload(&mut self, _: &str) -> Answer {
+        let Some(path) = self.loaded.clone() else {
+            return Answer::failure("no file was loaded: `:load FILE` goes on with one");
+        };
+        let text = match read_limited(&path, limits::SOURCE_BYTES) {
+            Ok(bytes) => String::from_utf8(bytes),
+            Err(error) => return Answer::failure(format!("cannot read {}: {}", path.display(), crate::session::disk::words(&error))),
+        };
+        let Ok(text) = text else { return Answer::failure(format!("{} is not UTF-8 text", path.display())) };
+        self.go_over(&text, &format!("{} is read again", path.display()))
+    }
+
+    /// Another text of the session from the user's editor.
+    fn edit(&mut self, _: &str) -> Answer {
+        let Some(editor) = &self.editor else {
+            return Answer::failure("`:edit` needs a terminal");
+        };
+        match editor(&self.saved_text()) {
+            Ok(text) => self.go_over(&text, "edited"),
+            Err(why) => Answer::failure(why),
+        }
+    }
+
+    /// Goes over to another text, whatever is wrong with it, and says what changed.
+    fn go_over(&mut self, text: &str, what: &str) -> Answer {
+        let next = State { text: ended(text), sets: Vec::new() };
+        if next == self.state {
+            return Answer::text(format!("{what}: nothing changed"));
+        }
+        let before = self.state.clone();
+        let names = told::changed_names(&before.text, &next.text);
+        let mut answer = self.change(next, &names);
+        if !answer.stopped {
+            answer.parts.insert(0, Part::Text(format!("{what}: {}", told::change(&before, &self.state))));
+        }
+        answer
+    }
+
+    /// `:render NAME [FILE]`.
+    fn render(&mut self, text: &str) -> Answer {
+        let (name, file) = text.split_once(char::is_whitespace).map_or((text, ""), |(name, file)| (name, file.trim()));
+        let plain: String = name.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+        let file = if file.is_empty() { format!("{}.png", plain.trim_end_matches('_')) } else { unquoted(file).to_owned() };
+        let path = Path::new(&file);
+        let Some(end) = path.file_name() else { return Answer::failure(format!("{file} is no file name")) };
+        let Some(view) = View::named("isometric") else { return Answer::failure("there is no view") };
+        let wanted = Wanted { names: vec![name.to_owned()], zoom: Vec::new(), spec: PictureSpec::of_file(&end.to_string_lossy(), view) };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let (state, job) = (self.state.clone(), self.job.clone());
+        let outcome = match self.live.draw((&state.text, &state.sets), (folder, &wanted), &job) {
+            Ok(outcome) if outcome.interrupted => return stopped(),
+            Ok(outcome) => outcome,
+            Err(bug) => return bug_answer(&bug),
+        };
+        let Some(row) = outcome.report.outputs.first() else {
+            return Answer { parts: vec![Part::Said(outcome.drawn(self.color, false))], failed: true, ..Answer::default() };
+        };
+        let (width, height) = wanted.spec.size;
+        let mut answer = Answer::text(format!("{}: {width} × {height} pixels, {} bytes", path.display(), row.bytes));
+        if crate::io::extension(&file) == "png" {
+            answer.parts.extend(read_limited(path, limits::DATA_BYTES).ok().map(Part::Picture));
+        }
+        answer
+    }
+
     fn save(&mut self, file: &str) -> Answer {
         let path = Path::new(unquoted(file));
         let text = self.saved_text();
@@ -201,18 +274,4 @@ fn not_yet() -> Answer {
 
 fn unquoted(text: &str) -> &str {
     text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).unwrap_or(text)
-}
-
-/// Names whose declarations differ between two texts and stand in the second.
-fn changed_names(a: &str, b: &str) -> Vec<String> {
-    use crate::lang::syntax::outline::outline;
-    let declarations = |text: &str| -> Vec<(String, String)> {
-        let of = |o: &crate::lang::syntax::outline::Outline| {
-            let at = |s: crate::lang::syntax::ast::Span| text[s.start as usize..s.end as usize].to_owned();
-            Some((at(o.name?), at(o.span)))
-        };
-        outline(text).iter().filter_map(of).collect()
-    };
-    let before = declarations(a);
-    declarations(b).into_iter().filter(|d| !before.contains(d)).map(|d| d.0).collect()
 }

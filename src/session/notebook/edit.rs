@@ -7,6 +7,7 @@ use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::names::Names;
 use crate::lang::plans::ReportTable;
+use crate::lang::symbols::{Condition, Symbol};
 use crate::lang::syntax::ast::{Keyword, Span};
 use crate::lang::syntax::outline::{Outline, outline};
 use crate::lang::syntax::parse;
@@ -71,7 +72,26 @@ impl Notebook {
             }
         }
         let entered: Vec<&str> = found.iter().map(|piece| slice(entry, piece.span)).collect();
-        self.change_and_look(State { text, sets: self.state.sets.clone() }, &named, &entered)
+        let before = self.before();
+        let mut answer = self.change_and_look(State { text, sets: self.state.sets.clone() }, &named, &entered);
+        if answer.stopped || self.state == before.state || !self.has_failed(&named, &entered) {
+            return answer;
+        }
+        // What has no value is no part of the model that `:save` writes.
+        self.put_back(before);
+        answer.parts.retain(|part| matches!(part, Part::Said(_)));
+        answer.say("nothing was changed");
+        answer
+    }
+
+    /// Whether a declaration among these, by name or by its text, came to nothing.
+    fn has_failed(&self, named: &[String], entered: &[&str]) -> bool {
+        let text = |s: &Symbol| self.state.text.get(s.span.start as usize..s.span.end as usize).unwrap_or("");
+        let own = |s: &&Symbol| match &s.name {
+            Some(name) => named.contains(name),
+            None => entered.contains(&text(s)),
+        };
+        self.symbols.iter().filter(own).any(|s| s.condition != Condition::Sound)
     }
 
     /// What a text says that does not parse.

@@ -8,6 +8,7 @@ mod edit;
 mod explain;
 mod show;
 mod tables;
+mod told;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -38,6 +39,8 @@ pub enum Part {
     Table(Table),
     /// The summary of a run, with the tolerance.
     Summary(Box<Report>, Option<f64>),
+    /// A picture, as the bytes of a PNG file; nothing where none can be shown.
+    Picture(Vec<u8>),
 }
 
 /// What an entry leads to.
@@ -90,6 +93,22 @@ pub struct Notebook {
     clock: Clock,
     color: bool,
     job: Arc<Job>,
+    /// The file that was loaded last.
+    loaded: Option<PathBuf>,
+    editor: Option<Edits>,
+}
+
+/// Lets the user edit a text; the error says why not.
+pub type Edits = Box<dyn Fn(&str) -> Result<String, String>>;
+
+/// Everything that an entry may change, to be put back where it changes nothing.
+struct Before {
+    state: State,
+    past: Vec<State>,
+    future: Vec<State>,
+    symbols: Vec<Symbol>,
+    conditions: BTreeMap<String, Condition>,
+    said: Vec<(String, String)>,
 }
 
 /// How the last run went, for `:time`.
@@ -124,7 +143,31 @@ impl Notebook {
             clock,
             color,
             job: Arc::new(Job::new()),
+            loaded: None,
+            editor: None,
         }
+    }
+
+    /// `:edit` asks `editor` for another text.
+    pub fn edit_with(&mut self, editor: Edits) {
+        self.editor = Some(editor);
+    }
+
+    fn before(&self) -> Before {
+        Before {
+            state: self.state.clone(),
+            past: self.past.clone(),
+            future: self.future.clone(),
+            symbols: self.symbols.clone(),
+            conditions: self.conditions.clone(),
+            said: self.said.clone(),
+        }
+    }
+
+    fn put_back(&mut self, before: Before) {
+        let Before { state, past, future, symbols, conditions, said } = before;
+        (self.state, self.past, self.future) = (state, past, future);
+        (self.symbols, self.conditions, self.said) = (symbols, conditions, said);
     }
 
     /// The session goes on with a script read from a file.
@@ -135,6 +178,8 @@ impl Notebook {
         let answer = self.change(State { text: ended(text), sets: Vec::new() }, &[]);
         if answer.stopped {
             (self.live, self.said, self.conditions) = (live, said, conditions);
+        } else {
+            self.loaded = Some(path.to_owned());
         }
         answer
     }
@@ -186,7 +231,7 @@ impl Notebook {
         let job = self.job.clone();
         let outcome = self.live.run((&state.text, &state.sets), depth, &job, look).map_err(|bug| bug_answer(&bug))?;
         if outcome.interrupted {
-            return Err(Answer { stopped: true, ..Answer::failure(INTERRUPTED) });
+            return Err(stopped());
         }
         let timings = outcome.report.timings;
         self.last = Some(Last {
@@ -263,6 +308,10 @@ impl Notebook {
         }
         self.conditions = now;
     }
+}
+
+fn stopped() -> Answer {
+    Answer { stopped: true, ..Answer::failure(INTERRUPTED) }
 }
 
 fn bug_answer(bug: &Bug) -> Answer {
