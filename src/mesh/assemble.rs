@@ -177,10 +177,18 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
                 }
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
             }
-            if let Some((f, defect)) = verify::unsound(input, (&*layout, &nodes), &prepared, &mesh) {
-                if !closes(&layout.faces[f]) || layout.faces[f].halved == HALVED {
-                    return Err(verify::fault(input, (&layout.faces[f], &nodes), (&prepared[f], defect), &mesh));
-                }
+            let found = verify::unsound(input, (&*layout, &nodes), &prepared, &mesh);
+            let coarse = |f: &usize| {
+                let face = &layout.faces[*f];
+                closes(face) && face.halved < HALVED && foresee::is_twisted(&prepared[*f], &mesh)
+            };
+            let twisted = if found.is_none() { (0..prepared.len()).find(coarse) } else { None };
+            if let Some((f, defect)) = found
+                && (!closes(&layout.faces[f]) || layout.faces[f].halved == HALVED)
+            {
+                return Err(verify::fault(input, (&layout.faces[f], &nodes), (&prepared[f], defect), &mesh));
+            }
+            if let Some(f) = found.map(|(f, _)| f).or(twisted) {
                 // Where a face closes on itself, elements from one of its sides to another may be the same ones.
                 layout.faces[f].halved += 1;
                 (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;

@@ -90,9 +90,23 @@ pub fn better_mapped(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<usi
     (0..prepared.len()).filter(|f| found[*f]).collect()
 }
 
+/// Share of the elements of a face that closes on itself from which on, seen from their backs, they do not follow its surface.
+const TWISTED: f64 = 0.1;
+
 /// Whether an element is seen from its back along the normal of the surface in its middle.
 fn turned(ready: &Prepared, mesh: &Mesh) -> bool {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return false };
+    backs(ready, mesh).0 > 0
+}
+
+/// Whether the elements of a free face go through its surface and not along it, as a few of them round a whole ring may.
+pub fn is_twisted(ready: &Prepared, mesh: &Mesh) -> bool {
+    let (backs, all) = backs(ready, mesh);
+    backs as f64 > TWISTED * all as f64
+}
+
+/// How many elements of a free face are seen from their backs along the normals of the surface in their middles, and how many there are.
+fn backs(ready: &Prepared, mesh: &Mesh) -> (usize, usize) {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return (0, 0) };
     let surface = &ready.chart.surface;
     let back = |corners: &[u32]| {
         let share = 1.0 / corners.len() as f64;
@@ -101,7 +115,12 @@ fn turned(ready: &Prepared, mesh: &Mesh) -> bool {
         let last = corners.len() - 1;
         (p(last - 1) - p(0)).cross(p(last) - p(last - 2)).dot(surface.normal(uv.0, uv.1)) <= 0.0
     };
-    !surface.is_flat() && (free.triangles.iter().any(|t| back(t)) || free.quads.iter().any(|q| back(q)))
+    if surface.is_flat() {
+        return (0, 0);
+    }
+    let triangles = free.triangles.iter().filter(|t| back(&t[..])).count();
+    let quads = free.quads.iter().filter(|q| back(&q[..])).count();
+    (triangles + quads, free.triangles.len() + free.quads.len())
 }
 
 /// Whether all steps of a side are written, or their growth.
