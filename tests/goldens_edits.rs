@@ -374,12 +374,7 @@ fn no_edit_without_effect_fails() {
         let folder = &folders[k % folders.len()];
         let (what, edited) = idle(&folder.base, &mut random);
         let said = folder.run(&edited, false);
-<<<<<<< HEAD
-        let known = folder.path.ends_with("edits-idle-block") && what.contains("order");
-        if !said.is_empty() && !known {
-=======
         if !said.is_empty() {
->>>>>>> c09c3ec (Take curves and surfaces by where they are, so that the order of declarations changes no number and no mesh)
             failed.push(format!("{} after {what}:\n{said}", folder.path.display()));
         }
     }
