@@ -151,12 +151,12 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
     Ok(built)
 }
 
-/// Sets of one name as one: pieces of a surface, whose elements are all of it.
+/// Sets of one name as one: pieces of a surface, whose elements are all of it. Those without a name stay apart.
 fn together(groups: Vec<Group>) -> Vec<Group> {
     let mut out: Vec<Group> = Vec::with_capacity(groups.len());
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
     for group in groups {
-        let Some(place) = places.get(&group.name) else {
+        let Some(place) = places.get(&group.name).filter(|_| !group.name.is_empty()) else {
             places.insert(group.name.clone(), out.len());
             out.push(group);
             continue;

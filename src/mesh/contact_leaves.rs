@@ -10,7 +10,7 @@ use crate::base::job;
 /// Elements in a box.
 const EACH: usize = 8;
 /// How far an element may be from its curved face, as a share of its longest edge: more than any that a sensible size leaves.
-const BULGE: f64 = 0.2;
+pub const BULGE: f64 = 0.2;
 /// Share of the way from a node of the border to the middle of its element.
 const INWARDS: f64 = 0.25;
 
@@ -28,6 +28,8 @@ pub struct Leaves {
     pub hull: Box3,
     /// All triangles lie in one plane.
     flat: bool,
+    /// The face itself is a plane.
+    plane: bool,
 }
 
 impl Leaves {
@@ -53,13 +55,65 @@ impl Leaves {
         let most = reach.iter().copied().fold(near, f64::max);
         let hull = boxes.iter().fold(Box3::EMPTY, |all, b| all.union(*b));
         let hull = Box3 { min: hull.min - DVec3::splat(most), max: hull.max + DVec3::splat(most) };
+        let plane = flat;
         let flat = flat || is_flat(mesh, &triangles, near);
-        Self { triangles, tree: BoxTree::build(&boxes), boxes, reach, most, hull, flat }
+        Self { triangles, tree: BoxTree::build(&boxes), boxes, reach, most, hull, flat, plane }
     }
 
     /// Whether all triangles lie in one plane.
     pub fn is_flat(&self) -> bool {
         self.flat
+    }
+
+    /// Whether the face itself is a plane.
+    pub fn is_plane(&self) -> bool {
+        self.plane
+    }
+
+    /// Whether some triangles of two faces come as near each other as their faces may be from them, by their boxes.
+    pub fn near(&self, other: &Self) -> bool {
+        let mut found = false;
+        self.tree.pairs_with(&other.tree, self.most + other.most, |a, b| {
+            found |= self.boxes[a].touches(&other.boxes[b], self.reach[a] + other.reach[b]);
+        });
+        found
+    }
+
+    /// Whether the face may come near the line between two points, as far as `bend`, beside those of its ends that it has itself.
+    pub fn beside_line(&self, mesh: &Mesh, (p, q): (DVec3, DVec3), (first, last): (bool, bool), bend: f64) -> bool {
+        /// What leaves a face from a point of it is beside it no longer than so many times how near it may come.
+        const LEAVES: f64 = 2.0;
+        /// Bounds of the part of the line at an end that does not count.
+        const PART: (f64, f64) = (0.01, 0.5);
+        let mut found = false;
+        self.tree.query(&Box3::of([p, q]), self.most + bend, |k| {
+            let reach = self.reach[k] + bend;
+            let part = (LEAVES * reach / p.distance(q)).clamp(PART.0, PART.1);
+            let (low, high) = (if first { part } else { 0.0 }, if last { 1.0 - part } else { 1.0 });
+            found = found
+                || self.leaf(k).iter().any(|t| {
+                    let corners = t.map(|n| mesh.nodes[n as usize]);
+                    part_near(corners, (p, q), reach).is_some_and(|(from, to)| from <= high && to >= low)
+                });
+        });
+        found
+    }
+
+    /// A place inside the face off a point of its border, about so far; nearer where its element is small.
+    pub fn inwards(&self, mesh: &Mesh, p: DVec3, by: f64) -> Option<DVec3> {
+        let mut best: Option<(f64, DVec3)> = None;
+        self.tree.query(&Box3::of([p]), self.most, |k| {
+            for t in self.leaf(k) {
+                let corners = t.map(|n| mesh.nodes[n as usize]);
+                let (off, middle) = (distance(corners, p), corners.iter().sum::<DVec3>() / 3.0);
+                if best.is_none_or(|b| off < b.0 || off == b.0 && crate::base::math::compare_points(middle, b.1).is_lt()) {
+                    best = Some((off, middle));
+                }
+            }
+        });
+        let (_, middle) = best?;
+        let far = p.distance(middle);
+        (far > 0.0).then(|| p.lerp(middle, INWARDS.min(by / far)))
     }
 
     fn leaf(&self, k: usize) -> &[[u32; 3]] {
@@ -170,6 +224,31 @@ fn through([a, b, c]: [DVec3; 3], (p, q): (DVec3, DVec3), near: f64) -> Option<D
     let slack = near * normal.length();
     let inside = |x: DVec3, y: DVec3| (y - x).cross(at - x).dot(normal) >= -slack * x.distance(y);
     (inside(a, b) && inside(b, c) && inside(c, a)).then_some(at)
+}
+
+/// Shares of the line between two points within which it may be so near a triangle: by the box and the plane of that; `None`: nowhere.
+fn part_near([a, b, c]: [DVec3; 3], (p, q): (DVec3, DVec3), near: f64) -> Option<(f64, f64)> {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let mut clip = |start: f64, end: f64, low: f64, high: f64| {
+        let run = end - start;
+        if run == 0.0 {
+            if start < low || start > high {
+                to = -1.0;
+            }
+            return;
+        }
+        let (x, y) = ((low - start) / run, (high - start) / run);
+        (from, to) = (from.max(x.min(y)), to.min(x.max(y)));
+    };
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    for k in 0..3 {
+        clip(p[k], q[k], low[k] - near, high[k] + near);
+    }
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    if normal != DVec3::ZERO {
+        clip(normal.dot(p - a), normal.dot(q - a), -near, near);
+    }
+    (from <= to).then_some((from, to))
 }
 
 /// Distance of a point from a triangle.

@@ -1,15 +1,16 @@
 //! Faces of a mesh that touch, cross or cover each other where they share no nodes.
 //!
-//! The elements of the finished mesh say where to look, at the cost of its borders; the surfaces say what is so. An edge counts that
-//! lies on a face with a node of the mesh, faces that cross where an element of one goes through one of the other, and faces that
-//! cover each other by a place inside one of them.
+//! The elements of the finished mesh say where to look, at the cost of its borders; curves and surfaces say what is so, wherever the
+//! nodes are. Faces that cross inside both do so where an element of one goes through one of the other, or, where they share no node,
+//! comes near one; faces cover each other beside an edge of one that lies on the other, or by a place inside one of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use super::build::Input;
-use super::contact_leaves::Leaves;
+use super::contact_edges::{Task, meetings};
+use super::contact_leaves::{BULGE, Leaves};
 use super::data::Mesh;
 use super::inside;
 use super::layout::Layout;
@@ -18,8 +19,10 @@ use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::fault::{Result, SurfaceFault};
 use crate::base::par;
+use crate::base::tolerance::SINGULAR;
 use crate::model::SurfaceId;
-use crate::surface::{Nearest, SurfaceKind};
+use crate::surface::meet::with_surfaces;
+use crate::surface::{Closest, Nearest, SurfaceKind};
 
 /// How two faces touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,24 +62,27 @@ pub struct Touch {
     pub at: DVec3,
 }
 
-/// Crossings of elements of two faces that are looked at before the faces count as apart.
-const LOOKS: usize = 8;
-/// Projections from face to face until a place on both is found.
+/// Crossings of elements of two faces that are looked at before the faces count as apart, and those that they are chosen from.
+const LOOKS: usize = 64;
+const MOST: usize = 4096;
+/// Steps until a place on both of two faces is found.
 const ROUNDS: usize = 60;
 
 /// All of a mesh that is needed to look at its faces.
-struct Scan<'a> {
-    input: &'a Input<'a>,
-    layout: &'a Layout,
+pub(super) struct Scan<'a> {
+    pub input: &'a Input<'a>,
+    pub layout: &'a Layout,
     mesh: &'a Mesh,
     /// Elements of each face by place.
-    leaves: Vec<Leaves>,
+    pub leaves: Vec<Leaves>,
     /// The faces by their boxes.
     tree: BoxTree,
     /// Faces that have each node of a border.
     users: Vec<Vec<u32>>,
     /// Nodes along each stretch.
-    along: Vec<Vec<u32>>,
+    pub along: Vec<Vec<u32>>,
+    /// Surfaces of the faces that have each stretch on their border or inside.
+    pub on: Vec<Vec<SurfaceId>>,
     /// Where each surface stands first in the plan.
     places: BTreeMap<SurfaceId, usize>,
 }
@@ -134,11 +140,15 @@ impl<'a> Scan<'a> {
                 }
             }
         }
+        let mut on: Vec<Vec<SurfaceId>> = vec![Vec::new(); along.len()];
+        for face in &layout.faces {
+            face.stretches().for_each(|k| on[k].push(face.surface));
+        }
         let mut places = BTreeMap::new();
         input.plan.surfaces.iter().enumerate().for_each(|(place, (s, _))| {
             places.entry(*s).or_insert(place);
         });
-        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along, places }
+        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along, on, places }
     }
 
     /// Where the surface of a face stands in the plan.
@@ -152,12 +162,17 @@ impl<'a> Scan<'a> {
         (a.min(b), a.max(b))
     }
 
-    fn p(&self, node: u32) -> DVec3 {
+    pub(super) fn p(&self, node: u32) -> DVec3 {
         self.mesh.nodes[node as usize]
     }
 
-    fn surface_of(&self, face: usize) -> SurfaceId {
+    pub(super) fn surface_of(&self, face: usize) -> SurfaceId {
         self.layout.faces[face].surface
+    }
+
+    /// Whether a node belongs to a face of a face's surface.
+    pub(super) fn has(&self, node: u32, face: usize) -> bool {
+        self.users.get(node as usize).is_some_and(|own| self.knows(own, face))
     }
 
     /// Whether one of some faces is of the surface of another one.
@@ -187,10 +202,10 @@ impl Known<'_> {
     }
 
     /// The point of a face's surface nearest to another one.
-    fn foot(&mut self, face: usize, p: DVec3) -> DVec3 {
+    fn foot(&mut self, face: usize, p: DVec3) -> Closest {
         let id = self.scan.surface_of(face);
         let surface = &self.scan.input.model.surfaces[id.index()].surface;
-        self.nearest.entry(id).or_insert_with(|| Nearest::new(surface)).at(p).point
+        self.nearest.entry(id).or_insert_with(|| Nearest::new(surface)).at(p)
     }
 
     fn add(&mut self, (a, b): (usize, usize), kind: Kind, (length, longest): (f64, f64), at: DVec3) {
@@ -223,15 +238,69 @@ impl Known<'_> {
         };
         let stretches: Vec<usize> = (0..used.len()).filter(|k| used[*k]).collect();
         let near = par::map(stretches.len(), |n| scan.beside(stretches[n]));
-        for (n, (touched, pierced)) in near.into_iter().enumerate() {
-            for (face, candidates) in touched {
-                let nodes = candidates.into_iter().filter(|k| self.on(face, scan.p(scan.along[stretches[n]][*k]))).collect();
-                self.lies_on(&Found { stretch: stretches[n], face, nodes });
+        let tasks = near.iter().zip(&stretches).flat_map(|(b, k)| b.near.iter().map(|face| Task { stretch: *k, face: *face }));
+        let tasks: Vec<Task> = tasks.collect();
+        let met = meetings(scan, &tasks);
+        let exact: BTreeMap<Task, usize> = tasks.iter().enumerate().filter(|(n, _)| met[*n].is_some()).map(|(n, t)| (*t, n)).collect();
+        for (n, found) in near.into_iter().enumerate() {
+            let stretch = stretches[n];
+            for face in found.near {
+                if let Some(met) = exact.get(&Task { stretch, face }).and_then(|n| met[*n].as_ref()) {
+                    met.runs.iter().for_each(|run| self.runs_along(stretch, face, *run));
+                    for (at, inside) in &met.points {
+                        let (ends, slow) = met.known;
+                        let leaves = ends.into_iter().flatten().any(|p| p.distance(*at) <= slow && self.on(face, p.midpoint(*at)));
+                        if !leaves && self.on(face, *at) {
+                            let kind = if *inside { Kind::Crossing } else { Kind::Edge };
+                            self.add((scan.owner(stretch), face), kind, (0.0, 0.0), *at);
+                        }
+                    }
+                }
             }
-            for (face, at) in pierced {
-                self.crosses(scan.owner(stretches[n]), face, at);
+            // Edges that no curve carries are known by their nodes.
+            for (face, candidates) in found.touched {
+                if exact.contains_key(&Task { stretch, face }) {
+                    continue;
+                }
+                let nodes = candidates.into_iter().filter(|k| self.on(face, scan.p(scan.along[stretch][*k]))).collect();
+                self.lies_on(&Found { stretch, face, nodes });
+            }
+            for (face, at) in found.pierced {
+                if !exact.contains_key(&Task { stretch, face }) {
+                    self.crosses(scan.owner(stretch), face, at);
+                }
             }
         }
+    }
+
+    /// Takes a run of an edge on a face: its middle and its length.
+    fn runs_along(&mut self, stretch: usize, face: usize, (at, length): (DVec3, f64)) {
+        /// How far beside the run is looked, as a share of its length, and how much nearer each time.
+        const BESIDE: (f64, f64) = (0.05, 0.125);
+        /// What merely touches along the run parts from it nearer than so many times the root of tolerance times length.
+        const TOUCH: f64 = 8.0;
+        let scan = self.scan;
+        if !self.on(face, at) {
+            return;
+        }
+        let nearest = TOUCH * (scan.input.tolerance.point * length).sqrt();
+        for owner in scan.owners(stretch) {
+            let mut by = BESIDE.0 * length;
+            loop {
+                let inside = scan.leaves[owner].inwards(scan.mesh, at, by);
+                if let Some(p) = inside.map(|p| self.foot(owner, p).point)
+                    && p.distance(at) > scan.input.tolerance.point
+                    && self.on(face, p)
+                {
+                    return self.add((owner, face), Kind::Overlap, (length, length), at);
+                }
+                by *= BESIDE.1;
+                if by < nearest {
+                    break;
+                }
+            }
+        }
+        self.add((scan.owner(stretch), face), Kind::Edge, (length, length), at);
     }
 
     /// Takes an edge on a face.
@@ -246,11 +315,34 @@ impl Known<'_> {
         let at = scan.p(along[middle]);
         // Beside an edge that only touches, its own face leaves the other one.
         let beside = scan.leaves[owner].beside(scan.mesh, along[middle]);
-        let kind = match beside.map(|p| self.foot(owner, p)) {
+        let kind = match beside.map(|p| self.foot(owner, p).point) {
             Some(p) if self.on(found.face, p) => Kind::Overlap,
             _ => Kind::Edge,
         };
         self.add((owner, found.face), kind, (length, length), at);
+    }
+
+    /// The place on the surfaces of two faces near a point: on both tangent planes at its feet, as Newton's method has it.
+    fn common(&mut self, a: usize, b: usize, near: DVec3) -> Option<DVec3> {
+        let scan = self.scan;
+        let normal = |face: usize, at: &Closest| scan.input.model.surfaces[scan.surface_of(face).index()].surface.normal(at.uv.0, at.uv.1);
+        let mut p = near;
+        for _ in 0..ROUNDS {
+            let (x, y) = (self.foot(a, p), self.foot(b, p));
+            if x.distance.max(y.distance) <= 0.5 * scan.input.tolerance.point {
+                return Some(p);
+            }
+            let (m, n) = (normal(a, &x), normal(b, &y));
+            let (off_a, off_b, cosine) = (m.dot(x.point - p), n.dot(y.point - p), m.dot(n));
+            let sine2 = m.length_squared() * n.length_squared() - cosine * cosine;
+            p = if sine2 > SINGULAR {
+                p + (m * (off_a - cosine * off_b) + n * (off_b - cosine * off_a)) / sine2
+            } else {
+                // Where they are parallel each is the other's foot in turn.
+                self.foot(b, x.point).point
+            };
+        }
+        None
     }
 
     /// Takes two faces whose elements cross, if the faces themselves do near there.
@@ -260,17 +352,7 @@ impl Known<'_> {
         if *tries > LOOKS {
             return false;
         }
-        let tolerance = self.scan.input.tolerance.point;
-        let mut p = near;
-        for _ in 0..ROUNDS {
-            let q = self.foot(a, p);
-            let r = self.foot(b, q);
-            let gap = q.distance(r);
-            p = r;
-            if gap <= 0.5 * tolerance {
-                break;
-            }
-        }
+        let Some(p) = self.common(a, b, near) else { return false };
         if !(self.on(a, p) && self.on(b, p)) || self.scan.is_shared(a, b, p) {
             return false;
         }
@@ -288,7 +370,7 @@ impl Known<'_> {
             near.retain(|b| scan.surface_of(a) != scan.surface_of(*b) && scan.leaves[*b].holds(scan.mesh, p));
             near.sort_unstable();
             for b in near {
-                let foot = self.foot(a, p);
+                let foot = self.foot(a, p).point;
                 if self.on(b, foot) {
                     self.add((a, b), Kind::Overlap, (0.0, 0.0), foot);
                 }
@@ -309,7 +391,7 @@ impl Known<'_> {
                     if !own || scan.surface_of(a) == scan.surface_of(f) {
                         continue;
                     }
-                    let beside = scan.leaves[a].beside(scan.mesh, middle).map(|p| self.foot(a, p));
+                    let beside = scan.leaves[a].beside(scan.mesh, middle).map(|p| self.foot(a, p).point);
                     if beside.is_some_and(|p| self.on(f, p)) {
                         self.add((a, f), Kind::Overlap, (0.0, 0.0), scan.p(middle));
                     }
@@ -327,19 +409,49 @@ impl Known<'_> {
             !flat && scan.surface_of(*a) != scan.surface_of(*b) && !self.touches.contains_key(&scan.key(*a, *b))
         };
         let pairs: Vec<(usize, usize)> = pairs.filter(wanted).collect();
-        let found = par::map(pairs.len(), |n| scan.leaves[pairs[n].0].crossings(&scan.leaves[pairs[n].1], scan.mesh, LOOKS));
+        let found = par::map(pairs.len(), |n| scan.leaves[pairs[n].0].crossings(&scan.leaves[pairs[n].1], scan.mesh, MOST));
+        let mut quiet = Vec::new();
         for ((a, b), places) in pairs.into_iter().zip(found) {
-            for at in places {
+            if places.is_empty() {
+                quiet.push((a, b));
+                continue;
+            }
+            // Evenly among all, so that none hides behind many in one place.
+            let step = places.len().div_ceil(LOOKS);
+            for at in places.into_iter().step_by(step) {
                 if self.touches.contains_key(&scan.key(a, b)) || self.crosses(a, b, at) {
                     break;
                 }
             }
         }
+        // What bends between its nodes may cross where no element does.
+        quiet.retain(|(a, b)| !scan.are_neighbours(*a, *b) && scan.leaves[*a].near(&scan.leaves[*b]));
+        let surface = |face: usize| &scan.input.model.surfaces[scan.surface_of(face).index()].surface;
+        let mut pairs: Vec<(usize, usize)> = quiet.into_iter().filter(|(a, b)| !self.touches.contains_key(&scan.key(*a, *b))).collect();
+        pairs.dedup_by_key(|(a, b)| (scan.surface_of(*a), scan.surface_of(*b)));
+        let found = par::map(pairs.len(), |n| {
+            let (a, b) = (surface(pairs[n].0), surface(pairs[n].1));
+            let common = with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), scan.input.plan.origin, scan.input.tolerance);
+            common.ok().and_then(|common| common.curves.first().map(|curve| curve.point(0.5)))
+        });
+        for ((a, b), at) in pairs.into_iter().zip(found) {
+            if let Some(at) = at {
+                self.add((a, b), Kind::Crossing, (0.0, 0.0), at);
+            }
+        }
     }
 }
 
-/// Faces beside a stretch: places of its nodes that may lie on each, and points where it goes through one.
-type Beside = (BTreeMap<usize, Vec<usize>>, Vec<(usize, DVec3)>);
+/// Faces beside a stretch.
+#[derive(Default)]
+struct Beside {
+    /// Those that it may touch, ascending.
+    near: BTreeSet<usize>,
+    /// Places of its nodes that may lie on each.
+    touched: BTreeMap<usize, Vec<usize>>,
+    /// Points where the lines between its nodes go through one.
+    pierced: Vec<(usize, DVec3)>,
+}
 
 impl Scan<'_> {
     /// A face that has a stretch on its border.
@@ -348,6 +460,19 @@ impl Scan<'_> {
         let (a, b) = (inner(0), inner(self.along[stretch].len() - 1));
         let has = |f: &&u32| self.layout.faces[**f as usize].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch));
         a.into_iter().chain(b).flatten().find(has).map_or(0, |f| *f as usize)
+    }
+
+    /// The faces that have a stretch on their border.
+    fn owners(&self, stretch: usize) -> Vec<usize> {
+        let at = |k: usize| self.users.get(self.along[stretch][k] as usize).into_iter().flatten().map(|f| *f as usize);
+        let has = |f: &usize| self.layout.faces[*f].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch));
+        let found: BTreeSet<usize> = at(0).chain(at(self.along[stretch].len() - 1)).filter(has).collect();
+        found.into_iter().collect()
+    }
+
+    /// Whether two faces have a node of a border in common.
+    fn are_neighbours(&self, a: usize, b: usize) -> bool {
+        self.layout.faces[a].stretches().any(|k| self.along[k].iter().any(|n| self.users[*n as usize].contains(&(b as u32))))
     }
 
     /// Whether a place lies where two faces share nodes: within an edge of the mesh from one of them.
@@ -365,29 +490,46 @@ impl Scan<'_> {
         let along = &self.along[stretch];
         let none = Vec::new();
         let users = |n: u32| self.users.get(n as usize).unwrap_or(&none);
-        let (mut touched, mut pierced): Beside = Default::default();
+        let mut found = Beside::default();
         let mut faces = Vec::new();
         for k in 0..along.len() {
             let p = self.p(along[k]);
             let next = along.get(k + 1).map(|n| self.p(*n));
             let around = Box3::of(std::iter::once(p).chain(next));
             faces.clear();
-            self.tree.query(&around, 0.0, |f| faces.push(f));
+            // An edge may bend beside the line between its nodes.
+            let bend = next.map_or(0.0, |q| BULGE * p.distance(q));
+            self.tree.query(&around, bend, |f| faces.push(f));
             faces.sort_unstable();
             for &f in &faces {
                 let own = users(along[k]);
                 if !self.knows(own, f) && self.leaves[f].holds(self.mesh, p) {
-                    touched.entry(f).or_default().push(k);
+                    found.touched.entry(f).or_default().push(k);
                 }
                 let Some(q) = next else { continue };
-                if self.knows(own, f) || self.knows(users(along[k + 1]), f) {
+                let known = (self.knows(own, f), self.knows(users(along[k + 1]), f));
+                let straight = self.leaves[f].is_plane() && self.is_straight(stretch);
+                if !self.on[stretch].contains(&self.surface_of(f))
+                    && !found.near.contains(&f)
+                    && self.leaves[f].beside_line(self.mesh, (p, q), known, if straight { 0.0 } else { bend })
+                {
+                    found.near.insert(f);
+                }
+                if known.0 || known.1 {
                     continue;
                 }
                 if let Some(at) = self.leaves[f].pierced(self.mesh, (p, q), self.input.tolerance.point) {
-                    pierced.push((f, at));
+                    found.pierced.push((f, at));
                 }
             }
         }
-        (touched, pierced)
+        found
+    }
+
+    /// Whether all nodes of a stretch and places between them lie on the line between its ends.
+    fn is_straight(&self, stretch: usize) -> bool {
+        let ends = (self.layout.point(stretch, 0.0), self.layout.point(stretch, 1.0));
+        let off = |p: DVec3| (p - ends.0).cross(ends.1 - ends.0).length() / ends.0.distance(ends.1);
+        [0.21, 0.5, 0.83].iter().all(|f| off(self.layout.point(stretch, *f)) <= self.input.tolerance.point)
     }
 }

@@ -10,7 +10,8 @@ mod blame;
 pub mod build;
 pub mod chart;
 mod chord;
-pub mod contact_leaves;
+pub mod contact_edges;
+mod contact_leaves;
 pub mod contacts;
 mod counts;
 mod creases;
@@ -62,4 +63,4 @@ pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
 pub use quality::Quality;
 
 /// Version of the mesher: one more whenever the same plan gives another mesh, so that golden files can name it as the cause.
-pub const VERSION: u32 = 35;
+pub const VERSION: u32 = 36;

@@ -26,7 +26,7 @@ pub struct Imprint {
 
 crate::content!(Imprint { curves, points });
 
-/// Two surfaces that may touch and share no edge.
+/// Two surfaces that may touch beside the edges that they share.
 pub(super) struct Met {
     pub pair: (SurfaceId, SurfaceId),
     /// The curves in which they cross.
@@ -35,9 +35,35 @@ pub(super) struct Met {
 
 /// Faces that run along each other have no curve in common: their borders tell where.
 const COINCIDE: &str = "E657";
+/// The curve in which faces cross was not found within the work that it may take.
+const LOST: &str = "E413";
+
+/// The parts of a curve that run along none of some others.
+pub(super) fn beside(curve: &Chain, others: &[Chain], tolerance: &Tolerance) -> Result<Vec<Chain>> {
+    /// What is left between runs counts where it is longer than so many tolerances.
+    const SHORT: f64 = 16.0;
+    let mut runs: Vec<(f64, f64)> = Vec::new();
+    for other in others {
+        let shared = meet(curve, other, tolerance)?;
+        runs.extend(shared.iter().filter_map(|m| m.shared_to.map(|to| (m.fa.min(to.0), m.fa.max(to.0)))));
+    }
+    if runs.is_empty() {
+        return Ok(vec![curve.clone()]);
+    }
+    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    runs.push((1.0, 1.0));
+    let (mut from, mut left, short) = (0.0, Vec::new(), SHORT * tolerance.point / curve.length());
+    for (start, end) in runs {
+        if start - from > short {
+            left.push(curve.slice(from, start, tolerance)?);
+        }
+        from = from.max(end);
+    }
+    Ok(left)
+}
 
 impl Model {
-    /// What some surfaces have in common where they share no edge; `origin` is given to the curves.
+    /// What some surfaces have in common beside the edges that they share; `origin` is given to the curves.
     ///
     /// Fails with E413 when the work exceeds its limit.
     pub fn imprint(
@@ -47,7 +73,7 @@ impl Model {
         (network, tolerance): (&Network, &Tolerance),
         job: &Job,
     ) -> Result<Imprint> {
-        let met = self.met(listed, origin, tolerance, job)?;
+        let met = self.met(listed, origin, (network, tolerance), job)?;
         let mut crossing: BTreeSet<(EdgeId, EdgeId)> = BTreeSet::new();
         for m in &met {
             let others = self.sides_of(m.pair.1);
@@ -75,32 +101,53 @@ impl Model {
         Ok(Imprint { curves, points })
     }
 
-    /// Pairs of surfaces whose boxes touch and that share no edge, with the curves in which they cross.
-    pub(super) fn met(&self, listed: &[SurfaceId], origin: Origin, tolerance: &Tolerance, job: &Job) -> Result<Vec<Met>> {
-        let pairs = self.apart_pairs(listed, tolerance);
+    /// Pairs of surfaces whose boxes touch, with the curves in which they cross beside the edges that they share.
+    pub(super) fn met(
+        &self,
+        listed: &[SurfaceId],
+        origin: Origin,
+        (network, tolerance): (&Network, &Tolerance),
+        job: &Job,
+    ) -> Result<Vec<Met>> {
+        let pairs = self.near_pairs(listed, tolerance);
         par::try_map(pairs.len(), |k| {
             job.go_on()?;
-            let pair = pairs[k];
-            let surface = |s: SurfaceId| std::slice::from_ref(&self.surfaces[s.index()].surface);
-            match with_surfaces(surface(pair.0), surface(pair.1), origin, tolerance) {
-                Ok(common) => Ok(Met { pair, curves: common.curves }),
-                Err(fault) if fault.code().0 == COINCIDE => Ok(Met { pair, curves: Vec::new() }),
-                Err(fault) => Err(fault),
+            let (pair, shared) = &pairs[k];
+            let surface = |s: SurfaceId| &self.surfaces[s.index()].surface;
+            let (a, b) = (surface(pair.0), surface(pair.1));
+            let none = || Ok(Met { pair: *pair, curves: Vec::new() });
+            let found = match with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), origin, tolerance) {
+                Ok(common) => common.curves,
+                Err(fault) if fault.code().0 == COINCIDE => return none(),
+                // Faces that go on smoothly over a shared edge run along each other beside it: their borders tell where they cross.
+                Err(fault) if !shared.is_empty() && fault.code().0 == LOST => return none(),
+                Err(fault) => return Err(fault),
+            };
+            let mut ways = Vec::new();
+            for edge in shared {
+                ways.extend(self.edge_way(*edge, network, tolerance)?);
             }
+            let mut curves = Vec::new();
+            for curve in found {
+                curves.extend(beside(&curve, &ways, tolerance)?);
+            }
+            Ok(Met { pair: *pair, curves })
         })
     }
 
-    /// Pairs of surfaces whose boxes touch and that share no edge, in the order of the list.
-    fn apart_pairs(&self, listed: &[SurfaceId], tolerance: &Tolerance) -> Vec<(SurfaceId, SurfaceId)> {
+    /// Pairs of surfaces whose boxes touch, in the order of the list, with the edges that they share.
+    fn near_pairs(&self, listed: &[SurfaceId], tolerance: &Tolerance) -> Vec<((SurfaceId, SurfaceId), Vec<EdgeId>)> {
         let boxes: Vec<_> = listed.iter().map(|s| self.surfaces[s.index()].surface.hull()).collect();
-        let mut joined: BTreeSet<(SurfaceId, SurfaceId)> = BTreeSet::new();
-        for edge in &self.edges {
-            let users: Vec<SurfaceId> = edge.users.iter().map(|(p, _)| self.patches[p.index()].surface).collect();
-            joined.extend(users.iter().flat_map(|a| users.iter().map(move |b| (*a, *b))));
+        let mut joined: BTreeMap<(SurfaceId, SurfaceId), Vec<EdgeId>> = BTreeMap::new();
+        for (n, edge) in self.edges.iter().enumerate() {
+            let users: BTreeSet<SurfaceId> = edge.users.iter().map(|(p, _)| self.patches[p.index()].surface).collect();
+            for (a, b) in users.iter().flat_map(|a| users.iter().map(move |b| (*a, *b))) {
+                joined.entry((a, b)).or_default().push(EdgeId::at(n));
+            }
         }
         let pairs = BoxTree::build(&boxes).pairs(tolerance.point);
-        let pairs = pairs.into_iter().map(|(a, b)| (listed[a as usize], listed[b as usize]));
-        pairs.filter(|(a, b)| a != b && !joined.contains(&(*a, *b))).collect()
+        let pairs = pairs.into_iter().map(|(a, b)| (listed[a as usize], listed[b as usize])).filter(|(a, b)| a != b);
+        pairs.map(|pair| (pair, joined.get(&pair).cloned().unwrap_or_default())).collect()
     }
 
     /// Edges of a surface.
@@ -109,7 +156,7 @@ impl Model {
     }
 
     /// An edge as a chain; `None` for one that no curve carries (a straight line in (u, v) of a trimmed face).
-    pub(super) fn edge_way(&self, edge: EdgeId, network: &Network, tolerance: &Tolerance) -> Result<Option<Chain>> {
+    pub fn edge_way(&self, edge: EdgeId, network: &Network, tolerance: &Tolerance) -> Result<Option<Chain>> {
         let edge = &self.edges[edge.index()];
         let (whole, span) = match &edge.curve {
             EdgeCurve::Links { links, span } => {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
-use super::imprint::Met;
+use super::imprint::{Met, beside};
 use super::measure::area_within;
 use super::topology::{EdgeId, Model, SurfaceId};
 use crate::base::bbox::Box3;
@@ -34,7 +34,7 @@ impl Model {
         (network, tolerance): (&Network, &Tolerance),
         job: &Job,
     ) -> Result<Vec<Surface>> {
-        let met = self.met(listed, origin, tolerance, job)?;
+        let met = self.met(listed, origin, (network, tolerance), job)?;
         let pieces = par::try_map(listed.len(), |k| {
             job.go_on()?;
             let cutters = self.cutters(listed[k], &met, network, tolerance)?;
@@ -93,7 +93,8 @@ impl Model {
         for chain in kept {
             let on = |others: &[Chain]| lies_on(&chain, others, tolerance);
             if !on(&borders) && !on(&out) {
-                out.push(chain);
+                let known: Vec<Chain> = borders.iter().chain(&out).cloned().collect();
+                out.extend(beside(&chain, &known, tolerance)?);
             }
         }
         Ok(out)

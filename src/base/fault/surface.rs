@@ -572,6 +572,16 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
     })
 }
 
+/// A name in backquotes, or what stands for one that is missing.
+fn called(name: &str, otherwise: &str) -> String {
+    if name.is_empty() { otherwise.to_owned() } else { format!("`{name}`") }
+}
+
+/// What makes pieces of two faces, where both have names.
+fn pieces((a, b): &(String, String)) -> Option<String> {
+    (!a.is_empty() && !b.is_empty() && a != b).then(|| format!("imprint({a}, {b})"))
+}
+
 /// N615–E618, E656: patches and shells.
 fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
     use SurfaceFault as F;
@@ -599,16 +609,19 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
             ),
         )
         .at(says.unwrap_or(*shell), if says.is_some() { "asked for here" } else { "its faces came with borders of their own" }),
-        F::ImprintOverlap { imprint, a, b, names, at } => Report::new(
-            "E666",
-            format!("`{}` and `{}` cover each other at {}: what they share would be meshed twice", names.0, names.1, say.point(*at)),
-        )
+        F::ImprintOverlap { imprint, a, b, names, at } => Report::new("E666", {
+            let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
+            format!("{one} and {other} cover each other at {}: what they share would be meshed twice", say.point(*at))
+        })
         .at(*imprint, "joins faces along lines")
         .at(*a, "this face")
         .at(*b, "and this one")
-        .help(format!("`mesh m of imprint({}, {})` has what they share once", names.0, names.1)),
+        .help(match pieces(names) {
+            Some(pieces) => format!("`mesh m of {pieces}` has what they share once"),
+            None => "the pieces that `imprint` makes of them have what they share once".to_owned(),
+        }),
         F::FacesTouch { within, a, b, names, how, at } => {
-            let (one, other) = (format!("`{}`", names.0), format!("`{}`", names.1));
+            let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
             let (text, first, second) = match how {
                 Touching::Overlap => (format!("{one} and {other} lie on each other at"), "this face", "and this one"),
                 Touching::Edge { length } if *length > 0.0 => {
@@ -626,7 +639,10 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                 .at(*b, second)
                 .at(*within, "they are not joined here")
                 .help(match how {
-                    Touching::Overlap => format!("`imprint({}, {})` are their pieces, what they share once", names.0, names.1),
+                    Touching::Overlap => match pieces(names) {
+                        Some(pieces) => format!("`{pieces}` are their pieces, what they share once"),
+                        None => "the pieces that `imprint` makes of them have what they share once".to_owned(),
+                    },
                     _ => "`imprint: true` in the settings joins them".to_owned(),
                 })
         }
