@@ -230,3 +230,31 @@ fn a_session_comes_back_soon_whatever_it_does() {
     // A second is wanted; tests run beside others.
     assert!(worst.0 < Duration::from_secs(3), "{worst:?}");
 }
+
+/// What a run on a terminal leaves on the screen, by the program that gives it one.
+fn on_terminal(folder: &Path, interrupt: bool) -> String {
+    let typed = folder.join("typed");
+    let stop = if interrupt { "timeout -s INT 1 " } else { "" };
+    let run = format!("stty cols 80; {stop}{} run model.loft", env!("CARGO_BIN_EXE_loft"));
+    let mut command = Command::new("script");
+    command.args(["-qec", &run, typed.to_str().unwrap()]).current_dir(folder).env_remove("CI").env("TERM", "xterm");
+    command.stdin(Stdio::null()).stdout(Stdio::null()).status().unwrap();
+    fs::read_to_string(typed).unwrap()
+}
+
+#[test]
+fn progress_names_its_phase_and_leaves_nothing_behind() {
+    if Command::new("script").arg("--version").stdout(Stdio::null()).status().is_err() {
+        eprintln!("skipped: there is no `script` here to give a terminal");
+        return;
+    }
+    let folder = folder("progress");
+    fs::write(folder.join("model.loft"), SCRIPT.replace("20mm", "6mm")).unwrap();
+    for interrupt in [false, true] {
+        let screen = on_terminal(&folder, interrupt);
+        assert!(screen.contains("meshing fine (1 of 1)"), "{screen:?}");
+        let last = screen.rfind("meshing fine").unwrap().max(screen.rfind("writing ").unwrap_or_default());
+        assert!(screen[last..].contains("\u{1b}[2K"), "the line is not erased: {screen:?}");
+        assert!(screen.rfind("\u{1b}[?25h") >= screen.rfind("\u{1b}[?25l"), "no cursor: {screen:?}");
+    }
+}

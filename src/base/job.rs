@@ -6,8 +6,8 @@
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::fault::{Fault, Result};
 use super::par;
@@ -17,9 +17,35 @@ struct Shared {
     stop: AtomicBool,
     done: AtomicU64,
     total: AtomicU64,
+    /// What is done now, and how many of these there were.
+    phase: Mutex<(String, u64)>,
 }
 
-/// A stop flag and two counters, shared between the work and whoever waits for it.
+impl Shared {
+    /// Begins a phase or goes back to one; gives the one before.
+    fn turn_to(&self, phase: String) -> String {
+        let mut now = self.phase.lock().unwrap_or_else(PoisonError::into_inner);
+        now.1 += 1;
+        self.done.store(0, Ordering::Relaxed);
+        self.total.store(0, Ordering::Relaxed);
+        std::mem::replace(&mut now.0, phase)
+    }
+}
+
+/// A phase of a job, which goes back to the one before when this is dropped.
+#[derive(Debug)]
+pub struct Phase {
+    of: Arc<Shared>,
+    before: String,
+}
+
+impl Drop for Phase {
+    fn drop(&mut self) {
+        self.of.turn_to(std::mem::take(&mut self.before));
+    }
+}
+
+/// A stop flag, the phase the work is in and two counters, shared between the work and whoever waits for it.
 ///
 /// Counters never change a result.
 #[derive(Debug, Default)]
@@ -129,6 +155,17 @@ impl Job {
         if self.shared.stop.load(Ordering::Relaxed) { Err(Fault::Interrupted) } else { Ok(()) }
     }
 
+    /// Says what is done from now on, in a few words (`meshing roof (1 of 2)`), until what is given back is dropped. Counters
+    /// begin anew.
+    pub fn phase(&self, words: impl Into<String>) -> Phase {
+        Phase { of: self.shared.clone(), before: self.shared.turn_to(words.into()) }
+    }
+
+    /// What is done now, and the number of this phase.
+    pub fn now(&self) -> (String, u64) {
+        self.shared.phase.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// Announces `n` more steps of work.
     pub fn expect(&self, n: u64) {
         self.shared.total.fetch_add(n, Ordering::Relaxed);
@@ -180,6 +217,21 @@ mod tests {
         assert!(job.watch(sum).is_err());
         list.iter_mut().for_each(|n| *n = n.wrapping_mul(2_246_822_519).rotate_left(7));
         assert!(job.watch(|| sort(&mut list)).is_err());
+    }
+
+    #[test]
+    fn a_phase_ends_where_it_goes_out_of_scope() {
+        let job = Job::new();
+        let outer = job.phase("curves");
+        {
+            let _inner = job.phase("meshing roof (1 of 2)");
+            job.expect(4);
+            job.advance(1);
+            assert_eq!((job.now().0.as_str(), job.progress()), ("meshing roof (1 of 2)", (1, 4)));
+        }
+        assert_eq!((job.now(), job.progress()), (("curves".to_owned(), 3), (0, 0)));
+        drop(outer);
+        assert_eq!(job.now().0, "");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Ctrl-C, and what becomes of a panic.
 
+use std::io::{IsTerminal, Write};
 use std::panic;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
@@ -52,6 +53,10 @@ fn handle() {
         }
         thread::sleep(PATIENCE);
         watched().outputs.iter().for_each(Staging::discard);
+        if std::io::stderr().is_terminal() {
+            // The line of progress goes, whatever it shows.
+            let _ = std::io::stderr().write_all(b"\r\x1b[2K\x1b[?25h");
+        }
         std::process::exit(Exit::Interrupted as i32);
     });
 }

@@ -150,7 +150,7 @@ fn one(
     job: &Arc<Job>,
     terminal: &Terminal,
 ) -> (Exit, Vec<Case>) {
-    let watched = terminal.watched && !options.json;
+    let watched = terminal.watched && !options.json && !options.quiet;
     let mut kept = cache.map(|cache| Kept::on(Some(cache.clone())));
     let outcome = match with_progress(job, watched, || case(model, (&model.disk, &options.sets, None), options, job, kept.as_mut())) {
         Ok(outcome) => outcome,

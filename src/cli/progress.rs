@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::base::job::Job;
 
 /// Shorter work is not worth a bar.
-const FIRST: Duration = Duration::from_millis(500);
+const FIRST: Duration = Duration::from_millis(300);
 /// Time between two looks at the counters.
 const STEP: Duration = Duration::from_millis(100);
 
@@ -27,8 +27,9 @@ pub fn with_progress<T>(job: &Arc<Job>, watched: bool, work: impl FnOnce() -> T)
                 return;
             }
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+            let mut told = Told::default();
             loop {
-                show(&bar, &job);
+                show(&bar, &mut told, &job);
                 if wait.recv_timeout(STEP) != Err(RecvTimeoutError::Timeout) {
                     bar.finish_and_clear();
                     return;
@@ -43,16 +44,45 @@ pub fn with_progress<T>(job: &Arc<Job>, watched: bool, work: impl FnOnce() -> T)
     result
 }
 
-fn show(bar: &ProgressBar, job: &Job) {
-    let (done, total) = job.progress();
-    let template = if total > 0 { "{elapsed_precise} {wide_bar} {percent}%" } else { "{elapsed_precise} {spinner} working" };
-    if let Ok(style) = ProgressStyle::with_template(template) {
+/// What the line says: the phase, and how much of it is done; that never becomes less within one phase, though the work may
+/// turn out to be more than was announced.
+#[derive(Debug, Default)]
+struct Told {
+    number: u64,
+    most: u64,
+}
+
+impl Told {
+    fn words(&mut self, (phase, number): (String, u64), (done, total): (u64, u64)) -> String {
+        if number != self.number {
+            *self = Self { number, most: 0 };
+        }
+        self.most = self.most.max((100 * done.min(total)).checked_div(total).unwrap_or_default());
+        let phase = if phase.is_empty() { "working".to_owned() } else { phase };
+        if self.most > 0 { format!("{phase}, {} %", self.most) } else { phase }
+    }
+}
+
+fn show(bar: &ProgressBar, told: &mut Told, job: &Job) {
+    if let Ok(style) = ProgressStyle::with_template("{elapsed_precise} {spinner} {wide_msg}") {
         bar.set_style(style);
     }
-    if total > 0 {
-        bar.set_length(total);
-        bar.set_position(done.min(total));
-    } else {
-        bar.tick();
+    bar.set_message(told.words(job.now(), job.progress()));
+    bar.tick();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phase_never_runs_backwards() {
+        let mut told = Told::default();
+        let phase = |number| ("meshing roof (1 of 2)".to_owned(), number);
+        assert_eq!(told.words(phase(1), (0, 0)), "meshing roof (1 of 2)");
+        assert_eq!(told.words(phase(1), (2, 4)), "meshing roof (1 of 2), 50 %");
+        assert_eq!(told.words(phase(1), (2, 8)), "meshing roof (1 of 2), 50 %");
+        assert_eq!(told.words(phase(1), (9, 8)), "meshing roof (1 of 2), 100 %");
+        assert_eq!(told.words((String::new(), 2), (0, 8)), "working");
     }
 }

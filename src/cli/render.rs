@@ -68,7 +68,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         Err(text) => return terminal.wrong_usage(&text),
     };
     let job = interrupt::job();
-    let drawn = with_progress(&job, terminal.watched, || draw(&model, &wanted, &options, &job));
+    let drawn = with_progress(&job, terminal.watched && !options.quiet, || draw(&model, &wanted, &options, &job));
     let outcome = match drawn {
         Ok(outcome) => outcome,
         Err(caught) => return model::bug(&caught, &model, terminal),

@@ -30,7 +30,9 @@ impl Terminal {
             "never" => false,
             _ => stream && !plain,
         };
-        Self { color_out: color(out), color_err: color(err), watched: err }
+        // The log of an automatic build is no place for what is drawn over itself.
+        let automatic = std::env::var_os("CI").is_some_and(|v| !v.is_empty() && v != "false");
+        Self { color_out: color(out), color_err: color(err), watched: err && !automatic }
     }
 
     /// Prints on standard output; what that does not take is told by [`Terminal::end`].

@@ -40,7 +40,7 @@ pub fn variants(
     let mut kept = Kept::on(cache.cloned());
     for row in rows {
         let disk = model.disk.with_subfolder(&row.name);
-        let watched = terminal.watched && !options.json;
+        let watched = terminal.watched && !options.json && !options.quiet;
         let run = || case(model, (&disk, &row.sets, Some(&row.at)), options, job, Some(&mut kept));
         let (exit, report) = match with_progress(job, watched, run) {
             Ok(outcome) => {

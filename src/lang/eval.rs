@@ -157,6 +157,12 @@ impl Machine {
         self.modules.get(module.index()).map_or(&[], |m| &m.meshes)
     }
 
+    /// Which of a script's meshes has a name, from 1, and how many there are so far.
+    pub(super) fn place_of_mesh(&self, module: ModuleId, name: &str) -> (usize, usize) {
+        let all = self.meshes(module);
+        (1 + all.iter().position(|m| *m.name == *name).unwrap_or_default(), all.len())
+    }
+
     pub(super) fn at(&self, module: ModuleId) -> &Module {
         &self.modules[module.index()]
     }

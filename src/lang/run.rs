@@ -256,6 +256,11 @@ impl Cx<'_> {
         format!("nothing that depends on `{}` was built{list} ({})", self.declaration_name(owner.0, owner.1), self.count_words(members))
     }
 
+    /// Which of a script's meshes has a name, from 1, and how many are declared so far.
+    pub fn place_of_mesh(&self, module: ModuleId, name: &str) -> (usize, usize) {
+        self.machine.place_of_mesh(module, name)
+    }
+
     /// Whether anything said so far is an error.
     pub fn has_errors(&self) -> bool {
         self.machine.filed.iter().map(|f| &f.1).chain(&self.sink).any(|d| d.severity() == Severity::Error)

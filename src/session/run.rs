@@ -203,12 +203,18 @@ impl<'r> Run<'r> {
             }
         };
         let text = text.as_str();
+        let phase = self.cx.job.phase("reading");
         self.cx.load(&Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets, row: self.task.row });
         self.report.units = self.cx.unit().name.to_owned();
         let parsed = clock();
+        drop(phase);
+        let phase = self.cx.job.phase("curves");
         self.cx.evaluate_all();
         self.cx.leave();
+        drop(phase);
+        let phase = self.cx.job.phase("measuring");
         self.collect();
+        drop(phase);
         let evaluated = clock();
         if self.task.picture.is_none() {
             self.barred = super::places::one_file_each(&mut self.cx, self.disk, &self.disk.script_name(self.task.name));
@@ -315,6 +321,7 @@ impl<'r> Run<'r> {
             if self.is_barred(&spec.path) {
                 continue;
             }
+            let _phase = self.cx.job.phase(format!("writing {}", spec.path));
             let row = export::write(&mut self.cx, &spec, self.disk);
             self.written(row);
         }
@@ -327,6 +334,7 @@ impl<'r> Run<'r> {
             if self.is_barred(&spec.path) {
                 continue;
             }
+            let _phase = self.cx.job.phase(format!("drawing {}", spec.path));
             let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
             self.written(row);
         }
@@ -384,6 +392,7 @@ impl<'r> Run<'r> {
             return;
         }
         let model = self.model_name();
+        let _phase = self.cx.job.phase(format!("drawing {}", wanted.spec.path));
         match pictures::request(&mut self.cx, wanted) {
             Ok(spec) => {
                 let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));

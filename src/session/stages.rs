@@ -167,6 +167,7 @@ impl Pipeline for Stages<'_> {
             say_all(cx, &before.said);
             return Ok(before.network.clone());
         }
+        let _phase = cx.job.phase("network");
         let mut said = Vec::new();
         let again = self.kept.as_ref().map(|_| inputs.clone());
         let before = self.kept().and_then(|kept| {
@@ -192,6 +193,7 @@ impl Pipeline for Stages<'_> {
             self.count_reused();
             return Ok(before.model.clone());
         }
+        let _phase = cx.job.phase("surfaces");
         let model = Arc::new(Model::build(surfaces, &network, &tolerance, cx.job)?);
         if let Some(mut kept) = self.kept() {
             kept.models.insert(module, KeptModel { tolerance, network, model: model.clone() });
@@ -203,6 +205,8 @@ impl Pipeline for Stages<'_> {
         let (tolerance, start) = (cx.tolerance()?, (self.clock)());
         let mut sink = Vec::new();
         let (plan, Scene { model, network }) = plan::of(cx, module, spec, &mut sink)?;
+        let (k, of) = cx.place_of_mesh(module, &spec.name);
+        let _phase = cx.job.phase(format!("meshing {} ({k} of {of})", spec.name));
         let input = mesh::Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance };
         let made = self.made(&input, (module, spec.name.clone()), cx.job);
         self.found().mesh_seconds += (self.clock)() - start;

@@ -16,6 +16,7 @@ use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
 use rustyline::{CompletionType, Config, Editor};
 
+use super::progress::with_progress;
 use super::{Command, Exit, Terminal, interrupt, summary};
 use crate::base::limits;
 use crate::session::disk::{read_limited, words};
@@ -169,8 +170,11 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
                     // A history that cannot be written is no reason to stop.
                     let _ = editor.append_history(path);
                 }
-                notebook.watch(interrupt::entry_job());
-                let answer = notebook.enter(&entry);
+                let job = interrupt::entry_job();
+                notebook.watch(job.clone());
+                // An editor has the terminal for itself.
+                let watched = terminal.watched && !entry.trim().starts_with(":edit");
+                let answer = with_progress(&job, watched, || notebook.enter(&entry));
                 print(&answer, terminal, true);
                 if answer.quit {
                     return Exit::Fine;
