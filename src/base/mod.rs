@@ -19,4 +19,5 @@ pub mod text;
 pub mod tolerance;
 pub mod triangulate;
 pub mod triangulate_points;
+pub mod work;
 pub mod xml;

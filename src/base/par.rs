@@ -4,7 +4,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::job;
+use super::{job, work};
 
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
@@ -29,10 +29,10 @@ pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if n > 1 {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
-            let watched = job::watched();
+            let (watched, purse) = (job::watched(), work::purse());
             let item = |_: &mut job::Entered, k: usize| {
                 job::look();
-                f(k)
+                work::paid(purse.as_ref(), || f(k))
             };
             return pool.install(|| (0..n).into_par_iter().map_init(|| watched.enter(), item).collect());
         }
@@ -56,10 +56,10 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
     if items.len() > size {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
-            let watched = job::watched();
+            let (watched, purse) = (job::watched(), work::purse());
             let one = |_: &mut job::Entered, (k, part): (usize, &mut [T])| {
                 job::look();
-                f(k, part);
+                work::paid(purse.as_ref(), || f(k, part));
             };
             pool.install(|| items.par_chunks_mut(size).enumerate().for_each_init(|| watched.enter(), one));
             return;
@@ -82,11 +82,12 @@ pub fn is_unwinding() -> bool {
 pub fn on_stack<T: Send>(bytes: usize, work: impl FnOnce() -> T + Send) -> T {
     let mut work = Some(work);
     let mut result = None;
+    let purse = super::work::purse();
     let started = std::thread::scope(|scope| {
-        let (work, result, watched) = (&mut work, &mut result, job::watched());
+        let (work, result, watched, purse) = (&mut work, &mut result, job::watched(), &purse);
         let body = move || {
             let _entered = watched.enter();
-            *result = work.take().map(|w| w());
+            *result = super::work::paid(purse.as_ref(), || work.take().map(|w| w()));
         };
         match std::thread::Builder::new().stack_size(bytes).spawn_scoped(scope, body) {
             Ok(handle) => handle.join(),

@@ -54,6 +54,7 @@ impl HasPosition for Node {
 ///
 /// Fails where two points fall together, edges cross, or the points have no area. Indices of `edges` must be of `points`.
 pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsFault> {
+    super::work::spend(4 * points.len() as u64);
     let (low, high) = points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
     let scale = 1.0 / (high - low).max_element().max(f64::MIN_POSITIVE);
     let middle = 0.5 * (low + high);

@@ -5,6 +5,7 @@ use crate::base::job;
 use crate::base::quadrature::{KRONROD, NODES, Panel, RUNNING, chebyshev, kronrod, running_integral};
 use crate::base::solve;
 use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY, LENGTH_FLOOR};
+use crate::base::work;
 
 /// A panel is halved at most this often.
 const DEPTH: u32 = 40;
@@ -137,6 +138,7 @@ impl Lengths {
     }
 
     fn invert(&self, k: usize, s: f64) -> f64 {
+        work::spend(1);
         let (a, b) = (self.t[k], self.t[k + 1]);
         let (wanted, length) = (s - self.s[k], self.s[k + 1] - self.s[k]);
         let slack = EPSILON * self.total();

@@ -16,6 +16,7 @@ use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::base::work;
 
 /// Point and first two derivatives at one parameter; lengths in model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -226,6 +227,7 @@ impl Curve {
 
     /// Point and derivatives at a parameter of the domain; at a corner those of the piece that follows.
     pub fn jet(&self, t: f64) -> Jet {
+        work::spend(1);
         match &self.0.shape {
             Shape::Line(a, b) => line_jet(*a, *b, t),
             Shape::Arc(arc) => arc.jet(t),
@@ -241,6 +243,7 @@ impl Curve {
 
     /// Like [`Curve::jet`], at a corner with the derivatives of the piece before it.
     pub fn jet_before(&self, t: f64) -> Jet {
+        work::spend(1);
         match &self.0.shape {
             Shape::Nurbs(c) => c.jet_in(c.span_before(t), t),
             Shape::Composite(c) => {
@@ -356,26 +359,26 @@ impl Curve {
 
     /// The table of lengths, made on first use.
     pub(crate) fn lengths(&self) -> &Lengths {
-        self.0.lengths.get_or_init(|| {
-            Arc::new(match &self.0.shape {
-                Shape::Nurbs(c) if c.degree == 1 && c.polynomial => {
-                    let mut done = 0.0;
-                    let mut before = self.start();
-                    Lengths::proportional(c.breaks().into_iter().map(|(t, _)| {
-                        let p = c.jet_in(c.span_before(t), t).p;
-                        done += p.distance(before);
-                        before = p;
-                        (t, done)
-                    }))
-                }
-                _ => lengths_of(self, &self.knots()),
-            })
-        })
+        let table = || match &self.0.shape {
+            Shape::Nurbs(c) if c.degree == 1 && c.polynomial => {
+                let mut done = 0.0;
+                let mut before = self.start();
+                Lengths::proportional(c.breaks().into_iter().map(|(t, _)| {
+                    let p = c.jet_in(c.span_before(t), t).p;
+                    done += p.distance(before);
+                    before = p;
+                    (t, done)
+                }))
+            }
+            _ => lengths_of(self, &self.knots()),
+        };
+        // Made once for everyone, whoever comes first.
+        self.0.lengths.get_or_init(|| Arc::new(work::free(table)))
     }
 
     /// Its smooth pieces with bounds, made on first use.
     pub(crate) fn pieces(&self) -> &Pieces {
-        self.0.pieces.get_or_init(|| Arc::new(Pieces::of(self)))
+        self.0.pieces.get_or_init(|| Arc::new(work::free(|| Pieces::of(self))))
     }
 
     /// Parameters between which the curve is one analytic piece, ends included.

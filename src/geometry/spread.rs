@@ -11,6 +11,7 @@ use super::nurbs_edit::Bezier;
 use crate::base::math;
 use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::EPSILON;
+use crate::base::work;
 
 /// What the unit tangent and the curvature vector of a stretch may be.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,7 @@ impl Spread {
 
 /// The spread of a curve between two parameters of its domain.
 pub fn spread(curve: &Curve, t0: f64, t1: f64) -> Spread {
+    work::spend(4);
     match curve.shape() {
         Shape::Line(a, b) => Spread::smooth(Ranges::at((*b - *a).normalize_or_zero()), Ranges::default()),
         Shape::Arc(EllipticArc { u, v, radius: Some(r), .. }) => {

@@ -15,8 +15,10 @@ use super::std::{self, Builtin};
 use super::syntax::ast::{Arg, DeclarationKind, Expr, ExprId, FnParam, Keyword, Span};
 use super::types::Ty;
 use super::value::{ModuleId, Record, Value};
+use crate::base::fault::ValueFault;
 use crate::base::limits;
 use crate::base::origin::Origin;
+use crate::base::work::{self, Exceeded};
 
 impl Cx<'_> {
     /// What a name followed by `(` leads to, looked up once: a function, and whether fields have this name.
@@ -109,7 +111,9 @@ impl Cx<'_> {
         let before = first.clone();
         let values = self.bind(code, id, builtin, first, args)?;
         self.machine.site.expr = id;
-        match (builtin.call)(self, values) {
+        let purse = self.machine.purse.clone();
+        let called = purse.within(|| (builtin.call)(self, values));
+        match called.unwrap_or_else(|Exceeded| Err(ValueFault::Work.into())) {
             Ok(value) => {
                 if self.tolerance.is_none()
                     && let Value::Curve(chain) = &value
@@ -210,7 +214,7 @@ impl Cx<'_> {
         let old_base = ::std::mem::replace(&mut self.machine.base, base);
         self.machine.calls.push(Frame { name: bound.name, site: Site { expr: id, ..site }, origin: Origin::NONE });
         self.machine.site = Site { module, declaration, member: site.member, expr: *body };
-        let result = self.run_fn(callee, params, given, *body).and_then(|value| match returns {
+        let result = work::free(|| self.run_fn(callee, params, given, *body)).and_then(|value| match returns {
             Some(ty) => {
                 let ty = Ty::written(self.names.text(ty.name), ty.lists).unwrap_or(Ty::Any);
                 let subject = format!("the result of `{}`", self.names.text(bound.name));

@@ -19,6 +19,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity};
 use crate::base::limits;
 use crate::base::origin::Origin;
+use crate::base::work::{self, Purse};
 
 /// Declarations inside each other's evaluation; reached by cycles through branches alone, since dependencies are
 /// evaluated first.
@@ -89,6 +90,8 @@ pub struct Machine {
     pub(super) running: Vec<(ModuleId, u32)>,
     pub(super) words: Vec<Word>,
     pub(super) steps: u64,
+    /// What a call may take.
+    pub(super) purse: Purse,
     /// Members of lists held.
     pub(super) room: Room,
     next_look: u64,
@@ -118,6 +121,7 @@ impl Default for Machine {
             running: Vec::new(),
             words: Vec::new(),
             steps: 0,
+            purse: Purse::new(limits::CALL_WORK),
             room: Room::default(),
             next_look: STEPS_A_LOOK,
             depth: 0,
@@ -289,7 +293,8 @@ impl Cx<'_> {
     /// The value of a declaration, evaluated on first use.
     pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
         if matches!(self.machine.at(module).states[index as usize], State::Waiting) && !self.recall(module, index) {
-            return self.evaluate(module, index);
+            // It has its own calls to pay for.
+            return work::free(|| self.evaluate(module, index));
         }
         let asked = self.machine.at(module).asked[index as usize];
         self.machine.asked.join(asked);

@@ -13,7 +13,9 @@ use super::origins::NO_MEMBER;
 use super::syntax::ast::{DeclarationKind, Keyword};
 use super::value::{MeshValue, ModuleId, ShellValue, Value};
 use crate::base::fault::Fault;
+use crate::base::limits::WORK_OF_AN_ELEMENT;
 use crate::base::origin::Origin;
+use crate::base::work;
 use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::model::topology::Named;
@@ -223,6 +225,15 @@ pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Stop> {
 }
 
 pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
+    let found = made_mesh(cx, mesh)?;
+    // A call that asks a mesh may look at all of it.
+    if let Some(purse) = work::purse() {
+        purse.allow((found.triangles.len() + found.quads.len() + found.lines.len()) as u64 * WORK_OF_AN_ELEMENT);
+    }
+    Ok(found)
+}
+
+fn made_mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
     match mesh {
         MeshValue::Data(mesh, _) => Ok(mesh.clone()),
         MeshValue::Declared { module, index } => {

@@ -134,7 +134,12 @@ pub fn refuse_large(input: &Input, layout: &Layout, sizing: &Sizing, job: &Job) 
 }
 
 /// E217 before anything is allocated for more elements than a mesh may have.
-pub fn refuse_counts(input: &Input, layout: &Layout, (sizing, relations): (&Sizing, &Relations), counts: &[u32]) -> Result<()> {
+pub fn refuse_counts(
+    input: &Input,
+    layout: &Layout,
+    (sizing, relations): (&Sizing, &Relations),
+    (counts, worth): (&[u32], &mut u64),
+) -> Result<()> {
     let stretches = layout.pieces.atoms.len();
     if let Some(k) = (0..stretches).find(|k| counts[*k] > MESH_STEPS) {
         return Err(too_many_steps(input, of_count(input, layout, sizing, (k, counts[k]))));
@@ -152,6 +157,7 @@ pub fn refuse_counts(input: &Input, layout: &Layout, (sizing, relations): (&Sizi
     let lines = layout.curves.iter().flatten().map(|u| u64::from(counts[u.atom]));
     let total = of_faces.iter().copied().chain(lines).fold(0, u64::saturating_add);
     if total <= MESH_ELEMENTS {
+        faces::allow(total, worth);
         return Ok(());
     }
     let largest = (0..of_faces.len()).max_by_key(|f| of_faces[*f]);

@@ -106,7 +106,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
     let _held = held(input, layout, &limits);
     let (mut sizing, mut wishes, mut relations) = begin(input, layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
-    let (mut looks, mut before) = (LOOKS, Vec::new());
+    let (mut looks, mut before, mut worth) = (LOOKS, Vec::new(), 0);
     for _ in 0..ROUNDS + LOOKS + (2 + HALVED as usize) * layout.faces.len() {
         job.go_on()?;
         let mut unknown = sizing.stretches(layout);
@@ -116,7 +116,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
         relations.refuse_odd_borders(input, layout, &sizing, &counts)?;
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
-        ahead::refuse_counts(input, layout, (&sizing, &relations), &counts)?;
+        ahead::refuse_counts(input, layout, (&sizing, &relations), (&counts, &mut worth))?;
         let nodes = Nodes::new(layout, &sizing, &counts[..layout.pieces.atoms.len()]);
         let uneven = uneven::look(layout, (&nodes, input.tolerance.point), &sizing);
         if !uneven.is_empty() {

@@ -12,12 +12,15 @@ use super::nodes::Nodes;
 use super::plan::Plan;
 use super::reuse::{Known, Reuse};
 use super::sizing::Remark;
-use super::{contacts, key, sets};
+use super::{contacts, faces, key, sets};
 use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
 use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
+use crate::base::limits::MESH_WORK;
+use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::base::work::{Exceeded, Purse};
 use crate::model::{Model, PatchId, SurfaceId};
 use crate::network::Network;
 use crate::surface::Domain;
@@ -99,6 +102,12 @@ impl Outline {
     /// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
     /// E217 (too many elements), E715 (turned elements), E666 (faces to be joined that cover each other), E672 (a set in part).
     pub fn build(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
+        Purse::new(MESH_WORK)
+            .within(|| self.built(input, reuse, job))
+            .unwrap_or_else(|Exceeded| Err(faces::too_much_work(input, Origin::NONE)))
+    }
+
+    fn built(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
         let known = reuse.map(|reuse| Known { reuse, surfaces: &self.surfaces });
         let mut parts: Vec<Part> = Vec::new();
         for layout in self.layouts {

@@ -13,9 +13,10 @@ use super::plan::{Elements, Method, Plan};
 use super::trilateral::{Blocks, LatticeFrame};
 use super::uneven::Uneven;
 use crate::base::fault::{Fault, MeshFault, Result};
-use crate::base::limits::MESH_ELEMENTS;
+use crate::base::limits::{MESH_ELEMENTS, WORK_OF_AN_ELEMENT};
 use crate::base::origin::Origin;
 use crate::base::text::real;
+use crate::base::work;
 use crate::model::SurfaceId;
 use crate::surface::{Domain, Surface};
 
@@ -373,4 +374,20 @@ pub fn limits_of(input: &Input) -> Limits {
 /// Too many elements, before anything is allocated.
 pub fn too_many(plan: &Plan, of: Origin, elements: u64) -> Fault {
     MeshFault::TooMany { of, name: plan.name.clone(), elements, limit: MESH_ELEMENTS }.into()
+}
+
+/// More work than a mesh may take, of a face or of all.
+pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
+    let plan = input.plan;
+    let limit = plan.chord_error.or(plan.angle_error).map(|limit| limit.1);
+    MeshFault::TooMuchWork { of: limit.unwrap_or_else(|| plan.size_origin()), name: plan.name.clone(), surface }.into()
+}
+
+/// Raises what a mesh or face may take to what so many elements are worth, with what was `worth` for it before.
+pub fn allow(elements: u64, worth: &mut u64) {
+    let now = elements.min(MESH_ELEMENTS).saturating_mul(WORK_OF_AN_ELEMENT);
+    if let Some(purse) = work::purse() {
+        purse.allow(now.saturating_sub(*worth));
+    }
+    *worth = now.max(*worth);
 }

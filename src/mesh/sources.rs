@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::edges::distance_to_segment;
 use crate::base::bbox::Box3;
+use crate::base::work;
 use crate::network::Chain;
 
 /// What a source is.
@@ -171,6 +172,7 @@ impl Sources {
         if self.nodes.is_empty() {
             return None;
         }
+        work::spend(1);
         let bound = |node: u32| {
             let node = &self.nodes[node as usize];
             node.least + self.slope * outside(&node.bounds, p)

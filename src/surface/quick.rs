@@ -15,6 +15,7 @@ use super::nurbs::{NurbsSurface, quotient};
 use super::rail::Lean;
 use super::shape::Shape;
 use crate::base::tolerance::EPSILON;
+use crate::base::work;
 use crate::geometry::bounds::binomial;
 use crate::geometry::nurbs::projected;
 
@@ -177,7 +178,7 @@ impl Powers {
 
 impl Quick {
     fn thirds(&self) -> &[Third] {
-        self.net.thirds.get_or_init(|| match &self.surface.parts().shape {
+        let made = || match &self.surface.parts().shape {
             Shape::Nurbs(net) => {
                 let (us, vs) = (divided(&self.net.stops.0.at), divided(&self.net.stops.1.at));
                 let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
@@ -192,11 +193,14 @@ impl Quick {
                 (0..v_boxes.len()).flat_map(row).collect()
             }
             _ => Vec::new(),
-        })
+        };
+        // Made once for everyone, whoever comes first.
+        self.net.thirds.get_or_init(|| work::free(made))
     }
 
     /// The point alone.
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
+        work::spend(1);
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
         let ((i, s, _), (j, t, _)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
@@ -210,6 +214,7 @@ impl Quick {
 
     /// Point, ∂/∂u and ∂/∂v.
     pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 3] {
+        work::spend(1);
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
         let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
@@ -241,6 +246,7 @@ impl Quick {
 
     /// The same in the net's own parameters.
     fn own_jet(&self, u: f64, v: f64) -> Jet2 {
+        work::spend(1);
         let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
         // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
         let mut sums = [DVec4::ZERO; 6];
@@ -267,6 +273,7 @@ impl Quick {
 
     /// Second derivatives along a unit vector over a box of (u, v); `None` where first ones jump inside.
     pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
+        work::spend(4);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // Round the middle: a box over a seam leaves the parameters at one side and is not answered.
         let (u, v) = self.surface.wrapped(middle.x, middle.y);

@@ -13,6 +13,7 @@ use super::trilateral::Trilateral;
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::tolerance::EPSILON;
+use crate::base::work;
 use crate::geometry::Motion;
 
 /// The exact shape of a surface over its own u and v.
@@ -46,6 +47,7 @@ impl Content for Shape {
 impl Shape {
     /// Point and derivatives, from the given sides where they jump.
     pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        work::spend(1);
         match self {
             Self::Blend(s) => s.jet(u, v, lean),
             Self::Trilateral(s) => s.jet(u, v),
@@ -57,6 +59,7 @@ impl Shape {
 
     /// Points of the tensor grid, u fastest.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
+        work::spend((us.len() * vs.len()) as u64);
         match self {
             Self::Blend(s) => s.grid(us, vs, out),
             Self::Sweep(s) => s.grid(us, vs, out),
@@ -73,6 +76,7 @@ impl Shape {
 
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+        work::spend((us.len() * vs.len()) as u64);
         match self {
             Self::Blend(s) => s.jets(us, vs, out),
             Self::Sweep(s) => s.jets(us, vs, out),

@@ -12,6 +12,7 @@ use super::rail::Lean;
 use super::shape::Shape;
 use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::EPSILON;
+use crate::base::work;
 
 /// What a surface may do over a rectangle.
 #[derive(Clone, Copy, Debug)]
@@ -131,6 +132,7 @@ impl Surface {
 
     /// Bounds over the rectangle of two strips.
     pub fn spread_of(&self, u: &Strip, v: &Strip) -> Spread {
+        work::spend(4);
         let (flipped, triangle) = (self.parts().flipped, self.domain() == Domain::Triangle);
         let (a, b) = if flipped && triangle { (v, u) } else { (u, v) };
         let mut whole: Option<Spread> = None;

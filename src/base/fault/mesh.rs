@@ -52,6 +52,15 @@ pub enum MeshFault {
         /// How many may be.
         limit: u64,
     },
+    /// E217: more work than the elements that are asked for are worth.
+    TooMuchWork {
+        /// What asks for it: the limit on bends, else the size.
+        of: Origin,
+        /// The mesh.
+        name: String,
+        /// The face that takes it, if it is one.
+        surface: Origin,
+    },
     /// E217: more steps along a border than a mesh may have.
     TooManySteps {
         /// What asks for so many.
@@ -351,6 +360,11 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .at(*of, "asked for here")
                 .help(format!("a larger value; the limit is {limit} elements"))
         }
+        F::TooMuchWork { of, name, surface } => {
+            let report = Report::new("E217", format!("the mesh `{name}` takes more work than it may")).at(*of, "asked for here");
+            let report = if surface.is_some() { report.at(*surface, "most of it goes into this face") } else { report };
+            report.help("a value that suits the size of the face, and points that are not far off by mistake")
+        }
         F::TooManySteps { of, name, limit } => Report::new("E217", format!("the steps of the mesh `{name}` along a border are too many"))
             .at(*of, "asked for here")
             .help(format!("fewer steps; the limit is {limit} from corner to corner")),
@@ -436,7 +450,11 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help(format!("`min_size` below {size}, or a larger `{limit}`"))
         }
         F::NotReached { limit, says, surface, reached, at } => {
-            let reached = if *limit == "angle_error" { say.angle(*reached) } else { say.length(*reached) };
+            let reached = match *limit {
+                _ if !reached.is_finite() => "nothing bounds what is there,".to_owned(),
+                "angle_error" => say.angle(*reached),
+                _ => say.length(*reached),
+            };
             Report::new("E703", format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*says, "not kept")
                 .at(*surface, "this face")
@@ -593,6 +611,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::SetInPart { .. }
         | F::TooMany { .. }
         | F::TooManySteps { .. }
+        | F::TooMuchWork { .. }
         | F::CountsDiffer { .. }
         | F::SidesDoNotClose { .. }
         | F::CountTooCoarse { .. }

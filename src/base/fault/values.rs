@@ -107,6 +107,8 @@ pub enum ValueFault {
         /// What was asked for, for example "`method: delaunay`".
         what: String,
     },
+    /// E217: a call that takes more work than one may.
+    Work,
     /// E217: a list or work limit.
     Limit {
         /// What would be made, for example "a mesh of 4 000 000 000 elements".
@@ -176,6 +178,9 @@ impl Describe for ValueFault {
             Self::NotInThisVersion { what } => {
                 Report::new("E230", format!("{what} is not in this version")).label(Subject::Call, "asked for here")
             }
+            Self::Work => Report::new("E217", "this takes more work than it may")
+                .label(Subject::Call, "made here")
+                .help("fewer or simpler parts, and points that are not far off by mistake"),
             Self::Limit { what, limit } => {
                 Report::new("E217", format!("{what} is too much")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))
             }

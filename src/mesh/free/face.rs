@@ -25,12 +25,13 @@ use super::taken::{self, Taken};
 use super::tree::DEEPEST;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
-use crate::base::limits::MESH_ELEMENTS;
+use crate::base::limits::{MESH_ELEMENTS, MESH_WORK};
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
+use crate::base::work::{Exceeded, Purse};
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
-use crate::mesh::faces::{Frame, Prepared, middle};
+use crate::mesh::faces::{Frame, Prepared, middle, too_much_work};
 use crate::mesh::layout::{Face, Layout};
 use crate::mesh::nodes::Nodes;
 use crate::mesh::plan::Elements;
@@ -90,7 +91,9 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
     {
         return Ok(Prepared { deciders, tally, ..prepared(made, face, free, border.ids, inner) });
     }
-    let ready = grown(made, face, (border, sheet, outline), job)?;
+    let all = || grown(made, face, (border, sheet, outline), job);
+    let surface = || made.input.model.surfaces[face.surface.index()].surface.origin();
+    let ready = Purse::new(MESH_WORK).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
     if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
         known.keep_free(key, Taken::of(&ready, free));
     }

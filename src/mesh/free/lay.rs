@@ -24,6 +24,7 @@ use super::tree::Class;
 use super::web::Web;
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use crate::base::work;
 use crate::mesh::edges::Limits;
 use crate::mesh::explain::{Decider, Tally};
 use crate::mesh::sources::Sources;
@@ -145,6 +146,7 @@ impl Work<'_> {
     /// One try: the triangles, or cells cut where they do not keep the limits.
     fn round(&mut self) -> Tried<Option<Laid>> {
         let outline = self.ask.outline;
+        work::spend(self.cells.all().len() as u64);
         let mut corners = self.corners();
         let mut web = Web::default();
         (web.p, web.xy, web.fixed) = (outline.p.clone(), outline.xy.clone(), outline.p.len() as u32);

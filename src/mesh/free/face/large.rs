@@ -3,18 +3,18 @@
 use super::SPACING;
 use super::fit::{Fit, MOST};
 use crate::base::fault::{Fault, Result};
-use crate::base::limits::MESH_ELEMENTS;
+use crate::base::limits::{MESH_ELEMENTS, MESH_WORK, WORK_OF_AN_ELEMENT};
 use crate::base::origin::Origin;
 use crate::mesh::ahead::of_size;
 use crate::mesh::edges::Limits;
-use crate::mesh::faces::too_many;
+use crate::mesh::faces::{allow, too_many};
 use crate::mesh::free::build::{Lattice, Task, expected_nodes};
 use crate::mesh::free::ground::{Even, Field};
 use crate::mesh::free::size::{Background, Blend};
 use crate::mesh::plan::{GROWTH, Target};
 use crate::mesh::sources::{Source, Sources};
 
-/// Share of the largest mesh below which the least length alone tells that it is small enough.
+/// Share of the elements that are free of charge below which the least length alone tells that there are no more.
 const SMALL: f64 = 0.1;
 
 /// A field like another one of some of its parts.
@@ -26,11 +26,15 @@ impl Fit<'_> {
     /// E217 where wanted lengths, grown from short edges and by bends, ask for too much.
     pub(super) fn refuse_large(&self, field: &Blend) -> Result<()> {
         let across = self.surface.hull().diagonal() / field.least();
-        if across * across < SMALL * MESH_ELEMENTS as f64 {
+        if across * across < SMALL * MESH_WORK as f64 / WORK_OF_AN_ELEMENT as f64 {
             return Ok(());
         }
         let [elements] = self.expected([field]);
-        if elements <= MESH_ELEMENTS as f64 { Ok(()) } else { Err(self.too_large(field, elements)) }
+        if elements > MESH_ELEMENTS as f64 {
+            return Err(self.too_large(field, elements));
+        }
+        allow(elements as u64, &mut 0);
+        Ok(())
     }
 
     /// The fault for so many elements.

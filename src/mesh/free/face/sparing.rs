@@ -6,6 +6,7 @@ use super::fit::{Fit, MOST, Shown};
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::Job;
 use crate::mesh::edges::Limits;
+use crate::mesh::faces::allow;
 use crate::mesh::free::build::Trouble;
 use crate::mesh::free::ground::Ground;
 use crate::mesh::free::lay::{Ask, Failure, lay};
@@ -17,6 +18,9 @@ use crate::mesh::wanted::floor_keeps;
 
 /// Quality below which sides are flipped: that of a right angle beside one of 15°.
 const SHARP: f64 = 0.4;
+
+/// Elements whose work it takes to thin one out.
+const THINNED: u64 = 10;
 
 impl Fit<'_> {
     /// Between lines of constant u and v.
@@ -56,6 +60,7 @@ impl Fit<'_> {
 
     /// Fewer triangles for the same limits.
     pub(super) fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
+        allow(THINNED * web.tri.len() as u64, &mut 0);
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
         let bound = |web: &Web, c: [u32; 3]| loads::load_of_long(self.sheet, web, c, limits).worst();
         let twins = self.outline.twins();

@@ -7,6 +7,7 @@ use super::{Failure, Tried, Work};
 use crate::base::job;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::explain::Why;
+use crate::mesh::faces::allow;
 use crate::mesh::free::build::Trouble;
 use crate::mesh::free::ground::Ground;
 use crate::mesh::free::loads;
@@ -27,6 +28,8 @@ const THIN: f64 = 0.6;
 const TURN: f64 = 0.35;
 /// Largest part of the way from pole to pole that one cell covers.
 const HALF: f64 = 0.6;
+/// Elements whose work a cell is worth that is cut because it is too large by itself.
+const CELL: u64 = 6;
 /// Pieces by which the side of a cell is measured.
 const PIECES: usize = 4;
 
@@ -42,6 +45,7 @@ impl Work<'_> {
                 continue;
             }
             if let Some((cut, why)) = self.wants(k)? {
+                allow(CELL, &mut 0);
                 let first = self.cells.all().len() as u32;
                 self.cells.split(k, cut, why);
                 open.extend([first + 1, first]);
