@@ -33,9 +33,9 @@ limits! {
     pub const MESH_ELEMENTS: u64 = 100_000_000;
     /// Steps of a mesh along one stretch of border between two corners.
     pub const MESH_STEPS: u32 = 1_000_000;
-    /// Work of one mesh or one of its free faces, in evaluations of curves and surfaces, beside [`WORK_OF_AN_ELEMENT`].
+    /// Work of one mesh or one of its free faces, in evaluations of curves and surfaces, beside that of its elements.
     pub const MESH_WORK: u64 = 4_000_000;
-    /// Work of a mesh for each of its elements.
+    /// The same for each element of the mesh.
     pub const WORK_OF_AN_ELEMENT: u64 = 200;
     /// Work of one call, in evaluations of curves and surfaces.
     pub const CALL_WORK: u64 = 10_000_000;
