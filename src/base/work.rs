@@ -119,7 +119,7 @@ fn settle() {
         purse.0.spent.fetch_add(spent, Ordering::Relaxed);
         purse.is_empty()
     });
-    if empty {
+    if empty && !super::par::is_unwinding() {
         resume_unwind(Box::new(Exceeded));
     }
 }
