@@ -71,7 +71,7 @@ pub fn snap(
         let fixed: Vec<usize> = members.iter().copied().filter(|&k| ends[k].hold != Hold::Free).collect();
         let is_settled = |k: usize| ends[k].hold == Hold::Settled;
         for (i, &a) in fixed.iter().enumerate() {
-            let apart = |b: usize| !(is_settled(a) && is_settled(b)) && !tolerance.same_point(all[a], all[b]);
+            let apart = |b: usize| (!is_settled(a) || !is_settled(b)) && !tolerance.same_point(all[a], all[b]);
             if let Some(&b) = fixed[i + 1..].iter().find(|&&b| apart(b)) {
                 let settled = [a, b].into_iter().find(|k| is_settled(*k)).map(|k| ends[k].end.of);
                 return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance, asked, settled }.into());
