@@ -308,7 +308,9 @@ impl Known<'_> {
         let scan = self.scan;
         let Some(&middle) = found.nodes.get(found.nodes.len() / 2) else { return };
         let along = &scan.along[found.stretch];
-        let on = |k: usize| found.nodes.contains(&k) || scan.users.get(along[k] as usize).is_some_and(|u| u.contains(&(found.face as u32)));
+        let on = |k: usize| {
+            found.nodes.binary_search(&k).is_ok() || scan.users.get(along[k] as usize).is_some_and(|u| u.contains(&(found.face as u32)))
+        };
         let steps = (1..along.len()).filter(|k| on(k - 1) && on(*k));
         let length: f64 = steps.map(|k| scan.p(along[k - 1]).distance(scan.p(along[k]))).sum();
         let owner = scan.owner(found.stretch);

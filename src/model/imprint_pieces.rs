@@ -184,7 +184,7 @@ fn inner_places(outlines: &[Vec<DVec2>]) -> Vec<DVec2> {
         us.sort_by(f64::total_cmp);
         let inside = us.chunks_exact(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
         // Rows take their place by turns on either side of the middle.
-        let share = if k % 2 == 0 { 1.0 / 3.0 } else { 2.0 / 3.0 };
+        let share = if k.is_multiple_of(2) { 1.0 / 3.0 } else { 2.0 / 3.0 };
         Some(DVec2::new(inside[0] + (inside[1] - inside[0]) * share, v))
     };
     (0..ENOUGH).filter_map(row).collect()
