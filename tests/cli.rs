@@ -357,7 +357,7 @@ fn the_table_of_rows_has_what_they_set_check_and_report() {
     let more =
         "check \"wide\": width > 3m\ncheck \"long\": n > 1\nreport [{span: width, steps: n}]\nreport \"tall\": width * 2\nreport west\n";
     let table = "# a comment\nname;width [m];n\n\nsmall; 2 ;2\nlarge;\"6\";3 # seen\nbroken; 80 ;4\n";
-    let folder = Folder::new("rows").with("plate.loft", &format!("{PLATE}{more}")).with("sizes.csv", table);
+    let folder = Folder::new("rows").with("plate.loft", format!("{PLATE}{more}")).with("sizes.csv", table);
     let run = folder.loft(&["check", "plate.loft", "--table", "sizes.csv"]);
     let rows: Vec<Vec<&str>> = run.out.lines().map(|line| line.split("  ").map(str::trim).filter(|c| !c.is_empty()).collect()).collect();
     let cell = |row: usize, name: &str| {

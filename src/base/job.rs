@@ -122,7 +122,7 @@ pub fn sort<T: Ord>(items: &mut [T]) {
     let done = Cell::new(0_u32);
     items.sort_unstable_by(|a, b| {
         done.set(done.get().wrapping_add(1));
-        if done.get() % COMPARISONS == 0 {
+        if done.get().is_multiple_of(COMPARISONS) {
             look();
         }
         a.cmp(b)

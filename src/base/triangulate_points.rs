@@ -43,7 +43,7 @@ impl HasPosition for Node {
     type Scalar = f64;
     fn position(&self) -> Point2<f64> {
         // The only place of ours that a long triangulation comes by: every predicate asks for its points.
-        if self.index % LOOKS == 0 {
+        if self.index.is_multiple_of(LOOKS) {
             job::look();
         }
         self.at
