@@ -14,7 +14,7 @@ use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Angle, Axis, Direction, Length, Point, Rest};
 use crate::lang::value::{Plane, Value};
 use crate::model::measure;
-use crate::network::{self, Chain, ChainFlow};
+use crate::network::{self, Chain, ChainFlow, FlowKind};
 use crate::surface::coons::{self, Grid, Method, Settings};
 use crate::surface::nurbs::{self, Net};
 use crate::surface::{Domain, Reparam, Surface, Way, carried, extrude, interpolate, plane, revolve, ruled as surface_between};
@@ -112,6 +112,15 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> 
     let (chains, along_u, along_v) = curves.listed();
     let options = ChainFlow { along_u, along_v, pole: said.pole.map(|p| p.0), closed: said.closed };
     let (flow, nodes) = network::of_chains(&chains, &options, &tolerance)?;
+    let blend = match said.method {
+        Method::Linear => Some("linear"),
+        Method::Cubic => Some("cubic"),
+        Method::Coons | Method::Lagrange => None,
+    };
+    if let Some(word) = blend.filter(|_| flow.kind == FlowKind::UniformTrilateral) {
+        let range = "auto where three curves have no pole: they are blended in one way".to_owned();
+        return Err(ValueFault::OutsideRange { argument: "blend", found: word.to_owned(), range }.into());
+    }
     let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
     let reparam = match said.reparam {
         ReparamWord::Smooth => Reparam::Smooth,
@@ -173,7 +182,8 @@ builtins! {
         closed: bool = "false",
         /// How curves are matched between their meetings.
         reparam: ReparamWord = "smooth",
-        /// How neighbouring curves are blended: `auto` is `linear` for one cell and `cubic` for several.
+        /// How neighbouring curves are blended: `auto` is `linear` for one cell and `cubic` for several; three curves without a
+        /// pole are blended in one way, `auto`.
         blend: BlendWord = "auto",
     ) -> Surface = |cx, row, u, v, pole, closed, reparam, blend| {
         let method = match blend {
