@@ -132,7 +132,7 @@ impl Cx<'_> {
                 let mut diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
                 self.advise(&fault, (code, id), &blame, &mut diagnostic);
                 let of_value = matches!(fault, crate::base::fault::Fault::Value(_));
-                let diagnostic = self.by_place(code, (diagnostic, of_value), (builtin, before.as_ref(), args));
+                let diagnostic = self.by_place((code, call_name(code, id)), (diagnostic, of_value), (builtin, before.as_ref(), args));
                 self.sink.push(diagnostic);
                 Err(Stop::Failed)
             }
@@ -145,7 +145,7 @@ impl Cx<'_> {
     #[cold]
     fn by_place(
         &self,
-        code: Code<'_>,
+        (code, called): (Code<'_>, Span),
         (mut diagnostic, of_value): (Diagnostic, bool),
         (builtin, first, args): (&'static Builtin, Option<&Value>, &[Arg]),
     ) -> Diagnostic {
@@ -165,11 +165,8 @@ impl Cx<'_> {
             let fields =
                 std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, value))).map(|f| f.name).collect::<Vec<_>>();
             let near = super::elsewhere::ours(builtin.name, fields.into_iter()).map(str::to_owned);
-            let label = diagnostic.labels.first().map(|l| l.span.end);
-            if let (Some(near), Some(end)) = (near, label) {
-                let start = end + 1;
-                let field = Span { start, end: start + builtin.name.len() as u32 };
-                diagnostic = diagnostic.help(format!("`.{near}`")).put(field, near);
+            if let Some(near) = near {
+                diagnostic = diagnostic.help(format!("`.{near}`")).put(called, near);
             }
         }
         diagnostic
