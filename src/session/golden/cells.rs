@@ -120,12 +120,24 @@ fn texts(a: &str, b: &str, numbers: Apart<'_>) -> Option<f64> {
     if one.len() != other.len() {
         return Some(f64::INFINITY);
     }
-    let apart = |(a, b): (&&str, &&str)| match (real(a), real(b)) {
-        _ if a == b => None,
-        (Some(x), Some(y)) => numbers(Measure::Length(1), x, y),
-        _ => Some(f64::INFINITY),
+    let mut at = 0;
+    let apart = |(x, y): (&&str, &&str)| {
+        at += x.len();
+        match (real(x), real(y)) {
+            _ if x == y => None,
+            (Some(x), Some(y)) => numbers(measure_of(unit_behind(&a[at..])), x, y),
+            _ => Some(f64::INFINITY),
+        }
     };
     one.iter().zip(&other).filter_map(apart).reduce(f64::max)
+}
+
+/// The unit of a number by what stands behind it: a word, or the one behind the bracket of the list that holds it; empty for none.
+fn unit_behind(text: &str) -> &str {
+    let own = text.strip_prefix(' ').filter(|word| word.starts_with(char::is_alphabetic));
+    let of_list = || text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.e, ".contains(c)).strip_prefix(") ");
+    let word = own.or_else(of_list).unwrap_or("");
+    word.split(|c: char| !(c.is_alphanumeric() || c == '/')).next().unwrap_or("")
 }
 
 /// A number that may have been rounded. What is written without point and exponent may stand for one beside a real.
@@ -166,20 +178,25 @@ fn number_end(text: &str) -> usize {
     best
 }
 
-/// Many rows as one: of each column the sum of its numbers, each times one that tells its row, and a digest of its words.
+/// Significant digits of numbers that stand in a golden as a digest alone: they have no tolerance.
+const TOGETHER: usize = 10;
+
+/// Many rows as one: of each column a digest of its words and of its numbers to ten digits, and the sum of the numbers, each
+/// times one that tells its row.
 pub fn together(rows: &[Vec<Cell>]) -> Vec<Cell> {
     let width = rows.iter().map(Vec::len).max().unwrap_or(0);
     let column = |c: usize| {
         let (mut sum, mut words) = (0.0, Digester::new("words"));
         let mut add = |weight: f64, cell: &Cell| {
             let told = Entry::of(cell, "");
-            let mut numbers = |all: &[f64]| all.iter().enumerate().for_each(|(k, x)| sum += weight * (1.0 + k as f64) * x);
+            let mut tell = |place: usize, number: Option<f64>, piece: &str| {
+                sum += number.map_or(0.0, |x| weight * (1.0 + place as f64) * x);
+                let piece = number.map_or_else(|| piece.to_owned(), |x| rounded(x, TOGETHER));
+                words = std::mem::take(&mut words).text(&piece);
+            };
             match &told {
-                Entry::Numbers { all, .. } => numbers(all),
-                Entry::Text(text) => pieces(text).into_iter().for_each(|piece| match real(piece) {
-                    Some(x) => numbers(&[x]),
-                    None => words = std::mem::take(&mut words).text(piece),
-                }),
+                Entry::Numbers { all, .. } => all.iter().enumerate().for_each(|(k, x)| tell(k, Some(*x), "")),
+                Entry::Text(text) => pieces(text).into_iter().for_each(|piece| tell(0, real(piece), piece)),
             }
         };
         rows.iter().enumerate().for_each(|(k, row)| add(1.0 + k as f64 / rows.len() as f64, row.get(c).unwrap_or(&Cell::Missing)));
@@ -225,6 +242,23 @@ mod tests {
     use super::*;
 
     #[test]
+    fn no_row_of_many_changes_unseen() {
+        let rows = |odd: usize, by: f64| -> Vec<Vec<Cell>> {
+            let number = |k: usize| 1000.0 + k as f64 + if k == odd { by } else { 0.0 };
+            (0..5000)
+                .map(|k| vec![Cell::Number(number(k)), Cell::List(vec![Cell::Number(number(k)), Cell::Text("a".to_owned())])])
+                .collect()
+        };
+        let told = |rows: &[Vec<Cell>]| -> Vec<Entry> { together(rows).iter().map(|cell| Entry::of(cell, "")).collect() };
+        let allowance = Allowance { tolerance: 1e-9, size: 10.0 };
+        let (whole, mut other) = (told(&rows(0, 0.0)), rows(0, 0.0));
+        assert_eq!(excess(&whole, &told(&rows(0, 0.0)), allowance), None);
+        assert!(excess(&whole, &told(&rows(3000, 0.005)), allowance).is_some());
+        other.swap(3000, 3001);
+        assert!(excess(&whole, &told(&other), allowance).is_some());
+    }
+
+    #[test]
     fn rows_read_back() {
         for row in
             ["12.5 m | 0 | (0, -1.5, 2e-7) mm | spline | -", "true | \"1.5 m\" | \"a | b\" | \"\" | 7850 kg/m3", "a long name | \"a  b\""]
@@ -242,6 +276,17 @@ mod tests {
         assert_eq!(check("12 m | a", "12.000000001 m | a"), None);
         assert!(check("12 m", "12.0000001 m").is_some_and(|times| times.is_finite() && times > 5.0));
         assert_eq!(check("1000 m3", "1000.0000005 m3"), None);
+        // What stands in lists has its unit, and bare numbers are no lengths.
+        for (a, b, same) in [
+            ("((1, 2.5) mm | \"v\")", "((1, 2.500000005) mm | \"v\")", true),
+            ("(1 mm | \"v\")", "(1.000000005 mm | \"v\")", true),
+            ("(1.5 | \"v\" | 2 mm)", "(1.500000005 | \"v\" | 2 mm)", false),
+            ("((1, 2.5) | 3 mm)", "((1, 2.500000005) | 3 mm)", false),
+            ("(7850.5 kg/m3 | \"v\")", "(7850.50001 kg/m3 | \"v\")", false),
+        ] {
+            let quoted_text = |text: &str| vec![Entry::Text(text.to_owned())];
+            assert_eq!(excess(&quoted_text(a), &quoted_text(b), allowance).is_none(), same, "{a} {b}");
+        }
         for (a, b) in [("12 m", "12 mm"), ("a", "b"), ("1", "1 | 2"), ("1", "(1)"), ("(1, 2)", "(1, 2, 3)"), ("3", "x")] {
             assert_eq!(check(a, b), Some(f64::INFINITY), "{a} {b}");
         }

@@ -96,7 +96,7 @@ pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: 
     let by_tokens = |line: &Line| if line.loose { (line.kind.clone(), tokens(&line.name).join(" ")) } else { alone() };
     // What has no name is known by its values.
     pairing.by(&by_tokens, Only::Equal);
-    pairing.known_by_values(&mut |a, b| a.loose && b.loose && a.kind == b.kind && same(a, b, allowance));
+    pairing.known_by_values(&mut |a, b| a.loose && b.loose && a.kind == b.kind && a.kind != "row" && same(a, b, allowance));
     pairing.by(&by_name, Only::Any);
     // What has another name now and is otherwise as it was.
     let renamed = pairing.known_by_values(&mut |a, b| {
@@ -133,7 +133,10 @@ pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: 
         if line.is_diagnostic() && renames.same_diagnostic(line, other) {
             continue;
         }
-        let moves = moves(&today, other, allowance);
+        let mut moves = moves(&today, other, allowance);
+        if is_worded(line) && is_worded(other) && !renames.same_words(&line.name, &other.name) {
+            moves.insert(0, worded(line, other));
+        }
         if !moves.is_empty() {
             changes.push(Change::Changed { old: line.clone(), new: other.clone(), moves });
         }
@@ -213,6 +216,17 @@ impl Pairing<'_> {
     }
 }
 
+/// Whether a line stands for what a script says without a label: equal values do not make two of them one.
+fn is_worded(line: &Line) -> bool {
+    line.loose && matches!(line.kind.as_str(), "check" | "report")
+}
+
+/// The move from the words of one line to those of another.
+fn worded(old: &Line, new: &Line) -> Move {
+    let word = |line: &Line| Some(Value::Word(line.name.clone()));
+    Move { word: "message", kind: Kind::Word, old: word(old), new: word(new), times: None }
+}
+
 /// Whether the words that two lines of any kinds share say the same of places and lengths.
 pub fn one_thing(one: &Line, other: &Line, size: f64) -> bool {
     let allowance = Allowance { tolerance: TOLERANCE, size };
@@ -238,8 +252,7 @@ fn same_but_name(old: &Line, new: &Line, allowance: Allowance) -> bool {
 fn moves(old: &Line, new: &Line, allowance: Allowance) -> Vec<Move> {
     let mut found = Vec::new();
     if old.name != new.name && !(old.loose && new.loose) {
-        let word = |line: &Line| Some(Value::Word(line.name.clone()));
-        found.push(Move { word: "message", kind: Kind::Word, old: word(old), new: word(new), times: None });
+        found.push(worded(old, new));
     }
     for field in words::fields_of(&old.kind) {
         let (was, is) = (old.get(field.word), new.get(field.word));
@@ -336,6 +349,16 @@ mod tests {
         assert!(words_moved(old, new).is_empty());
         let new = "modeling \"c[..a]\"  length 2 m\nmodeling \"c[..a]\"  length 3 m";
         assert_eq!(words_moved(old, new), ["c[..a] length"]);
+    }
+
+    #[test]
+    fn the_words_of_a_check_without_a_label_count() {
+        let old = "check `not m.watertight`  pass\ncheck `a.length > 3m`  pass  left 4 m  right 3 m";
+        assert_eq!(words_moved(old, &old.replace("not m.watertight", "true")), ["true message"]);
+        assert_eq!(words_moved(old, &old.replace("a.length", "4m")), ["4m > 3m message"]);
+        assert!(words_moved(old, &old.replace("a.length > 3m", "a.length  >  3m")).is_empty());
+        assert_eq!(words_moved("report `[a.x]`  rows 1", "report `[1]`  rows 1"), ["[1] message"]);
+        assert!(words_moved("curve `line(A, B)`  length 1 m", "curve `line(A, C)`  length 1 m").is_empty());
     }
 
     #[test]

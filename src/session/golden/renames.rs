@@ -106,6 +106,16 @@ impl Renames {
         same
     }
 
+    /// Whether two stretches of source say the same: layout aside, with the names of today.
+    pub fn same_words(&mut self, old: &str, new: &str) -> bool {
+        let before = self.clone();
+        let same = self.same_source(old, new, true);
+        if !same {
+            *self = before;
+        }
+        same
+    }
+
     fn same_source(&mut self, old: &str, new: &str, lenient: bool) -> bool {
         let (one, other) = (tokens(old), tokens(new));
         one.len() == other.len() && one.iter().zip(other).all(|(a, b)| self.same_token(a, b, lenient))

@@ -15,8 +15,8 @@ use crate::lang::diag::{Diagnostic, FileId, Sources};
 use crate::session::report::{Cell, Column, Corners, CurveRow, MeshRow, ModelingRow, Report, ShellRow, SurfaceRow, Table};
 use crate::session::run::Outcome;
 
-/// Rows of a table that stand in a golden one by one; those of a longer one behind them stand there together.
-const ROWS: usize = 1000;
+/// Rows of a table that stand in a golden one by one; those of a longer one behind them stand there together, without tolerance.
+const ROWS: usize = 10_000;
 
 /// The lines of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
