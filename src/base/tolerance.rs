@@ -75,6 +75,8 @@ pub const NEAREST_PAIR: f64 = 1e-6;
 pub const BOX: f64 = 1e-6;
 /// A bound above this says nothing; finite, so that arithmetic on it never becomes NaN.
 pub const VAST: f64 = 1e120;
+/// No place of an edge is nearer to a point by more than this share of the distance than the one that is told.
+pub const NEAREST_PLACE: f64 = 1e-3;
 /// Nearest points are the nearest ones to this share of their distance.
 pub const NEAREST: f64 = 1e-9;
 

@@ -313,12 +313,10 @@ impl Layout {
         fractions.iter().map(|f| self.point(stretch, *f)).collect()
     }
 
-    /// Distance of a point from a stretch, never below the true one.
+    /// Distance of a point from a stretch, never below the true one and above it by a thousandth at most.
     pub fn distance(&self, stretch: usize, p: DVec3) -> f64 {
         let atom = &self.pieces.atoms[stretch];
-        let track = &self.parts[atom.track].track;
-        let (s, distance) = track.closest(p);
-        if s >= atom.s.0 && s <= atom.s.1 { distance } else { track.point(s.clamp(atom.s.0, atom.s.1)).distance(p) }
+        self.parts[atom.track].track.closest(p, atom.s).1
     }
 
     /// Point of a stretch at a fraction of its length.

@@ -81,7 +81,7 @@ impl Model {
         let mut placed: Vec<(f64, f64, EdgePart)> = Vec::new();
         for edge in edges {
             let track = to.model.track(*edge, to.network);
-            let [a, middle, b] = [0.25, 0.5, 0.75].map(|f| old.closest(track.point(f * track.length())).0);
+            let [a, middle, b] = [0.25, 0.5, 0.75].map(|f| old.closest(track.point(f * track.length()), (0.0, old.length())).0);
             let length = track.length();
             // Over the start of a ring the stations leap.
             let against = if (a < middle) == (middle < b) { b < a } else { (a < middle) == (b < a) && a > middle };

@@ -15,6 +15,7 @@ mod measure_quadrature;
 mod measure_strips;
 mod measure_trimmed;
 pub mod moments;
+mod nearest;
 mod outwards;
 mod patches;
 mod sew;

@@ -83,6 +83,11 @@ impl SharedTrack {
         self.jet(s).0
     }
 
+    /// Distance of a point, larger than the true one by a thousandth at most.
+    pub fn distance(&self, p: DVec3) -> f64 {
+        self.track.closest(p, (self.from, self.from + self.length)).1
+    }
+
     /// The track it is a part of, with the arc lengths there.
     pub fn whole(&self) -> (&Track, (f64, f64)) {
         (&self.track, (self.from, self.from + self.length))

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::nearest::nearest;
 use super::topology::EdgeCurve;
 use crate::base::digest::{Content, Digester};
 use crate::base::job;
@@ -234,25 +235,10 @@ impl Track {
         }
     }
 
-    /// Arc length and distance of the point of the track nearest to a point: by projection from the nearest of some places, so
-    /// the distance is never below the true one.
-    pub fn closest(&self, p: DVec3) -> (f64, f64) {
-        const SAMPLES: u32 = 64;
-        const ROUNDS: u32 = 20;
-        let length = self.length();
-        let places = (0..=SAMPLES).map(|k| length * f64::from(k) / f64::from(SAMPLES)).map(|s| (s, self.point(s).distance(p)));
-        let nearest = places.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, f64::INFINITY));
-        let mut best = nearest;
-        let mut s = nearest.0;
-        for _ in 0..ROUNDS {
-            let (point, tangent) = self.jet(s);
-            s = (s + (p - point).dot(tangent)).clamp(0.0, length);
-            let distance = self.point(s).distance(p);
-            if distance < best.1 {
-                best = (s, distance);
-            }
-        }
-        best
+    /// Arc length and distance of the place between two arc lengths that is nearest to a point: no other one is nearer by more
+    /// than a thousandth, and the distance is never below the true one.
+    pub fn closest(&self, p: DVec3, span: (f64, f64)) -> (f64, f64) {
+        nearest(|s| self.jet(s), span, p)
     }
 
     /// Points at a quarter, a half and three quarters of the length; what tells two edges with the same ends apart.

@@ -1,7 +1,6 @@
 //! How faces join along the edges they share.
 
 use super::kinds::{EdgeOf, Faces};
-use super::topology::on_track;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Say, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
@@ -84,7 +83,7 @@ fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Stop> {
     let on = |at: EdgeId| edge.1.courses.iter().flatten().any(|part| part.edge == at);
     let mut found = model.contacts((&members, reach), (&network, &tolerance), |a, b| on(a.1) || on(b.1));
     // Of a long border that several shorter ones meet, what lies beside this edge.
-    found.retain(|contact| on_track(|s| track.jet(s), length, contact.middle) <= reach.max(tolerance.point));
+    found.retain(|contact| track.distance(contact.middle) <= reach.max(tolerance.point));
     Ok(found)
 }
 

@@ -7,6 +7,7 @@ use super::cx::{Cx, Stop};
 use super::types::Ty;
 use super::value::Value;
 
+mod choosing;
 mod curves;
 mod data;
 mod distances;

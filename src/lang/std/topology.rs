@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::choosing;
 use super::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, PatchOf, VertexOf};
 use super::surfaces::checked_uv;
 use crate::base::bbox::Box3;
@@ -14,10 +15,9 @@ use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Direction, Length, Point};
 use crate::lang::value::{Home, ShellValue, Value};
 use crate::model::contact::Turn;
-use crate::model::{EdgeId, Model, PatchId, SharedEdges, SharedTrack, SurfaceId};
+use crate::model::{EdgeId, Model, PatchId, SharedEdges, SurfaceId};
 use crate::network::Chain;
-use crate::surface::plane::unbounded;
-use crate::surface::{IsoLine, Nearest, Surface, SurfaceKind};
+use crate::surface::{IsoLine, Surface, SurfaceKind};
 use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
@@ -86,63 +86,6 @@ fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Stop> 
     Ok(all.into_iter().filter(turns).collect())
 }
 
-/// Shares of an edge at which it is looked at.
-const LOOKS: u32 = 16;
-
-/// Places along an edge, its ends among them.
-fn places_along(track: &SharedTrack) -> impl Iterator<Item = DVec3> + '_ {
-    (0..=LOOKS).map(|k| track.point(track.length() * f64::from(k) / f64::from(LOOKS)))
-}
-
-/// Those of some edges that are wanted, told the geometry and the length of each.
-fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&SharedTrack, f64) -> bool) -> Result<Vec<EdgeOf>, Stop> {
-    let (mut found, mut open) = (Vec::new(), edges);
-    open.reverse();
-    while let Some(value) = open.pop() {
-        match value {
-            Value::List(items) => open.extend(items.iter().rev().cloned()),
-            Value::Edge(home, edge) => {
-                let (model, network) = (cx.model(&home)?, cx.network(home.module)?);
-                let track = model.shared_track(&edge, &network);
-                if track.is_some_and(|track| wanted(&track, track.length())) {
-                    found.push(EdgeOf(home, edge));
-                }
-            }
-            other => {
-                return Err(ValueFault::WrongKind { argument: "edges", wanted: "edges", found: cx.kind(&other) }.into());
-            }
-        }
-    }
-    Ok(found)
-}
-
-/// What edges may lie on, ready for many points.
-enum Feet {
-    Curve(Chain),
-    Surfaces(Vec<Nearest>),
-}
-
-impl Feet {
-    fn distance(&self, p: DVec3) -> f64 {
-        match self {
-            Self::Curve(chain) => chain.closest(p).2,
-            Self::Surfaces(all) => all.iter().map(|nearest| nearest.at(p).distance).fold(f64::INFINITY, f64::min),
-        }
-    }
-}
-
-impl Carrier {
-    fn feet(&self, cx: &mut Cx) -> Result<Feet, Stop> {
-        let of = |surfaces: &[Surface]| Feet::Surfaces(surfaces.iter().map(Nearest::new).collect());
-        Ok(match self {
-            Self::Curve(chain) => Feet::Curve(chain.clone()),
-            Self::Surface(surface) => of(std::slice::from_ref(surface)),
-            Self::Shell(shell) => of(&shell.surfaces),
-            Self::Plane(plane) => of(&[unbounded(plane.at, plane.normal, cx.origin())?]),
-        })
-    }
-}
-
 /// The box that a record with the points `min` and `max` is.
 fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Stop> {
     let (min, max) = (cx.names.intern("min"), cx.names.intern("max"));
@@ -166,19 +109,14 @@ fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
 
 /// The one edge of some surfaces that lies on a curve or at a point.
 fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Stop> {
-    let tolerance = cx.tolerance()?;
     let (home, model, patches) = patches(cx, surfaces)?;
-    let network = cx.network(home.module)?;
-    let lies = |edge: &EdgeId| {
-        let (track, length) = (model.track(*edge, &network), model.edges[edge.index()].length);
-        match key {
-            EdgeKey::Curve(chain) => {
-                [0.0, 0.25, 0.5, 0.75, 1.0].iter().all(|f| chain.closest(track.point(f * length)).2 <= tolerance.point)
-            }
-            EdgeKey::Point(p) => on_track(|s| track.jet(s), length, *p) <= tolerance.point,
+    let scene = Scene { model: model.clone(), network: cx.network(home.module)? };
+    let mut found: Vec<EdgeId> = Vec::new();
+    for edge in model.edges_of(&patches) {
+        if choosing::lies(cx, &scene, &model.whole_edge(edge), key)? {
+            found.push(edge);
         }
-    };
-    let found: Vec<EdgeId> = model.edges_of(&patches).into_iter().filter(lies).collect();
+    }
     let swept: Vec<EdgeId> = match key {
         EdgeKey::Point(_) => found.iter().copied().filter(|edge| is_swept(&model, &patches, *edge)).collect(),
         EdgeKey::Curve(_) => Vec::new(),
@@ -187,7 +125,7 @@ fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, S
         ([one], _) | (_, [one]) => Ok(whole(&home, &model, *one)),
         _ => {
             let of = surfaces.first().map_or(Origin::NONE, Surface::origin);
-            let places = found.iter().map(|e| model.track(*e, &network).point(0.5 * model.edges[e.index()].length)).collect();
+            let places = found.iter().map(|e| model.track(*e, &scene.network).point(0.5 * model.edges[e.index()].length)).collect();
             Err(ValueFault::NotOneEdge { of, places }.into())
         }
     }
@@ -200,19 +138,6 @@ fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
         let along = |side: usize| patch.sides.get(side).is_some_and(|s| s.edges.iter().any(|(e, _)| *e == edge));
         matches!(kind, SurfaceKind::Extrude | SurfaceKind::Revolve) && (along(0) || along(2))
     })
-}
-
-/// Distance of a point from a track of this length, by projection from the nearest of some samples.
-pub(super) fn on_track(jet: impl Fn(f64) -> (DVec3, DVec3), length: f64, p: DVec3) -> f64 {
-    const SAMPLES: u32 = 64;
-    const ROUNDS: u32 = 20;
-    let stations = (0..=SAMPLES).map(|k| length * f64::from(k) / f64::from(SAMPLES));
-    let nearest = stations.min_by(|a, b| jet(*a).0.distance_squared(p).total_cmp(&jet(*b).0.distance_squared(p))).unwrap_or(0.0);
-    let foot = (0..ROUNDS).fold(nearest, |s, _| {
-        let (point, tangent) = jet(s);
-        (s + (p - point).dot(tangent)).clamp(0.0, length)
-    });
-    jet(foot).0.distance(p).min(jet(nearest).0.distance(p))
 }
 
 /// The modeling curve along an edge.
@@ -273,7 +198,7 @@ builtins! {
 
     /// Those of some edges that lie on a plane, surface, shell or curve.
     ///
-    /// An edge lies on it where its ends and 15 places between them do, within the tolerance.
+    /// An edge lies on it where all of it does, within the tolerance.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
@@ -284,11 +209,7 @@ builtins! {
         edges: Vec<Value>,
         /// A plane, surface, shell or curve.
         carrier: Carrier,
-    ) -> Vec<EdgeOf> = |cx, edges, carrier| {
-        let tolerance = cx.tolerance()?;
-        let feet = carrier.feet(cx)?;
-        chosen(cx, edges, |track, _| places_along(track).all(|p| feet.distance(p) <= tolerance.point))
-    };
+    ) -> Vec<EdgeOf> = |cx, edges, carrier| choosing::on(cx, edges, &carrier);
 
     /// Those of some edges that lie inside a box along the axes, its border included.
     ///
@@ -303,8 +224,8 @@ builtins! {
         /// A box, as `box` and `bbox` give it.
         of: Value,
     ) -> Vec<EdgeOf> = |cx, edges, of| {
-        let (tolerance, around) = (cx.tolerance()?, corners(cx, &of)?);
-        chosen(cx, edges, |track, _| places_along(track).all(|p| around.touches(&Box3::of([p]), tolerance.point)))
+        let around = corners(cx, &of)?;
+        choosing::inside(cx, edges, &around)
     };
 
     /// Those of some edges whose length is between two lengths.
@@ -329,7 +250,7 @@ builtins! {
         }
         let tolerance = cx.tolerance()?;
         let (least, most) = (least.map_or(0.0, |l| l.0), most.map_or(f64::INFINITY, |l| l.0));
-        chosen(cx, edges, |_, length| length >= least - tolerance.point && length <= most + tolerance.point)
+        choosing::by_length(cx, edges, |length| length >= least - tolerance.point && length <= most + tolerance.point)
     };
 
     /// The line of constant u or v of a surface, as a curve.

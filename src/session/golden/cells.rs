@@ -252,10 +252,10 @@ mod tests {
         let told = |rows: &[Vec<Cell>]| -> Vec<Entry> { together(rows).iter().map(|cell| Entry::of(cell, "")).collect() };
         let allowance = Allowance { tolerance: 1e-9, size: 10.0 };
         let (whole, mut other) = (told(&rows(0, 0.0)), rows(0, 0.0));
-        assert_eq!(excess(&whole, &told(&rows(0, 0.0)), allowance), None);
-        assert!(excess(&whole, &told(&rows(3000, 0.005)), allowance).is_some());
+        assert_eq!(excess(&whole, &told(&rows(0, 0.0)), &|measure, x, y| allowance.excess(measure, x, y)), None);
+        assert!(excess(&whole, &told(&rows(3000, 0.005)), &|measure, x, y| allowance.excess(measure, x, y)).is_some());
         other.swap(3000, 3001);
-        assert!(excess(&whole, &told(&other), allowance).is_some());
+        assert!(excess(&whole, &told(&other), &|measure, x, y| allowance.excess(measure, x, y)).is_some());
     }
 
     #[test]
@@ -285,7 +285,11 @@ mod tests {
             ("(7850.5 kg/m3 | \"v\")", "(7850.50001 kg/m3 | \"v\")", false),
         ] {
             let quoted_text = |text: &str| vec![Entry::Text(text.to_owned())];
-            assert_eq!(excess(&quoted_text(a), &quoted_text(b), allowance).is_none(), same, "{a} {b}");
+            assert_eq!(
+                excess(&quoted_text(a), &quoted_text(b), &|measure, x, y| allowance.excess(measure, x, y)).is_none(),
+                same,
+                "{a} {b}"
+            );
         }
         for (a, b) in [("12 m", "12 mm"), ("a", "b"), ("1", "1 | 2"), ("1", "(1)"), ("(1, 2)", "(1, 2, 3)"), ("3", "x")] {
             assert_eq!(check(a, b), Some(f64::INFINITY), "{a} {b}");
