@@ -137,6 +137,10 @@ impl Dice {
 fn damage(cache: &Path, dice: &mut Dice) {
     for file in files_of(cache) {
         let whole = fs::read(&file).unwrap();
+        // One that is empty since it was damaged before, and not read again.
+        if whole.is_empty() {
+            continue;
+        }
         let mut bytes = whole.clone();
         let at = dice.below(bytes.len());
         match dice.below(5) {

@@ -34,11 +34,11 @@ limits! {
     /// Steps of a mesh along one stretch of border between two corners.
     pub const MESH_STEPS: u32 = 1_000_000;
     /// Work of one mesh or one of its free faces, in evaluations of curves and surfaces, beside that of its elements.
-    pub const MESH_WORK: u64 = 20_000_000;
+    pub const MESH_WORK: u64 = 10_000_000;
     /// The same for each element of the mesh.
-    pub const WORK_OF_AN_ELEMENT: u64 = 1_000;
+    pub const WORK_OF_AN_ELEMENT: u64 = 500;
     /// Work of one call, in evaluations of curves and surfaces.
-    pub const CALL_WORK: u64 = 50_000_000;
+    pub const CALL_WORK: u64 = 25_000_000;
     /// Pixels along a side of a picture.
     pub const PICTURE_SIDE: u32 = 8_192;
     /// Pixels of one picture.

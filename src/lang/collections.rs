@@ -11,6 +11,7 @@ use super::later;
 use super::lookalikes;
 use super::module::bound;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
+use super::room::flat_len;
 use super::settings::{self, Setting};
 use super::std::imprint::pieces;
 use super::syntax::ast::{self, ClauseWord, Declaration, Expr, ExprId, For, Keyword, MeshClause, Span};
@@ -256,6 +257,10 @@ impl Cx<'_> {
 
     /// W728 where a selection is empty: the whole expression, or one that is written inside a list.
     fn say_empty(&mut self, code: Code<'_>, thing: ExprId, value: &Value, word: &'static str) {
+        // Lists that hold each other without end are no empty ones to look for.
+        if flat_len(value, limits::LIST_MEMBERS) > limits::LIST_MEMBERS {
+            return;
+        }
         let mut flat = Vec::new();
         flatten_into(value.clone(), &mut flat);
         match (value, code.expr(thing)) {

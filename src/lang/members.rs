@@ -3,10 +3,12 @@
 use super::coerce::{Misfit, accepts, flatten_into};
 use super::cx::{Cx, Stop};
 use super::plans::ReportTable;
+use super::room::flat_len;
 use super::std::{self, Builtin};
 use super::units;
 use super::value::{Dim, Value};
 use crate::base::fault::Fault;
+use crate::base::limits;
 use crate::mesh::Group;
 
 /// The column of a member's unit, where each member is a row.
@@ -36,6 +38,10 @@ impl Cx<'_> {
 
     /// A row for each of these things, members of families and groups included; `None` where none is an entity.
     pub(super) fn told_rows(&mut self, things: &[(String, Value)]) -> Result<Option<ReportTable>, Stop> {
+        // So many are no rows to read.
+        if things.iter().any(|(_, value)| flat_len(value, limits::LIST_MEMBERS) > limits::LIST_MEMBERS) {
+            return Ok(None);
+        }
         let mut flat: Vec<(Option<&str>, Value)> = Vec::new();
         for (source, value) in things {
             let mut items = Vec::new();
