@@ -11,6 +11,10 @@ use crate::base::par;
 use crate::mesh::chart::Shape;
 use crate::mesh::data::Mesh;
 use crate::mesh::faces::{Frame, Prepared};
+use crate::surface::Surface;
+
+/// Least part along the normal of the surface of the sine of a corner of what is divided.
+const LEAST: f64 = 0.1;
 
 /// An edge by its nodes in the mesh, or by its places in a chart, the lower first.
 type Edge = (u32, u32);
@@ -26,12 +30,13 @@ pub(in crate::mesh) fn divide(made: &Made, prepared: &mut [Prepared], mesh: &Mes
         }
     }
     for (edge, faces) in shared {
-        let mut able: Vec<usize> = faces.iter().copied().filter(|f| divides(&prepared[*f])).collect();
         // One face may keep it.
-        able.truncate(faces.len() - 1);
-        for f in able {
-            let local = local(&prepared[f], edge);
-            any |= local.is_some_and(|edge| divide_edge(&mut prepared[f], edge));
+        let mut left = faces.len() - 1;
+        for f in faces {
+            let local = local(&prepared[f], edge).filter(|_| left > 0 && divides(&prepared[f]));
+            if local.is_some_and(|edge| divide_edge(&mut prepared[f], edge)) {
+                (left, any) = (left - 1, true);
+            }
         }
     }
     any
@@ -143,10 +148,18 @@ fn divide_edge(ready: &mut Prepared, (a, b): Edge) -> bool {
     }
     let (p, q) = (free.uv[a as usize], free.uv[b as usize]);
     let uv = middle(p, q);
+    let surface = &ready.chart.surface;
+    let parts = |(n, k): &(usize, usize)| {
+        let [from, to, tip] = [0, 1, 2].map(|d| free.uv[free.triangles[*n][(k + d) % 3] as usize]);
+        [[from, uv, tip], [uv, to, tip]]
+    };
+    if !found.iter().flat_map(parts).all(|corners| is_upright(surface, corners)) {
+        return false;
+    }
     let new = free.uv.len() as u32;
     free.uv.push(uv);
     ids.push(u32::MAX);
-    ready.made.push(ready.chart.surface.point(uv.0, uv.1));
+    ready.made.push(surface.point(uv.0, uv.1));
     for (n, k) in found {
         let t = free.triangles[n];
         let (from, to, tip) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
@@ -156,4 +169,12 @@ fn divide_edge(ready: &mut Prepared, (a, b): Edge) -> bool {
     ready.inner += 1;
     ready.triangles += 2;
     true
+}
+
+/// Whether a triangle lies with the surface, not across or against it, and is no sliver.
+fn is_upright(surface: &Surface, corners: [(f64, f64); 3]) -> bool {
+    let [a, b, c] = corners.map(|(u, v)| surface.point(u, v));
+    let third = |x: [f64; 3]| x.iter().sum::<f64>() / 3.0;
+    let normal = surface.normal(third(corners.map(|c| c.0)), third(corners.map(|c| c.1)));
+    (b - a).cross(c - a).dot(normal) > LEAST * (b - a).length() * (c - a).length()
 }
