@@ -4,7 +4,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{job, work};
+use super::job;
+#[cfg(feature = "parallel")]
+use super::work;
 
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 

@@ -16,9 +16,10 @@ import time
 # A step that ends in `Enter` is one entry; what it answers stands between it and the next prompt.
 STEPS = [
     (["curve south = line((0, 0, 0), (4m, 0, 0))", "Enter"], [r"curve south: line, 4000 mm, 1 link"]),
-    # A mistake is shown under the entry, and changes nothing.
+    # A mistake is shown under the entry, and changes nothing: there is nothing of it to undo.
     (["curve north = lin((0, 3m, 0), (4m, 3m, 0))", "Enter"], [r"E201 × there is no function `lin`", r"did you mean `line`\?"]),
-    ([":undo", "Enter"], [r"!\(failed\)"]),
+    ([":undo", "Enter"], [r"undid: south added"]),
+    ([":redo", "Enter"], [r"redid: south added"]),
     # Tab completes a keyword, a function and a name; the signature stands behind the cursor.
     (["curve north = polyl", "Tab"], [r"curve north = polyline\(", r"polyline\(points"]),
     (["[(0, 3m, 0), (4m, 3m, 0)])", "Enter"], [r"curve north: \w+, 4000 mm, 1 link"]),
