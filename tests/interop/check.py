@@ -17,6 +17,7 @@ import members
 import orders
 import read_back
 import solve
+import surfaces
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -125,6 +126,9 @@ def main():
             check_orders(tally, loft, work, elements, order)
     for case in solve.CASES + members.CASES:
         tally.check(f"CalculiX: {case.name}", lambda: case.run(lambda *a: run_loft(loft, *a), work))
+    for model in sorted(glob.glob(os.path.join(HERE, "models", "surfaces", "*.loft"))):
+        label = f"{os.path.basename(model)} by OpenCASCADE"
+        tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
     print(f"{tally.passed} passed, {tally.failed} failed")
     return 1 if tally.failed else 0
