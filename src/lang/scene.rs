@@ -10,9 +10,9 @@ use crate::base::fault::{Fault, Say};
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
 use crate::model::topology::Named;
-use crate::model::{Edge, EdgeCurve, Model, SharedEdge, Shell, ShellRequest, SurfaceId, Trace};
+use crate::model::{Model, SharedEdge, Shell, ShellRequest, SurfaceId};
 use crate::network::{Chain, Network};
-use crate::surface::{Domain, IsoLine, Side, Surface};
+use crate::surface::{Side, Surface};
 
 /// A surface model with the network it stands on.
 #[derive(Clone, Debug)]
@@ -123,56 +123,12 @@ impl Scene {
     pub fn shared_chain(&self, edge: &SharedEdge, tolerance: &Tolerance) -> Result<Option<Chain>, Stop> {
         let Some(part) = edge.first() else { return Ok(None) };
         let whole = &self.model.edges[part.edge.index()];
-        let Some(chain) = self.edge_chain(whole, tolerance)? else { return Ok(None) };
+        let Some(chain) = self.model.edge_chain(part.edge, &self.network, tolerance)? else { return Ok(None) };
         if part.s == (0.0, whole.length) {
             return Ok(Some(chain));
         }
         let length = whole.length;
         Ok(Some(chain.slice(part.s.0 / length, part.s.1 / length, tolerance)?))
-    }
-
-    /// A line of a surface as a curve from one (u, v) to the other; `None` where neither u nor v stays.
-    fn line_chain(&self, id: SurfaceId, (from, to): ((f64, f64), (f64, f64)), tolerance: &Tolerance) -> Result<Option<Chain>, Stop> {
-        let surface = &self.model.surfaces[id.index()].surface;
-        let (line, a, b) = match (from.0 == to.0, from.1 == to.1) {
-            (true, _) => (IsoLine::U(from.0), from.1, to.1),
-            (_, true) => (IsoLine::V(from.1), from.0, to.0),
-            _ => return Ok(None),
-        };
-        let trimmed = surface.domain() == Domain::Loop && !surface.is_flat();
-        let surface = &if trimmed { surface.untrimmed() } else { surface.clone() };
-        let Some(curve) = surface.iso(line, surface.origin(), tolerance)? else { return Ok(None) };
-        let chain = Chain::of_curve(&curve);
-        let length = |t: f64| Trace::new(surface, line.at(0.0), line.at(t)).length();
-        let whole = length(1.0);
-        let part = |low: f64, high: f64| {
-            let (low, high) = (if low <= 0.0 { 0.0 } else { length(low) / whole }, if high >= 1.0 { 1.0 } else { length(high) / whole });
-            if low == 0.0 && high == 1.0 { Ok(chain.clone()) } else { chain.slice(low, high, tolerance) }
-        };
-        Ok(Some(if a <= b { part(a, b)? } else { part(b, a)?.reversed() }))
-    }
-
-    /// The modeling curve an edge of the model runs along; `None` for an edge that no chain carries.
-    pub fn edge_chain(&self, edge: &Edge, tolerance: &Tolerance) -> Result<Option<Chain>, Stop> {
-        if let EdgeCurve::Iso { surface, from, to } = &edge.curve {
-            return self.line_chain(*surface, (*from, *to), tolerance);
-        }
-        if let EdgeCurve::Run { chain, span } = &edge.curve {
-            let length = chain.length();
-            let whole = span.0 <= tolerance.point && span.1 >= length - tolerance.point;
-            return Ok(Some(if whole { chain.clone() } else { chain.slice(span.0 / length, span.1 / length, tolerance)? }));
-        }
-        let EdgeCurve::Links { links, span } = &edge.curve else { return Ok(None) };
-        let chains = links.iter().map(|(link, against)| {
-            let chain = self.network.link_chain(*link);
-            if *against { chain.reversed() } else { chain }
-        });
-        let chains: Vec<Chain> = chains.collect();
-        let Some(first) = chains.first() else { return Ok(None) };
-        let run = if chains.len() == 1 { first.clone() } else { Chain::join(&chains, first.origin(), tolerance)? };
-        let length = run.length();
-        let whole = span.0 <= tolerance.point && span.1 >= length - tolerance.point;
-        Ok(Some(if whole { run } else { run.slice(span.0 / length, span.1 / length, tolerance)? }))
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     let edges: BTreeSet<usize> = places.values().map(|p| p.0).collect();
     let edges: Vec<usize> = edges.into_iter().collect();
     let (model, tolerance) = (&scan.input.model, scan.input.tolerance);
-    let ways = par::map(edges.len(), |n| model.edge_way(scan.layout.edges[edges[n]], scan.input.network, tolerance).ok().flatten());
+    let ways = par::map(edges.len(), |n| model.edge_chain(scan.layout.edges[edges[n]], scan.input.network, tolerance).ok().flatten());
     let ways: BTreeMap<usize, Chain> = edges.into_iter().zip(ways).filter_map(|(edge, way)| Some((edge, way?))).collect();
     let surfaces: BTreeSet<SurfaceId> = tasks.iter().map(|t| scan.surface_of(t.face)).collect();
     let surfaces: Vec<SurfaceId> = surfaces.into_iter().collect();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::topology::{EdgeCurve, EdgeId, Model, SurfaceId};
+use super::topology::{EdgeId, Model, SurfaceId};
 use crate::base::boxtree::BoxTree;
 use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
@@ -12,7 +12,6 @@ use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, Network, meet};
-use crate::surface::IsoLine;
 use crate::surface::meet::with_surfaces;
 
 /// Curves and points that faces have in common beside the edges that they share.
@@ -82,7 +81,7 @@ impl Model {
         crossing.retain(|(x, y)| x != y);
         let edges: BTreeSet<EdgeId> = crossing.iter().flat_map(|(a, b)| [*a, *b]).collect();
         let edges: Vec<EdgeId> = edges.into_iter().collect();
-        let ways = par::try_map(edges.len(), |k| self.edge_way(edges[k], network, tolerance))?;
+        let ways = par::try_map(edges.len(), |k| self.edge_chain(edges[k], network, tolerance))?;
         let ways: BTreeMap<EdgeId, Chain> = edges.into_iter().zip(ways).filter_map(|(e, way)| Some((e, way?))).collect();
         let curves: Vec<Chain> = met.into_iter().flat_map(|m| m.curves).collect();
         let mut pairs: Vec<(&Chain, &Chain)> = crossing.iter().filter_map(|(a, b)| Some((ways.get(a)?, ways.get(b)?))).collect();
@@ -125,7 +124,7 @@ impl Model {
             };
             let mut ways = Vec::new();
             for edge in shared {
-                ways.extend(self.edge_way(*edge, network, tolerance)?);
+                ways.extend(self.edge_chain(*edge, network, tolerance)?);
             }
             let mut curves = Vec::new();
             for curve in found {
@@ -153,46 +152,5 @@ impl Model {
     /// Edges of a surface.
     pub(super) fn sides_of(&self, surface: SurfaceId) -> Vec<EdgeId> {
         self.edges_of(&self.patches_of(surface).collect::<Vec<_>>())
-    }
-
-    /// An edge as a chain; `None` for one that no curve carries (a straight line in (u, v) of a trimmed face).
-    pub fn edge_way(&self, edge: EdgeId, network: &Network, tolerance: &Tolerance) -> Result<Option<Chain>> {
-        let edge = &self.edges[edge.index()];
-        let (whole, span) = match &edge.curve {
-            EdgeCurve::Links { links, span } => {
-                let chain = |(link, against): &(_, bool)| {
-                    let chain = network.link_chain(*link);
-                    if *against { chain.reversed() } else { chain }
-                };
-                let chains: Vec<Chain> = links.iter().map(chain).collect();
-                let Some(first) = chains.first() else { return Ok(None) };
-                (if chains.len() == 1 { first.clone() } else { Chain::join(&chains, first.origin(), tolerance)? }, *span)
-            }
-            EdgeCurve::Run { chain, span } => (chain.clone(), *span),
-            EdgeCurve::Iso { surface, from, to } => {
-                let surface = &self.surfaces[surface.index()].surface;
-                let line = match (from.0 == to.0, from.1 == to.1) {
-                    (true, _) => IsoLine::U(from.0),
-                    (false, true) => IsoLine::V(from.1),
-                    _ => return Ok(None),
-                };
-                let Some(curve) = surface.iso(line, surface.origin(), tolerance)? else { return Ok(None) };
-                let chain = Chain::of_curve(&curve);
-                let (a, b) = if from.0 == to.0 { (from.1, to.1) } else { (from.0, to.0) };
-                let (a, b) = (a.min(b), a.max(b));
-                if a <= 0.0 && b >= 1.0 {
-                    return Ok(Some(chain));
-                }
-                let at = |t: f64| {
-                    let (u, v) = line.at(t);
-                    chain.closest(surface.point(u, v)).0 * chain.length()
-                };
-                let ends = (at(a), at(b));
-                (chain, (ends.0.min(ends.1), ends.0.max(ends.1)))
-            }
-        };
-        let length = whole.length();
-        let all = span.0 <= tolerance.point && span.1 >= length - tolerance.point;
-        Ok(Some(if all { whole } else { whole.slice(span.0 / length, span.1 / length, tolerance)? }))
     }
 }

@@ -76,11 +76,11 @@ impl Model {
         }
         let mut borders = Vec::new();
         for edge in self.sides_of(of) {
-            borders.extend(self.edge_way(edge, network, tolerance)?);
+            borders.extend(self.edge_chain(edge, network, tolerance)?);
         }
         let mut kept: Vec<Chain> = Vec::new();
         for edge in edges {
-            let Some(way) = self.edge_way(edge, network, tolerance)? else { continue };
+            let Some(way) = self.edge_chain(edge, network, tolerance)? else { continue };
             for run in with_curve(&way, std::slice::from_ref(surface), tolerance)? {
                 let Some(to) = run.shared_to else { continue };
                 let whole = run.f <= 0.0 && to >= 1.0;

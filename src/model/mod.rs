@@ -4,6 +4,7 @@ pub mod apart;
 pub mod atoms;
 pub mod carry;
 pub mod contact;
+mod edge_chain;
 mod feet;
 pub mod gather;
 pub mod glue;
