@@ -7,7 +7,7 @@ use super::chart::Charts;
 use super::data::{FaceRange, Mesh};
 use super::edges::Limits;
 use super::explain::Explanation;
-use super::faces::{self, Frame, Prepared};
+use super::faces::{self, FaceRanges, Frame, Prepared};
 use super::free::face::{self as free_face, Made};
 use super::free::twins;
 use super::layout::{Face, Layout};
@@ -375,13 +375,14 @@ fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], (keyed, again): 
 }
 
 fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [Prepared], wishes: &'a [[Wish; 2]]) -> Vec<Finished<'a>> {
-    let mut first = 0;
-    let one = |(f, ready): (usize, &'a Prepared)| {
-        let triangles = first..first + ready.triangles as usize;
-        first = triangles.end;
-        Finished { face: &layout.faces[f], ready, triangles, wishes: &wishes[f], written: written(layout, sizing, f) }
+    let one = |(f, (triangles, _)): (usize, FaceRanges)| Finished {
+        face: &layout.faces[f],
+        ready: &prepared[f],
+        triangles,
+        wishes: &wishes[f],
+        written: written(layout, sizing, f),
     };
-    prepared.iter().enumerate().map(one).collect()
+    faces::element_ranges(prepared).into_iter().enumerate().map(one).collect()
 }
 
 /// Everything but the layout.
@@ -397,10 +398,8 @@ struct Done {
 fn finish(input: &Input, layout: Layout, done: Done) -> Part {
     let Done { nodes, prepared, sizing, mut mesh, explanation } = done;
     let mut ranges = super::sets::Ranges::new();
-    let (mut t, mut q) = (0, 0);
-    for (ready, face) in prepared.iter().zip(&layout.faces) {
-        let (triangles, quads) = (t..t + ready.triangles as u32, q..q + ready.quads as u32);
-        (t, q) = (triangles.end, quads.end);
+    for ((ready, face), own) in prepared.iter().zip(&layout.faces).zip(faces::element_ranges(&prepared)) {
+        let [triangles, quads] = [own.0, own.1].map(|range| range.start as u32..range.end as u32);
         let name = input.model.surfaces[ready.surface.index()].name.clone();
         mesh.faces.push(FaceRange { name, triangles: triangles.clone(), quads: quads.clone(), lines: 0..0 });
         ranges.push(((face.patch, ready.surface), triangles, quads));

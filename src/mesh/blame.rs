@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::data::Mesh;
 use super::edges::distance_to_segment;
-use super::faces::Prepared;
+use super::faces::{Prepared, element_ranges};
 use super::foresee::{self, Foreseen, SHARP};
 use super::free::face::Made;
 use super::layout::Face;
@@ -44,13 +44,7 @@ pub struct Seen {
 
 /// The least angle of each face; nothing where triangles are long by their method.
 pub fn of_faces(made: &Made, (sizing, foreseen): (&Sizing, &[Option<Foreseen>]), prepared: &[Prepared], mesh: &Mesh) -> Vec<Seen> {
-    let (mut t, mut q) = (0, 0);
-    let ranges = prepared.iter().map(|ready| {
-        let range = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
-        (t, q) = (range.0.end, range.1.end);
-        range
-    });
-    let ranges: Vec<_> = ranges.collect();
+    let ranges = element_ranges(prepared);
     par::map(prepared.len(), |f| {
         let elements = (&mesh.triangles[ranges[f].0.clone()], &mesh.quads[ranges[f].1.clone()]);
         of_face(made, (sizing, foreseen[f].as_ref()), &made.layout.faces[f], elements, mesh).unwrap_or_default()

@@ -9,7 +9,7 @@ use crate::base::par;
 use crate::model::SurfaceId;
 use crate::network::Chain;
 use crate::surface::meet::{SurfaceMeeting, with_curve};
-use crate::surface::{Domain, Surface, trim};
+use crate::surface::{Surface, with_loops};
 
 /// A stretch of an edge and a face near it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,11 +49,7 @@ pub(super) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     let ways: BTreeMap<usize, Chain> = edges.into_iter().zip(ways).filter_map(|(edge, way)| Some((edge, way?))).collect();
     let surfaces: BTreeSet<SurfaceId> = tasks.iter().map(|t| scan.surface_of(t.face)).collect();
     let surfaces: Vec<SurfaceId> = surfaces.into_iter().collect();
-    let bordered = par::map(surfaces.len(), |n| {
-        let surface = &model.surfaces[surfaces[n].index()].surface;
-        let bare = surface.domain() == Domain::Loop && surface.outlines().is_empty();
-        if bare { trim(surface, &[], &[], surface.origin(), tolerance).ok() } else { Some(surface.clone()) }
-    });
+    let bordered = par::map(surfaces.len(), |n| with_loops(&model.surfaces[surfaces[n].index()].surface, tolerance).ok());
     let surfaces: BTreeMap<SurfaceId, Surface> = surfaces.into_iter().zip(bordered).filter_map(|(id, s)| Some((id, s?))).collect();
     // An edge meets a surface once, whatever the stretches of the one and the faces of the other.
     let pair = |task: &Task| Some((places.get(&task.stretch)?.0, scan.surface_of(task.face)));

@@ -1,5 +1,7 @@
 //! Faces ready to be filled: their charts, the ids of their border nodes, and how many nodes and elements they make.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::build::Input;
@@ -281,6 +283,20 @@ impl Frame {
         };
         lists.into_iter().flatten().for_each(|id| *id += by);
     }
+}
+
+/// The triangles and quads of one face among those of its mesh.
+pub type FaceRanges = (Range<usize>, Range<usize>);
+
+/// The triangles and quads of each face among those of the mesh, where they follow each other face by face.
+pub fn element_ranges(prepared: &[Prepared]) -> Vec<FaceRanges> {
+    let (mut t, mut q) = (0, 0);
+    let one = |ready: &Prepared| {
+        let own = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
+        (t, q) = (own.0.end, own.1.end);
+        own
+    };
+    prepared.iter().map(one).collect()
 }
 
 impl Prepared {

@@ -6,7 +6,7 @@ use super::build::Input;
 use super::chart::{Chart, Shape};
 use super::chord::{each_cell, ids};
 use super::data::Mesh;
-use super::faces::{Frame, Prepared};
+use super::faces::{Frame, Prepared, element_ranges};
 use super::layout::Layout;
 use super::nodes::Nodes;
 use crate::base::job;
@@ -59,8 +59,7 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
             });
         }
     }
-    let (mut triangle, mut quad) = (0, 0);
-    for ready in prepared {
+    for (ready, (triangles, quads)) in prepared.iter().zip(element_ranges(prepared)) {
         let surface = &input.model.surfaces[ready.surface.index()].surface;
         let places = Places { chart: &ready.chart, frame: &ready.chart.frame };
         let mut made: Vec<Edge> = Vec::new();
@@ -77,7 +76,7 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
         // Elements of a face come in the order of its cells.
         places.each(
             ready,
-            &mesh.triangles[triangle..triangle + ready.triangles as usize],
+            &mesh.triangles[triangles],
             |corners, uv, is_quad| {
                 job::look();
                 let n = corners.len();
@@ -88,10 +87,8 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
                     mesh.triangle_mids.push([mids[0], mids[1], mids[2]]);
                 }
             },
-            &mesh.quads[quad..quad + ready.quads as usize],
+            &mesh.quads[quads],
         );
-        triangle += ready.triangles as usize;
-        quad += ready.quads as usize;
         let points: Vec<DVec3> = par::map(made.len(), |k| middle_of(surface, &made[k]));
         mesh.nodes.extend(points);
     }

@@ -12,7 +12,7 @@ use glam::DVec2;
 use super::build::Input;
 use super::chart::{Chart, Shape};
 use super::data::Mesh;
-use super::faces::{Frame, Prepared};
+use super::faces::{Frame, Prepared, element_ranges};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use super::plan::{Elements, Method};
@@ -206,41 +206,41 @@ impl Claim<'_> {
 }
 
 /// What a face of a layout says of itself: its border and lines by nodes, and its Euler number.
-struct Told {
-    border: Vec<[u32; 2]>,
+struct Border {
+    edges: Vec<[u32; 2]>,
     lines: Vec<[u32; 2]>,
     points: Vec<u32>,
     euler: Option<i64>,
 }
 
-impl Told {
+impl Border {
     fn new(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) -> Self {
         let record = &input.model.patches[face.patch.index()];
         let surface = &input.model.surfaces[face.surface.index()].surface;
-        let mut told = Self { border: Vec::new(), lines: Vec::new(), points: Vec::new(), euler: Some(1) };
+        let mut own = Self { edges: Vec::new(), lines: Vec::new(), points: Vec::new(), euler: Some(1) };
         // The sides of each loop.
         let loops = if surface.domain() == Domain::Loop { surface.loops() } else { vec![face.sides.len()] };
         let (mut starts, mut side) = (Vec::new(), 0);
         for sides in loops {
-            starts.push(told.border.len());
+            starts.push(own.edges.len());
             for k in side..(side + sides).min(face.sides.len()) {
                 for used in &face.sides[k].uses {
                     let back = input.model.runs_back(record, k) != face.flipped;
                     let ids = nodes.of_stretch(layout, used.atom, used.against);
-                    told.border.extend(ids.windows(2).map(|w| if back { [w[1], w[0]] } else { [w[0], w[1]] }));
+                    own.edges.extend(ids.windows(2).map(|w| if back { [w[1], w[0]] } else { [w[0], w[1]] }));
                 }
             }
             side += sides;
         }
         if surface.domain() == Domain::Loop {
-            starts.push(told.border.len());
-            told.euler = euler(starts.windows(2).map(|w| &told.border[w[0]..w[1]]));
+            starts.push(own.edges.len());
+            own.euler = euler(starts.windows(2).map(|w| &own.edges[w[0]..w[1]]));
         }
         for line in &face.lines {
-            told.lines.extend(nodes.of_stretch(layout, *line, false).windows(2).map(|w| [w[0], w[1]]));
+            own.lines.extend(nodes.of_stretch(layout, *line, false).windows(2).map(|w| [w[0], w[1]]));
         }
-        told.points = face.points.iter().map(|k| nodes.points[*k]).collect();
-        told
+        own.points = face.points.iter().map(|k| nodes.points[*k]).collect();
+        own
     }
 }
 
@@ -304,25 +304,19 @@ fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), 
 
 /// The first face whose elements are not what it asks for, and what is wrong.
 pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepared: &[Prepared], mesh: &Mesh) -> Option<(usize, Defect)> {
-    let mut places = Vec::with_capacity(prepared.len());
-    let (mut t, mut q) = (0, 0);
-    for ready in prepared {
-        let (triangles, quads) = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
-        (t, q) = (triangles.end, quads.end);
-        places.push((triangles, quads));
-    }
+    let places = element_ranges(prepared);
     let found = par::map(prepared.len(), |f| {
         let (face, ready, (triangles, quads)) = (&layout.faces[f], &prepared[f], places[f].clone());
-        let told = Told::new(input, layout, nodes, face);
+        let own = Border::new(input, layout, nodes, face);
         let claim = Claim {
             triangles: &mesh.triangles[triangles],
             quads: &mesh.quads[quads],
             kind: if face.free && face.method.of_triangles().is_some() { Elements::Triangles } else { face.elements },
-            border: &told.border,
-            lines: &told.lines,
-            points: &told.points,
+            border: &own.edges,
+            lines: &own.lines,
+            points: &own.points,
             own: (ready.first, ready.inner as u32),
-            euler: told.euler,
+            euler: own.euler,
         };
         claim.hold().err().or_else(|| (!unfolded(ready, mesh)).then_some(Defect::Folded))
     });

@@ -111,30 +111,36 @@ impl Model {
         wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
     ) -> Vec<Contact> {
         let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
-        let faces = self.faces_of(members);
-        let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
-        let borders = self.borders((&faces, &loops), (&edges, &joins));
-        let order = borders_in_order(&borders);
-        let found = par::map(order.len(), |n| match borders[order[n]].as_slice() {
-            [a, b] if wanted((a.face, a.edge), (b.face, b.edge)) => Some(contact(a, b, &joins, order[n])),
-            _ => None,
-        });
-        found.into_iter().flatten().collect()
+        let one = |a: &Border, b: &Border, atom| wanted((a.face, a.edge), (b.face, b.edge)).then(|| contact(a, b, &joins, atom));
+        self.across(members, (&edges, &joins), one)
     }
 
     /// How far the normal turns at most across each stretch that two faces share, 0 to a half turn, radians, whatever the sides
     /// of their surfaces: an edge of each with where on it the middle of the stretch is. Otherwise as [`Model::contacts`].
     pub fn turns(&self, (members, near): (&[SurfaceId], f64), (network, tolerance): (&Network, &Tolerance)) -> Vec<Turn> {
         let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
+        let one = |a: &Border, b: &Border, atom| {
+            most_turn(a, b, STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()))).map(|turn| {
+                let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.atom == atom));
+                Turn { edge: a.edge, s: place.map_or(0.0, |u| 0.5 * (u.s.0 + u.s.1)), turn }
+            })
+        };
+        self.across(members, (&edges, &joins), one)
+    }
+
+    /// What is found of each stretch that two faces share, given by their borders and its number, in the order of [`borders_in_order`].
+    fn across<T: Send>(
+        &self,
+        members: &[SurfaceId],
+        (edges, joins): (&[EdgeId], &Joins),
+        one: impl Fn(&Border, &Border, usize) -> Option<T> + Sync + Send,
+    ) -> Vec<T> {
         let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
-        let borders = self.borders((&faces, &loops), (&edges, &joins));
+        let borders = self.borders((&faces, &loops), (edges, joins));
         let order = borders_in_order(&borders);
         let found = par::map(order.len(), |n| match borders[order[n]].as_slice() {
-            [a, b] => most_turn(a, b, STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()))).map(|turn| {
-                let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.atom == order[n]));
-                Turn { edge: a.edge, s: place.map_or(0.0, |u| 0.5 * (u.s.0 + u.s.1)), turn }
-            }),
+            [a, b] => one(a, b, order[n]),
             _ => None,
         });
         found.into_iter().flatten().collect()

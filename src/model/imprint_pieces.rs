@@ -15,7 +15,7 @@ use crate::base::par;
 use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::meet::with_curve;
-use crate::surface::{Domain, Nearest, Surface, split, trim};
+use crate::surface::{Domain, Nearest, Surface, split, with_loops};
 
 /// Places along a curve at which it is compared with another one.
 const SAMPLES: usize = 9;
@@ -120,19 +120,7 @@ fn parts(surface: &Surface, mut cutters: Vec<Chain>, tolerance: &Tolerance) -> R
                     return Err(Fault::Cut(fault));
                 }
             }
-            Ok(mut found) => {
-                // Of a surface with holes these may be told as parts too.
-                if surface.loops().len() > 1 {
-                    let (nearest, mut kept) = (Nearest::new(surface), Vec::new());
-                    for part in found {
-                        if inner_points(&part, tolerance)?.iter().any(|p| nearest.at(*p).distance <= tolerance.point) {
-                            kept.push(part);
-                        }
-                    }
-                    found = kept;
-                }
-                return whole(surface, found, tolerance);
-            }
+            Ok(found) => return whole(surface, found, tolerance),
             Err(fault) => return Err(fault),
         }
     }
@@ -157,9 +145,7 @@ fn whole(surface: &Surface, parts: Vec<Surface>, tolerance: &Tolerance) -> Resul
 
 /// Some points inside a face, too many to lie on a line by chance.
 fn inner_points(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec3>> {
-    // A plane without a map as one whose loops are known in (u, v).
-    let bare = surface.domain() == Domain::Loop && surface.outlines().is_empty();
-    let surface = &if bare { trim(surface, &[], &[], surface.origin(), tolerance)? } else { surface.clone() };
+    let surface = &with_loops(surface, tolerance)?;
     let outlines = match surface.domain() {
         Domain::Triangle => vec![vec![DVec2::ZERO, DVec2::X, DVec2::Y]],
         Domain::Loop => surface.outlines(),

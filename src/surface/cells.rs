@@ -36,8 +36,8 @@ pub(super) struct Cells<'a> {
     left: BTreeMap<Half, usize>,
     /// The other side of each piece of a seam, and how far it must be moved in (u, v) to lie on it.
     twins: BTreeMap<usize, (usize, DVec2)>,
-    /// A step in (u, v) that is none.
-    hair: f64,
+    /// Smallest step in (u, v) that counts.
+    step: f64,
 }
 
 impl<'a> Cells<'a> {
@@ -46,8 +46,8 @@ impl<'a> Cells<'a> {
         let next = followers(edges);
         let rows = loops(&next);
         let (areas, cells) = (Vec::new(), Vec::new());
-        let hair = tolerance.parameter;
-        let mut made = Self { base, pieces, next, rows, areas, cells, left: BTreeMap::new(), twins: BTreeMap::new(), hair };
+        let step = tolerance.parameter;
+        let mut made = Self { base, pieces, next, rows, areas, cells, left: BTreeMap::new(), twins: BTreeMap::new(), step };
         made.areas = made.rows.iter().map(|row| made.area(row)).collect();
         made.bound(edges)?;
         made.pair(tolerance)?;
@@ -61,7 +61,7 @@ impl<'a> Cells<'a> {
         if let Some(r) = (0..self.rows.len()).find(|r| outside[*r] && !self.rows[*r].iter().all(beyond)) {
             return Err(self.fault("a part runs over the border", self.rows[r][0]));
         }
-        let outer: Vec<usize> = (0..self.rows.len()).filter(|r| !outside[*r] && self.areas[*r] > self.hair * self.hair).collect();
+        let outer: Vec<usize> = (0..self.rows.len()).filter(|r| !outside[*r] && self.areas[*r] > self.step * self.step).collect();
         let mut cells: BTreeMap<usize, Vec<usize>> = outer.iter().map(|r| (*r, vec![*r])).collect();
         let graph = components(edges);
         let part = |r: usize| graph[edges[self.rows[r][0].0].ends.0];
@@ -141,11 +141,11 @@ impl<'a> Cells<'a> {
             let holding = (0..self.cells.len()).filter(|c| self.holds(&self.rows[self.cells[*c][0]], p));
             holding.min_by(|a, b| self.areas[self.cells[*a][0]].total_cmp(&self.areas[self.cells[*b][0]]))
         };
-        // On a seam, a pole or a border a place a hair inside decides.
-        let hair = self.hair;
+        // On a seam, a pole or a border a place one step inside decides.
+        let step = self.step;
         let places =
-            [DVec2::ZERO, DVec2::X * hair, DVec2::Y * hair, DVec2::X * -hair, DVec2::Y * -hair, DVec2::splat(hair), DVec2::splat(-hair)];
-        let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.course.touches(p, 0.5 * hair));
+            [DVec2::ZERO, DVec2::X * step, DVec2::Y * step, DVec2::X * -step, DVec2::Y * -step, DVec2::splat(step), DVec2::splat(-step)];
+        let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.course.touches(p, 0.5 * step));
         let mut copies = self.base.copies(foot.into());
         copies.extend(shifts(self.base).into_iter().map(|by| foot + by));
         let near = places.into_iter().flat_map(|d| copies.iter().map(move |at| *at + d));

@@ -56,6 +56,14 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
     Holes { base: &base, origin, tolerance }.cut(walks, rings, holes)
 }
 
+/// A plane face that knows no loops in (u, v) as one that does; any other surface as it is.
+///
+/// Fails as [`trim`] does where its border is no loop.
+pub fn with_loops(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
+    let bare = surface.domain() == Domain::Loop && surface.parts().trim.is_none();
+    if bare { trim(surface, &[], &[], surface.origin(), tolerance) } else { Ok(surface.clone()) }
+}
+
 fn goes_round(base: &Surface, chains: &[Chain], trimming: Origin) -> Fault {
     let of = chains.first().map_or(trimming, Chain::origin);
     let at = chains.first().map_or(DVec3::ZERO, Chain::start);
@@ -136,9 +144,9 @@ impl Holes<'_> {
         if ring.crosses_seam(border, self.tolerance)? {
             return Ok(None);
         }
-        let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
+        let offsets = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let all = |by: &DVec2| {
-            let inside = |p: DVec2| hairs.iter().any(|hair| outer.goes_round(self.base, p + *by + *hair));
+            let inside = |p: DVec2| offsets.iter().any(|off| outer.goes_round(self.base, p + *by + *off));
             inside(place) && walk.courses.iter().flat_map(Course::places).all(inside)
         };
         Ok(outer.copies(self.base, place).into_iter().map(|at| at - place).find(all))

@@ -57,7 +57,7 @@ pub use divide::{divide, split};
 pub use extent::bbox;
 pub use extrude::extrude;
 pub use foot::{foot_within, step};
-pub use holes::trim;
+pub use holes::{trim, with_loops};
 pub use interpolate::grid;
 pub use iso::IsoLine;
 pub use nurbs::{Net, NurbsSurface};

@@ -10,7 +10,7 @@ use super::face::Made;
 use crate::base::par;
 use crate::mesh::chart::Shape;
 use crate::mesh::data::Mesh;
-use crate::mesh::faces::{Frame, Prepared};
+use crate::mesh::faces::{Frame, Prepared, element_ranges};
 use crate::surface::Surface;
 
 /// Least part along the normal of the surface of the sine of a corner of what is divided.
@@ -92,12 +92,7 @@ fn ordered(a: u32, b: u32) -> Edge {
 
 /// Edges that lie inside two faces or more, with these.
 fn twins(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<(Edge, Vec<usize>)> {
-    let (mut places, mut t, mut q) = (Vec::with_capacity(prepared.len()), 0, 0);
-    for ready in prepared {
-        let (triangles, quads) = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
-        (t, q) = (triangles.end, quads.end);
-        places.push((triangles, quads));
-    }
+    let places = element_ranges(prepared);
     let border = made.nodes.total;
     let inside = par::map(prepared.len(), |f| {
         let (triangles, quads) = places[f].clone();

@@ -20,6 +20,7 @@ use crate::network::snap::may_snap;
 use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::Nearest;
 use crate::surface::core::{Domain, Surface};
+use crate::surface::with_loops;
 use curve::{Contact, Touch, contacts};
 use sheet::{Patch, Sheet, grounded, patches};
 pub use surfaces::{Common, with_surfaces, with_surfaces_once};
@@ -107,12 +108,6 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     }
     out.sort_by(|a, b| a.f.total_cmp(&b.f));
     Ok(out)
-}
-
-/// A plane face with its border as a loop in (u, v); any other surface as it is.
-fn with_loops(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
-    let bare = surface.domain() == Domain::Loop && surface.ground() == Domain::Loop && surface.outlines().is_empty();
-    if bare { crate::surface::trim(surface, &[], &[], surface.origin(), tolerance) } else { Ok(surface.clone()) }
 }
 
 /// Meetings of a curve with one patch.
