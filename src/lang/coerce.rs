@@ -256,9 +256,13 @@ impl Cx<'_> {
                 let text = format!("{subject} is {wanted}, got {found}");
                 let help = match (ty, value) {
                     (Ty::Choice(_), Value::Text(t)) => Some((format!("a word stands bare: `{t}`"), Some(t.to_string()))),
-                    (Ty::Curve | Ty::Surface, Value::List(_)) => {
-                        Some((format!("take one member, for example `{}[0]`", self.source(code, id)), None))
-                    }
+                    (Ty::Curve | Ty::Surface, Value::List(_)) => match self.as_many(code, id) {
+                        Some((place, short, typed)) => {
+                            let draft = self.error(code, "E211", text, span, label);
+                            return draft.help(format!("`{short}` holds many")).put(place, typed).stop();
+                        }
+                        None => Some((format!("take one member, for example `{}[0]`", self.source(code, id)), None)),
+                    },
                     _ => None,
                 };
                 let ways = self.as_vectors(code, id, (value, ty), subject);

@@ -26,6 +26,7 @@ mod keys;
 mod later;
 mod load;
 mod lookalikes;
+mod many;
 mod meetings;
 pub mod members;
 pub mod memory;
