@@ -699,3 +699,92 @@ mod mistakes {
         }
     }
 }
+
+/// Corners of random sides made round: the arc touches both, and the largest radius that is told is the largest.
+mod roundings {
+    use super::*;
+    use lofting::base::fault::{CurveFault, Fault};
+    use lofting::geometry::closest;
+    use lofting::geometry::curve::Shape;
+    use lofting::geometry::fillet::{Treatment, treat};
+
+    /// Numbers from 0 to 1, always the same.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    /// A side from the origin along a direction: a line, an arc or a cubic in the plane.
+    fn side(numbers: &mut Numbers, angle: f64) -> Curve {
+        let turned = |along: f64, across: f64| {
+            let (s, c) = angle.sin_cos();
+            DVec3::new(along * c - across * s, along * s + across * c, 0.0)
+        };
+        let (length, bend) = (1.0 + 4.0 * numbers.next(), numbers.next() - 0.5);
+        match (numbers.next() * 3.0) as usize {
+            0 => build::line(DVec3::ZERO, turned(length, 0.0), Origin::NONE),
+            1 => build::arc_through(DVec3::ZERO, turned(length, 1.5 * bend), turned(0.5 * length, 0.3 * bend), Origin::NONE),
+            _ => {
+                let poles = [turned(0.0, 0.0), turned(0.3 * length, 0.0), turned(0.7 * length, bend), turned(length, 2.0 * bend)];
+                build::bezier(&poles, None, Origin::NONE)
+            }
+        }
+        .unwrap()
+    }
+
+    fn round(corner: &Curve, radius: f64) -> Result<Curve, Fault> {
+        treat(corner, None, (Treatment::Round(radius), "radius"), Origin::NONE)
+    }
+
+    #[test]
+    fn arcs_touch_both_sides() {
+        let (mut numbers, mut fitted, mut refused) = (Numbers(7), 0, 0);
+        for case in 0..1000 {
+            let angle = 6.0 * numbers.next();
+            let first = side(&mut numbers, angle).reversed();
+            let angle = 6.0 * numbers.next();
+            let after = side(&mut numbers, angle);
+            let corner = build::composite(&[first, after], Origin::NONE).unwrap();
+            let radius = 0.05 + 2.0 * numbers.next();
+            let (radius, rounded) = match round(&corner, radius) {
+                Ok(curve) => (radius, curve),
+                Err(Fault::Curve(fault)) => match *fault {
+                    CurveFault::CornerTooNarrow { largest, .. } => {
+                        refused += 1;
+                        assert!(round(&corner, largest * 1.001).is_err(), "{case}: {largest} is not the largest");
+                        if largest < 1e-3 {
+                            continue;
+                        }
+                        (largest, round(&corner, largest).unwrap_or_else(|_| panic!("{case}: {largest} does not fit")))
+                    }
+                    CurveFault::NoCorner { .. } => continue,
+                    _ => panic!("{case}: {fault:?}"),
+                },
+                Err(fault) => panic!("{case}: {fault}"),
+            };
+            fitted += 1;
+            let Some(pieces) = rounded.composite() else { continue };
+            for (i, piece) in pieces.pieces.iter().enumerate() {
+                let Shape::Arc(arc) = piece.shape() else { continue };
+                if arc.radius != Some(radius) {
+                    continue;
+                }
+                for end in [piece.start(), piece.end()] {
+                    assert!(closest(&corner, end).distance < 1e-11, "{case}: {}", closest(&corner, end).distance);
+                }
+                let neighbours = [i.checked_sub(1).map(|k| (k, true)), (i + 1 < pieces.pieces.len()).then_some((i + 1, false))];
+                for (k, before) in neighbours.into_iter().flatten() {
+                    let other = &pieces.pieces[k];
+                    let (t, s) = if before { (other.domain().1, 0.0) } else { (other.domain().0, piece.domain().1) };
+                    assert!(other.point(t).distance(piece.point(s)) < 1e-11, "{case}");
+                    assert!(other.jet(t).d1.normalize().distance(piece.jet(s).d1.normalize()) < 1e-9, "{case}");
+                }
+            }
+        }
+        assert!(fitted > 900 && refused > 100 && refused < 900, "{fitted} {refused}");
+    }
+}

@@ -181,6 +181,11 @@ impl Curve {
         Self(Arc::new(Inner { shape, kind: *kind, origin, through: *through, lengths, pieces }))
     }
 
+    /// The same shape, told as made with another word.
+    pub(super) fn of_kind(&self, kind: Kind) -> Self {
+        Self::new(self.0.shape.clone(), kind, self.0.origin)
+    }
+
     fn with_shape(&self, shape: Shape) -> Self {
         Self::new(shape, self.0.kind, self.0.origin)
     }

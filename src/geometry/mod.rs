@@ -10,6 +10,7 @@ pub mod closest;
 pub mod composite;
 mod convert;
 pub mod curve;
+pub mod fillet;
 pub mod helix;
 pub mod intersect;
 mod kinks;

@@ -43,26 +43,33 @@ pub fn offset(curve: &Curve, distance: f64, normal: DVec3, origin: Origin) -> Re
 
 /// The curve must lie in a plane with this normal.
 fn check_plane(curve: &Curve, normal: DVec3) -> Result<()> {
-    let start = curve.start();
-    let reach = curve.bbox().diagonal();
-    let high = |p: DVec3| (p - start).dot(normal).abs();
-    let out = match curve.shape() {
-        Shape::Line(_, b) => high(*b),
-        Shape::Arc(arc) => arc.u.dot(normal).abs().max(arc.v.dot(normal).abs()),
-        Shape::Nurbs(c) => (0..c.poles.len()).map(|i| high(c.pole(i))).fold(0.0, f64::max),
-        Shape::Helix(_) => reach,
-        Shape::Offset(o) => o.normal.cross(normal).length() * reach,
-        Shape::Composite(c) => return c.pieces.iter().try_for_each(|piece| check_plane(piece, normal)),
-    };
-    if out <= NUDGE * reach {
+    if let Shape::Composite(c) = curve.shape() {
+        return c.pieces.iter().try_for_each(|piece| check_plane(piece, normal));
+    }
+    let out = height_over(curve, normal);
+    if out <= NUDGE * curve.bbox().diagonal() {
         return Ok(());
     }
     let found = format!("one that the curve leaves by {out}");
     Err(ValueFault::OutsideRange { argument: "normal", found, range: "the normal of a plane that holds the curve".to_owned() }.into())
 }
 
+/// How far the curve may leave the plane through its start with this unit normal; its whole size where that is not easily told.
+pub(super) fn height_over(curve: &Curve, normal: DVec3) -> f64 {
+    let start = curve.start();
+    let high = |p: DVec3| (p - start).dot(normal).abs();
+    match curve.shape() {
+        Shape::Line(_, b) => high(*b),
+        Shape::Arc(arc) => arc.u.dot(normal).abs().max(arc.v.dot(normal).abs()),
+        Shape::Nurbs(c) => (0..c.poles.len()).map(|i| high(c.pole(i))).fold(0.0, f64::max),
+        Shape::Helix(_) => curve.bbox().diagonal(),
+        Shape::Offset(o) => o.normal.cross(normal).length() * curve.bbox().diagonal(),
+        Shape::Composite(c) => c.pieces.iter().map(|piece| high(piece.start()) + height_over(piece, normal)).fold(0.0, f64::max),
+    }
+}
+
 /// The curve cut at its corners; straight pieces as lines.
-fn smooth_pieces(curve: &Curve) -> Vec<Curve> {
+pub(super) fn smooth_pieces(curve: &Curve) -> Vec<Curve> {
     if let Some(c) = curve.composite() {
         return c.pieces.iter().flat_map(smooth_pieces).collect();
     }

@@ -92,6 +92,9 @@ codes! {
     now "E411", "angle-zero", "an angle is zero";
     now "E412", "angle-too-large", "an angle is more than a full turn";
     now "E413", "did-not-converge", "an iteration did not converge";
+    now "E414", "corner-too-narrow", "a rounding or cut does not fit a corner";
+    now "E415", "no-corner", "a curve has no corner there";
+    now "E416", "corner-not-flat", "the sides of a corner do not lie in a plane";
     now "E501", "ends-miss", "two ends miss each other";
     now "E502", "boundary-open", "a boundary or loop does not close";
     now "E503", "chain-broken", "links of a chain do not join";

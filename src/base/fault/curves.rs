@@ -2,8 +2,11 @@
 
 use glam::DVec3;
 
+use super::network::typed;
 use super::{Describe, Edit, Report, Say, Subject};
+use crate::base::math;
 use crate::base::origin::Origin;
+use crate::base::tolerance::NEAREST;
 
 /// What can be wrong with a curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,6 +130,37 @@ pub enum CurveFault {
         /// Where it was sought last.
         at: DVec3,
     },
+    /// E414: a rounding or cut of a corner that its sides have no room for.
+    CornerTooNarrow {
+        /// The curve.
+        of: Origin,
+        /// Parameter that holds the size.
+        argument: &'static str,
+        /// Radius or length as given, model units.
+        wanted: f64,
+        /// The largest one that fits this corner and those it shares a side with; 0 where none does.
+        largest: f64,
+        /// The corner.
+        at: DVec3,
+    },
+    /// E415: no corner where one is to be rounded or cut.
+    NoCorner {
+        /// The curve.
+        of: Origin,
+        /// The place; none where the curve has no corner at all.
+        at: Option<DVec3>,
+        /// The corner nearest to it.
+        nearest: Option<DVec3>,
+    },
+    /// E416: the sides of a corner that is to be rounded do not lie in its plane.
+    CornerNotFlat {
+        /// The curve.
+        of: Origin,
+        /// The corner.
+        at: DVec3,
+        /// How far they leave it, model units.
+        out: f64,
+    },
 }
 
 /// What is wrong with a list of knots.
@@ -182,7 +216,10 @@ impl CurveFault {
             | Self::LengthStalled { of, .. }
             | Self::ZeroAngle { of, .. }
             | Self::AngleTooLarge { of, .. }
-            | Self::NotConverged { of, .. } => *of,
+            | Self::NotConverged { of, .. }
+            | Self::CornerTooNarrow { of, .. }
+            | Self::NoCorner { of, .. }
+            | Self::CornerNotFlat { of, .. } => *of,
         }
     }
 }
@@ -240,8 +277,49 @@ impl Describe for CurveFault {
             Self::NotConverged { of, what, at } => {
                 Report::new("E413", format!("{what} could not be settled near {}", say.point(*at))).at(*of, "on this curve")
             }
+            Self::CornerTooNarrow { argument, wanted, largest, at, .. } => narrow_corner(say, argument, (*wanted, *largest), *at),
+            Self::NoCorner { at: None, .. } => {
+                Report::new("E415", format!("{name} has no corner")).label(Subject::Call, "nothing to round or cut")
+            }
+            Self::NoCorner { at: Some(p), nearest, .. } => {
+                let report =
+                    Report::new("E415", format!("there is no corner at {}", say.point(*p))).label(Subject::Argument("at"), "no corner");
+                match nearest {
+                    Some(corner) => report
+                        .help(format!("the nearest corner is at {}; `at:` left out takes all of them", say.point(*corner)))
+                        .edit(Subject::Argument("at"), Edit::DropArgument),
+                    None => report.note("the curve has no corner"),
+                }
+            }
+            Self::CornerNotFlat { at, out, .. } => {
+                let message = format!("the sides of the corner at {} leave its plane by {}", say.point(*at), say.length(*out));
+                Report::new("E416", message)
+                    .label(Subject::Call, "an arc touches sides that lie in a plane")
+                    .help("round the corner before the sides are bent out of its plane, or cut it with `chamfer`")
+            }
         }
     }
+}
+
+/// Digits of a largest size that is told.
+const TOLD_DIGITS: i32 = 3;
+
+fn narrow_corner(say: &dyn Say, argument: &'static str, (wanted, largest): (f64, f64), at: DVec3) -> Report {
+    let (what, size) = if argument == "length" { ("cut", "length") } else { ("rounding", "radius") };
+    if largest <= 0.0 {
+        let message = format!("no {what} fits the corner at {}: the curve turns straight back there", say.point(at));
+        return Report::new("E414", message).label(Subject::Argument(argument), "does not fit at any size");
+    }
+    // Rounded down, so that what is told fits; by less than it was searched for, so that 5 mm stays 5 mm.
+    let step = math::pow(10.0, math::log10(largest).floor() + 1.0 - f64::from(TOLD_DIGITS));
+    let told = (largest * (1.0 + NEAREST) / step).floor() * step;
+    let message = format!("a {what} of {} does not fit the corner at {}", say.length(wanted), say.point(at));
+    let put = typed(say, told);
+    Report::new("E414", message)
+        .label(Subject::Argument(argument), format!("at most {put} there"))
+        .help(format!("{argument}: {put}"))
+        .note(format!("the largest {size} is that for which the corner and those it shares a side with all fit"))
+        .edit(Subject::Argument(argument), Edit::Put(put))
 }
 
 fn zero_length(say: &dyn Say, of: Origin, (length, tolerance): (f64, f64)) -> Report {

@@ -236,7 +236,7 @@ pub fn round_down(length: f64) -> f64 {
 }
 
 /// A length as it is typed: the unit sticks to the number, without trailing zeros.
-fn typed(say: &dyn Say, length: f64) -> String {
+pub(super) fn typed(say: &dyn Say, length: f64) -> String {
     let said = say.length(length);
     let (number, unit) = said.split_once(' ').unwrap_or((&said, ""));
     let number = if number.contains('.') && !number.contains('e') { number.trim_end_matches('0').trim_end_matches('.') } else { number };

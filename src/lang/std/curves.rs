@@ -6,14 +6,14 @@ use crate::base::fault::ValueFault;
 use crate::base::math;
 use crate::base::tolerance::PARALLEL;
 use crate::builtins;
-use crate::geometry::{Curve, Ends, Kind, Spline, build, polynomial};
+use crate::geometry::{Curve, Ends, Kind, Spline, build, fillet, polynomial};
 use crate::lang::cx::Stop;
 use crate::lang::types::{Angle, Direction, Length, Point};
 use crate::lang::value::Value;
 use crate::network::Chain;
 
 /// A constructed curve as a value.
-fn whole(curve: Curve) -> Chain {
+pub(super) fn whole(curve: Curve) -> Chain {
     Chain::of_curve(&curve)
 }
 
@@ -30,7 +30,7 @@ pub(super) fn unit(direction: DVec3, argument: &'static str) -> Result<DVec3, St
     }
 }
 
-fn places(points: Vec<Point>) -> Vec<DVec3> {
+pub(super) fn places(points: Vec<Point>) -> Vec<DVec3> {
     points.into_iter().map(|p| p.0).collect()
 }
 
@@ -96,15 +96,24 @@ builtins! {
 
     /// Straight segments through points.
     ///
+    /// `round:` puts an arc of that radius in the place of every corner, in the plane of its two sides; a closed one then
+    /// starts where the arc of its first corner ends. A radius that does not fit is E414, which tells the largest one.
     /// ```loft
     /// curve border = polyline([(0, 0), (4m, 0), (4m, 3m)], closed: true)
+    /// curve plate = polyline([(0, 0), (4m, 0), (4m, 3m), (0, 3m)], closed: true, round: 500mm)
+    /// check plate.length == (10 + pi) * 1m within 1e-9
     /// ```
     fn polyline(
         /// Corners in order.
         points: Vec<Point>,
         /// Whether it returns to the first point.
         closed: bool = "false",
-    ) -> Chain = |cx, list, closed| Ok(whole(build::polyline(&places(list), closed, cx.origin())?));
+        /// Radius of the arcs at the corners, above 0.
+        round: Option<Length>,
+    ) -> Chain = |cx, list, closed, round| Ok(whole(match round {
+        Some(radius) => fillet::rounded_polyline(&places(list), closed, (radius.0, "round"), cx.origin())?,
+        None => build::polyline(&places(list), closed, cx.origin())?,
+    }));
 
     /// Circular arc, through three points or about a centre.
     ///

@@ -19,6 +19,7 @@ mod measures;
 pub(in crate::lang) mod mesh;
 mod network;
 mod numbers;
+mod roundings;
 mod surfaces;
 mod text;
 mod topology;
@@ -93,6 +94,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     distances::BUILTINS,
     data::BUILTINS,
     curves::BUILTINS,
+    roundings::BUILTINS,
     network::BUILTINS,
     surfaces::BUILTINS,
     transforms::BUILTINS,
