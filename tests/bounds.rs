@@ -20,9 +20,10 @@ use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
 use lofting::network::{Chain, ChainFlow, Network, of_chains};
 use lofting::surface::coons::{Grid, Method, Settings, build};
+use lofting::surface::gordon::{CurveNet, Named as NamedNet, gordon};
 use lofting::surface::nurbs::{Net, bezier, nurbs};
 use lofting::surface::revolve::Axis;
-use lofting::surface::{Domain, Lean, Reparam, Surface, bbox, closest, extrude, plane, revolve, ruled};
+use lofting::surface::{Domain, Lean, Map, Rail, Reparam, Surface, SurfaceKind, bbox, closest, extrude, plane, revolve, ruled};
 use serde_json::Value;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
@@ -65,6 +66,34 @@ fn net_of_curves(method: Method, reparam: Reparam) -> Surface {
     let along_y = lines
         .map(|x| through(&steps.iter().copied().chain([0.8]).collect::<Vec<_>>().sorted().iter().map(|y| at(x, *y)).collect::<Vec<_>>()));
     spanned(&[along_x, along_y].concat(), &ChainFlow::default(), method, reparam)
+}
+
+/// Three rings crossed by four meridians, closed in u.
+fn vase() -> Surface {
+    let radius = |z: f64| 1.0 + 0.3 * (2.0 * z).sin();
+    let at = |angle: f64, z: f64| p(radius(z) * angle.cos(), 1.4 * radius(z) * angle.sin(), z);
+    let levels = [0.0, 0.4, 1.0];
+    let rings = levels.map(|z| {
+        let (minor, major) = (radius(z), 1.4 * radius(z));
+        Chain::of_curve(&ellipse(p(0., 0., z), DVec3::Y * major, DVec3::X * minor, 0.0, std::f64::consts::TAU, Origin::NONE).unwrap())
+    });
+    let turns = [0.0, 1.0, 2.0, 4.0];
+    let meridians = turns.map(|angle| through(&(0..=10).map(|k| at(angle, f64::from(k) / 10.0)).collect::<Vec<_>>()));
+    let chains: Vec<Chain> = rings.into_iter().chain(meridians).collect();
+    spanned(&chains, &ChainFlow::default(), Method::Gordon, Reparam::Smooth)
+}
+
+/// A spline surface through four sections alone.
+fn skinned() -> Surface {
+    let section = |y: f64, bump: f64| through(&[p(0., y, 0.), p(1., y + 0.1, bump), p(2.3, y, 0.3 * bump), p(4., y - 0.2, 0.)]);
+    let chains = vec![section(0., 0.5), section(0.7, -0.4), section(2., 0.9), section(3.1, 0.2)];
+    let net = CurveNet {
+        along_u: chains.iter().map(|c| Rail::new(c.clone(), Map::identity())).collect(),
+        along_v: Vec::new(),
+        nodes: (vec![0.0, 1.0], vec![0.0, 0.2, 0.7, 1.0]),
+        closed: (false, false),
+    };
+    gordon(net, NamedNet { origin: Origin::NONE, kind: SurfaceKind::Skin, flow: String::new(), chains }, &tolerance()).0
 }
 
 trait Sorted {
@@ -118,6 +147,10 @@ fn zoo() -> Vec<(&'static str, Surface)> {
         ("coons 3x3 creased", net_of_curves(Method::Linear, Reparam::Smooth)),
         ("coons 3x3 linear", net_of_curves(Method::Coons, Reparam::Linear)),
         ("transfinite", net_of_curves(Method::Lagrange, Reparam::Smooth)),
+        ("gordon", net_of_curves(Method::Gordon, Reparam::Smooth)),
+        ("gordon moved", net_of_curves(Method::Gordon, Reparam::Smooth).moved(&moved).flipped()),
+        ("gordon closed", vase()),
+        ("skin", skinned()),
         ("bilinear", spanned(&[wave.clone(), right, far.clone(), left], &ChainFlow::default(), Method::Lagrange, Reparam::Smooth)),
         ("trilateral", spanned(&sides, &ChainFlow::default(), Method::Coons, Reparam::Smooth)),
         ("octant", spanned(&great, &ChainFlow::default(), Method::Coons, Reparam::Smooth)),

@@ -7,17 +7,19 @@ use glam::DVec3;
 
 use super::Jet2;
 use super::blend::Blend;
-use super::line::{Line, blended};
+use super::line::{Line, Shares, blended};
 use super::rail::Lean;
 use super::spread::Spread;
-use super::weights::Rule;
 use crate::base::range::Range;
 
 /// What is known of a blended surface between two values of u: weights a and curves G_j; of v: b and F_i.
 #[derive(Clone, Debug)]
 pub struct BlendStrip {
-    first: usize,
+    /// Terms that take part, and how many of their functions sum to 1 (they come first).
+    terms: Vec<usize>,
+    shares: usize,
     weights: Vec<([f64; 3], [Range; 3])>,
+    /// The curves along the strip, one per term of the other direction.
     rails: Vec<Line>,
 }
 
@@ -25,54 +27,60 @@ impl Blend {
     /// Lines where the blending rule changes, ends included.
     pub fn rule_changes(&self, along_u: bool) -> Vec<f64> {
         let axis = if along_u { self.axes().0 } else { self.axes().1 };
-        if axis.rule != Rule::Lagrange { axis.nodes.clone() } else { Vec::new() }
+        if axis.is_piecewise() { axis.nodes.clone() } else { Vec::new() }
     }
 
     /// What depends on u (`along_u`) or on v alone, between two values inside one cell.
     pub fn strip(&self, along_u: bool, (x0, x1): (f64, f64)) -> BlendStrip {
         let axes = self.axes();
-        let (axis, rails) = if along_u { (axes.0, self.along_u()) } else { (axes.1, self.along_v()) };
+        let (axis, rails, across) = if along_u { (axes.0, self.along_u(), axes.1) } else { (axes.1, self.along_v(), axes.0) };
         // Without curves along v nothing is blended across u.
         let idle = along_u && self.along_v().is_empty();
         let middle = axis.weights(0.5 * (x0 + x1), Lean::After);
         let weights = if idle { Vec::new() } else { middle.values().iter().copied().zip(axis.ranges(x0, x1)).collect::<Vec<_>>() };
-        let rails: Vec<Line> = rails.iter().map(|rail| rail.line(x0, x1)).collect();
-        BlendStrip { first: middle.first, weights, rails }
+        let mut rails: Vec<Line> = rails.iter().map(|rail| rail.line(x0, x1)).collect();
+        if !rails.is_empty() {
+            let slopes: Vec<Line> = across.slopes().iter().map(|row| Line::sum(row.iter().copied().zip(rails.iter().copied()))).collect();
+            rails.extend(slopes);
+        }
+        let terms = if idle { Vec::new() } else { middle.iter().map(|(term, _)| term).collect() };
+        BlendStrip { terms, shares: axis.shares(), weights, rails }
     }
 
-    /// Σ m_k (F_k − Σ_j b_j P_kj) of the curves of one strip (`along_u`: G_k less Σ_i a_i P_ik), `first` the first of them.
+    /// Σ m_k (F_k − Σ_j b_j P_kj) of some terms of one strip (`along_u`: G_k less Σ_i a_i P_ik).
     ///
     /// Corners are mixed before they meet ranges, and as the weights' derivatives sum to 0 their differences count alone.
-    fn rest(&self, strip: &BlendStrip, along_u: bool, first: usize, m: &[f64]) -> Line {
-        let line = mixed(&strip.rails[first..], m);
-        let corner = |n: usize| -> DVec3 {
-            let at = |k: usize| if along_u { self.corner(strip.first + n, k) } else { self.corner(k, strip.first + n) };
-            m.iter().enumerate().map(|(k, share)| at(first + k) * *share).sum()
+    fn rest(&self, strip: &BlendStrip, along_u: bool, terms: &[usize], m: &[f64]) -> Line {
+        let line = mixed(&strip.rails, terms, m);
+        let corner = |own: &usize| -> DVec3 {
+            let at = |k: usize| if along_u { self.corner(*own, k) } else { self.corner(k, *own) };
+            terms.iter().zip(m).map(|(k, share)| at(*k) * *share).sum()
         };
-        let corners: Vec<DVec3> = (0..strip.weights.len()).map(corner).collect();
+        let corners: Vec<DVec3> = strip.terms.iter().map(corner).collect();
         let (mut mid, mut d1, mut d2) = (line.mid, line.d1, line.d2);
-        for (q, (w, range)) in corners.iter().zip(&strip.weights) {
+        for (k, (q, (w, range))) in corners.iter().zip(&strip.weights).enumerate() {
             mid.p -= *q * w[0];
             mid.d1 -= *q * w[1];
             mid.d2 -= *q * w[2];
-            d1 = d1 - range[1] * (*q - corners[0]);
-            d2 = d2 - range[2] * (*q - corners[0]);
+            let step = if k < strip.shares { *q - corners[0] } else { *q };
+            d1 = d1 - range[1] * step;
+            d2 = d2 - range[2] * step;
         }
         Line::new(line.half, mid, Some(d1), d2)
     }
 
     /// Bounds over the rectangle of a strip of u and one of v.
     pub fn spread(&self, u: &BlendStrip, v: &BlendStrip, half: (f64, f64)) -> Spread {
-        let g = |m: &[f64]| mixed(&u.rails[v.first..], m);
+        let g = |m: &[f64]| mixed(&u.rails, &v.terms, m);
+        let (a, b) = (Shares { weights: &u.weights, shares: u.shares }, Shares { weights: &v.weights, shares: v.shares });
         if self.along_v().is_empty() {
-            let second = [blended(&v.weights, 0, 2, &g), blended(&v.weights, 1, 1, &g), blended(&v.weights, 2, 0, &g)];
-            let first = [blended(&v.weights, 0, 1, &g), blended(&v.weights, 1, 0, &g)];
+            let second = [blended(b, 0, 2, &g), blended(b, 1, 1, &g), blended(b, 2, 0, &g)];
+            let first = [blended(b, 0, 1, &g), blended(b, 1, 0, &g)];
             return Spread::new(self.middle(u, v), half, second, Some(first));
         }
-        let f = |m: &[f64]| mixed(&v.rails[u.first..], m);
-        let e = |m: &[f64]| self.rest(v, false, u.first, m);
-        let h = |m: &[f64]| self.rest(u, true, v.first, m);
-        let (a, b) = (&u.weights, &v.weights);
+        let f = |m: &[f64]| mixed(&v.rails, &u.terms, m);
+        let e = |m: &[f64]| self.rest(v, false, &u.terms, m);
+        let h = |m: &[f64]| self.rest(u, true, &v.terms, m);
         let second = [
             blended(a, 2, 0, &e) + blended(b, 0, 2, &g),
             blended(a, 1, 1, &e) + blended(b, 1, 1, &g),
@@ -87,7 +95,7 @@ impl Blend {
         let mut jet = Jet2::default();
         let unit = |k: usize, n: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
         for (k, (w, _)) in u.weights.iter().enumerate().filter(|_| !self.along_v().is_empty()) {
-            let e = self.rest(v, false, u.first, &unit(k, u.weights.len())).mid;
+            let e = self.rest(v, false, &u.terms, &unit(k, u.weights.len())).mid;
             jet.p += e.p * w[0];
             jet.du += e.p * w[1];
             jet.duu += e.p * w[2];
@@ -95,8 +103,8 @@ impl Blend {
             jet.duv += e.d1 * w[1];
             jet.dvv += e.d2 * w[0];
         }
-        for ((w, _), line) in v.weights.iter().zip(&u.rails[v.first..]) {
-            let g = line.mid;
+        for ((w, _), term) in v.weights.iter().zip(&v.terms) {
+            let g = u.rails[*term].mid;
             jet.p += g.p * w[0];
             jet.dv += g.p * w[1];
             jet.dvv += g.p * w[2];
@@ -108,6 +116,6 @@ impl Blend {
     }
 }
 
-fn mixed(lines: &[Line], m: &[f64]) -> Line {
-    Line::sum(m.iter().copied().zip(lines.iter().copied()))
+fn mixed(lines: &[Line], terms: &[usize], m: &[f64]) -> Line {
+    Line::sum(m.iter().copied().zip(terms.iter().map(|term| lines[*term])))
 }

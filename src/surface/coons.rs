@@ -29,11 +29,29 @@ pub enum Method {
     Cubic,
     /// One polynomial through all curves (`transfinite`).
     Lagrange,
+    /// Cubic splines through all curves, C2 in the parameters (`gordon`).
+    Gordon,
 }
 
 impl Method {
     fn kind(self) -> SurfaceKind {
-        if self == Self::Lagrange { SurfaceKind::Transfinite } else { SurfaceKind::Coons }
+        match self {
+            Self::Lagrange => SurfaceKind::Transfinite,
+            Self::Gordon => SurfaceKind::Gordon,
+            _ => SurfaceKind::Coons,
+        }
+    }
+
+    /// The rule of a direction; `one_cell`: of a grid with nothing inside.
+    fn rule(self, one_cell: bool, closed: bool) -> Rule {
+        match self {
+            Self::Linear => Rule::Linear,
+            Self::Coons if one_cell => Rule::Linear,
+            Self::Coons | Self::Cubic => Rule::Cubic,
+            Self::Lagrange => Rule::Lagrange,
+            Self::Gordon if closed => Rule::Periodic,
+            Self::Gordon => Rule::Spline,
+        }
     }
 }
 
@@ -88,13 +106,7 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     };
     let nodes_v = averages(&along_v, grid, &flow.along_u, tolerance)?;
     let one_cell = 2 == nodes_u.len() && nodes_v.len() == 2;
-    let rule = match settings.method {
-        Method::Coons if one_cell => Rule::Linear,
-        Method::Coons => Rule::Cubic,
-        Method::Linear => Rule::Linear,
-        Method::Cubic => Rule::Cubic,
-        Method::Lagrange => Rule::Lagrange,
-    };
+    let rules = (settings.method.rule(one_cell, flow.closed_u), settings.method.rule(one_cell, flow.closed_v));
 
     let rails = |curves: &[Prepared], nodes: &[f64], closed: bool| -> Vec<Rail> {
         curves.iter().map(|c| Rail::new(c.chain.clone(), Map::new(nodes.to_vec(), c.raw.clone(), settings.reparam, closed))).collect()
@@ -117,34 +129,42 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     if let Some(p) = grid.poles.1 {
         rails_u.push(Rail::Point(p));
     }
-    let blend = Blend::new(Axis { nodes: nodes_u, rule }, Axis { nodes: nodes_v, rule }, rails_v, rails_u);
-    let chains = in_order(&along_u, &along_v);
-    Ok((finish(blend, chains, flow, settings, tolerance, &mut notes), notes))
-}
-
-fn finish(
-    mut blend: Blend,
-    chains: Vec<Chain>,
-    flow: &Flow,
-    settings: &Settings,
-    tolerance: &Tolerance,
-    notes: &mut Vec<Fault>,
-) -> Surface {
-    let kinks = set_kinks(&mut blend, settings.origin, tolerance, notes);
-    let kind = settings.method.kind();
+    let blend = Blend::new(Axis::new(nodes_u, rules.0), Axis::new(nodes_v, rules.1), rails_v, rails_u);
     if settings.method == Method::Lagrange {
         notes.extend(oscillation(&blend, settings.origin));
     }
-    Surface::new(Parts {
+    let made = Made {
         origin: settings.origin,
-        kind,
+        kind: settings.method.kind(),
         flow: flow.phrase(),
-        domain: Domain::Square,
         closed: (flow.closed_u, flow.closed_v),
+        chains: in_order(&along_u, &along_v),
+    };
+    Ok((finish(blend, made, tolerance, &mut notes), notes))
+}
+
+/// What a surface over a grid has beside its blend.
+pub(super) struct Made {
+    pub origin: Origin,
+    pub kind: SurfaceKind,
+    pub flow: String,
+    pub closed: (bool, bool),
+    pub chains: Vec<Chain>,
+}
+
+/// The surface of a blend, its kink lines found.
+pub(super) fn finish(mut blend: Blend, made: Made, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Surface {
+    let kinks = set_kinks(&mut blend, made.origin, tolerance, notes);
+    Surface::new(Parts {
+        origin: made.origin,
+        kind: made.kind,
+        flow: made.flow,
+        domain: Domain::Square,
+        closed: made.closed,
         borders: borders(&blend),
         shape: Shape::Blend(blend),
         kinks,
-        chains,
+        chains: made.chains,
         generated: Vec::new(),
         trim: None,
         flipped: false,

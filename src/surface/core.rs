@@ -62,6 +62,8 @@ pub enum SurfaceKind {
     Nurbs,
     Grid,
     Trim,
+    Gordon,
+    Skin,
 }
 
 impl SurfaceKind {
@@ -78,6 +80,8 @@ impl SurfaceKind {
             Self::Nurbs => "nurbs_surface",
             Self::Grid => "grid",
             Self::Trim => "trim",
+            Self::Gordon => "gordon",
+            Self::Skin => "skin",
         }
     }
 }

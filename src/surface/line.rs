@@ -61,18 +61,28 @@ impl Line {
     }
 }
 
-/// Σ w_k·l_k^(order) for weights known by their middle values and ranges, whose sum is the same everywhere; `mixed` gives
-/// Σ m_k l_k for numbers m.
+/// Weights of a sum over one stretch: their values in its middle and what they may be anywhere in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Shares<'a> {
+    /// Value and derivatives of each.
+    pub weights: &'a [([f64; 3], [Range; 3])],
+    /// How many of them, from the first on, have the same sum everywhere.
+    pub shares: usize,
+}
+
+/// Σ w_k·l_k^(order) for weights known by their middle values and ranges; `mixed` gives Σ m_k l_k for numbers m.
 ///
-/// What the weights vary by sums to 0, so it multiplies differences of the l_k only: constants cost nothing.
-pub fn blended(weights: &[([f64; 3], [Range; 3])], derivative: usize, order: usize, mixed: &dyn Fn(&[f64]) -> Line) -> Ranges {
-    let mut shares: Vec<f64> = weights.iter().map(|w| w.0[derivative]).collect();
-    let mut sum = mixed(&shares).order(order);
-    for k in 1..weights.len() {
-        shares.fill(0.0);
-        (shares[0], shares[k]) = (-1.0, 1.0);
-        let varies = weights[k].1[derivative] - Range::at(weights[k].0[derivative]);
-        sum = sum + mixed(&shares).order(order) * varies;
+/// What the shares vary by sums to 0, so it multiplies differences of the l_k only: constants cost nothing.
+pub fn blended(of: Shares, derivative: usize, order: usize, mixed: &dyn Fn(&[f64]) -> Line) -> Ranges {
+    let mut by: Vec<f64> = of.weights.iter().map(|w| w.0[derivative]).collect();
+    let mut sum = mixed(&by).order(order);
+    for (k, (middle, range)) in of.weights.iter().enumerate().skip(1) {
+        by.fill(0.0);
+        if k < of.shares {
+            by[0] = -1.0;
+        }
+        by[k] = 1.0;
+        sum = sum + mixed(&by).order(order) * (range[derivative] - Range::at(middle[derivative]));
     }
     sum
 }

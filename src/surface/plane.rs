@@ -331,7 +331,7 @@ fn rail((chain, against): &Step, backwards: bool) -> Rail {
 }
 
 fn linear() -> Axis {
-    Axis { nodes: vec![0.0, 1.0], rule: Rule::Lagrange }
+    Axis::new(vec![0.0, 1.0], Rule::Lagrange)
 }
 
 fn blended(mut blend: Blend, poles: bool, origin: Origin, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Surface {

@@ -24,7 +24,7 @@ pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Res
     let reversed = !closed && apart(b.end(), b.start()) < apart(b.start(), b.end());
     let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
     let rails = vec![Rail::new(a.clone(), Map::identity()), other];
-    let axis = || Axis { nodes: vec![0.0, 1.0], rule: Rule::Lagrange };
+    let axis = || Axis::new(vec![0.0, 1.0], Rule::Lagrange);
     let mut blend = Blend::new(axis(), axis(), Vec::new(), rails);
     let mut notes = Vec::new();
     let kinks = set_kinks(&mut blend, origin, tolerance, &mut notes);

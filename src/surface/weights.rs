@@ -1,5 +1,10 @@
-//! Blending functions of one direction: linear or cubic between neighbours (Coons) or Lagrange through all.
+//! Blending functions of one direction: linear or cubic between neighbours (Coons), Lagrange or cubic splines through all.
+//!
+//! A blend is a sum of functions of one parameter times *terms*. The first terms are the curves at the nodes; where the
+//! rule is a spline there follow as many slopes across the nodes, which are fixed sums of the curves. So few functions
+//! differ from 0 at any parameter, whatever the number of curves.
 
+use super::cardinal;
 use super::rail::Lean;
 use crate::base::range::Range;
 use crate::base::tolerance::EPSILON;
@@ -13,16 +18,25 @@ pub enum Rule {
     Cubic,
     /// The Lagrange polynomial through all of them [Koh & Park 1990, eq. 4.1]; with two curves linear.
     Lagrange,
+    /// Cubic splines through all of them, C2, not a knot at the ends (Gordon).
+    Spline,
+    /// Cubic splines through all of them, C2 across the seam too: the last curve is the first one.
+    Periodic,
 }
 
 impl Rule {
-    /// Its word in the language; none for the polynomial through all curves.
+    /// Its word in the language; none for blends through all curves.
     pub fn name(self) -> Option<&'static str> {
         match self {
             Self::Linear => Some("linear"),
             Self::Cubic => Some("cubic"),
-            Self::Lagrange => None,
+            Self::Lagrange | Self::Spline | Self::Periodic => None,
         }
+    }
+
+    /// Whether terms are curves and slopes.
+    fn is_spline(self) -> bool {
+        matches!(self, Self::Spline | Self::Periodic)
     }
 }
 
@@ -33,16 +47,19 @@ pub struct Axis {
     pub nodes: Vec<f64>,
     /// The rule.
     pub rule: Rule,
+    /// Of splines: slopes at the nodes as sums of values at the nodes, in rows.
+    slopes: Vec<Vec<f64>>,
 }
 
 crate::content_of_word!(Rule);
-crate::content!(Axis { nodes, rule });
+crate::content!(Axis { nodes, rule } but { slopes });
 
-/// Curves that take part at one parameter: those from `first` on, each with value, first and second derivative.
+/// Terms that take part at one parameter, each with value, first and second derivative of its function.
 #[derive(Clone, Debug)]
 pub struct Weights {
-    /// Place of the first one.
-    pub first: usize,
+    /// Terms, see [`Weights::term`].
+    first: usize,
+    slopes: usize,
     few: [[f64; 3]; FEW],
     n: usize,
     many: Vec<[f64; 3]>,
@@ -57,8 +74,23 @@ impl Weights {
         if self.n <= FEW { &self.few[..self.n] } else { &self.many }
     }
 
+    /// The term that blending value `k` belongs to.
+    pub fn term(&self, k: usize) -> usize {
+        if self.slopes > 0 && k > 1 { self.slopes + self.first + k - 2 } else { self.first + k }
+    }
+
+    /// The cell, or 0 where the rule knows none.
+    pub fn cell(&self) -> usize {
+        self.first
+    }
+
+    /// Terms with their blending values.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &[f64; 3])> {
+        self.values().iter().enumerate().map(|(k, w)| (self.term(k), w))
+    }
+
     fn room(first: usize, n: usize) -> Self {
-        Self { first, few: [[0.0; 3]; FEW], n, many: if n > FEW { vec![[0.0; 3]; n] } else { Vec::new() } }
+        Self { first, slopes: 0, few: [[0.0; 3]; FEW], n, many: if n > FEW { vec![[0.0; 3]; n] } else { Vec::new() } }
     }
 
     fn set(&mut self, k: usize, value: [f64; 3]) {
@@ -71,9 +103,54 @@ impl Weights {
 }
 
 impl Axis {
-    /// How many curves take part at any one parameter.
+    /// An axis with what its rule needs to be evaluated.
+    pub fn new(nodes: Vec<f64>, rule: Rule) -> Self {
+        let slopes = if rule.is_spline() { cardinal::slopes(&nodes, rule == Rule::Periodic) } else { Vec::new() };
+        Self { nodes, rule, slopes }
+    }
+
+    /// How many terms take part at any one parameter.
     pub fn active(&self) -> usize {
-        if self.rule == Rule::Lagrange { self.nodes.len() } else { 2 }
+        match self.rule {
+            Rule::Lagrange => self.nodes.len(),
+            Rule::Linear | Rule::Cubic => 2,
+            Rule::Spline | Rule::Periodic => 4,
+        }
+    }
+
+    /// Whether the blending functions change their formula at the nodes.
+    pub fn is_piecewise(&self) -> bool {
+        self.rule != Rule::Lagrange
+    }
+
+    /// How many terms there are.
+    pub fn terms(&self) -> usize {
+        self.nodes.len() + self.slopes.len()
+    }
+
+    /// Slopes at the nodes as sums of values at the nodes, in rows; empty unless the rule is a spline.
+    pub fn slopes(&self) -> &[Vec<f64>] {
+        &self.slopes
+    }
+
+    /// Of the active blending values how many sum to 1 at every parameter: they come first; slopes follow.
+    pub fn shares(&self) -> usize {
+        if self.rule.is_spline() { 2 } else { self.active() }
+    }
+
+    #[cfg(test)]
+    /// The blending value of the curve at node `i`, all terms counted.
+    pub fn whole(&self, weights: &Weights, i: usize) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (term, w) in weights.iter() {
+            let by = match term.checked_sub(self.nodes.len()) {
+                Some(k) => self.slopes[k][i],
+                None if term == i => 1.0,
+                None => continue,
+            };
+            (0..3).for_each(|d| sum[d] += by * w[d]);
+        }
+        sum
     }
 
     /// Inner parameters where the slope of the blending values jumps.
@@ -108,6 +185,7 @@ impl Axis {
                 weights.set(near, [1.0 - value, -d1, -d2]);
                 weights
             }
+            Rule::Spline | Rule::Periodic => self.hermite(x, self.cell(x, lean)),
             Rule::Lagrange => {
                 let n = self.nodes.len();
                 let mut weights = Weights::room(0, n);
@@ -117,6 +195,24 @@ impl Axis {
                 weights
             }
         }
+    }
+
+    /// The four cubics of values and slopes at the ends of a cell, from the nearer node: there they are 1 and 0 exactly.
+    fn hermite(&self, x: f64, k: usize) -> Weights {
+        let h = self.nodes[k + 1] - self.nodes[k];
+        let mut weights = Weights::room(k, 4);
+        weights.slopes = self.nodes.len();
+        let (near, far, t, sign) = if x - self.nodes[k] <= self.nodes[k + 1] - x {
+            (0, 1, (x - self.nodes[k]) / h, 1.0)
+        } else {
+            (1, 0, (self.nodes[k + 1] - x) / h, -1.0)
+        };
+        let value = [t * t * (3.0 - 2.0 * t), sign * 6.0 * t * (1.0 - t) / h, (6.0 - 12.0 * t) / (h * h)];
+        weights.set(far, value);
+        weights.set(near, [1.0 - value[0], -value[1], -value[2]]);
+        weights.set(2 + near, [sign * h * t * (1.0 - t) * (1.0 - t), (1.0 - t) * (1.0 - 3.0 * t), sign * (6.0 * t - 4.0) / h]);
+        weights.set(2 + far, [sign * h * t * t * (t - 1.0), t * (3.0 * t - 2.0), sign * (6.0 * t - 2.0) / h]);
+        weights
     }
 
     /// L_i and two derivatives, factor by factor: each factor is exactly 1 or 0 at a node, so the nodes are met exactly.
@@ -142,6 +238,10 @@ impl Axis {
             Rule::Cubic => {
                 let h = self.nodes[at.first + 1] - self.nodes[at.first];
                 Range::at(if k == 1 { -12.0 } else { 12.0 } / (h * h * h))
+            }
+            Rule::Spline | Rule::Periodic => {
+                let h = self.nodes[at.first + 1] - self.nodes[at.first];
+                Range::at([12.0 / (h * h * h), -12.0 / (h * h * h), 6.0 / (h * h), 6.0 / (h * h)][k])
             }
             Rule::Lagrange => self.lagrange_third(k, Range { low: x0, high: x1 }),
         };
@@ -170,10 +270,16 @@ impl Axis {
         p[3]
     }
 
-    /// Largest Σ|L_i| over the direction, by sampling each cell and climbing from its best sample.
+    /// Largest Σ|a_i| over the direction: of the polynomial by climbing in each cell, of splines a bound.
     ///
-    /// Between two nodes the sum is one polynomial with a single maximum, so golden sections find it.
+    /// Between two nodes the polynomial's sum has a single maximum, so golden sections find it. In a cell of width h a spline's
+    /// sum is at most 1 + 4h/27 (Σ|D_k| + Σ|D_k+1|), 4/27 the largest value of t (1 − t)².
     pub fn lebesgue(&self) -> f64 {
+        if self.rule.is_spline() {
+            let sums: Vec<f64> = self.slopes.iter().map(|row| row.iter().map(|d| d.abs()).sum()).collect();
+            let cell = |k: usize| 1.0 + 4.0 / 27.0 * (self.nodes[k + 1] - self.nodes[k]) * (sums[k] + sums[k + 1]);
+            return (0..self.nodes.len() - 1).map(cell).fold(1.0, f64::max);
+        }
         if self.rule != Rule::Lagrange {
             return 1.0;
         }
@@ -202,20 +308,20 @@ mod tests {
 
     #[test]
     fn weights_sum_to_one_and_are_exact_at_nodes() {
-        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange] {
-            let axis = Axis { nodes: vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule };
+        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
+            let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             for i in 0..=100 {
                 for lean in [Lean::After, Lean::Before] {
                     let x = f64::from(i) / 100.0;
                     let w = axis.weights(x, lean);
-                    let sums = w.values().iter().fold([0.0; 3], |s, v| [s[0] + v[0], s[1] + v[1], s[2] + v[2]]);
+                    let sums = w.values()[..axis.shares()].iter().fold([0.0; 3], |s, v| [s[0] + v[0], s[1] + v[1], s[2] + v[2]]);
                     assert!((sums[0] - 1.0).abs() < 1e-13 && sums[1].abs() < 1e-9 && sums[2].abs() < 1e-6, "{x} {sums:?}");
                 }
             }
             for (i, &node) in axis.nodes.iter().enumerate() {
                 let w = axis.weights(node, Lean::After);
-                for (k, v) in w.values().iter().enumerate() {
-                    assert_eq!(v[0], if w.first + k == i { 1.0 } else { 0.0 });
+                for (term, v) in w.iter() {
+                    assert_eq!(v[0], if term == i { 1.0 } else { 0.0 });
                 }
             }
         }
@@ -223,8 +329,8 @@ mod tests {
 
     #[test]
     fn derivatives_are_difference_quotients() {
-        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange] {
-            let axis = Axis { nodes: vec![0.0, 0.2, 0.5, 1.0], rule };
+        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
+            let axis = Axis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
             let h = 1e-5;
             for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {
                 let (a, b, c) = (axis.weights(x - h, Lean::After), axis.weights(x, Lean::After), axis.weights(x + h, Lean::After));
@@ -238,9 +344,40 @@ mod tests {
     }
 
     #[test]
+    fn splines_are_smooth_to_second_order_and_their_ranges_hold() {
+        for rule in [Rule::Spline, Rule::Periodic] {
+            let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
+            let last = axis.nodes.len() - 1;
+            // The curve at a seam is counted at both of its nodes.
+            let round = rule == Rule::Periodic;
+            let of = |x: f64, lean: Lean, i: usize, d: usize| {
+                let w = axis.weights(x, lean);
+                axis.whole(&w, i)[d] + if i == 0 && round { axis.whole(&w, last)[d] } else { 0.0 }
+            };
+            let seam = round.then_some((1.0, 0.0));
+            for (x, y) in axis.nodes[1..last].iter().map(|x| (*x, *x)).chain(seam) {
+                for (i, d) in (0..last).flat_map(|i| [(i, 0), (i, 1), (i, 2)]) {
+                    let (a, b) = (of(x, Lean::Before, i, d), of(y, Lean::After, i, d));
+                    assert!((a - b).abs() < 1e-10 * (1.0 + a.abs()), "{rule:?} {i} {x} {d}: {a} {b}");
+                }
+            }
+            let (x0, x1) = (0.43, 0.52);
+            let ranges = axis.ranges(x0, x1);
+            for i in 0..=20 {
+                let w = axis.weights(x0 + (x1 - x0) * f64::from(i) / 20.0, Lean::After);
+                for (range, value) in ranges.iter().zip(w.values()) {
+                    (0..3).for_each(|d| assert!(range[d].low <= value[d] + 1e-12 && value[d] <= range[d].high + 1e-12));
+                }
+                let sum: f64 = (0..=last).map(|i| axis.whole(&w, i)[0].abs()).sum();
+                assert!(sum <= axis.lebesgue());
+            }
+        }
+    }
+
+    #[test]
     fn lebesgue_constants_of_equal_nodes() {
         // Closed values for equally spaced nodes: degree 2 gives 1.25, degree 6 gives 4.549 (Brutman 1997, table 1).
-        let equal = |n: usize| Axis { nodes: (0..=n).map(|k| k as f64 / n as f64).collect(), rule: Rule::Lagrange }.lebesgue();
+        let equal = |n: usize| Axis::new((0..=n).map(|k| k as f64 / n as f64).collect(), Rule::Lagrange).lebesgue();
         assert!((equal(1) - 1.0).abs() < 1e-12);
         assert!((equal(2) - 1.25).abs() < 1e-9);
         assert!((equal(6) - 4.549).abs() < 1e-3);

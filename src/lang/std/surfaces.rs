@@ -115,7 +115,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> 
     let blend = match said.method {
         Method::Linear => Some("linear"),
         Method::Cubic => Some("cubic"),
-        Method::Coons | Method::Lagrange => None,
+        Method::Coons | Method::Lagrange | Method::Gordon => None,
     };
     if let Some(word) = blend.filter(|_| flow.kind == FlowKind::UniformTrilateral) {
         let range = "auto where three curves have no pole: they are blended in one way".to_owned();

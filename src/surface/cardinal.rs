@@ -1,0 +1,184 @@
+//! Slopes of the cubic splines through one direction's curves, as a matrix: C² interpolation written as Hermite pieces.
+//!
+//! A spline through values y_i at nodes x_i has the slopes m = D y at the nodes, and between two nodes it is the cubic of
+//! their values and slopes. D is made once; every curve, node and slope of a Gordon surface goes through the same D, so
+//! that its three parts cancel on the network to rounding.
+//!
+//! End conditions are "not a knot": the first two pieces are one cubic, and so are the last two, so every cubic is
+//! reproduced and no end slope has to be invented [de Boor 1978, chapter IV]. Three nodes give the parabola, two the line.
+//! A closed direction is periodic instead: value, slope and bend agree across the seam, wherever it lies.
+
+/// D in rows, `nodes.len()` square: slopes at the nodes of the spline through values at the nodes.
+///
+/// `periodic`: the last node stands for the first one; its own values are not read.
+pub fn slopes(nodes: &[f64], periodic: bool) -> Vec<Vec<f64>> {
+    let steps: Vec<f64> = nodes.windows(2).map(|w| w[1] - w[0]).collect();
+    if periodic { around(&steps) } else { open(&steps) }
+}
+
+/// The row of a difference quotient over one cell, times a factor.
+fn add_secant(row: &mut [f64], (from, to): (usize, usize), by: f64) {
+    row[from] -= by;
+    row[to] += by;
+}
+
+fn open(steps: &[f64]) -> Vec<Vec<f64>> {
+    let n = steps.len() + 1;
+    if n == 2 {
+        return vec![vec![-1.0 / steps[0], 1.0 / steps[0]]; 2];
+    }
+    // Three nodes: the parabola's end slopes take the place of the two conditions, which would be the same one.
+    let parabola = n == 3;
+    let mut rows = Rows::new(n);
+    for k in 1..n - 1 {
+        let (a, b) = (steps[k - 1], steps[k]);
+        (rows.low[k], rows.mid[k], rows.high[k]) = (b, 2.0 * (a + b), a);
+        add_secant(&mut rows.right[k], (k - 1, k), 3.0 * b / a);
+        add_secant(&mut rows.right[k], (k, k + 1), 3.0 * a / b);
+    }
+    for last in [false, true] {
+        // Cells and nodes counted from this end; a difference quotient has the same sign from either end.
+        let node = |k: usize| if last { n - 1 - k } else { k };
+        let (a, b) = if last { (steps[n - 2], steps[n - 3]) } else { (steps[0], steps[1]) };
+        let sign = if last { -1.0 } else { 1.0 };
+        let end = node(0);
+        let (first, second, next) = if parabola {
+            (((2.0 * a + b) / (a + b)) / a, -(a / (a + b)) / b, 0.0)
+        } else {
+            ((a + 2.0 * (a + b)) * b / (a + b) / a, a * a / (a + b) / b, a + b)
+        };
+        rows.mid[end] = if parabola { 1.0 } else { b };
+        (if last { &mut rows.low } else { &mut rows.high })[end] = next;
+        add_secant(&mut rows.right[end], (node(0), node(1)), sign * first);
+        add_secant(&mut rows.right[end], (node(1), node(2)), sign * second);
+    }
+    rows.solved()
+}
+
+/// Periodic: node `n` is node 0.
+fn around(steps: &[f64]) -> Vec<Vec<f64>> {
+    let n = steps.len();
+    let mut rows = Rows::new(n);
+    for k in 0..n {
+        let (before, after) = ((k + n - 1) % n, (k + 1) % n);
+        let (a, b) = (steps[before], steps[k]);
+        (rows.low[k], rows.mid[k], rows.high[k]) = (b, 2.0 * (a + b), a);
+        add_secant(&mut rows.right[k], (before, k), 3.0 * b / a);
+        add_secant(&mut rows.right[k], (k, after), 3.0 * a / b);
+    }
+    let mut slopes = if n <= 2 {
+        // Both neighbours are one node: the slopes are equal.
+        rows.right.iter().zip(&rows.mid).map(|(row, mid)| row.iter().map(|x| x / (1.5 * mid)).collect()).collect()
+    } else {
+        rows.solved_around()
+    };
+    for row in &mut slopes {
+        row.push(0.0);
+    }
+    let first = slopes[0].clone();
+    slopes.push(first);
+    slopes
+}
+
+/// A system of three diagonals with a right side of rows.
+struct Rows {
+    low: Vec<f64>,
+    mid: Vec<f64>,
+    high: Vec<f64>,
+    right: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    fn new(n: usize) -> Self {
+        Self { low: vec![0.0; n], mid: vec![0.0; n], high: vec![0.0; n], right: vec![vec![0.0; n]; n] }
+    }
+
+    /// Elimination without exchange: each pivot stays above the sum of what is left in its row.
+    fn solved(mut self) -> Vec<Vec<f64>> {
+        let n = self.mid.len();
+        for k in 1..n {
+            let by = self.low[k] / self.mid[k - 1];
+            self.mid[k] -= by * self.high[k - 1];
+            let (done, rest) = self.right.split_at_mut(k);
+            rest[0].iter_mut().zip(&done[k - 1]).for_each(|(x, y)| *x -= by * y);
+        }
+        for k in (0..n).rev() {
+            let (rest, done) = self.right.split_at_mut(k + 1);
+            let high = self.high[k];
+            for (i, x) in rest[k].iter_mut().enumerate() {
+                *x = (*x - done.first().map_or(0.0, |next| high * next[i])) / self.mid[k];
+            }
+        }
+        self.right
+    }
+
+    /// With `low[0]` and `high[n − 1]` in the corners: two rank-one terms taken out and put back [Sherman & Morrison 1950].
+    fn solved_around(mut self) -> Vec<Vec<f64>> {
+        let n = self.mid.len();
+        let (top, bottom, gamma) = (self.low[0], self.high[n - 1], -self.mid[0]);
+        self.mid[0] -= gamma;
+        self.mid[n - 1] -= top * bottom / gamma;
+        for (k, row) in self.right.iter_mut().enumerate() {
+            row.push(if k == 0 {
+                gamma
+            } else if k == n - 1 {
+                bottom
+            } else {
+                0.0
+            });
+        }
+        let mut x = self.solved();
+        let z: Vec<f64> = x.iter_mut().filter_map(Vec::pop).collect();
+        let scale = 1.0 / (1.0 + z[0] + top / gamma * z[n - 1]);
+        let shares: Vec<f64> = (0..n).map(|i| (x[0][i] + top / gamma * x[n - 1][i]) * scale).collect();
+        for (row, z) in x.iter_mut().zip(&z) {
+            row.iter_mut().zip(&shares).for_each(|(x, share)| *x -= share * z);
+        }
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_parabolas_and_lines_keep_their_slopes() {
+        let nodes = [0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0];
+        for n in 2..=nodes.len() {
+            let x = &nodes[..n];
+            let degree = (n - 1).min(3) as i32;
+            let (value, slope) = (|x: f64| (x - 0.3).powi(degree), |x: f64| f64::from(degree) * (x - 0.3).powi(degree - 1));
+            for (k, row) in slopes(x, false).iter().enumerate() {
+                let found: f64 = row.iter().zip(x).map(|(d, x)| d * value(*x)).sum();
+                assert!((found - slope(x[k])).abs() < 1e-12, "{n} {k}: {found} {}", slope(x[k]));
+                assert!(row.iter().sum::<f64>().abs() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn periodic_slopes_satisfy_their_equations_and_do_not_know_the_seam() {
+        let steps = [0.2, 0.1, 0.4, 0.3];
+        let values = [3.0, -1.0, 0.5, 2.0];
+        let m = |turn: usize| -> Vec<f64> {
+            let mut nodes = vec![0.0];
+            (0..4).for_each(|k| nodes.push(nodes[k] + steps[(k + turn) % 4]));
+            let d = slopes(&nodes, true);
+            assert_eq!(d[0], d[4]);
+            (0..4).map(|k| (0..4).map(|i| d[k][i] * values[(i + turn) % 4]).sum()).collect()
+        };
+        let base = m(0);
+        for k in 0..4 {
+            let (a, b) = (steps[(k + 3) % 4], steps[k]);
+            let secant = |k: usize| (values[(k + 1) % 4] - values[k % 4]) / steps[k % 4];
+            let left = b * base[(k + 3) % 4] + 2.0 * (a + b) * base[k] + a * base[(k + 1) % 4];
+            assert!((left - 3.0 * (b * secant(k + 3) + a * secant(k))).abs() < 1e-12);
+            (0..4).for_each(|turn| assert!((m(turn)[(k + 4 - turn) % 4] - base[k]).abs() < 1e-12));
+        }
+        for n in [1, 2] {
+            let nodes: Vec<f64> = (0..=n).map(|k| k as f64 / n as f64).collect();
+            assert!(slopes(&nodes, true).iter().flatten().all(|d| d.abs() < 1e-12));
+        }
+    }
+}
