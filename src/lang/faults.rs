@@ -78,7 +78,7 @@ impl Cx<'_> {
     }
 
     /// The call of the declaration's own expression that led to a place.
-    fn outermost(&self, mut place: Place) -> Place {
+    pub(super) fn outermost(&self, mut place: Place) -> Place {
         while let Some(caller) = self.origins.place(place.caller) {
             place = caller;
         }

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::cx::{Cx, Stop};
-use super::value::{Home, ModuleId, ShellValue};
+use super::module::{State, bound};
+use super::syntax::ast::Keyword;
+use super::value::{Home, ModuleId, ShellValue, Value};
 use crate::base::fault::{Fault, Say};
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
@@ -68,7 +70,7 @@ impl Scene {
         for surface in surfaces {
             let known = extra.iter().any(|named| side_of(&named.surface, surface).is_some());
             if !known && self.find(surface).is_none() {
-                let name = cx.name(surface.origin());
+                let name = cx.surface_name(surface);
                 extra.push(Named { name, surface: surface.clone() });
             }
         }
@@ -129,6 +131,39 @@ impl Scene {
         }
         let length = whole.length;
         Ok(Some(chain.slice(part.s.0 / length, part.s.1 / length, tolerance)?))
+    }
+}
+
+impl Cx<'_> {
+    /// The name of a surface: as declared; of a member of a `let` its place there, as `parts[0]`, and of a part of such a member that
+    /// member's. What is in no declaration is called by its source, where that is short.
+    pub fn surface_name(&self, surface: &Surface) -> String {
+        self.place_in_let(surface).unwrap_or_else(|| self.name(surface.origin()))
+    }
+
+    /// The place of a surface in the `let` whose expression made it.
+    fn place_in_let(&self, surface: &Surface) -> Option<String> {
+        let place = self.outermost(self.origins.place(surface.origin())?);
+        let module = self.machine.at(place.module);
+        let declaration = module.script.declarations.get(place.declaration as usize)?;
+        let State::Done(value) = &module.states[place.declaration as usize] else { return None };
+        if declaration.keyword != Keyword::Let {
+            return None;
+        }
+        let found = std::iter::once(surface).chain(surface.part_of()).find_map(|one| {
+            let same = path_of(value, &|other| other.is(one));
+            same.or_else(|| path_of(value, &|other| side_of(other, one).is_some()))
+        });
+        Some(format!("{}{}", self.names.text(bound(declaration)?.name), found?))
+    }
+}
+
+/// The indices, as `[1][0]`, of the first surface of a value of which something is true; none for a value that is itself one.
+fn path_of(value: &Value, is: &dyn Fn(&Surface) -> bool) -> Option<String> {
+    match value {
+        Value::Surface(surface) => is(surface).then(String::new),
+        Value::List(items) => items.iter().enumerate().find_map(|(k, item)| path_of(item, is).map(|rest| format!("[{k}]{rest}"))),
+        _ => None,
     }
 }
 

@@ -575,7 +575,8 @@ impl Remark {
                     contacts::Kind::Crossing => Touching::Crossing,
                 };
                 let names = names.clone();
-                SurfaceFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at }.into()
+                let imprint = plan.imprint.is_some();
+                SurfaceFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
             }
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {

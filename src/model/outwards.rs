@@ -63,7 +63,7 @@ impl Model {
                 if let Some(&(a, b, (how, at))) = found.get(covers.unwrap_or(0)) {
                     let names = (self.surfaces[a.index()].name.clone(), self.surfaces[b.index()].name.clone());
                     let (a, b) = (surface(a).origin(), surface(b).origin());
-                    sink.push(SurfaceFault::FacesTouch { within: request.origin, a, b, names, how, at }.into());
+                    sink.push(SurfaceFault::FacesTouch { within: request.origin, a, b, names, how, at, imprint: request.branches }.into());
                 }
             }
         }

@@ -2,15 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::base::bbox::Box3;
 use crate::lang::cx::{Cx, Sound};
+use crate::lang::scene::side_of;
 use crate::lang::symbols::Symbol;
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::value::Value;
 use crate::surface::{Domain, Surface};
-
-/// Places (u, v) where two surfaces are compared.
-const PROBES: [(f64, f64); 3] = [(0.31, 0.23), (0.17, 0.71), (0.83, 0.59)];
 
 /// Names of the declared surfaces from which another surface of the script was trimmed, split or imprinted, but those that a shell is
 /// made of.
@@ -70,25 +67,7 @@ fn needed(symbols: &[Symbol], from: usize) -> BTreeSet<usize> {
     seen
 }
 
-/// Whether a surface is cut out of another one: a stretch of the same surface, and not the whole.
-fn is_part(part: &Surface, whole: &Surface) -> bool {
-    if part.is(whole) {
-        return false;
-    }
-    let (a, b) = (part.untrimmed(), whole.untrimmed());
-    let same = if part.is_flat() && whole.is_flat() {
-        // Planes may have parameters of their own.
-        let (normal, reach) = (b.normal(0.5, 0.5), crate::surface::bbox(whole));
-        let off = |p: glam::DVec3| normal.dot(p - b.point(0.5, 0.5)).abs();
-        let size = reach.diagonal() * crate::base::tolerance::PARALLEL;
-        PROBES.iter().all(|(u, v)| off(a.point(*u, *v)) <= size)
-    } else {
-        PROBES.iter().all(|(u, v)| a.point(*u, *v) == b.point(*u, *v))
-    };
-    same && inside(&crate::surface::bbox(part), &crate::surface::bbox(whole))
-}
-
-fn inside(part: &Box3, whole: &Box3) -> bool {
-    let slack = whole.diagonal() * crate::base::tolerance::BOX;
-    (part.min + slack).cmpge(whole.min).all() && (part.max - slack).cmple(whole.max).all()
+/// Whether a surface is cut out of another one, on either side of it.
+pub(super) fn is_part(part: &Surface, whole: &Surface) -> bool {
+    !part.is(whole) && part.part_of().iter().any(|known| side_of(known, whole).is_some())
 }

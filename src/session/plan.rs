@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::consumed::is_part;
 use crate::base::fault::{Fault, MeshFault, Say, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::{MeshSpec, RuleSpec};
-use crate::lang::scene::{Scene, side_of};
+use crate::lang::scene::Scene;
 use crate::lang::value::{Home, ModuleId, Value};
 use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
@@ -242,7 +243,7 @@ impl Finder<'_> {
         for surface in surfaces {
             let (own, _) = self.scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
             let all = self.scene.model.surfaces.iter().enumerate();
-            let pieces = all.filter(|(n, named)| *n != own.index() && is_piece(&named.surface, surface));
+            let pieces = all.filter(|(n, named)| *n != own.index() && is_part(&named.surface, surface));
             found.extend(std::iter::once(own).chain(pieces.map(|(n, _)| SurfaceId::at(n))).map(Target::Surface));
         }
         Ok(found)
@@ -296,11 +297,6 @@ pub(super) fn chain_of(cx: &mut Cx, home: &Home, edge: &SharedEdge) -> Result<Ch
     let scene = Scene { model: cx.model(home)?, network: cx.network(home.module)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
-}
-
-/// Whether a surface is a part that was cut out of another one, on either side of it.
-fn is_piece(part: &Surface, whole: &Surface) -> bool {
-    part.part_of().iter().any(|known| side_of(known, whole).is_some())
 }
 
 fn wrong(value: &Value) -> Stop {

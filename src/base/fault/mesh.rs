@@ -431,9 +431,14 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 Cure::Method => "`method: delaunay` on this face".to_owned(),
                 Cure::Near => "a smaller `size` on this face, or `near` this place".to_owned(),
             };
-            Report::new("W724", format!("`{name}` has angles down to {} on `{surface}`", say.angle(*angle)))
+            // A face without a name is told by the place.
+            let (on, place) = match surface.as_str() {
+                "" => (format!("at {}", say.point(*at)), "the sharpest is".to_owned()),
+                name => (format!("on `{name}`"), format!("the sharpest is at {},", say.point(*at))),
+            };
+            Report::new("W724", format!("`{name}` has angles down to {} {on}", say.angle(*angle)))
                 .at(*of, "this mesh")
-                .note(format!("the sharpest is at {}, away from sharp corners{more}", say.point(*at)))
+                .note(format!("{place} away from sharp corners{more}"))
                 .help(help)
         }
         F::BelowFloor { size, floor } => {

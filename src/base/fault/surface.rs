@@ -188,6 +188,8 @@ pub enum SurfaceFault {
         how: Touching,
         /// In the middle of the longest stretch.
         at: DVec3,
+        /// Whether faces that touch were asked to share nodes.
+        imprint: bool,
     },
     /// E666: faces that are to be joined where they touch cover each other.
     ImprintOverlap {
@@ -620,7 +622,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
             Some(pieces) => format!("`mesh m of {pieces}` has what they share once"),
             None => "the pieces that `imprint` makes of them have what they share once".to_owned(),
         }),
-        F::FacesTouch { within, a, b, names, how, at } => {
+        F::FacesTouch { within, a, b, names, how, at, imprint } => {
             let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
             let (text, first, second) = match how {
                 Touching::Overlap => (format!("{one} and {other} lie on each other at"), "this face", "and this one"),
@@ -643,7 +645,15 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                         Some(pieces) => format!("`{pieces}` are their pieces, what they share once"),
                         None => "the pieces that `imprint` makes of them have what they share once".to_owned(),
                     },
-                    _ => "`imprint: true` in the settings joins them".to_owned(),
+                    Touching::Edge { length } if *length <= 0.0 => {
+                        format!("nodes of a mesh are joined in a point that it lists: `mesh m of …, {}`", say.point(*at))
+                    }
+                    _ if !imprint => "`imprint: true` in the settings joins them".to_owned(),
+                    Touching::Meeting => "the line along which they meet cuts nothing off: a mesh of the shell has its nodes on both".to_owned(),
+                    _ => match pieces(names) {
+                        Some(pieces) => format!("`imprint: true` joins along whole edges and what corners cut of them, and no corner is where this part ends: mesh `{pieces}`"),
+                        None => "`imprint: true` joins along whole edges and what corners cut of them, and no corner is where this part ends: mesh the pieces that `imprint` makes of them".to_owned(),
+                    },
                 })
         }
         F::ShellNotOrientable { shell, a, b, at } => Report::new(

@@ -1,7 +1,6 @@
 //! Faces cut by each other where they touch.
 
 use super::kinds::SurfaceOrShell;
-use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
@@ -17,7 +16,7 @@ pub(in crate::lang) fn pieces(cx: &mut Cx, surfaces: Vec<Surface>, origin: Origi
     let mut named: Vec<Named> = Vec::new();
     for surface in surfaces {
         if !named.iter().any(|known| known.surface.is(&surface)) {
-            named.push(Named { name: cx.name(surface.origin()), surface });
+            named.push(Named { name: cx.surface_name(&surface), surface });
         }
     }
     let ids: Vec<SurfaceId> = (0..named.len()).map(SurfaceId::at).collect();

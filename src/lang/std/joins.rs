@@ -41,7 +41,7 @@ fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolera
 fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Tolerance) -> Value {
     let name = |cx: &Cx, face: crate::model::PatchId| {
         let surface = scene.model.patches[face.index()].surface;
-        Value::text(&cx.name(scene.model.surfaces[surface.index()].surface.origin()))
+        Value::text(&cx.surface_name(&scene.model.surfaces[surface.index()].surface))
     };
     let (a, b) = (name(cx, contact.faces.0), name(cx, contact.faces.1));
     let angle = |pick: fn(&crate::model::Spread) -> f64| contact.angle.as_ref().map_or(Value::None, |s| Value::angle(pick(s)));

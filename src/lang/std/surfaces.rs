@@ -345,24 +345,25 @@ builtins! {
         let (by, keep) = match (by, keep) {
             (None, None) => {
                 let surface = crate::surface::trim(&s, &outer, &holes, cx.origin(), &tolerance)?;
-                return finished(cx, surface, &[]);
+                return finished(cx, surface.cut_from(&[s]), &[]);
             }
             (Some(by), Some(keep)) => (by, keep),
             (Some(_), None) => return Err(ValueFault::Missing { function: "trim", what: "a point of the part to keep", example: TRIM_EXAMPLE }.into()),
             (None, Some(_)) => return Err(ValueFault::Missing { function: "trim", what: "what cuts", example: TRIM_EXAMPLE }.into()),
         };
         let loops = !(outer.is_empty() && holes.is_empty());
-        let whole = if loops { crate::surface::trim(&s, &outer, &holes, s.origin(), &tolerance)? } else { s };
+        let whole = if loops { crate::surface::trim(&s, &outer, &holes, s.origin(), &tolerance)? } else { s.clone() };
         let cutters = crate::lang::meetings::cutters(cx, &whole, by)?;
         let surface = crate::surface::divide(&whole, &cutters, keep.0, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
+        finished(cx, surface.cut_from(&[s]), &[])
     };
 
     /// All parts into which curves or surfaces divide a surface.
     ///
     /// They are the parts of which `trim(s, by:, keep:)` keeps one, in the order of their centres along x, then y, then z,
     /// whatever the order of the cutters; their areas add up to that of the surface. In a mesh of the parts a group of the surface,
-    /// and a rule on it, speaks of all of them, and of a part of that part alone.
+    /// and a rule on it, speaks of all of them, and of a part of that part alone. Without a declaration of its own a part is called by its
+    /// place in its list, as `rooms[0]`, in reports and as a set in files.
     /// ```loft
     /// surface floor = plane(circle(center: (0, 0, 0), radius: 1m))
     /// curve wall = line((-1m, 0, 0), (1m, 0, 0))
