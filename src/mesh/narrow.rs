@@ -249,12 +249,20 @@ impl Gaze<'_> {
         at
     }
 
-    /// Nodes whose edges meet at an angle.
+    /// Nodes whose edges meet at an angle. At a pole the border goes on at another place of the same node; where that is the other side
+    /// of a seam there is no corner.
     fn corners(&self) -> Vec<Corner> {
         let p = &self.outline.p;
+        let at = self.edges_at();
         let mut found = Vec::new();
-        for (n, others) in self.edges_at().iter().enumerate() {
-            let ways: Vec<DVec3> = others.iter().filter_map(|o| (p[*o as usize] - p[n]).try_normalize()).collect();
+        for (n, own) in at.iter().enumerate() {
+            let here = |o: &&u32| p[**o as usize] == p[n];
+            let across = own.iter().filter(here).flat_map(|o| &at[*o as usize]);
+            let mut others: Vec<u32> = own.iter().chain(across).filter(|o| !here(o)).map(|o| self.ids[*o as usize]).collect();
+            others.sort_unstable();
+            others.dedup();
+            let node = |id: u32| self.made.points[id as usize];
+            let ways: Vec<DVec3> = others.iter().filter_map(|o| (node(*o) - p[n]).try_normalize()).collect();
             let pairs = (0..ways.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
             let cosine = pairs.map(|(i, j)| ways[i].dot(ways[j])).fold(-1.0, f64::max);
             if cosine > SMOOTH {

@@ -52,15 +52,17 @@ fn first_fault(input: &Input, prepared: &[Prepared], found: Vec<Option<Turned>>)
 /// Free quads with a corner of a half turn or more, or without area.
 fn concave_quads(free: &Free, places: &[u32], mesh: &Mesh) -> Option<Turned> {
     let point = |n: u32| mesh.nodes[places[n as usize] as usize];
-    let concave = |quad: &&[u32; 4]| {
-        let p = quad.map(point);
-        let normal = (p[2] - p[0]).cross(p[3] - p[1]);
-        (0..4).any(|k| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0)
-    };
+    let concave = |quad: &&[u32; 4]| is_concave(quad.map(point));
     let first = free.quads.iter().find(concave)?;
     let (a, b) = (free.uv[first[0] as usize], free.uv[first[2] as usize]);
     let count = free.quads.iter().filter(concave).count() as u64;
     Some((count, (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1))))
+}
+
+/// Whether a quad has a corner of a half turn or more, or no area.
+pub fn is_concave(p: [DVec3; 4]) -> bool {
+    let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+    (0..4).any(|k| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0)
 }
 
 /// Cells on a coarse selection of rows and columns whose normal stands against the surface's.

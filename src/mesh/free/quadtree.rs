@@ -7,6 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use super::build::Trouble;
+use super::cells::Cells;
 use super::ground::{Field, Ground};
 use super::grow::{Grown, SIGHT, apart, samples};
 use super::outline::Outline;
@@ -17,6 +18,13 @@ use crate::base::job;
 const SIDE: f64 = 0.74;
 /// Distance of a node to the border over the side of the cells about it.
 const CLEAR: f64 = 0.5;
+/// Least distance of two nodes over the longer side of the cells about one of them: where the chart is stretched, as towards a
+/// pole, cells are much narrower than long, and their corners would lie in crowds.
+const APART: f64 = 0.55;
+/// Least distance of a node, in the chart, to an edge of the border whose chord is off the surface, over the side of the cells.
+const BESIDE: f64 = 0.25;
+/// Distance of the middle of an edge from the surface, over its length, from which on distances to its chord say little.
+const BENT: f64 = 0.05;
 /// Roots along a side at most.
 const ROOTS: f64 = 2048.0;
 /// Places along each direction at which the largest wanted length is looked for.
@@ -97,10 +105,9 @@ fn corners(task: &Plot, tree: &Tree) -> Grown {
             found.push((((cell.at.0 + i) << up, (cell.at.1 + j) << up), k as u32));
         }
     }
-    let border = samples(task.outline, task.field);
     // Row by row, as the lattice lies: neighbours in the list are neighbours on the face.
     found.sort_unstable_by_key(|((i, j), k)| (*j, *i, *k));
-    let mut grown = Grown::default();
+    let mut taken = Taken::new(task);
     for run in found.chunk_by(|a, b| a.0 == b.0) {
         job::look();
         let leaves: Vec<&Cell> = run.iter().map(|(_, k)| &tree.cells()[*k as usize]).collect();
@@ -108,19 +115,58 @@ fn corners(task: &Plot, tree: &Tree) -> Grown {
         if leaves.iter().all(|c| c.class == Class::Partial) && !tree.holds(xy) {
             continue;
         }
-        let side = leaves.iter().map(|c| span(task.ground, tree, c).0).fold(f64::INFINITY, f64::min);
-        let p = task.ground.spot(xy).p;
-        let size = task.field.size(xy, p);
-        let near = border.any(p, SIGHT * size, size, |sample, _| {
-            let [a, b] = task.outline.edge(sample.tag).map(|n| task.outline.p[n as usize]);
+        let sides = leaves.iter().map(|c| (span(task.ground, tree, c).0, tree.side(c.level)));
+        let side = sides.reduce(|a, b| (a.0.min(b.0), a.1.min(b.1))).unwrap_or_default();
+        taken.consider(xy, side);
+    }
+    taken.grown
+}
+
+/// The nodes taken so far.
+struct Taken<'a> {
+    task: &'a Plot<'a>,
+    /// Places along the border.
+    border: Cells,
+    /// Edges of the border whose chords are off the surface, in the chart.
+    bent: Vec<[DVec2; 2]>,
+    nodes: Cells,
+    grown: Grown,
+}
+
+impl<'a> Taken<'a> {
+    fn new(task: &'a Plot<'a>) -> Self {
+        let outline = task.outline;
+        let is_bent = |edge: &[u32; 2]| {
+            let [a, b] = edge.map(|n| n as usize);
+            let there = task.ground.spot(outline.xy[a].midpoint(outline.xy[b])).p;
+            there.distance(outline.p[a].midpoint(outline.p[b])) > BENT * outline.length(*edge)
+        };
+        let bent = outline.edges().filter(is_bent).map(|edge| edge.map(|n| outline.xy[n as usize])).collect();
+        let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
+        Self { task, border: samples(outline, task.field), bent, nodes: Cells::new(unit, true), grown: Grown::default() }
+    }
+
+    /// Takes a corner of cells with these least sides, in space and in the chart, where nothing is too near.
+    fn consider(&mut self, xy: DVec2, (side, in_chart): (f64, DVec2)) {
+        let outline = self.task.outline;
+        let p = self.task.ground.spot(xy).p;
+        let size = self.task.field.size(xy, p);
+        let near = self.border.any(p, SIGHT * size, size, |sample, _| {
+            let [a, b] = outline.edge(sample.tag).map(|n| outline.p[n as usize]);
             apart(p, a, b) < CLEAR * side
         });
-        if near {
-            continue;
+        let beside = |[a, b]: &[DVec2; 2]| apart_in_chart(xy / in_chart, *a / in_chart, *b / in_chart) < BESIDE;
+        if near || self.bent.iter().any(beside) || self.nodes.any(p, APART * side, side, |_, _| true) {
+            return;
         }
-        grown.xy.push(xy);
-        grown.p.push(p);
-        grown.size.push(size);
+        self.nodes.add(p, xy, side, 0);
+        self.grown.xy.push(xy);
+        self.grown.p.push(p);
+        self.grown.size.push(size);
     }
-    grown
+}
+
+/// Distance of a place of the chart from a segment.
+fn apart_in_chart(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    apart(p.extend(0.0), a.extend(0.0), b.extend(0.0))
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DVec2, DVec3};
 
 use crate::base::fault::{MeshFault, Result};
-use crate::base::job::Job;
+use crate::base::job::{self, Job};
 use crate::mesh::free::build::{Lattice, Task, Trouble, plant};
 use crate::mesh::free::face::fit::{Fit, LESS, MOST};
 use crate::mesh::free::face::longest::longest_side;
@@ -23,6 +23,7 @@ use crate::mesh::free::quads::swap::Swapper;
 use crate::mesh::free::size::Blend;
 use crate::mesh::free::web::Web;
 use crate::mesh::plan::{Elements, Method};
+use crate::mesh::shape_check::is_concave;
 use crate::mesh::wanted::floor_keeps;
 
 /// Quality of pairs that is better than two triangles: of `mixed`.
@@ -45,6 +46,8 @@ const STRICT: usize = 1;
 const LOWER: f64 = 0.9;
 /// Times a face is made anew for its limits.
 const TRIES: usize = 20;
+/// Tries after which concave quads are told, and no longer made anew with shorter lengths.
+const WHOLE: usize = 8;
 /// Rounds in which lengths are lowered only where a limit is broken.
 const LOCAL: usize = 2;
 /// The least that all lengths are lowered to at once, over what they were.
@@ -79,7 +82,10 @@ impl Maker<'_> {
             worst = self.lower(field, &net)?;
             let room = if worst.limit == "size" && round >= STRICT { ROOM } else { 1.0 };
             if worst.over <= room {
-                return Ok(Ok(net));
+                if round >= WHOLE || !has_concave(&net) {
+                    return Ok(Ok(net));
+                }
+                field.spacing *= LESS;
             }
             if let Some(background) = &mut field.background {
                 // Where cells fall is another matter each time: in the end all of them are made smaller.
@@ -245,6 +251,12 @@ impl Maker<'_> {
         }
         worst
     }
+}
+
+/// Whether some quad has a corner of a half turn or more.
+fn has_concave(net: &Net) -> bool {
+    let quads = net.face.iter().filter(|face| face[3] != NONE);
+    job::looking(quads).any(|quad| is_concave(quad.map(|n| net.p[n as usize])))
 }
 
 /// The nodes of a net as those of a web, with each quad as two triangles.
