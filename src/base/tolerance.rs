@@ -29,6 +29,8 @@ pub const WHOLE_NUMBER: f64 = 1e-9;
 pub const PARALLEL: f64 = 1e-9;
 /// Relative change at which floating point arithmetic has nothing more to give.
 pub const EPSILON: f64 = 1e-14;
+/// How far a fitted frame along a path may be from the exact one, entry by entry.
+pub const FRAME: f64 = 1e-12;
 /// Share of the largest speed below which a curve stands still: a cusp (math notes §4).
 pub const CUSP: f64 = 1e-10;
 /// Two runs of a loop that meet within the tolerance and are farther apart than this share of it do not cross each other.

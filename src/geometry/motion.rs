@@ -27,6 +27,11 @@ impl Motion {
         Self { affine: DAffine3::from_mat3_translation(matrix, about - matrix * about), scale: 1.0, mirrors: false }
     }
 
+    /// The rotation of an orthonormal matrix that takes one point to another.
+    pub fn rigid(rotation: DMat3, from: DVec3, to: DVec3) -> Self {
+        Self { affine: DAffine3::from_mat3_translation(rotation, to - rotation * from), scale: 1.0, mirrors: false }
+    }
+
     /// Uniform scale by `by > 0` about a fixed point.
     pub fn scaling(about: DVec3, by: f64) -> Self {
         Self {

@@ -60,7 +60,7 @@ macro_rules! stop_from {
         }
     )+ };
 }
-stop_from!(ValueFault, CurveFault, NetworkFault, SurfaceFault, LoopFault, MeshFault, FileFault);
+stop_from!(ValueFault, CurveFault, NetworkFault, SurfaceFault, SweepFault, LoopFault, MeshFault, FileFault);
 
 /// Something a declaration binds, under its unique name (`south`, `ribs[2]`).
 #[derive(Clone, Debug)]

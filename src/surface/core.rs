@@ -64,6 +64,8 @@ pub enum SurfaceKind {
     Trim,
     Gordon,
     Skin,
+    Along,
+    Sweep,
 }
 
 impl SurfaceKind {
@@ -82,6 +84,8 @@ impl SurfaceKind {
             Self::Trim => "trim",
             Self::Gordon => "gordon",
             Self::Skin => "skin",
+            Self::Along => "along",
+            Self::Sweep => "sweep",
         }
     }
 }

@@ -45,6 +45,7 @@ mod spread;
 mod square;
 mod strands;
 mod sweep;
+pub mod sweeps;
 mod trilateral;
 mod trilateral_spread;
 mod trim;

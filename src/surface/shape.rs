@@ -9,6 +9,7 @@ use super::nurbs::NurbsSurface;
 use super::plane::Frame;
 use super::rail::Lean;
 use super::sweep::Sweep;
+use super::sweeps::Framed;
 use super::trilateral::Trilateral;
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
@@ -30,6 +31,8 @@ pub enum Shape {
     Plane(Frame),
     /// A net.
     Nurbs(NurbsSurface),
+    /// A profile carried with a frame.
+    Framed(Framed),
 }
 
 impl Content for Shape {
@@ -40,6 +43,7 @@ impl Content for Shape {
             Self::Sweep(sweep) => (2u8, sweep).tell(to),
             Self::Plane(frame) => (3u8, frame).tell(to),
             Self::Nurbs(net) => (4u8, net).tell(to),
+            Self::Framed(framed) => (5u8, framed).tell(to),
         }
     }
 }
@@ -54,6 +58,7 @@ impl Shape {
             Self::Sweep(s) => s.jet(u, v, lean),
             Self::Plane(s) => s.jet(u, v),
             Self::Nurbs(s) => s.jet(u, v, lean),
+            Self::Framed(s) => s.jet(u, v, lean),
         }
     }
 
@@ -64,6 +69,7 @@ impl Shape {
             Self::Blend(s) => s.grid(us, vs, out),
             Self::Sweep(s) => s.grid(us, vs, out),
             Self::Nurbs(s) => s.grid(us, vs, out),
+            Self::Framed(s) => s.grid(us, vs, out),
             _ => {
                 for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
                     for (p, &u) in row.iter_mut().zip(us) {
@@ -80,6 +86,7 @@ impl Shape {
         match self {
             Self::Blend(s) => s.jets(us, vs, out),
             Self::Sweep(s) => s.jets(us, vs, out),
+            Self::Framed(s) => s.jets(us, vs, out),
             _ => {
                 for &(v, lean_v) in vs {
                     out.extend(us.iter().map(|&(u, lean_u)| self.jet(u, v, (lean_u, lean_v))));
@@ -95,6 +102,7 @@ impl Shape {
             Self::Sweep(s) => s.breaks(),
             Self::Plane(_) => (Vec::new(), Vec::new()),
             Self::Nurbs(s) => s.breaks(),
+            Self::Framed(s) => s.breaks(),
             Self::Trilateral(s) => {
                 let (mut us, mut vs) = (Vec::new(), Vec::new());
                 s.sides()[0].breaks(&mut us);
@@ -110,6 +118,7 @@ impl Shape {
             Self::Blend(s) => s.cells(),
             Self::Sweep(s) => s.cells(),
             Self::Nurbs(s) => s.breaks(),
+            Self::Framed(s) => s.cells(),
             Self::Trilateral(_) | Self::Plane(_) => (Vec::new(), Vec::new()),
         }
     }
@@ -122,6 +131,7 @@ impl Shape {
             Self::Sweep(s) => s.hull(),
             Self::Plane(s) => s.hull(),
             Self::Nurbs(s) => s.hull(),
+            Self::Framed(s) => s.hull(),
         }
     }
 
@@ -133,6 +143,7 @@ impl Shape {
             Self::Sweep(s) => Self::Sweep(s.moved(motion)),
             Self::Plane(s) => Self::Plane(s.moved(motion)),
             Self::Nurbs(s) => Self::Nurbs(s.moved(motion)),
+            Self::Framed(s) => Self::Framed(s.moved(motion)),
         }
     }
 }

@@ -10,6 +10,7 @@ use super::line::Line;
 use super::net_spread::NetStrip;
 use super::rail::Lean;
 use super::shape::Shape;
+use super::sweeps::FramedStrip;
 use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
@@ -92,6 +93,7 @@ enum Known {
     Blend(BlendStrip),
     Profile(Line),
     Net(NetStrip),
+    Framed(FramedStrip),
 }
 
 impl Surface {
@@ -192,6 +194,7 @@ impl Shape {
         let (lines, jumps) = match self {
             Self::Blend(s) => (s.rule_changes(along_u), false),
             Self::Nurbs(s) => s.knot_lines(along_u),
+            Self::Framed(s) if along_u => s.changes(x0, x1),
             _ => (Vec::new(), false),
         };
         let part = |ends: (f64, f64)| {
@@ -199,6 +202,8 @@ impl Shape {
                 Self::Blend(s) => Known::Blend(s.strip(along_u, ends)),
                 Self::Sweep(s) if !along_u => Known::Profile(s.profile().line(ends.0, ends.1)),
                 Self::Nurbs(s) => Known::Net(s.strip(along_u, ends)),
+                Self::Framed(s) if along_u => Known::Framed(s.strip(ends)),
+                Self::Framed(s) => Known::Profile(s.profile().line(ends.0, ends.1)),
                 _ => Known::Nothing,
             };
             Part { ends, known }
@@ -213,6 +218,7 @@ impl Shape {
         match (self, &u.known, &v.known) {
             (Self::Blend(s), Known::Blend(a), Known::Blend(b)) => s.spread(a, b, half),
             (Self::Sweep(s), _, Known::Profile(line)) => s.spread(middle.0, half, line),
+            (Self::Framed(s), Known::Framed(strip), Known::Profile(line)) => s.spread(strip, half, line),
             (Self::Nurbs(s), Known::Net(a), Known::Net(b)) => s.spread(a, b, middle, half),
             (Self::Trilateral(s), ..) => s.spread(u.ends, v.ends),
             (Self::Plane(s), ..) => Spread::new(s.jet(middle.0, middle.1), half, [Ranges::default(); 3], None),

@@ -15,6 +15,7 @@ mod mesh;
 mod network;
 mod no_flow;
 mod surface;
+mod sweep;
 mod values;
 
 use std::fmt;
@@ -31,6 +32,7 @@ pub use mesh::{Cure, MeshFault};
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;
 pub use surface::{SurfaceFault, Touching};
+pub use sweep::SweepFault;
 pub use values::ValueFault;
 
 use super::origin::Origin;
@@ -53,6 +55,8 @@ pub enum Fault {
     Loop(Box<LoopFault>),
     /// Family 6: surfaces that meet and what they cut.
     Cut(Box<CutFault>),
+    /// Family 6: sweeps.
+    Sweep(Box<SweepFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -203,6 +207,7 @@ impl Describe for Fault {
             Self::Surface(f) => f.describe(say),
             Self::Loop(f) => f.describe(say),
             Self::Cut(f) => f.describe(say),
+            Self::Sweep(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -228,6 +233,7 @@ impl Fault {
             (Self::Surface(a), Self::Surface(b)) => same(&**a, &**b),
             (Self::Loop(a), Self::Loop(b)) => same(&**a, &**b),
             (Self::Cut(a), Self::Cut(b)) => same(&**a, &**b),
+            (Self::Sweep(a), Self::Sweep(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -259,6 +265,7 @@ from_family!(
     Surface(SurfaceFault),
     Loop(LoopFault),
     Cut(CutFault),
+    Sweep(SweepFault),
     Mesh(MeshFault),
     File(FileFault)
 );

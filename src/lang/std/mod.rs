@@ -21,6 +21,7 @@ mod network;
 mod numbers;
 mod roundings;
 mod surfaces;
+mod sweeps;
 mod text;
 mod topology;
 mod transforms;
@@ -97,6 +98,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     roundings::BUILTINS,
     network::BUILTINS,
     surfaces::BUILTINS,
+    sweeps::BUILTINS,
     transforms::BUILTINS,
     topology::BUILTINS,
     imprint::BUILTINS,
@@ -107,7 +109,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
 
 /// All tables of fields.
 pub const FIELDS: &[&[Builtin]] =
-    &[vectors::FIELDS, data::FIELDS, network::FIELDS, mesh::FIELDS, topology::FIELDS, joins::FIELDS, measures::FIELDS];
+    &[vectors::FIELDS, data::FIELDS, network::FIELDS, mesh::FIELDS, topology::FIELDS, sweeps::FIELDS, joins::FIELDS, measures::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

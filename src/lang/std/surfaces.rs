@@ -132,7 +132,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> 
 }
 
 /// Says the notes of a surface and what a look at it finds.
-fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Stop> {
+pub(super) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Stop> {
     notes.iter().for_each(|note| cx.say(note));
     let tolerance = cx.tolerance()?;
     surface.review(&tolerance).iter().for_each(|warning| cx.say(warning));

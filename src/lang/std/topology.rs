@@ -136,7 +136,7 @@ fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
     patches.iter().map(|p| &model.patches[p.index()]).any(|patch| {
         let kind = model.surfaces[patch.surface.index()].surface.kind();
         let along = |side: usize| patch.sides.get(side).is_some_and(|s| s.edges.iter().any(|(e, _)| *e == edge));
-        matches!(kind, SurfaceKind::Extrude | SurfaceKind::Revolve) && (along(0) || along(2))
+        matches!(kind, SurfaceKind::Extrude | SurfaceKind::Revolve | SurfaceKind::Along | SurfaceKind::Sweep) && (along(0) || along(2))
     })
 }
 

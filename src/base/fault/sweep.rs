@@ -1,0 +1,287 @@
+//! Family 6: sweeps of sections along guides.
+
+use glam::DVec3;
+
+use super::{Describe, Report, Say};
+use crate::base::origin::Origin;
+
+/// What can go wrong when sections travel along guides, or deserves a word. Lengths are model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SweepFault {
+    /// E631: under the parallel law a section does not lie in a plane parallel to the others.
+    SectionsNotParallel {
+        /// The section whose plane the others are held to.
+        a: Origin,
+        /// The one that leaves its own.
+        b: Origin,
+        /// By which angle, radians.
+        angle: f64,
+        /// By how much at most.
+        off: f64,
+        /// Where.
+        at: DVec3,
+    },
+    /// E632: under the rotational law a section does not lie in a half-plane of the axis.
+    AxisOffSection {
+        /// The section.
+        section: Origin,
+        /// How far its point is off.
+        off: f64,
+        /// That point.
+        at: DVec3,
+    },
+    /// E633: under the normal law a section is not normal to the main guide.
+    SectionNotNormal {
+        /// The section.
+        section: Origin,
+        /// The main guide.
+        guide: Origin,
+        /// By which angle, radians.
+        angle: f64,
+        /// How far off the normal plane.
+        off: f64,
+        /// Where.
+        at: DVec3,
+    },
+    /// E634: a guide does not reach the plane of a station.
+    GuideMissesStation {
+        /// The guide.
+        guide: Origin,
+        /// The law's word.
+        law: &'static str,
+        /// The station, as a fraction of the main guide.
+        station: f64,
+        /// Its place on the main guide.
+        at: DVec3,
+        /// How near the guide comes to its plane.
+        miss: f64,
+        /// Where.
+        nearest: DVec3,
+    },
+    /// E635: a guide runs back against the law.
+    GuideDoublesBack {
+        /// The guide.
+        guide: Origin,
+        /// The law's word.
+        law: &'static str,
+        /// Where.
+        at: DVec3,
+    },
+    /// E637: the main guide touches the axis.
+    MainGuideOnAxis {
+        /// The guide.
+        guide: Origin,
+        /// Where.
+        at: DVec3,
+        /// Its distance from the axis there.
+        off: f64,
+    },
+    /// N638: a guide was made longer to reach all stations.
+    GuideExtended {
+        /// The guide.
+        guide: Origin,
+        /// By how much.
+        length: f64,
+        /// As a share of its length.
+        share: f64,
+        /// The new end.
+        end: DVec3,
+    },
+    /// E640: a section does not touch a guide.
+    DifferentGuides {
+        /// The section.
+        section: Origin,
+        /// The guide.
+        guide: Origin,
+        /// Their distance.
+        gap: f64,
+        /// Where, on the section.
+        at: DVec3,
+    },
+    /// W644: a section was scaled by much to touch its guides.
+    SectionScaled {
+        /// The section.
+        section: Origin,
+        /// The factor.
+        scale: f64,
+        /// The station.
+        at: DVec3,
+    },
+    /// E636: a guide or a path turns back on itself, or has no direction.
+    GuideCusp {
+        /// The guide.
+        guide: Origin,
+        /// Where.
+        at: DVec3,
+        /// Fraction of its arc length.
+        fraction: f64,
+    },
+    /// W639: what is carried moves backwards somewhere, so that the surface crosses itself.
+    SelfIntersects {
+        /// The surface.
+        surface: Origin,
+        /// The path or main guide.
+        path: Origin,
+        /// Where on the surface.
+        at: DVec3,
+        /// How far that is from the path.
+        reach: f64,
+        /// Radius of the path's bend there; none on a straight run between corners.
+        radius: Option<f64>,
+    },
+}
+
+impl Describe for SweepFault {
+    fn describe(&self, say: &dyn Say) -> Report {
+        use SweepFault as F;
+        match self {
+            F::SectionsNotParallel { .. } | F::AxisOffSection { .. } | F::SectionNotNormal { .. } => describe_section(self, say),
+            F::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(
+                "E634",
+                format!(
+                    "{} does not reach the station at {:.1}% of the main guide, {}: under the {law} law it stays {} off, nearest at {}",
+                    say.quoted(*guide, "a guide"),
+                    100.0 * station,
+                    say.point(*at),
+                    say.length(*miss),
+                    say.point(*nearest)
+                ),
+            )
+            .at(*guide, "too short, even with a quarter more at each end")
+            .help("draw this guide as far as the main guide goes, or cut the main guide: `c[A..B]`"),
+            F::GuideDoublesBack { guide, law, at } => Report::new(
+                "E635",
+                format!(
+                    "{} runs back at {}: under the {law} law a section would pass there twice",
+                    say.quoted(*guide, "a guide"),
+                    say.point(*at)
+                ),
+            )
+            .at(*guide, "turns round against the sweep")
+            .help("take the run of it that goes one way, `c[A..B]`, or another `law:`"),
+            F::MainGuideOnAxis { guide, at, off } => Report::new(
+                "E637",
+                format!(
+                    "{} is {} from the axis at {}: no half-plane goes through it there",
+                    say.quoted(*guide, "the main guide"),
+                    say.length(*off),
+                    say.point(*at)
+                ),
+            )
+            .at(*guide, "meets the axis")
+            .help("write another guide first, one that goes round the axis"),
+            F::GuideExtended { guide, length, share, end } => Report::new(
+                "N638",
+                format!(
+                    "{} was made {} longer ({:.1}% of its length), to {}, so that it reaches every station",
+                    say.quoted(*guide, "a guide"),
+                    say.length(*length),
+                    100.0 * share,
+                    say.point(*end)
+                ),
+            )
+            .at(*guide, "goes on as it ends"),
+            F::DifferentGuides { section, guide, gap, at } => Report::new(
+                "E640",
+                format!(
+                    "{} does not touch {}: they are {} apart at {}",
+                    say.quoted(*section, "a section"),
+                    say.quoted(*guide, "a guide"),
+                    say.length(*gap),
+                    say.point(*at)
+                ),
+            )
+            .at(*section, "must touch every guide")
+            .at(*guide, "this one it misses")
+            .help("draw one of them through a point of the other, or leave this guide out of `guides:`"),
+            F::SectionScaled { section, scale, at } => Report::new(
+                "W644",
+                format!("{} is scaled by {scale:.3} to touch its guides at {}", say.quoted(*section, "a section"), say.point(*at)),
+            )
+            .at(*section, "the nearest section to that station")
+            .help("draw one more section there"),
+            F::GuideCusp { guide, at, fraction } => Report::new(
+                "E636",
+                format!(
+                    "{} turns back on itself at {}, {:.1}% of its length",
+                    say.quoted(*guide, "the path"),
+                    say.point(*at),
+                    100.0 * fraction
+                ),
+            )
+            .at(*guide, "has no direction there that a section could follow")
+            .help("take the runs before and after it, `c[0..P]` and `c[P..1]`, or draw the cusp as a bend"),
+            F::SelfIntersects { surface, path, at, reach, radius } => {
+                let why = match radius {
+                    Some(radius) => {
+                        format!("it reaches {} from a path that bends with a radius of {} there", say.length(*reach), say.length(*radius))
+                    }
+                    None => format!("the run of the path between its corners is too short for what reaches {} from it", say.length(*reach)),
+                };
+                Report::new("W639", format!("{} crosses itself at {}: {why}", say.quoted(*surface, "this sweep"), say.point(*at)))
+                    .at(*path, "bends too sharply for this section")
+                    .help("draw the path with wider bends, or a smaller section")
+            }
+        }
+    }
+}
+
+/// E631–E633: what a law asks of sections.
+fn describe_section(fault: &SweepFault, say: &dyn Say) -> Report {
+    use SweepFault as F;
+    match fault {
+        F::SectionsNotParallel { a, b, angle, off, at } if a == b => Report::new(
+            "E631",
+            format!(
+                "{} is not flat: at {} it is {} ({}) off the plane that travels",
+                say.quoted(*a, "a section"),
+                say.point(*at),
+                say.length(*off),
+                say.angle(*angle)
+            ),
+        )
+        .at(*a, "leaves its plane")
+        .help("`law: synchronized` takes sections that are not flat"),
+        F::SectionsNotParallel { a, b, angle, off, at } => Report::new(
+            "E631",
+            format!(
+                "{} and {} are not parallel: the second is {} off, {} at {}",
+                say.quoted(*a, "a section"),
+                say.quoted(*b, "another one"),
+                say.angle(*angle),
+                say.length(*off),
+                say.point(*at)
+            ),
+        )
+        .at(*b, "not parallel")
+        .at(*a, "to this section")
+        .help("draw both in parallel planes, or take `law: rotational` or `law: synchronized`"),
+        F::AxisOffSection { section, off, at } => Report::new(
+            "E632",
+            format!(
+                "{} does not lie in a half-plane of the axis: it is {} off at {}",
+                say.quoted(*section, "a section"),
+                say.length(*off),
+                say.point(*at)
+            ),
+        )
+        .at(*section, "its plane misses the axis, or it crosses it")
+        .help("draw the section in a plane through `axis:`, on one side of it"),
+        F::SectionNotNormal { section, guide, angle, off, at } => Report::new(
+            "E633",
+            format!(
+                "{} is not normal to {}: {} off, {} at {}",
+                say.quoted(*section, "a section"),
+                say.quoted(*guide, "the main guide"),
+                say.angle(*angle),
+                say.length(*off),
+                say.point(*at)
+            ),
+        )
+        .at(*section, "must stand at right angles")
+        .at(*guide, "to this guide")
+        .help("turn the section about the point where it touches the guide, or take another `law:`"),
+        // Answered by the table above.
+        _ => Report::new("E999", "a fault that another table has words for"),
+    }
+}

@@ -1,0 +1,154 @@
+//! Sweeps: a profile along a path, sections along guides.
+
+use super::surfaces::finished;
+use super::transforms::axis_line;
+use crate::base::fault::ValueFault;
+use crate::builtins;
+use crate::lang::types::{Angle, Axis, Point};
+use crate::network::Chain;
+use crate::surface::sweeps::{AlongSettings, Input, Law, Method, along as carried_along, sweep as swept};
+use crate::surface::{Surface, revolve};
+
+crate::choices! {
+    /// What a profile does at a corner of its path.
+    pub enum CornerWord {
+        /// It is cut by the plane that bisects the corner.
+        Miter = "miter",
+        /// It is turned about the corner.
+        Round = "round",
+    }
+}
+
+crate::choices! {
+    /// The rule by which sections travel.
+    pub enum LawWord {
+        /// They stay parallel.
+        Parallel = "parallel",
+        /// They turn about the axis.
+        Rotational = "rotational",
+        /// They stay normal to the main guide.
+        Normal = "normal",
+        /// They divide all guides in the same ratio.
+        Synchronized = "synchronized",
+    }
+}
+
+crate::choices! {
+    /// How the net of sections and guides becomes a surface.
+    pub enum MethodWord {
+        /// By splines through all of them, smooth across all.
+        Gordon = "gordon",
+        /// Each patch from its own four curves, to compare.
+        Local = "local",
+    }
+}
+
+const ROTATIONAL: &str = "sweep(a, law: rotational, guides: [g], axis: (0, 0, 1))";
+const SWEEP: &str = "sweep([a, b], law: parallel, guides: [g])";
+
+builtins! {
+    /// Surface that a curve leaves when it is carried along a path.
+    ///
+    /// The profile may stand anywhere: it is carried rigidly, as it stands to the start of the path, and turns with the
+    /// path's direction without turning about it (the rotation-minimising frame); what is missing where a path closes is spread
+    /// over its length. u runs along the path, v along the profile. At corners of the path the surface is cut by the bisecting
+    /// plane; the runs that end in a corner must be straight. A straight path gives what `extrude` gives, an arc what `revolve` gives.
+    /// ```loft
+    /// curve way = spline([(0, 0, 0), (1m, 0, 0), (2m, 1m, 500mm)], start: (1, 0, 0))
+    /// curve ring = circle(center: (0, 0, 0), radius: 200mm, normal: (1, 0, 0))
+    /// surface pipe = along(ring, way)
+    /// ```
+    fn along(
+        /// The curve that is carried.
+        profile: Chain,
+        /// The way it goes.
+        path: Chain,
+        /// What it does at corners of the path; `round` is for a later version.
+        corner: CornerWord = "miter",
+        /// How far it turns about the path from the start to the end.
+        twist: Angle = "0deg",
+    ) -> Surface = |cx, profile, path, corner, twist| {
+        if matches!(corner, CornerWord::Round) {
+            return Err(ValueFault::NotInThisVersion { what: "`corner: round`".to_owned() }.into());
+        }
+        let tolerance = cx.tolerance()?;
+        let (surface, notes) = carried_along(&profile, &path, &AlongSettings { twist: twist.0, origin: cx.origin() }, &tolerance)?;
+        finished(cx, surface, &notes)
+    };
+
+    /// Surface of sections that travel along guides by a law.
+    ///
+    /// It contains every section and every guide; u runs along the first guide, the main one, v along the sections. The law says
+    /// where sections stand between those given: `parallel` ones in parallel planes, `rotational` ones in half-planes of the axis,
+    /// `normal` ones in planes normal to the main guide, `synchronized` ones through points that divide all guides in the same
+    /// ratio. Its assumptions are checked first. Between two sections both are deformed to touch the guides, and blended; before
+    /// the first one and after the last the nearest one is deformed. Every section must touch every guide within the tolerance;
+    /// their order and direction change nothing. One section on one guide is exact.
+    /// ```loft
+    /// curve foot = spline([(0, -60, 0), (0, -30, 18), (0, 0, 24), (0, 30, 18), (0, 60, 0)])
+    /// curve head = spline([(120, -50, 0), (120, -25, 30), (120, 0, 34), (120, 25, 12), (120, 50, 0)])
+    /// curve left = spline([(0, -60, 0), (40, -62, 4), (80, -55, 6), (120, -50, 0)])
+    /// curve right = spline([(0, 60, 0), (60, 66, -5), (120, 50, 0)])
+    /// surface hood = sweep([foot, head], law: parallel, guides: [left, right])
+    /// ```
+    fn sweep(
+        /// The sections.
+        sections: Vec<Chain>,
+        /// The rule by which they travel.
+        law: LawWord,
+        /// The guides, the main one first.
+        guides: Vec<Chain>,
+        /// Direction of the axis of the rotational law, or a straight curve.
+        axis: Option<Axis>,
+        /// A point of that axis; the origin, or the curve's start.
+        about: Option<Point>,
+        /// How the net becomes a surface.
+        method: MethodWord = "gordon",
+    ) -> Surface = |cx, sections, law, guides, axis, about, method| {
+        let tolerance = cx.tolerance()?;
+        for (what, list) in [("a section", &sections), ("a guide", &guides)] {
+            if list.is_empty() {
+                return Err(ValueFault::Missing { function: "sweep", what, example: SWEEP }.into());
+            }
+        }
+        let law = match (law, axis) {
+            (LawWord::Rotational, Some(axis)) => {
+                let (direction, start) = axis_line(cx, &axis)?;
+                let about = about.map(|p| p.0).or(start).unwrap_or(glam::DVec3::ZERO);
+                Law::Rotational(revolve::Axis { about, direction })
+            }
+            (LawWord::Rotational, None) => {
+                return Err(ValueFault::Missing { function: "sweep", what: "the axis of the rotational law", example: ROTATIONAL }.into());
+            }
+            (_, Some(_)) => {
+                let arguments = vec!["law", "axis"];
+                let what = "`axis:` with the rotational law only";
+                return Err(ValueFault::Exclusive { function: "sweep", what, arguments, example: ROTATIONAL }.into());
+            }
+            (LawWord::Parallel, None) => Law::Parallel,
+            (LawWord::Normal, None) => Law::Normal,
+            (LawWord::Synchronized, None) => Law::Synchronized,
+        };
+        let method = match method {
+            MethodWord::Gordon => Method::Gordon,
+            MethodWord::Local => Method::Local,
+        };
+        let input = Input { sections: &sections, guides: &guides, law, method, origin: cx.origin() };
+        let (surface, notes) = swept(&input, &tolerance)?;
+        finished(cx, surface, &notes)
+    };
+}
+
+crate::fields! {
+    /// Curves across a surface that it is made through: sections of a sweep, curves along v of a net, in the order of u.
+    fn stations(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<Chain> = |_cx, s| Ok(s.stations());
+
+    /// The largest angle between the normals on both sides of the curves of its net, corners of the curves left out.
+    fn patch_angle(
+        /// The surface.
+        s: Surface,
+    ) -> Angle = |_cx, s| Ok(Angle(s.patch_angle()));
+}

@@ -1,0 +1,175 @@
+//! `along`: one profile along one path.
+
+use glam::{DMat3, DVec3};
+
+use super::super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
+use super::super::extrude::{extrude, kinked};
+use super::super::flow_words::phrase;
+use super::super::rail::{Lean, Rail};
+use super::super::reparam::Map;
+use super::super::revolve::{Axis, revolve};
+use super::super::shape::Shape;
+use super::framed::Framed;
+use super::legs::Legs;
+use super::matrices::Matrices;
+use crate::base::fault::{Fault, Result, SweepFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::Motion;
+use crate::geometry::curve::Shape as CurveShape;
+use crate::network::Chain;
+
+/// Samples a run of the path and of the profile in the search for folds.
+const SAMPLES: usize = 9;
+
+/// Settings of [`along`].
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Turn about the path from its start to its end, radians.
+    pub twist: f64,
+    /// The declaration.
+    pub origin: Origin,
+}
+
+/// The surface that a profile leaves that is carried along a path, staying as it stands to the path's direction.
+///
+/// u runs along the path, v along the profile, both by arc length. At corners of the path the surface is cut by the
+/// bisecting plane. A straight path gives the extruded surface, an arc the revolved one. Returns W639 where it folds.
+/// Fails with E636 where the path has a cusp.
+pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let plain = if settings.twist == 0.0 { simple(profile, path, settings.origin, tolerance)? } else { None };
+    let surface = match plain {
+        Some(surface) => {
+            Surface::new(Parts { kind: SurfaceKind::Along, chains: vec![profile.clone(), path.clone()], ..surface.parts().clone() })
+        }
+        None => framed(profile, path, settings, tolerance)?,
+    };
+    let notes = folds(&surface, path, tolerance);
+    Ok((surface, notes))
+}
+
+/// The exact surface of a path that is one straight line or one arc of a circle.
+fn simple(profile: &Chain, path: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+    let curve = path.to_curve()?;
+    match curve.shape() {
+        CurveShape::Line(a, b) => extrude(profile, *b - *a, origin, tolerance).map(Some),
+        CurveShape::Arc(arc) if arc.radius.is_some() => {
+            let normal = arc.u.cross(arc.v).normalize_or_zero();
+            // A profile that crosses the axis folds over, but is a surface.
+            Ok(revolve(profile, &Axis { about: arc.center, direction: normal }, arc.sweep, origin, tolerance).ok())
+        }
+        _ => Ok(None),
+    }
+}
+
+fn framed(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<Surface> {
+    let origin = settings.origin;
+    let mut legs = Legs::new(path, settings.twist, tolerance)?;
+    let turn = legs.mitred()?;
+    let closed = legs.closes(settings.twist, tolerance);
+    let frame = Frame { turn, last: legs.last(), corners: legs.corners(), cut: legs.cut_at_start(), closed };
+    Ok(made(profile, path, frame, origin, tolerance))
+}
+
+/// A profile that is moved along a path by a smooth function of its fraction; W639 is not looked for.
+pub fn moved_by(
+    profile: &Chain,
+    path: &Chain,
+    settings: &Settings,
+    turn: &mut dyn FnMut(f64) -> DMat3,
+    tolerance: &Tolerance,
+) -> Result<(Surface, Vec<Fault>)> {
+    let stops = [vec![0.0], super::super::chain_breaks(path), vec![1.0]].concat();
+    let mut all = Matrices::empty();
+    for w in stops.windows(2) {
+        if !all.fit((w[0], w[1]), turn) {
+            return Err(SweepFault::GuideCusp { guide: path.origin(), at: path.point(w[0]), fraction: w[0] }.into());
+        }
+    }
+    let closed = path.is_closed(tolerance);
+    let corners = path.kinks(tolerance).into_iter().filter(|f| *f > 0.0).collect();
+    let frame = Frame { turn: all, last: turn(1.0), corners, cut: false, closed };
+    Ok((made(profile, path, frame, settings.origin, tolerance), Vec::new()))
+}
+
+/// How a profile moves.
+struct Frame {
+    turn: Matrices,
+    /// The rotation at the end.
+    last: DMat3,
+    corners: Vec<f64>,
+    /// Whether the profile is cut where it starts.
+    cut: bool,
+    /// Whether it comes back to where it started.
+    closed: bool,
+}
+
+fn made(profile: &Chain, path: &Chain, frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+    let (rail, kinks) = kinked(profile, tolerance);
+    let corners = frame.corners;
+    let mut way = Rail::new(path.clone(), Map::identity());
+    way.set_kinks(corners.iter().map(|f| (*f, *f)).collect());
+    let closed = (frame.closed, profile.is_closed(tolerance));
+    let mut generated = Vec::new();
+    let ends = match (frame.cut, closed.0) {
+        (true, true) => [Border::straight(Side::Seam), Border::straight(Side::Seam)],
+        (_, true) => [Border::chain(profile.clone(), false), Border::chain(profile.clone(), false)],
+        (cut, false) => {
+            let last = profile.moved(&Motion::rigid(frame.last, path.start(), path.end())).with_origin(origin);
+            generated.push(last.clone());
+            let end = |chain: Chain| if cut { Border::straight(Side::Free) } else { Border::chain(chain, false) };
+            [end(profile.clone()), end(last)]
+        }
+    };
+    let side = |p: DVec3| match (tolerance.same_point(p, path.start()) && corners.is_empty(), closed.1) {
+        (true, _) => Border::chain(path.clone(), false),
+        (_, true) => Border::straight(Side::Seam),
+        _ => Border::straight(Side::Free),
+    };
+    let [first, last] = ends;
+    Surface::new(Parts {
+        origin,
+        kind: SurfaceKind::Along,
+        flow: phrase(0, closed),
+        domain: Domain::Square,
+        closed,
+        borders: vec![side(profile.start()), last, side(profile.end()), first],
+        kinks: (corners.clone(), kinks),
+        shape: Shape::Framed(Framed::new(way, frame.turn, rail)),
+        chains: vec![profile.clone(), path.clone()],
+        generated,
+        trim: None,
+        flipped: false,
+    })
+}
+
+/// W639 at the place where the profile moves back most against the path's direction.
+fn folds(surface: &Surface, path: &Chain, tolerance: &Tolerance) -> Vec<Fault> {
+    let inside = |breaks: Vec<f64>| -> Vec<f64> {
+        let stops = [&[0.0], breaks.as_slice(), &[1.0]].concat();
+        stops
+            .windows(2)
+            .flat_map(|w| (0..SAMPLES).map(|k| w[0] + (w[1] - w[0]) * (k as f64 + 0.5) / SAMPLES as f64).collect::<Vec<_>>())
+            .collect()
+    };
+    let (us, vs) = surface.breaks();
+    let path_breaks = super::super::chain_breaks(path);
+    let (us, vs) = (inside(if us.is_empty() { path_breaks } else { us }), inside(vs));
+    let lean = |list: &[f64]| list.iter().map(|x| (*x, Lean::After)).collect::<Vec<_>>();
+    let jets = surface.jets(&lean(&us), &lean(&vs));
+    let mut worst: Option<(f64, usize)> = None;
+    for (k, jet) in jets.iter().enumerate() {
+        let speed = jet.du.dot(path.jet(us[k % us.len()]).d1) / (path.length() * path.length());
+        if speed < -tolerance.parameter && worst.is_none_or(|(least, _)| speed < least) {
+            worst = Some((speed, k));
+        }
+    }
+    let fault = worst.map(|(_, k)| {
+        let way = path.jet(us[k % us.len()]);
+        let bend = way.d2.length() / (path.length() * path.length());
+        let radius = (bend > 0.0).then(|| 1.0 / bend);
+        let reach = jets[k].p.distance(way.p);
+        SweepFault::SelfIntersects { surface: surface.origin(), path: path.origin(), at: jets[k].p, reach, radius }.into()
+    });
+    fault.into_iter().collect()
+}

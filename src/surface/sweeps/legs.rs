@@ -1,0 +1,203 @@
+//! The frame of a path with corners: smooth legs, cut by the bisecting planes of the corners between them.
+
+use glam::{DMat3, DVec3};
+
+use super::frame::{bent, frame, place, transported, twisted};
+use super::matrices::Matrices;
+use crate::base::fault::{Result, SweepFault, ValueFault};
+use crate::base::job;
+use crate::base::math;
+use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::network::Chain;
+
+/// A frame is carried over at most this share of the path at once, and over as much as turns the tangent by so many radians.
+const STEP: f64 = 1.0 / 64.0;
+const TURN: f64 = 0.5;
+
+/// A smooth run of the path.
+struct Leg {
+    from: f64,
+    to: f64,
+    /// Normals known so far, by ascending fraction; the first one at `from`.
+    normals: Vec<(f64, DVec3)>,
+}
+
+/// The path with a frame at every place of it.
+pub struct Legs<'a> {
+    path: &'a Chain,
+    legs: Vec<Leg>,
+    /// Fractions of the corners, 0 for one where a closed path starts.
+    corners: Vec<f64>,
+    first: DMat3,
+    /// Turn about the tangent from the start to the end, radians, beside that of the rotation-minimising frame.
+    twist: f64,
+}
+
+/// Unit normal of the plane that bisects a corner.
+fn bisector(before: DVec3, after: DVec3) -> DVec3 {
+    (before + after).normalize_or_zero()
+}
+
+impl<'a> Legs<'a> {
+    /// Carries a frame along the whole path; a closed path gets what its frame lacks spread over its length, then `twist`.
+    ///
+    /// E636 where the path turns back on itself.
+    pub fn new(path: &'a Chain, twist: f64, tolerance: &Tolerance) -> Result<Self> {
+        let corners = path.kinks(tolerance);
+        for &f in &corners {
+            let (before, after) = sides(path, f);
+            if before.dot(after) <= -1.0 + tolerance.angle * tolerance.angle {
+                return Err(SweepFault::GuideCusp { guide: path.origin(), at: path.point(f), fraction: f }.into());
+            }
+        }
+        let inner = corners.iter().copied().filter(|f| *f > 0.0);
+        let stops: Vec<f64> = std::iter::once(0.0).chain(inner).chain(std::iter::once(1.0)).collect();
+        let tangent = place(path, 0.0, false).1;
+        let mut normal = math::any_normal(tangent);
+        let first = frame(tangent, normal);
+        let mut legs = Vec::with_capacity(stops.len() - 1);
+        for w in stops.windows(2) {
+            if w[0] > 0.0 {
+                let (before, after) = sides(path, w[0]);
+                normal = bent(before, after, normal);
+            }
+            let mut leg = Leg { from: w[0], to: w[1], normals: vec![(w[0], normal)] };
+            // In steps from break to break, so that each is smooth.
+            for stop in leg.stops(path) {
+                normal = leg.normal(path, stop);
+            }
+            legs.push(leg);
+        }
+        let mut twist = twist;
+        if path.is_closed(tolerance) {
+            let (before, after) = sides(path, 0.0);
+            let back = bent(before, after, normal);
+            twist -= math::atan2(back.dot(first.y_axis), back.dot(first.x_axis));
+        }
+        Ok(Self { path, legs, corners, first, twist })
+    }
+
+    /// Whether the frame comes back to where it started.
+    pub fn closes(&self, twist: f64, tolerance: &Tolerance) -> bool {
+        let turns = twist / std::f64::consts::TAU;
+        self.path.is_closed(tolerance) && (turns - turns.round()).abs() <= tolerance.angle
+    }
+
+    /// Whether there is a corner at this fraction.
+    fn corner(&self, f: f64) -> bool {
+        let turn = if f >= 1.0 { 0.0 } else { f };
+        self.corners.iter().any(|c| (c - turn).abs() <= EPSILON)
+    }
+
+    /// Whether the profile is cut where the path starts.
+    pub fn cut_at_start(&self) -> bool {
+        self.corner(0.0)
+    }
+
+    /// The rotation that the profile has at the end of the path.
+    pub fn last(&mut self) -> DMat3 {
+        let k = self.legs.len() - 1;
+        self.turned(k, 1.0)
+    }
+
+    /// Unit tangent and rotation at any place; at a corner those of its bisecting plane.
+    pub fn frame_at(&mut self, f: f64) -> (DVec3, DMat3) {
+        let leg = self.legs.iter().position(|leg| f <= leg.to).unwrap_or(self.legs.len() - 1);
+        if !self.corner(f) || f == 0.0 {
+            return (place(self.path, f, f >= self.legs[leg].to).1, self.turned(leg, f));
+        }
+        let (before, after) = sides(self.path, f);
+        let middle = bisector(before, after);
+        let normal = bent(before, middle, self.legs[leg].normal(self.path, f));
+        (middle, twisted(frame(middle, normal), self.twist * f) * self.first.transpose())
+    }
+
+    fn turned(&mut self, leg: usize, f: f64) -> DMat3 {
+        let normal = self.legs[leg].normal(self.path, f);
+        let tangent = place(self.path, f, f >= self.legs[leg].to).1;
+        twisted(frame(tangent, normal), self.twist * f) * self.first.transpose()
+    }
+
+    /// The matrix of the profile all along the path, cut by the bisecting planes of its corners.
+    ///
+    /// Fails where a run that ends in a corner is not straight, and with E636 at a cusp.
+    pub fn mitred(&mut self) -> Result<Matrices> {
+        let mut all = Matrices::empty();
+        for leg in 0..self.legs.len() {
+            let stops = [&[self.legs[leg].from][..], &self.legs[leg].stops(self.path)].concat();
+            for w in stops.windows(2) {
+                let (a, b) = (w[0], w[1]);
+                let cuts = (self.cut(a, (a, b), false)?, self.cut(b, (a, b), true)?);
+                let mut of = |f: f64| {
+                    let x = (f - a) / (b - a);
+                    let turned = self.turned(leg, f);
+                    if cuts == (None, None) {
+                        return turned;
+                    }
+                    let [p, q] = [cuts.0, cuts.1].map(|cut| cut.unwrap_or(DMat3::IDENTITY));
+                    (p * (1.0 - x) + q * x) * turned
+                };
+                if !all.fit((a, b), &mut of) {
+                    return Err(SweepFault::GuideCusp { guide: self.path.origin(), at: self.path.point(a), fraction: a }.into());
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// The projection along a straight run to the bisecting plane of the corner at one of its ends, if there is one.
+    fn cut(&self, f: f64, run: (f64, f64), before: bool) -> Result<Option<DMat3>> {
+        if !self.corner(f) {
+            return Ok(None);
+        }
+        let (arriving, leaving) = sides(self.path, f);
+        let chord = self.path.point(run.1).distance(self.path.point(run.0));
+        let length = (run.1 - run.0) * self.path.length();
+        if length - chord > EPSILON * self.path.length() {
+            let found = "miter".to_owned();
+            let share = 100.0 * f;
+            let range =
+                format!("another way here: the run of the path that ends in the corner at {share:.4}% of its length is not straight");
+            return Err(ValueFault::OutsideRange { argument: "corner", found, range }.into());
+        }
+        let (t, n) = (if before { arriving } else { leaving }, bisector(arriving, leaving));
+        let along = t / n.dot(t);
+        Ok(Some(DMat3::IDENTITY - DMat3::from_cols(along * n.x, along * n.y, along * n.z)))
+    }
+
+    /// Inner corners.
+    pub fn corners(&self) -> Vec<f64> {
+        self.corners.iter().copied().filter(|f| *f > 0.0).collect()
+    }
+}
+
+impl Leg {
+    /// Ends of its smooth runs, its own end the last.
+    fn stops(&self, path: &Chain) -> Vec<f64> {
+        let inner = super::super::chain_breaks(path).into_iter().filter(|f| *f > self.from + EPSILON && *f < self.to - EPSILON);
+        inner.chain(std::iter::once(self.to)).collect()
+    }
+
+    /// The normal at a fraction, carried from the nearest one known before it in steps that turn little.
+    fn normal(&mut self, path: &Chain, f: f64) -> DVec3 {
+        loop {
+            let k = self.normals.partition_point(|known| known.0 <= f).max(1) - 1;
+            let (from, normal) = self.normals[k];
+            if from >= f {
+                return normal;
+            }
+            job::look();
+            let turning = path.jet(from).d2.length() / path.length();
+            let most = if turning > 0.0 { (TURN / turning).min(STEP) } else { STEP };
+            let to = if f - from <= most { f } else { from + most };
+            let found = transported(path, (from, to), normal);
+            self.normals.insert(k + 1, (to, found));
+        }
+    }
+}
+
+/// Unit tangents on both sides of a place; at 0 the end of the path is what lies before.
+fn sides(path: &Chain, f: f64) -> (DVec3, DVec3) {
+    let before = place(path, if f == 0.0 { 1.0 } else { f }, true).1;
+    (before, place(path, f, false).1)
+}
