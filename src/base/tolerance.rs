@@ -61,9 +61,9 @@ pub const LEAST_CURVATURE: f64 = 1e-3;
 /// Ends that `snap` moves by at most this share of their curve's length: a measurement is good to better than a hundredth, and
 /// a curve that moves further is another one.
 pub const SNAP_SHARE: f64 = 0.01;
-/// Share of the tolerance to which places found by computing are told.
-const TOLD: f64 = 1e-3;
-/// Most decimals of a place that is told.
+/// Share of the tolerance to which places found by computing are shown.
+const SHOWN: f64 = 1e-3;
+/// Most decimals of a place that is shown.
 const MOST_PLACES: f64 = 300.0;
 
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
@@ -109,20 +109,25 @@ impl Tolerance {
         Self { angle, ..self }
     }
 
+    /// The diagonal of the model's box, at least the tolerance, model length units.
+    pub fn size(&self) -> f64 {
+        self.rounding / ROUNDING_SHARE
+    }
+
     /// Whether two points are one.
     pub fn same_point(&self, a: DVec3, b: DVec3) -> bool {
         a.distance_squared(b) <= self.point * self.point
     }
 
-    /// A place that was computed, as it is told to people: whole multiples of a thousandth of the tolerance, so that `-4.9e-16`
+    /// A place that was computed, as it is shown to people: whole multiples of a thousandth of the tolerance, so that `-4.9e-16`
     /// is 0. The largest power of ten up to that thousandth is the step; a coordinate too large for it stays as it is.
-    pub fn told(&self, p: DVec3) -> DVec3 {
-        let places = -super::math::log10(self.point * TOLD).floor();
+    pub fn rounded(&self, p: DVec3) -> DVec3 {
+        let places = -super::math::log10(self.point * SHOWN).floor();
         if !(0.0..=MOST_PLACES).contains(&places) {
             return p;
         }
         let places = places as usize;
-        let one = |x: f64| format!("{x:.places$}").parse::<f64>().map_or(x, |told| told + 0.0);
+        let one = |x: f64| format!("{x:.places$}").parse::<f64>().map_or(x, |rounded| rounded + 0.0);
         DVec3::new(one(p.x), one(p.y), one(p.z))
     }
 
@@ -142,13 +147,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_told_to_a_thousandth_of_the_tolerance() {
+    fn places_are_shown_to_a_thousandth_of_the_tolerance() {
         let (tolerance, thousand) = (Tolerance::new(1e-3, 1e3), Tolerance::new(1e6, 1e12));
-        for (x, told) in [(-4.9e-16, 0.0_f64), (0.1 + 0.2, 0.3), (12.3456789012, 12.345679), (-1.5e300, -1.5e300), (2e-6, 2e-6)] {
-            let found = tolerance.told(DVec3::splat(x));
-            assert_eq!((found.x.to_bits(), found.z), (told.to_bits(), told), "{x}");
+        for (x, shown) in [(-4.9e-16, 0.0_f64), (0.1 + 0.2, 0.3), (12.3456789012, 12.345679), (-1.5e300, -1.5e300), (2e-6, 2e-6)] {
+            let found = tolerance.rounded(DVec3::splat(x));
+            assert_eq!((found.x.to_bits(), found.z), (shown.to_bits(), shown), "{x}");
         }
-        assert_eq!(thousand.told(DVec3::splat(1.5)), DVec3::splat(1.5));
+        assert_eq!(thousand.rounded(DVec3::splat(1.5)), DVec3::splat(1.5));
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub fn text(report: &Report, tolerance: Option<f64>, color: bool) -> String {
     for table in &report.reports {
         out.push('\n');
         match tolerance {
-            Some(point) => print_table(&table.clone().told(&Tolerance::new(point, 0.0), &report.units), &mut out, color),
+            Some(point) => print_table(&table.clone().rounded(&Tolerance::new(point, 0.0), &report.units), &mut out, color),
             None => print_table(table, &mut out, color),
         }
     }

@@ -1,4 +1,4 @@
-//! What an entity tells of itself: its members with their values, as `report roof` shows them.
+//! The members of an entity with their values, as `report roof` shows them.
 
 use super::coerce::{Misfit, accepts, flatten_into};
 use super::cx::{Cx, Stop};
@@ -15,21 +15,21 @@ use crate::mesh::Group;
 pub const UNIT_COLUMN: &str = "unit";
 
 /// A member and its value.
-type Told = (String, Value);
+type Member = (String, Value);
 
 impl Cx<'_> {
     /// The members of an entity a row each, or of a list with entities those of each a row; `None` for other values.
-    pub(super) fn told_table(&mut self, value: &Value) -> Result<Option<ReportTable>, Stop> {
+    pub(super) fn members_table(&mut self, value: &Value) -> Result<Option<ReportTable>, Stop> {
         match value {
-            Value::List(_) => self.told_rows(&[(String::new(), value.clone())]),
+            Value::List(_) => self.members_rows(&[(String::new(), value.clone())]),
             one if is_entity(one) || is_place(one) => {
-                let mut told = self.told(one)?;
-                told.extend(self.sets_of(one)?);
-                let row = |(member, value): Told| {
+                let mut members = self.members_of(one)?;
+                members.extend(self.sets_of(one)?);
+                let row = |(member, value): Member| {
                     let (value, unit) = self.apart(value);
                     vec![Value::text(&member), value, Value::text(&unit)]
                 };
-                let rows = told.into_iter().map(row).collect();
+                let rows = members.into_iter().map(row).collect();
                 Ok(Some(self.with_units(String::new(), vec!["member".into(), "value".into(), UNIT_COLUMN.into()], rows)))
             }
             _ => Ok(None),
@@ -37,7 +37,7 @@ impl Cx<'_> {
     }
 
     /// A row for each of these things, members of families and groups included; `None` where none is an entity.
-    pub(super) fn told_rows(&mut self, things: &[(String, Value)]) -> Result<Option<ReportTable>, Stop> {
+    pub(super) fn members_rows(&mut self, things: &[(String, Value)]) -> Result<Option<ReportTable>, Stop> {
         // So many are no rows to read.
         if things.iter().any(|(_, value)| flat_len(value, limits::LIST_MEMBERS) > limits::LIST_MEMBERS) {
             return Ok(None);
@@ -57,9 +57,9 @@ impl Cx<'_> {
         for (source, value) in flat {
             let entity = is_entity(&value) || is_place(&value);
             let name = source.filter(|_| !is_entity(&value)).map_or_else(|| self.show(&value), str::to_owned);
-            let told = if entity { self.told(&value)? } else { vec![("value".to_owned(), value)] };
+            let members = if entity { self.members_of(&value)? } else { vec![("value".to_owned(), value)] };
             let mut row = vec![Value::text(&name)];
-            for (member, value) in told {
+            for (member, value) in members {
                 let at = columns.iter().position(|c| *c == member).unwrap_or_else(|| {
                     columns.push(member);
                     columns.len() - 1
@@ -74,30 +74,30 @@ impl Cx<'_> {
 
     /// What an entity is and its members: lists by how many they hold, records by their own members, `none` for what this one does
     /// not have (the volume of an open shell).
-    fn told(&mut self, of: &Value) -> Result<Vec<Told>, Stop> {
-        let mut told = what(of);
-        let (mut any, mut first) = (!told.is_empty(), None);
+    fn members_of(&mut self, of: &Value) -> Result<Vec<Member>, Stop> {
+        let mut members = what(of);
+        let (mut any, mut first) = (!members.is_empty(), None);
         for field in std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, of))) {
             match self.member_value(field, of) {
                 Ok(value) => {
                     any = true;
-                    self.tell_member(field.name, value, &mut told);
+                    self.push_member(field.name, value, &mut members);
                 }
                 Err(Stop::Fault(fault)) if !matches!(fault, Fault::Interrupted) => {
                     first.get_or_insert(fault);
-                    told.push((field.name.to_owned(), Value::None));
+                    members.push((field.name.to_owned(), Value::None));
                 }
                 Err(stop) => return Err(stop),
             }
         }
         match first {
             Some(fault) if !any => Err(Stop::Fault(fault)),
-            _ => Ok(told),
+            _ => Ok(members),
         }
     }
 
     /// The sets of a mesh by their counts.
-    fn sets_of(&mut self, of: &Value) -> Result<Vec<Told>, Stop> {
+    fn sets_of(&mut self, of: &Value) -> Result<Vec<Member>, Stop> {
         let Value::Mesh(mesh) = of else { return Ok(Vec::new()) };
         let mesh = self.mesh(mesh)?;
         let counts = |g: &Group| {
@@ -107,15 +107,15 @@ impl Cx<'_> {
         Ok(mesh.groups.iter().flat_map(counts).collect())
     }
 
-    fn tell_member(&self, name: &str, value: Value, told: &mut Vec<Told>) {
+    fn push_member(&self, name: &str, value: Value, members: &mut Vec<Member>) {
         match value {
             Value::Record(record) => {
                 for (key, value) in record.keys.iter().zip(&record.values) {
-                    self.tell_member(&format!("{name}.{}", self.names.text(*key)), value.clone(), told);
+                    self.push_member(&format!("{name}.{}", self.names.text(*key)), value.clone(), members);
                 }
             }
-            list if list.len().is_some() => told.push((name.to_owned(), Value::number(list.len().unwrap_or(0) as f64))),
-            other => told.push((name.to_owned(), other)),
+            list if list.len().is_some() => members.push((name.to_owned(), Value::number(list.len().unwrap_or(0) as f64))),
+            other => members.push((name.to_owned(), other)),
         }
     }
 
@@ -154,29 +154,29 @@ impl Cx<'_> {
     }
 }
 
-/// Whether a value has members that tell of it.
+/// Whether a value has members.
 fn is_entity(value: &Value) -> bool {
     use Value::{Curve, Edge, Link, Mesh, Network, Patch, Plane, Shell, Surface, Vertex};
     matches!(value, Curve(_) | Link(..) | Edge(..) | Vertex(..) | Patch(..) | Surface(_) | Shell(_) | Mesh(_) | Plane(_) | Network(_))
 }
 
-/// Whether a value is a place, which tells its coordinates.
+/// Whether a value is a place, whose members are its coordinates.
 fn is_place(value: &Value) -> bool {
     matches!(value, Value::Node(_) | Value::Vector(_, Dim::LENGTH))
 }
 
 /// What no member says: the constructor of curves and surfaces, the flow found, and where a plane lies.
-fn what(value: &Value) -> Vec<Told> {
+fn what(value: &Value) -> Vec<Member> {
     let text = |name: &str, text: &str| (name.to_owned(), Value::text(text));
     match value {
         Value::Curve(chain) => vec![text("kind", chain.whole_curve().map_or("chain", |curve| curve.kind().name()))],
         Value::Surface(surface) => {
             let flow = surface.flow();
-            let mut told = vec![text("kind", surface.kind().name())];
+            let mut members = vec![text("kind", surface.kind().name())];
             if !flow.is_empty() {
-                told.push(text("flow", &flow));
+                members.push(text("flow", &flow));
             }
-            told
+            members
         }
         Value::Plane(plane) => {
             vec![("at".to_owned(), Value::point(plane.at)), ("normal".to_owned(), Value::Vector(plane.normal, Dim::NONE))]

@@ -236,7 +236,7 @@ impl Cx<'_> {
         gather.done()?;
         if let [(thing, value)] = values.as_slice() {
             self.machine.site.expr = *thing;
-            let table = match self.told_table(value)? {
+            let table = match self.members_table(value)? {
                 Some(table) => ReportTable { title, ..table },
                 None => self.table(title, value),
             };
@@ -244,7 +244,7 @@ impl Cx<'_> {
         }
         // Several things: a row each; what is no entity under its source.
         let named: Vec<(String, Value)> = values.iter().map(|(thing, value)| (self.source(code, *thing), value.clone())).collect();
-        let table = match self.told_rows(&named)? {
+        let table = match self.members_rows(&named)? {
             Some(table) => ReportTable { title, ..table },
             None => {
                 let rows = named.into_iter().map(|(source, value)| vec![Value::text(&source), value]).collect();

@@ -37,7 +37,7 @@ impl Cx<'_> {
             Value::Number(q) => self.quantity(*q),
             Value::Range(a, b) => format!("{a}..{b}"),
             Value::Vector(v, dim) => self.vector(*v, *dim),
-            Value::Node(p) => self.vector(self.tolerance.map_or(*p, |t| t.told(*p)), Dim::LENGTH),
+            Value::Node(p) => self.vector(self.tolerance.map_or(*p, |t| t.rounded(*p)), Dim::LENGTH),
             Value::Text(t) | Value::Word(t) => t.to_string(),
             Value::List(items) => {
                 let mut parts: Vec<String> = items.iter().take(MEMBERS_SHOWN).map(inside).collect();

@@ -228,7 +228,7 @@ pub struct Column {
 impl Table {
     /// The table as people see it: coordinates of points in this unit, the model's, as far as the tolerance tells them. The unit is
     /// that of the column, or stands in the row where each row has its own.
-    pub fn told(mut self, tolerance: &Tolerance, unit: &str) -> Self {
+    pub fn rounded(mut self, tolerance: &Tolerance, unit: &str) -> Self {
         let own = self.columns.iter().position(|c| c.name == UNIT_COLUMN && c.unit.is_none());
         for row in &mut self.rows {
             let in_row = own.is_some_and(|k| matches!(row.get(k), Some(Cell::Text(text)) if text == unit));
@@ -236,7 +236,7 @@ impl Table {
                 if let (Cell::List(items), true) = (cell, in_row || column.unit.as_deref() == Some(unit))
                     && let [Cell::Number(x), Cell::Number(y), Cell::Number(z)] = items[..]
                 {
-                    *items = tolerance.told(glam::DVec3::new(x, y, z)).to_array().map(Cell::Number).to_vec();
+                    *items = tolerance.rounded(glam::DVec3::new(x, y, z)).to_array().map(Cell::Number).to_vec();
                 }
             }
         }

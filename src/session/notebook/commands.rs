@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Answer, Notebook, Part, State, bug_answer, ended, stopped, told};
+use super::{Answer, Notebook, Part, State, bug_answer, ended, stopped, summary};
 use crate::base::limits;
 use crate::draw::View;
 use crate::lang::plans::PictureSpec;
@@ -108,24 +108,27 @@ impl Notebook {
 
     /// Undo or redo.
     fn back(&mut self, undo: bool) -> Answer {
-        let from = if undo { &mut self.past } else { &mut self.future };
+        let from = if undo { &mut self.now.past } else { &mut self.now.future };
         let Some(state) = from.pop() else {
             return Answer::failure(if undo { "nothing to undo" } else { "nothing to redo" });
         };
-        let (mut past, mut future) = (std::mem::take(&mut self.past), std::mem::take(&mut self.future));
-        let before = self.state.clone();
-        let words =
-            if undo { format!("undid: {}", told::change(&state, &before)) } else { format!("redid: {}", told::change(&before, &state)) };
-        let names = told::changed_names(&before.text, &state.text);
+        let (mut past, mut future) = (std::mem::take(&mut self.now.past), std::mem::take(&mut self.now.future));
+        let before = self.now.state.clone();
+        let words = if undo {
+            format!("undid: {}", summary::change(&state, &before))
+        } else {
+            format!("redid: {}", summary::change(&before, &state))
+        };
+        let names = summary::changed_names(&before.text, &state.text);
         let mut answer = self.change(state.clone(), &names);
         if answer.stopped {
             if undo { &mut past } else { &mut future }.push(state);
-            (self.past, self.future) = (past, future);
+            (self.now.past, self.now.future) = (past, future);
             return answer;
         }
         if undo { &mut future } else { &mut past }.push(before);
-        self.past = past;
-        self.future = future;
+        self.now.past = past;
+        self.now.future = future;
         answer.parts.insert(0, Part::Text(words));
         answer
     }
@@ -134,15 +137,15 @@ impl Notebook {
         let Some((name, value)) = text.split_once('=').map(|(n, v)| (n.trim().to_owned(), v.trim().to_owned())) else {
             return Answer::failure("`:set` takes PARAM=VALUE, as in `:set span=50m`");
         };
-        let mut sets = self.state.sets.clone();
+        let mut sets = self.now.state.sets.clone();
         sets.retain(|(n, _)| *n != name);
         sets.push((name.clone(), value));
-        let before = self.before();
+        let before = self.now.clone();
         let mut answer = self.change(State { text: before.state.text.clone(), sets }, std::slice::from_ref(&name));
-        let refused = self.conditions.get(&name) != Some(&Condition::Sound);
-        if answer.failed && refused && self.state != before.state {
+        let refused = self.now.conditions.get(&name) != Some(&Condition::Sound);
+        if answer.failed && refused && self.now.state != before.state {
             // A value that the param refuses changes nothing.
-            self.put_back(before);
+            self.now = before;
             answer.parts.retain(|part| matches!(part, Part::Said(_)));
             answer.say("nothing was changed");
         }
@@ -150,7 +153,7 @@ impl Notebook {
     }
 
     fn whole_run(&mut self, _: &str) -> Answer {
-        let state = self.state.clone();
+        let state = self.now.state.clone();
         let outcome = match self.run(&state, Depth::Files, &mut |_| {}) {
             Ok(outcome) => outcome,
             Err(answer) => return answer,
@@ -166,7 +169,7 @@ impl Notebook {
 
     fn time(&mut self, _: &str) -> Answer {
         let Some(last) = self.last else { return Answer::failure("nothing was computed yet") };
-        let of = self.symbols.len();
+        let of = self.now.symbols.len();
         let n = last.reused;
         Answer::text(format!(
             "{:.4} s: parse {:.4}, evaluate {:.4}, mesh {:.4}; {n} results taken over from before, {of} declarations",
@@ -185,7 +188,7 @@ impl Notebook {
         if answer.stopped {
             return answer;
         }
-        let sound = self.symbols.iter().filter(|s| s.name.is_some() && s.condition == Condition::Sound).count();
+        let sound = self.now.symbols.iter().filter(|s| s.name.is_some() && s.condition == Condition::Sound).count();
         answer.say(format!("{}: {sound} names", path.display()));
         answer
     }
@@ -217,14 +220,14 @@ impl Notebook {
     /// Goes over to another text, whatever is wrong with it, and says what changed.
     fn go_over(&mut self, text: &str, what: &str) -> Answer {
         let next = State { text: ended(text), sets: Vec::new() };
-        if next == self.state {
+        if next == self.now.state {
             return Answer::text(format!("{what}: nothing changed"));
         }
-        let before = self.state.clone();
-        let names = told::changed_names(&before.text, &next.text);
+        let before = self.now.state.clone();
+        let names = summary::changed_names(&before.text, &next.text);
         let mut answer = self.change(next, &names);
         if !answer.stopped {
-            answer.parts.insert(0, Part::Text(format!("{what}: {}", told::change(&before, &self.state))));
+            answer.parts.insert(0, Part::Text(format!("{what}: {}", summary::change(&before, &self.now.state))));
         }
         answer
     }
@@ -239,7 +242,7 @@ impl Notebook {
         let Some(view) = View::named("isometric") else { return Answer::failure("there is no view") };
         let wanted = Wanted { names: vec![name.to_owned()], zoom: Vec::new(), spec: PictureSpec::of_file(&end.to_string_lossy(), view) };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let (state, job) = (self.state.clone(), self.job.clone());
+        let (state, job) = (self.now.state.clone(), self.job.clone());
         let outcome = match self.live.draw((&state.text, &state.sets), (folder, &wanted), &job) {
             Ok(outcome) if outcome.interrupted => return stopped(),
             Ok(outcome) => outcome,

@@ -60,7 +60,7 @@ impl Notebook {
         if let Some(answer) = self.mistakes(entry) {
             return answer;
         }
-        let mut text = self.state.text.clone();
+        let mut text = self.now.state.text.clone();
         let found = outline(entry);
         for piece in &found {
             text = with_declaration(&text, slice(entry, piece.whole), piece, entry);
@@ -72,13 +72,13 @@ impl Notebook {
             }
         }
         let entered: Vec<&str> = found.iter().map(|piece| slice(entry, piece.span)).collect();
-        let before = self.before();
-        let mut answer = self.change_and_look(State { text, sets: self.state.sets.clone() }, &named, &entered);
-        if answer.stopped || self.state == before.state || !self.has_failed(&named, &entered) {
+        let before = self.now.clone();
+        let mut answer = self.change_and_look(State { text, sets: self.now.state.sets.clone() }, &named, &entered);
+        if answer.stopped || self.now.state == before.state || !self.has_failed(&named, &entered) {
             return answer;
         }
         // What has no value is no part of the model that `:save` writes.
-        self.put_back(before);
+        self.now = before;
         answer.parts.retain(|part| matches!(part, Part::Said(_)));
         answer.say("nothing was changed");
         answer
@@ -86,12 +86,12 @@ impl Notebook {
 
     /// Whether a declaration among these, by name or by its text, came to nothing.
     fn has_failed(&self, named: &[String], entered: &[&str]) -> bool {
-        let text = |s: &Symbol| self.state.text.get(s.span.start as usize..s.span.end as usize).unwrap_or("");
+        let text = |s: &Symbol| self.now.state.text.get(s.span.start as usize..s.span.end as usize).unwrap_or("");
         let own = |s: &&Symbol| match &s.name {
             Some(name) => named.contains(name),
             None => entered.contains(&text(s)),
         };
-        self.symbols.iter().filter(own).any(|s| s.condition != Condition::Sound)
+        self.now.symbols.iter().filter(own).any(|s| s.condition != Condition::Sound)
     }
 
     /// What a text says that does not parse.
@@ -111,7 +111,7 @@ impl Notebook {
             return answer;
         }
         let head = format!("let {ANSWER} = ");
-        let base = ended(&self.state.text).len();
+        let base = ended(&self.now.state.text).len();
         let state = self.with_answer(entry);
         let (mut shown, mut table) = (None, None);
         let result = self.run(&state, Depth::Values, &mut |cx| {
@@ -119,7 +119,7 @@ impl Notebook {
                 let about = cx.describe(&value);
                 let kind = cx.kind(&value);
                 shown = Some(if about.is_empty() { kind } else { about });
-                table = cx.table_of(&value).map(|t| told(cx, &t));
+                table = cx.table_of(&value).map(|t| shown_table(cx, &t));
             }
         });
         let outcome = match result {
@@ -151,7 +151,7 @@ impl Notebook {
 
     /// The script with an expression as a declaration at its end.
     pub(super) fn with_answer(&self, entry: &str) -> State {
-        State { text: format!("{}let {ANSWER} = {entry}\n", ended(&self.state.text)), sets: self.state.sets.clone() }
+        State { text: format!("{}let {ANSWER} = {entry}\n", ended(&self.now.state.text)), sets: self.now.state.sets.clone() }
     }
 
     /// The mistakes of an expression, with places in the entry.
@@ -171,26 +171,26 @@ impl Notebook {
     /// Reports about the hidden declaration of an expression, as reports about the entry; others keep their places.
     fn moved(&self, said: Vec<Diagnostic>, own: u32, entry: &str) -> (Vec<Diagnostic>, Sources) {
         let mut sources = Sources::default();
-        sources.add(self.live.name(), &*self.state.text);
+        sources.add(self.live.name(), &*self.now.state.text);
         let file = sources.add(ENTRY, entry);
         (said.iter().map(|d| relabelled(d, own, file)).collect(), sources)
     }
 
     /// Takes declarations out of the script.
     pub(super) fn without(&self, names: &[String], spans: &[(u32, u32)]) -> State {
-        let text = &self.state.text;
+        let text = &self.now.state.text;
         let gone = |o: &Outline| spans.iter().any(|s| s.0 == o.span.start);
         let kept: String = outline(text).iter().filter(|o| !gone(o)).map(|o| slice(text, o.whole)).collect();
-        let sets = self.state.sets.iter().filter(|s| !names.contains(&s.0)).cloned().collect();
+        let sets = self.now.state.sets.iter().filter(|s| !names.contains(&s.0)).cloned().collect();
         State { text: kept, sets }
     }
 }
 
 /// A table as it is shown.
-pub(super) fn told(cx: &Cx<'_>, table: &ReportTable) -> Table {
+pub(super) fn shown_table(cx: &Cx<'_>, table: &ReportTable) -> Table {
     let made = collect::table(table);
     match cx.tolerance_used() {
-        Some(tolerance) => made.told(&tolerance, cx.unit().name),
+        Some(tolerance) => made.rounded(&tolerance, cx.unit().name),
         None => made,
     }
 }
@@ -211,7 +211,7 @@ pub(super) fn outputs(cx: &Cx<'_>, entered: &[&str]) -> Vec<Part> {
         checks.map(|(_, c)| Part::Text(format!("check {}: {}", c.label, if c.pass { "holds" } else { "fails" }))).collect();
     let all = cx.reports();
     let tables = all.iter().enumerate().filter(|(k, _)| shown(&own_reports, all.len(), *k));
-    parts.extend(tables.map(|(_, t)| Part::Table(told(cx, t))));
+    parts.extend(tables.map(|(_, t)| Part::Table(shown_table(cx, t))));
     parts
 }
 

@@ -9,18 +9,18 @@ use crate::session::live::Depth;
 impl Notebook {
     /// Tells all that is known of a name, or of an expression such as `south & ring`.
     pub fn explain(&mut self, what: &str) -> Answer {
-        let Some(symbol) = self.symbols.iter().find(|s| s.name.as_deref() == Some(what)).cloned() else {
+        let Some(symbol) = self.now.symbols.iter().find(|s| s.name.as_deref() == Some(what)).cloned() else {
             let mut answer = self.explain_expression(what);
             let family = what.split_once('[').map(|(base, _)| base.trim());
-            if !answer.failed && self.symbols.iter().any(|s| s.name.is_some() && s.name.as_deref() == family) {
+            if !answer.failed && self.now.symbols.iter().any(|s| s.name.is_some() && s.name.as_deref() == family) {
                 answer.parts.extend(self.why(what).parts);
             }
             return answer;
         };
-        let text = self.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("").to_owned();
-        let line = 1 + self.state.text[..symbol.span.start as usize].matches('\n').count();
+        let text = self.now.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("").to_owned();
+        let line = 1 + self.now.state.text[..symbol.span.start as usize].matches('\n').count();
         let mut details: Vec<String> = Vec::new();
-        let state = self.state.clone();
+        let state = self.now.state.clone();
         let result = self.run(&state, Depth::Report, &mut |cx| {
             details.extend(cx.describe_name(what));
             if let Some(value) = cx.value_of(what) {

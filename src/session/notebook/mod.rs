@@ -7,8 +7,8 @@ mod commands;
 mod edit;
 mod explain;
 mod show;
+mod summary;
 mod tables;
-mod told;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -80,15 +80,7 @@ struct State {
 /// A session.
 pub struct Notebook {
     live: Live,
-    state: State,
-    past: Vec<State>,
-    future: Vec<State>,
-    /// Declarations of the last run.
-    symbols: Vec<Symbol>,
-    /// How the declared names were after the last run.
-    conditions: BTreeMap<String, Condition>,
-    /// What was said in the last run: code and message of each report.
-    said: Vec<(String, String)>,
+    now: Snapshot,
     last: Option<Last>,
     clock: Clock,
     color: bool,
@@ -101,13 +93,17 @@ pub struct Notebook {
 /// Lets the user edit a text; the error says why not.
 pub type Edits = Box<dyn Fn(&str) -> Result<String, String>>;
 
-/// Everything that an entry may change, to be put back where it changes nothing.
-struct Before {
+/// Everything that an entry may change: put back as it was where the entry changes nothing.
+#[derive(Clone, Debug, Default)]
+struct Snapshot {
     state: State,
     past: Vec<State>,
     future: Vec<State>,
+    /// Declarations of the last run.
     symbols: Vec<Symbol>,
+    /// How the declared names were after the last run.
     conditions: BTreeMap<String, Condition>,
+    /// What was said in the last run: code and message of each report.
     said: Vec<(String, String)>,
 }
 
@@ -133,12 +129,7 @@ impl Notebook {
     pub fn new(clock: Clock, color: bool) -> Self {
         Self {
             live: Live::new("session", None, &[], clock.clone()),
-            state: State::default(),
-            past: Vec::new(),
-            future: Vec::new(),
-            symbols: Vec::new(),
-            conditions: BTreeMap::new(),
-            said: Vec::new(),
+            now: Snapshot::default(),
             last: None,
             clock,
             color,
@@ -153,31 +144,14 @@ impl Notebook {
         self.editor = Some(editor);
     }
 
-    fn before(&self) -> Before {
-        Before {
-            state: self.state.clone(),
-            past: self.past.clone(),
-            future: self.future.clone(),
-            symbols: self.symbols.clone(),
-            conditions: self.conditions.clone(),
-            said: self.said.clone(),
-        }
-    }
-
-    fn put_back(&mut self, before: Before) {
-        let Before { state, past, future, symbols, conditions, said } = before;
-        (self.state, self.past, self.future) = (state, past, future);
-        (self.symbols, self.conditions, self.said) = (symbols, conditions, said);
-    }
-
     /// The session goes on with a script read from a file.
     pub fn load(&mut self, name: &str, path: &Path, text: &str) -> Answer {
         let live = Live::new(name, Some(path), &[] as &[PathBuf], self.clock.clone());
         let live = std::mem::replace(&mut self.live, live);
-        let (said, conditions) = (std::mem::take(&mut self.said), std::mem::take(&mut self.conditions));
+        let (said, conditions) = (std::mem::take(&mut self.now.said), std::mem::take(&mut self.now.conditions));
         let answer = self.change(State { text: ended(text), sets: Vec::new() }, &[]);
         if answer.stopped {
-            (self.live, self.said, self.conditions) = (live, said, conditions);
+            (self.live, self.now.said, self.now.conditions) = (live, said, conditions);
         } else {
             self.loaded = Some(path.to_owned());
         }
@@ -191,7 +165,7 @@ impl Notebook {
 
     /// The script as it stands.
     pub fn text(&self) -> &str {
-        &self.state.text
+        &self.now.state.text
     }
 
     /// The file that the session went on with.
@@ -201,7 +175,7 @@ impl Notebook {
 
     /// Declarations of the last run.
     pub fn symbols(&self) -> &[Symbol] {
-        &self.symbols
+        &self.now.symbols
     }
 
     /// Whether an entry goes on in the next line.
@@ -270,10 +244,10 @@ impl Notebook {
         if !answer.failed {
             answer.parts.extend(results);
         }
-        self.symbols = symbols;
-        if next != self.state {
-            self.past.push(std::mem::replace(&mut self.state, next));
-            self.future.clear();
+        self.now.symbols = symbols;
+        if next != self.now.state {
+            self.now.past.push(std::mem::replace(&mut self.now.state, next));
+            self.now.future.clear();
         }
         answer
     }
@@ -281,18 +255,18 @@ impl Notebook {
     /// Diagnostics that the run before did not have.
     fn tell_new(&mut self, outcome: &Outcome, answer: &mut Answer) {
         let key = |d: &Diagnostic| (d.code.0.to_owned(), d.message.clone());
-        let fresh: Vec<Diagnostic> = outcome.diagnostics.iter().filter(|d| !self.said.contains(&key(d))).cloned().collect();
+        let fresh: Vec<Diagnostic> = outcome.diagnostics.iter().filter(|d| !self.now.said.contains(&key(d))).cloned().collect();
         answer.failed |= fresh.iter().any(|d| d.severity() == Severity::Error);
         if !fresh.is_empty() {
             answer.parts.push(Part::Said(render_all(&fresh, &outcome.sources, self.color)));
         }
-        self.said = outcome.diagnostics.iter().map(key).collect();
+        self.now.said = outcome.diagnostics.iter().map(key).collect();
     }
 
     /// Names that were sound and are no longer, or are again.
     fn tell_conditions(&mut self, symbols: &[Symbol], named: &[String], answer: &mut Answer) {
         let now: BTreeMap<String, Condition> = symbols.iter().filter_map(|s| Some((s.name.clone()?, s.condition))).collect();
-        let was = |name: &String| self.conditions.get(name).copied();
+        let was = |name: &String| self.now.conditions.get(name).copied();
         let others = || now.iter().filter(|(name, _)| !named.contains(name));
         let broken: Vec<&str> =
             others().filter(|(n, c)| **c != Condition::Sound && was(n) == Some(Condition::Sound)).map(|(n, _)| n.as_str()).collect();
@@ -306,7 +280,7 @@ impl Notebook {
         if !repaired.is_empty() {
             answer.say(format!("there again: {}", repaired.join(", ")));
         }
-        self.conditions = now;
+        self.now.conditions = now;
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a session tells about names: values, dependencies, meshes, and whether they may be removed.
 
-use super::edit::told;
+use super::edit::shown_table;
 use super::{Answer, Notebook, Part, ended};
 use crate::lang::symbols::{Condition, Symbol, about_mesh};
 use crate::lang::syntax::ast::{DeclarationKind, Keyword};
@@ -12,10 +12,10 @@ impl Notebook {
     fn symbol(&self, name: &str) -> Result<usize, Answer> {
         // A member of a family stands in the family's declaration.
         let base = name.split('[').next().unwrap_or(name).trim();
-        match self.symbols.iter().position(|s| s.name.as_deref() == Some(base)) {
+        match self.now.symbols.iter().position(|s| s.name.as_deref() == Some(base)) {
             Some(found) => Ok(found),
             None => {
-                let names = self.symbols.iter().filter_map(|s| s.name.as_deref());
+                let names = self.now.symbols.iter().filter_map(|s| s.name.as_deref());
                 let near = crate::lang::names::nearest(name, names);
                 let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
                 Err(Answer::failure(format!("`{name}` is not defined{hint}")))
@@ -25,24 +25,24 @@ impl Notebook {
 
     /// The name of a declaration, or the first line of its text.
     fn title(&self, symbol: &Symbol) -> String {
-        let text = self.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("");
+        let text = self.now.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("");
         symbol.name.clone().unwrap_or_else(|| text.lines().next().unwrap_or("").to_owned())
     }
 
     pub(super) fn show(&mut self, name: &str) -> Answer {
         let symbol = match self.symbol(name) {
-            Ok(found) => self.symbols[found].clone(),
+            Ok(found) => self.now.symbols[found].clone(),
             Err(answer) => return answer,
         };
-        let text = self.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("").to_owned();
+        let text = self.now.state.text.get(symbol.span.start as usize..symbol.span.end as usize).unwrap_or("").to_owned();
         if symbol.condition != Condition::Sound {
             return Answer::failure(format!("{text}\n{name} has no value: {}", self.reason(&symbol)));
         }
         let (mut line, mut table) = (None, None);
-        let state = self.state.clone();
+        let state = self.now.state.clone();
         let result = self.run(&state, Depth::Values, &mut |cx| {
             line = cx.describe_name(name);
-            table = cx.value_of(name).and_then(|value| cx.table_of(&value)).map(|t| told(cx, &t));
+            table = cx.value_of(name).and_then(|value| cx.table_of(&value)).map(|t| shown_table(cx, &t));
         });
         if let Err(answer) = result {
             return answer;
@@ -57,7 +57,7 @@ impl Notebook {
 
     /// Why a declaration has no value: it was reported, or something below it was.
     fn reason(&self, symbol: &Symbol) -> String {
-        match symbol.needs.iter().map(|n| &self.symbols[*n]).find(|s| s.condition != Condition::Sound) {
+        match symbol.needs.iter().map(|n| &self.now.symbols[*n]).find(|s| s.condition != Condition::Sound) {
             Some(below) => format!("it needs `{}`, which has none either", self.title(below)),
             None => "see the report about it".to_owned(),
         }
@@ -86,27 +86,27 @@ impl Notebook {
             while let Some((at, depth)) = stack.pop() {
                 let again = seen.contains(&at);
                 let more = if again && !next(at).is_empty() { " …" } else { "" };
-                out.push_str(&format!("{}{}{more}\n", "  ".repeat(depth), self.title(&self.symbols[at])));
+                out.push_str(&format!("{}{}{more}\n", "  ".repeat(depth), self.title(&self.now.symbols[at])));
                 if !again {
                     seen.push(at);
                     stack.extend(next(at).into_iter().rev().map(|n| (n, depth + 1)));
                 }
             }
         };
-        tree(&format!("{name} depends on"), &|at| self.symbols[at].needs.clone());
+        tree(&format!("{name} depends on"), &|at| self.now.symbols[at].needs.clone());
         let users = self.users();
         tree(&format!("what depends on {name}:"), &|at| users[at].clone());
         let mut answer = Answer::text(out.trim_end());
-        if self.symbols[found].condition != Condition::Sound {
-            answer.say(format!("{name} has no value: {}", self.reason(&self.symbols[found])));
+        if self.now.symbols[found].condition != Condition::Sound {
+            answer.say(format!("{name} has no value: {}", self.reason(&self.now.symbols[found])));
         }
         answer
     }
 
     /// For each declaration those that name it.
     fn users(&self) -> Vec<Vec<usize>> {
-        let mut users = vec![Vec::new(); self.symbols.len()];
-        for (n, symbol) in self.symbols.iter().enumerate() {
+        let mut users = vec![Vec::new(); self.now.symbols.len()];
+        for (n, symbol) in self.now.symbols.iter().enumerate() {
             symbol.needs.iter().filter(|need| **need != n).for_each(|need| users[*need].push(n));
         }
         users
@@ -131,8 +131,8 @@ impl Notebook {
             next += 1;
         }
         if gone.len() > 1 && !all {
-            let first: Vec<String> = users[found].iter().map(|u| format!("`{}`", self.title(&self.symbols[*u]))).collect();
-            let mut order: Vec<String> = gone[1..].iter().rev().map(|g| self.title(&self.symbols[*g])).collect();
+            let first: Vec<String> = users[found].iter().map(|u| format!("`{}`", self.title(&self.now.symbols[*u]))).collect();
+            let mut order: Vec<String> = gone[1..].iter().rev().map(|g| self.title(&self.now.symbols[*g])).collect();
             order.truncate(12);
             return Answer::failure(format!(
                 "E510 × `{name}` carries {}\n  help: remove {} first, or `:remove! {name}` to take all {}",
@@ -141,18 +141,18 @@ impl Notebook {
                 gone.len()
             ));
         }
-        let mut texts: Vec<(u32, u32)> = gone.iter().map(|g| (self.symbols[*g].span.start, self.symbols[*g].span.end)).collect();
+        let mut texts: Vec<(u32, u32)> = gone.iter().map(|g| (self.now.symbols[*g].span.start, self.now.symbols[*g].span.end)).collect();
         texts.sort_unstable();
-        let titles: Vec<String> = gone.iter().map(|g| self.title(&self.symbols[*g])).collect();
-        let names: Vec<String> = gone.iter().filter_map(|g| self.symbols[*g].name.clone()).collect();
+        let titles: Vec<String> = gone.iter().map(|g| self.title(&self.now.symbols[*g])).collect();
+        let names: Vec<String> = gone.iter().filter_map(|g| self.now.symbols[*g].name.clone()).collect();
         let state = self.without(&names, &texts);
         let mut answer = Answer::text(format!("removed {}", titles.join(", ")));
         for name in &names {
-            self.conditions.remove(name);
+            self.now.conditions.remove(name);
         }
-        let told = self.change(state, &[]);
-        answer.failed = told.failed;
-        answer.parts.extend(told.parts);
+        let changed = self.change(state, &[]);
+        answer.failed = changed.failed;
+        answer.parts.extend(changed.parts);
         answer
     }
 
@@ -162,7 +162,7 @@ impl Notebook {
         }
         let mut found = Vec::new();
         let mut wrong = false;
-        let state = self.state.clone();
+        let state = self.now.state.clone();
         let result = self.run(&state, Depth::Values, &mut |cx| {
             let mut values = Vec::new();
             match cx.value_of(name) {
@@ -194,18 +194,18 @@ impl Notebook {
             return Answer::failure(format!("`{name}` is no mesh"));
         }
         let mut answer = Answer { failed: found.is_empty(), ..Answer::default() };
-        let before = std::mem::take(&mut self.said);
-        self.said.extend(before.iter().filter(|s| !s.0.starts_with("E7")).cloned());
+        let before = std::mem::take(&mut self.now.said);
+        self.now.said.extend(before.iter().filter(|s| !s.0.starts_with("E7")).cloned());
         self.tell_new(&outcome, &mut answer);
-        self.said = before;
+        self.now.said = before;
         found.into_iter().for_each(|line| answer.say(line));
         answer
     }
 
     /// The script with the params that were set as their defaults.
     pub(super) fn saved_text(&self) -> String {
-        let mut text = ended(&self.state.text);
-        for (name, value) in &self.state.sets {
+        let mut text = ended(&self.now.state.text);
+        for (name, value) in &self.now.state.sets {
             let mut names = crate::lang::names::Names::default();
             let (script, _) = parse(&text, crate::lang::diag::FileId(0), &mut names);
             let param = script.declarations.iter().filter(|d| d.keyword == Keyword::Param).find_map(|d| match &d.kind {

@@ -21,7 +21,7 @@ fn text(text: impl Into<String>) -> Cell {
 
 /// A place as far as the tolerance tells it.
 fn place(p: DVec3, tolerance: &Tolerance) -> Cell {
-    Cell::List(tolerance.told(p).to_array().map(Cell::Number).to_vec())
+    Cell::List(tolerance.rounded(p).to_array().map(Cell::Number).to_vec())
 }
 
 /// For each node the curves that run through it, by name.
@@ -116,7 +116,7 @@ impl Notebook {
 
     fn tabled(&mut self, make: &mut (dyn FnMut(&mut Cx<'_>, &Network) -> Result<Table, String> + Send)) -> Answer {
         let mut made = Err("there is no network yet".to_owned());
-        let state = self.state.clone();
+        let state = self.now.state.clone();
         let result = self.run(&state, Depth::Values, &mut |cx| {
             let whole = cx.network(ModuleId::MAIN).is_ok();
             if let Ok(sound) = cx.sound(ModuleId::MAIN) {
