@@ -7,6 +7,7 @@ use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::Rule;
 use super::ast::Span;
+use super::foreign::FreshNames;
 use super::number::{is_unit, split_unit};
 use super::scan::Tokens;
 use super::token::Kind;
@@ -17,6 +18,7 @@ pub(super) struct Failure<'a> {
     pub source: &'a str,
     pub file: FileId,
     pub tokens: &'a Tokens,
+    pub fresh: &'a FreshNames,
     /// First token of the declaration.
     pub base: usize,
     /// Token after its last one.
@@ -56,7 +58,7 @@ impl Failure<'_> {
         let special = self.let_without_in(&stop).or_else(|| self.bracket_on_its_line(&stop)).or_else(|| self.reserved_word(&stop));
         let special = special.or_else(|| self.equals(&stop)).or_else(|| self.colon(&stop)).or_else(|| self.unit_apart(&stop));
         special.unwrap_or_else(|| {
-            let refusal = super::foreign::Refusal { source: self.source, tokens: self.tokens, base: self.base, end: self.end, at };
+            let refusal = super::foreign::Refusal::new((self.source, self.tokens), self.base..self.end, at, self.fresh);
             match refusal.meant() {
                 Some(meant) => super::foreign::say(self.found(&stop), Some(meant)),
                 None => self.general(&stop),

@@ -3,6 +3,10 @@
 //! Each rule looks at the tokens of a declaration that the grammar refuses and gives the text that was meant; a rewriting is
 //! only offered when the grammar accepts it.
 
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
 use super::ast::Span;
 use super::is_declaration;
 use super::scan::Tokens;
@@ -11,14 +15,85 @@ use crate::lang::diag::Diagnostic;
 
 /// A declaration that the grammar refuses, with the token at which it did.
 pub(super) struct Refusal<'a> {
-    pub source: &'a str,
-    pub tokens: &'a Tokens,
+    source: &'a str,
+    tokens: &'a Tokens,
+    fresh: &'a FreshNames,
     /// First token of the declaration.
-    pub base: usize,
+    base: usize,
     /// Token after its last one.
-    pub end: usize,
+    end: usize,
     /// The refused token; `end` when the declaration ended too early.
-    pub at: usize,
+    at: usize,
+    brackets: Brackets,
+}
+
+/// How the brackets of a declaration lie, from its first token on.
+struct Brackets {
+    /// Brackets open before each token, less those closed.
+    depths: Vec<i32>,
+    /// The token that closes the bracket opened by a token.
+    closers: Vec<Option<u32>>,
+}
+
+impl Brackets {
+    /// One pass over the kinds of a declaration.
+    fn of(kinds: &[Kind]) -> Self {
+        let (mut depths, mut closers) = (Vec::with_capacity(kinds.len()), vec![None; kinds.len()]);
+        let (mut open, mut depth): (Vec<usize>, i32) = (Vec::new(), 0);
+        looked(kinds.len());
+        for (at, kind) in kinds.iter().enumerate() {
+            depths.push(depth);
+            let step = opens(*kind);
+            depth += step;
+            if step > 0 {
+                open.push(at);
+            } else if step < 0
+                && let Some(opener) = open.pop()
+            {
+                closers[opener] = Some(at as u32);
+            }
+        }
+        Self { depths, closers }
+    }
+}
+
+/// Names for what was made without one: `circle_1`, `circle_2`, none of which stands in the source.
+#[derive(Default)]
+pub(super) struct FreshNames(RefCell<BTreeMap<&'static str, (BTreeSet<u64>, u64)>>);
+
+impl FreshNames {
+    /// The next free name that begins with a word; the source is searched once for each word.
+    fn next(&self, source: &str, word: &'static str) -> String {
+        let mut all = self.0.borrow_mut();
+        let (taken, last) = all.entry(word).or_insert_with(|| (numbers_behind(source, word), 0));
+        *last = (*last + 1..).find(|n| !taken.contains(n)).unwrap_or(u64::MAX);
+        format!("{word}_{last}")
+    }
+}
+
+/// The numbers `n` of all `word_n` in a text.
+fn numbers_behind(source: &str, word: &str) -> BTreeSet<u64> {
+    looked(source.len());
+    let number = |at: usize| {
+        let rest = source[at + word.len()..].strip_prefix('_')?;
+        let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
+        rest[..digits].parse().ok()
+    };
+    source.match_indices(word).filter_map(|(at, _)| number(at)).collect()
+}
+
+/// Counts what is looked at, tokens or bytes: the tests see that it grows as the text does.
+#[cfg(not(test))]
+fn looked(_: usize) {}
+
+#[cfg(test)]
+fn looked(n: usize) {
+    LOOKED.with(|all| all.set(all.get() + n));
+}
+
+#[cfg(test)]
+thread_local! {
+    static LOOKED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 /// What was meant.
@@ -54,12 +129,20 @@ pub(super) fn say(mut report: Diagnostic, meant: Option<Meant>) -> Diagnostic {
     }
 }
 
+impl<'a> Refusal<'a> {
+    /// The tokens `whole` of a source are refused at one of them.
+    pub fn new((source, tokens): (&'a str, &'a Tokens), whole: Range<usize>, at: usize, fresh: &'a FreshNames) -> Self {
+        let (base, mut end) = (whole.start, whole.end);
+        while end > base + 1 && tokens.kinds[end - 1] == Kind::Strange {
+            end -= 1;
+        }
+        Self { source, tokens, fresh, base, end, at, brackets: Brackets::of(&tokens.kinds[base..end]) }
+    }
+}
+
 impl Refusal<'_> {
     /// The loft form of what stands there.
-    pub fn meant(mut self) -> Option<Meant> {
-        while self.end > self.base + 1 && self.tokens.kinds[self.end - 1] == Kind::Strange {
-            self.end -= 1;
-        }
+    pub fn meant(&self) -> Option<Meant> {
         let rules: [fn(&Self) -> Option<Meant>; 17] = [
             Self::head_sign,
             Self::value_word,
@@ -79,7 +162,7 @@ impl Refusal<'_> {
             Self::choice_behind,
             Self::colon_for_equals,
         ];
-        rules.iter().find_map(|rule| rule(&self))
+        rules.iter().find_map(|rule| rule(self))
     }
 
     fn kind(&self, at: usize) -> Option<Kind> {
@@ -92,6 +175,7 @@ impl Refusal<'_> {
             return "";
         }
         let span = self.tokens.stretch(from, to - 1);
+        looked(to - from);
         &self.source[span.start as usize..span.end as usize]
     }
 
@@ -101,27 +185,19 @@ impl Refusal<'_> {
 
     /// Brackets open before a token, from the start of the declaration.
     fn depth(&self, at: usize) -> i32 {
-        (self.base..at).map(|t| opens(self.tokens.kinds[t])).sum()
+        looked(1);
+        self.brackets.depths.get(at - self.base).copied().unwrap_or(0)
     }
 
     /// The first token of a kind from `from` on, outside brackets opened after it.
     fn find(&self, from: usize, wanted: Kind) -> Option<usize> {
-        let mut depth = 0;
-        (from..self.end).find(|&t| {
-            let kind = self.tokens.kinds[t];
-            let found = depth == 0 && kind == wanted;
-            depth += opens(kind);
-            found
-        })
+        (from..self.end).find(|&t| self.tokens.kinds[t] == wanted && self.depth(t) == self.depth(from))
     }
 
     /// The bracket that closes the one at a token.
     fn closer(&self, open: usize) -> Option<usize> {
-        let mut depth = 0;
-        (open..self.end).find(|&t| {
-            depth += opens(self.tokens.kinds[t]);
-            depth == 0
-        })
+        looked(1);
+        self.brackets.closers.get(open - self.base).copied().flatten().map(|at| self.base + at as usize)
     }
 
     /// The first token of the expression that a token stands in: behind `=`, `:`, `,` or an opening bracket.
@@ -219,7 +295,7 @@ impl Refusal<'_> {
             _ if function == "plane" => "surface",
             _ => "let",
         };
-        let name = (1..).map(|n| format!("{function}_{n}")).find(|name| !self.source.contains(name.as_str()))?;
+        let name = self.fresh.next(self.source, builtin.name);
         self.replaced("what is made gets a name", format!("{word} {name} = {}", self.text(self.base, self.end)))
     }
 
@@ -235,10 +311,11 @@ impl Refusal<'_> {
     fn statement(&self) -> Option<Meant> {
         let first =
             if matches!(self.kind(self.at), Some(Kind::If | Kind::For)) && self.tokens.first[self.at] { self.at } else { self.base };
+        let stated = self.kind(first).filter(|kind| matches!(kind, Kind::If | Kind::For))?;
         let ends =
             |t: &usize| matches!(self.tokens.kinds[*t], Kind::Colon | Kind::OpenCurly | Kind::Then) && self.depth(*t) == self.depth(first);
         let head_end = (first..self.end).find(ends).unwrap_or(self.end);
-        match self.kind(first)? {
+        match stated {
             Kind::If => {
                 let condition = unbracketed(self.text(first + 1, head_end));
                 let why = "a choice is a value";
@@ -437,5 +514,48 @@ pub(in crate::lang) fn range(arguments: &[&str]) -> Option<String> {
         [n] if !n.contains('(') => Some(format!("0..{}", end(n))),
         [a, b] if !a.contains('(') && !b.contains('(') => Some(format!("{}..{}", end(a), end(b))),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LOOKED;
+    use crate::lang::diag::FileId;
+    use crate::lang::names::Names;
+    use crate::lang::syntax::parse;
+
+    /// What is looked at for the help on a text.
+    fn work(text: &str) -> usize {
+        LOOKED.with(|all| all.set(0));
+        let (_, said) = parse(text, FileId(0), &mut Names::default());
+        assert!(!said.is_empty(), "{text:.60}");
+        LOOKED.with(std::cell::Cell::get)
+    }
+
+    #[test]
+    fn help_on_refused_text_looks_at_it_a_few_times() {
+        let list = |item: &str, n: usize| vec![item; n].join(", ");
+        let texts: [&dyn Fn(usize) -> String; 7] = [
+            &|n| format!("let rows = [{}] of 3", list("{x: 1, y: 2}", n)),
+            &|n| format!("mesh m of {} size: 3", list("{x: 1}", n)),
+            &|n| format!("mesh m of a {{ {} }} size: 3", "on b { size: 3 } ".repeat(n)),
+            &|n| format!("let rows = [{} if x]", list("(1)", n)),
+            &|n| "circle(center: (0, 0, 0), radius: 1)\n".repeat(n),
+            &|n| (0..n).map(|k| format!("circle(center: (0, 0, 0), radius: circle_{k})\n")).collect(),
+            &|n| format!("let rows = {}{} of 3", "{x: ".repeat(n.min(200)), "1}".repeat(n.min(200))),
+        ];
+        for text in texts {
+            let (small, large) = (work(&text(500)), work(&text(2000)));
+            assert!(small > 0 && large < 5 * small, "{small} → {large}: {:.60}", text(2));
+        }
+    }
+
+    #[test]
+    fn names_for_what_has_none_are_free_and_differ() {
+        let text = "let circle_2 = 1\ncircle(center: (0, 0, 0), radius: 1)\ncircle(center: (0, 0, 0), radius: 2)\n";
+        let (_, said) = parse(text, FileId(0), &mut Names::default());
+        let names: Vec<bool> =
+            said.iter().zip(["circle_1 =", "circle_3 ="]).map(|(d, name)| d.help.iter().any(|h| h.contains(name))).collect();
+        assert_eq!(names, [true, true], "{said:?}");
     }
 }

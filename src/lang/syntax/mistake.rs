@@ -91,14 +91,16 @@ impl Mistake {
         }
     }
 
-    /// Whether another mistake is the likely cause of this one: a string without end hides brackets.
-    pub fn follows_from(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::OpenBracket { piece, .. } | Self::StrayBracket { piece, .. }, Self::OpenString { span, .. }) => {
-                piece.start <= span.start && span.start <= piece.end
-            }
-            _ => false,
-        }
+    /// Where a string without end begins.
+    pub fn open_string(&self) -> Option<u32> {
+        if let Self::OpenString { span, .. } = self { Some(span.start) } else { None }
+    }
+
+    /// Whether a string without end, by the places of all of them in order, is the likely cause of this one: it hides brackets.
+    pub fn follows_from(&self, open_strings: &[u32]) -> bool {
+        let (Self::OpenBracket { piece, .. } | Self::StrayBracket { piece, .. }) = self else { return false };
+        let next = open_strings.partition_point(|start| *start < piece.start);
+        open_strings.get(next).is_some_and(|start| *start <= piece.end)
     }
 
     /// Whether `2m^2` may be meant as `2m2`: a length, alone or below a `/`, with the exponent 2 or 3.

@@ -92,6 +92,7 @@ fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> Read {
         fills,
         script: Script::default(),
         found: Vec::new(),
+        fresh: foreign::FreshNames::default(),
         sound: Vec::with_capacity(pieces.len()),
     }
     .run(pieces, mistakes);
@@ -122,6 +123,7 @@ struct Parser<'a> {
     fills: bool,
     script: Script,
     found: Vec<Diagnostic>,
+    fresh: foreign::FreshNames,
     /// Tokens of the declarations.
     sound: Vec<Range<usize>>,
 }
@@ -145,7 +147,9 @@ impl Parser<'_> {
     /// Reports the mistakes of scanner and splitter; one cause, one report.
     fn mistakes(&mut self, split: Vec<Mistake>) {
         let own = &self.tokens.mistakes;
-        let causes = split.iter().filter(|m| !own.iter().any(|other| m.follows_from(other)));
+        let mut open_strings: Vec<u32> = own.iter().filter_map(Mistake::open_string).collect();
+        open_strings.sort_unstable();
+        let causes = split.iter().filter(|m| !m.follows_from(&open_strings));
         self.found.extend(own.iter().chain(causes).map(|m| m.diagnose(self.source, self.file)));
     }
 
@@ -241,7 +245,8 @@ impl Parser<'_> {
                 let text = &self.source[span.start as usize..span.end as usize];
                 match Grammar::parse(Rule::single, text) {
                     Err(error) => {
-                        let failure = expected::Failure { source: self.source, file: self.file, tokens: self.tokens, base, end };
+                        let failure =
+                            expected::Failure { source: self.source, file: self.file, tokens: self.tokens, fresh: &self.fresh, base, end };
                         return Err(Box::new(failure.diagnose(&error)));
                     }
                     Ok(_) => mistake::Refused::whole("a declaration", 0, (end - base - 1) as u32),
@@ -259,8 +264,8 @@ impl Parser<'_> {
             let next = (end > base + 1).then(|| self.tokens.span(base + 1));
             let mistake = Mistake::NoKeyword { span: self.tokens.span(base), next, binds: kinds.get(1) == Some(&Kind::Equals) };
             let report = mistake.diagnose(self.source, self.file);
-            let refusal = foreign::Refusal { source: self.source, tokens: self.tokens, base, end, at: base };
-            let meant = if kinds.get(1) == Some(&Kind::Equals) { None } else { refusal.meant() };
+            let refusal = || foreign::Refusal::new((self.source, self.tokens), base..end, base, &self.fresh);
+            let meant = if kinds.get(1) == Some(&Kind::Equals) { None } else { refusal().meant() };
             self.found.push(foreign::say(report, meant));
         }
         let bound = match kinds {

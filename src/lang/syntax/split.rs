@@ -34,6 +34,8 @@ struct Splitter<'a> {
     tokens: &'a Tokens,
     open: Vec<Open>,
     start: usize,
+    /// The piece at hand has a `=`.
+    equals: bool,
     broken: bool,
     /// All that waits inside the open brackets together.
     waiting: usize,
@@ -50,6 +52,7 @@ pub(crate) fn split(tokens: &Tokens) -> (Vec<Piece>, Vec<Mistake>) {
         tokens,
         open: vec![Open::default()],
         start: 0,
+        equals: false,
         broken: false,
         waiting: 0,
         too_deep: false,
@@ -109,7 +112,7 @@ impl Splitter<'_> {
             return kind == Kind::Name && self.kind(at + 1) == Some(Kind::Name) && self.kind(at + 2) == Some(Kind::Equals);
         }
         // A statement of other languages, behind a declaration that is whole.
-        if kind == Kind::If || kind == Kind::For && self.tokens.kinds[self.start..at].contains(&Kind::Equals) {
+        if kind == Kind::If || kind == Kind::For && self.equals {
             return true;
         }
         matches!(kind, Kind::Name | Kind::Number | Kind::Quantity | Kind::Text | Kind::TextHead | Kind::True | Kind::False | Kind::None)
@@ -137,6 +140,7 @@ impl Splitter<'_> {
 
     fn step(&mut self, at: usize) {
         let kind = self.tokens.kinds[at];
+        self.equals |= kind == Kind::Equals;
         match kind {
             Kind::OpenSquare if at > self.start && self.tokens.kinds[at - 1].ends_operand() => {
                 self.grow(at, 0);
@@ -291,6 +295,7 @@ impl Splitter<'_> {
         self.first_mistake = self.mistakes.len();
         self.pieces.push(Piece { tokens: self.start..end, broken: self.broken });
         self.start = end;
+        self.equals = false;
         self.broken = false;
         self.too_deep = false;
         self.waiting = 0;
