@@ -14,7 +14,7 @@ pub mod lines;
 pub mod meshes;
 mod page;
 pub mod picture;
-mod png;
+pub mod png;
 pub mod raster;
 pub mod scene;
 mod shade;

@@ -4,7 +4,10 @@ pub(super) mod complete;
 mod helper;
 mod history;
 mod inline;
+mod palette;
 mod script;
+mod sixel;
+mod typed;
 
 use std::io::{IsTerminal, Read};
 use std::path::Path;
@@ -24,6 +27,7 @@ use crate::session::notebook::{Answer, Notebook, Part};
 
 use helper::Line;
 pub use script::transcript;
+use typed::Typed;
 
 /// Explores a model.
 pub const COMMAND: Command = Command { name: "repl", about: "Explore a model: define, change and ask", arguments, run };
@@ -70,15 +74,18 @@ pub(super) fn opened(model: &str, terminal: &Terminal) -> Result<Notebook, Exit>
     Ok(book)
 }
 
-/// Shows an answer; whether the session goes on.
+/// Shows an answer without its pictures.
 fn print(answer: &Answer, terminal: &Terminal, watched: bool) {
     terminal.print(&text_of(answer, terminal.color_out && watched));
-    let shows = if watched { inline::Way::of_terminal() } else { None };
-    if let Some(way) = shows {
-        for part in &answer.parts {
-            if let Part::Picture(bytes) = part {
-                terminal.print(&way.text(bytes));
-            }
+}
+
+/// Shows the pictures of an answer where the terminal can; it is asked for that once, and what is typed meanwhile is kept.
+fn show_pictures(answer: &Answer, terminal: &Terminal, way: &mut Option<Option<inline::Way>>, typed: &mut Typed) {
+    for part in &answer.parts {
+        let Part::Picture(bytes) = part else { continue };
+        let known = *way.get_or_insert_with(|| inline::Way::of_terminal().unwrap_or_else(|| inline::Way::asked(typed)));
+        if let Some(way) = known {
+            terminal.print(&way.text(bytes));
         }
     }
 }
@@ -155,12 +162,20 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     }
     notebook.edit_with(Box::new(edited));
     terminal.print(GREETING);
+    let (mut way, mut typed) = (None, Typed::default());
     loop {
         let columns = editor.dimensions().map_or(usize::MAX, |(columns, _)| usize::from(columns).saturating_sub(PROMPT.len()));
         if let Some(line) = editor.helper_mut() {
             line.learn(&notebook, columns);
         }
-        match editor.readline(PROMPT) {
+        let entry = match typed.entry() {
+            Some(entry) => {
+                terminal.print(&format!("{PROMPT}{entry}\n"));
+                Ok(entry)
+            }
+            None => editor.readline_with_initial(PROMPT, (&typed.rest(), "")),
+        };
+        match entry {
             Ok(entry) => {
                 if entry.trim().is_empty() {
                     continue;
@@ -176,6 +191,7 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
                 let watched = terminal.watched && !entry.trim().starts_with(":edit");
                 let answer = with_progress(&job, watched, || notebook.enter(&entry));
                 print(&answer, terminal, true);
+                show_pictures(&answer, terminal, &mut way, &mut typed);
                 if answer.quit {
                     return Exit::Fine;
                 }
