@@ -32,6 +32,14 @@ pub fn real(x: f64) -> String {
     String::from_utf8_lossy(&out).into_owned()
 }
 
+/// A number with at most so many decimals, zeros at its end left out (`0.5`, `12`).
+#[must_use]
+pub fn decimals(x: f64, most: usize) -> String {
+    let text = format!("{:.most$}", x + 0.0);
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
 const PAIRS: &[u8; 200] = b"0001020304050607080910111213141516171819202122232425262728293031323334353637383940414243444546474849\
 5051525354555657585960616263646566676869707172737475767778798081828384858687888990919293949596979899";
 
@@ -275,6 +283,21 @@ mod tests {
         }
         for (x, text) in [(9e-6, "9e-6"), (1e15, "1000000000000000"), (1e16, "1e16"), (1.5e300, "1.5e300"), (5e-324, "5e-324")] {
             assert_eq!(real(x), text);
+        }
+    }
+
+    #[test]
+    fn decimals_that_say_nothing_are_left_out() {
+        let cases = [
+            (0.5, 3, "0.5"),
+            (12.0, 1, "12"),
+            (100.0, 0, "100"),
+            (-1e-9, 3, "0"),
+            (2.0 / 3.0, 3, "0.667"),
+            (1e20, 2, "100000000000000000000"),
+        ];
+        for (x, most, text) in cases {
+            assert_eq!(decimals(x, most), text);
         }
     }
 

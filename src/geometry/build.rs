@@ -12,7 +12,7 @@ use super::composite::Composite;
 use super::curve::{Curve, Kind, Shape};
 use super::helix::Helix;
 use super::nurbs::{MAX_DEGREE, Nurbs, weighted};
-use crate::base::fault::{CurveFault, KnotFault, Result, ValueFault};
+use crate::base::fault::{CurveFault, KnotFault, LengthRange, Result, ValueFault};
 use crate::base::limits::COORDINATE;
 use crate::base::math;
 use crate::base::origin::Origin;
@@ -34,7 +34,7 @@ fn in_range(v: DVec3, argument: &'static str) -> Result<()> {
     if largest <= COORDINATE {
         return Ok(());
     }
-    Err(ValueFault::OutsideRange { argument, found: format!("{largest:e}"), range: format!("within {COORDINATE:e} either way") }.into())
+    Err(ValueFault::LengthOutside { argument, found: largest, range: LengthRange::Within(COORDINATE) }.into())
 }
 
 fn finite_number(x: f64, argument: &'static str, of: Origin) -> Result<()> {
@@ -65,8 +65,11 @@ pub(super) fn all_different(points: &[DVec3], closed: bool, of: Origin) -> Resul
     }
 }
 
-fn direction(v: DVec3, argument: &'static str, needed: &'static str, of: Origin) -> Result<DVec3> {
-    finite(v, argument, of)?;
+/// The unit vector along a vector; E408 unless it is finite, E409 where it has no length.
+pub(super) fn direction(v: DVec3, argument: &'static str, needed: &'static str, of: Origin) -> Result<DVec3> {
+    if !v.is_finite() {
+        return Err(CurveFault::NonFinite { of, argument, index: None }.into());
+    }
     // A plain length would overflow or vanish for extreme numbers.
     let scale = v.abs().max_element();
     math::unit(v / scale, 0.0).ok_or_else(|| CurveFault::ZeroDirection { of, argument, needed }.into())
@@ -154,9 +157,8 @@ fn round_arc((center, start): (DVec3, DVec3), normal: DVec3, (sweep, sign): (f64
         return Err(CurveFault::ZeroDirection { of: origin, argument: "start", needed: "away from the centre" }.into());
     };
     if normal.dot(radial).abs() > NUDGE {
-        let degrees = math::angle_between(normal, radial).to_degrees();
-        let range = "at right angles to the line from `center` to `start`".to_owned();
-        return Err(ValueFault::OutsideRange { argument: "normal", found: format!("{degrees:.3}° to it"), range }.into());
+        let (angle, to) = (math::angle_between(normal, radial), "the line from `center` to `start`");
+        return Err(ValueFault::NotAcross { argument: "normal", angle, to }.into());
     }
     let v = normal.cross(radial).normalize() * (u.length() * sign);
     Ok(Curve::new(Shape::Arc(EllipticArc { center, u, v, sweep, radius: Some(u.length()) }), kind, origin))
@@ -172,7 +174,7 @@ pub fn circle(center: DVec3, radius: f64, normal: DVec3, origin: Origin) -> Resu
     finite(center, "center", origin)?;
     finite_number(radius, "radius", origin)?;
     if radius <= 0.0 {
-        return Err(ValueFault::OutsideRange { argument: "radius", found: radius.to_string(), range: "above 0".to_owned() }.into());
+        return Err(ValueFault::LengthOutside { argument: "radius", found: radius, range: LengthRange::Positive }.into());
     }
     let normal = direction(normal, "normal", "with a length", origin)?;
     let along = |axis: DVec3| axis - normal * normal.dot(axis);

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::arc::EllipticArc;
-use super::build::{arc_center, finite};
+use super::build::{arc_center, direction, finite};
 use super::composite::Composite;
 use super::curve::{Curve, Kind, Shape};
 use super::intersect::{Hit, intersect};
 use super::offset::Offset;
-use crate::base::fault::{CurveFault, Fault, Result, ValueFault};
+use crate::base::fault::{Fault, LengthRange, Result, ValueFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::solve;
@@ -25,10 +25,7 @@ const CURVATURE_SAMPLES: usize = 32;
 /// Offset of a plane curve by `distance` to the left seen against the vector `normal`.
 pub fn offset(curve: &Curve, distance: f64, normal: DVec3, origin: Origin) -> Result<Curve> {
     finite(DVec3::splat(distance), "distance", origin)?;
-    finite(normal, "normal", origin)?;
-    let Some(normal) = math::unit(normal, 0.0) else {
-        return Err(CurveFault::ZeroDirection { of: origin, argument: "normal", needed: "with a length" }.into());
-    };
+    let normal = direction(normal, "normal", "with a length", origin)?;
     check_plane(curve, normal)?;
     let plan = Plan { distance, normal, origin };
     let pieces = smooth_pieces(curve);
@@ -50,8 +47,7 @@ fn check_plane(curve: &Curve, normal: DVec3) -> Result<()> {
     if out <= NUDGE * curve.bbox().diagonal() {
         return Ok(());
     }
-    let found = format!("one that the curve leaves by {out}");
-    Err(ValueFault::OutsideRange { argument: "normal", found, range: "the normal of a plane that holds the curve".to_owned() }.into())
+    Err(ValueFault::NotItsPlane { argument: "normal", by: out }.into())
 }
 
 /// How far the curve may leave the plane through its start with this unit normal; its whole size where that is not easily told.
@@ -96,8 +92,8 @@ struct Plan {
 }
 
 impl Plan {
-    fn too_far(&self, limit: String) -> Fault {
-        ValueFault::OutsideRange { argument: "distance", found: self.distance.to_string(), range: limit }.into()
+    fn too_far(&self, range: LengthRange) -> Fault {
+        ValueFault::LengthOutside { argument: "distance", found: self.distance, range }.into()
     }
 
     /// Offset of a piece without corners.
@@ -126,7 +122,7 @@ impl Plan {
         let turn = arc.u.cross(arc.v).dot(self.normal).signum();
         let new = radius - self.distance * turn;
         if new <= PARALLEL * radius {
-            return Err(self.too_far(format!("below the radius, {radius}, on this side")));
+            return Err(self.too_far(LengthRange::BelowRadius(radius, None)));
         }
         let scale = new / radius;
         Ok(EllipticArc { u: arc.u * scale, v: arc.v * scale, radius: Some(new), ..*arc })
@@ -146,10 +142,7 @@ impl Plan {
             let t = solve::lowest((at(most) - h).max(span[0]), (at(most) + h).min(span[1]), NUDGE, |t| -curvature(t));
             let tightest = curvature(t).max(curvature(at(most)));
             if tightest * self.distance.abs() >= 1.0 {
-                let p = base.point(t);
-                let radius = 1.0 / tightest;
-                let limit = format!("below {radius} on this side, the curve's radius at ({}, {}, {})", p.x, p.y, p.z);
-                return Err(self.too_far(limit));
+                return Err(self.too_far(LengthRange::BelowRadius(1.0 / tightest, Some(base.point(t)))));
             }
         }
         Ok(())
@@ -177,8 +170,7 @@ impl Plan {
             let corner = bases[i].end();
             let meeting = self.inner_meeting(&sides[i], &sides[k], &tolerance)?;
             let Some((ta, tb)) = meeting else {
-                let place = format!("({}, {}, {})", corner.x, corner.y, corner.z);
-                return Err(self.too_far(format!("small enough for both sides of the corner at {place} to meet")));
+                return Err(self.too_far(LengthRange::MeetsAtCorner(corner)));
             };
             ranges[i].1 = ta;
             ranges[k].0 = tb;
@@ -186,9 +178,7 @@ impl Plan {
         let mut out = Vec::new();
         for ((side, range), corner) in sides.iter().zip(ranges).zip(corners) {
             if range.0 >= range.1 {
-                let (p, q) = (side.start(), side.end());
-                let place = format!("from ({}, {}, {}) to ({}, {}, {})", p.x, p.y, p.z, q.x, q.y, q.z);
-                return Err(self.too_far(format!("small enough to leave something of the side {place}")));
+                return Err(self.too_far(LengthRange::LeavesOfSide(side.start(), side.end())));
             }
             out.push(side.part(range.0, range.1));
             out.extend(corner);

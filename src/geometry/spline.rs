@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use glam::{DVec3, DVec4};
 
-use super::build::{all_different, enough, finite, finite_points};
+use super::build::{all_different, direction, enough, finite_points};
 use super::curve::{Curve, Kind, Shape};
 use super::nurbs::Nurbs;
-use crate::base::fault::{CurveFault, Result};
-use crate::base::math;
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::solve::{Row, cyclic, tridiagonal};
 
@@ -40,9 +39,7 @@ pub fn spline(points: &[DVec3], settings: &Spline, origin: Origin) -> Result<Cur
     all_different(points, closed, origin)?;
     let end = |end: Ends, argument: &'static str| -> Result<Option<DVec3>> {
         let Ends::Clamped(v) = end else { return Ok(None) };
-        finite(v, argument, origin)?;
-        let fault = || CurveFault::ZeroDirection { of: origin, argument, needed: "with a length" }.into();
-        math::unit(v / v.abs().max_element(), 0.0).map(Some).ok_or_else(fault)
+        direction(v, argument, "with a length", origin).map(Some)
     };
     let ends = [end(settings.start, "start")?, end(settings.end, "end")?];
     let around: Vec<DVec3> = points.iter().chain(points.first().filter(|_| closed)).copied().collect();

@@ -40,17 +40,12 @@ impl Say for Cx<'_> {
         format!("{text} {}", unit.name)
     }
 
-    fn point(&self, p: DVec3) -> String {
-        format!("({}, {}, {})", self.decimals(p.x), self.decimals(p.y), self.decimals(p.z))
+    fn points(&self, places: &[DVec3]) -> Vec<String> {
+        super::places::place_texts(places, self.tolerance, self.unit())
     }
 
     fn angle(&self, radians: f64) -> String {
-        let degrees = super::units::degrees(radians);
-        let text = format!("{degrees:.2}");
-        if degrees != 0.0 && text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.')) {
-            return format!("{degrees:.1e}°");
-        }
-        format!("{text}°")
+        super::units::angle_text(radians)
     }
 }
 
@@ -64,19 +59,6 @@ pub(super) fn member_name(name: &str, member: [u32; 2]) -> String {
 }
 
 impl Cx<'_> {
-    /// A coordinate with as many decimals as the tolerance has, or three significant digits where that would show zero.
-    fn decimals(&self, x: f64) -> String {
-        let point = self.tolerance.map_or(1e-3_f64, |t| t.point);
-        let places = (-crate::base::math::log10(point)).ceil().clamp(0.0, 9.0) as usize;
-        let text = format!("{x:.places$}");
-        let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
-        match (zero, x.abs() > point * 1e-3) {
-            (true, true) => format!("{x:.1e}"),
-            (true, false) => text.trim_start_matches('-').to_owned(),
-            _ => text,
-        }
-    }
-
     /// The call of the declaration's own expression that led to a place.
     pub(super) fn outermost(&self, mut place: Place) -> Place {
         while let Some(caller) = self.origins.place(place.caller) {

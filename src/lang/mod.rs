@@ -37,6 +37,7 @@ pub mod origins;
 mod outputs;
 mod params;
 mod pictures;
+mod places;
 pub mod plans;
 mod recall;
 mod refine;

@@ -45,6 +45,9 @@ pub const OTHERS: &[OtherUnit] = &[
     OtherUnit { name: "t", dim: Dim::MASS, ratio: 1000.0, docs: "tonne" },
 ];
 
+/// Lengths in model units from which no unit makes a number that is read.
+const BEYOND_UNITS: f64 = 1e15;
+
 /// The default model unit.
 pub const MILLIMETRE: LengthUnit = LENGTHS[1];
 
@@ -172,17 +175,29 @@ pub fn quantity_text(q: Quantity, model: LengthUnit) -> String {
 /// A length in model units as messages tell it: three digits, in the model's unit where that takes at most four places before
 /// the dot and one zero behind it, else in the metric unit that engineers would take: `0.3 mm`, never `0.000300 m`.
 pub fn told_length(x: f64, model: LengthUnit) -> (String, LengthUnit) {
+    let fits = x == 0.0 || !x.is_finite() || (0.1..1e4).contains(&x.abs());
+    let unit = if fits { model } else { engineering_unit(x, model) };
+    (three_digits(convert(x, model, unit, 1)), unit)
+}
+
+/// The metric unit that engineers would take for a length; the model's where that is none of theirs, or none fits.
+pub fn engineering_unit(x: f64, model: LengthUnit) -> LengthUnit {
+    if matches!(model.name, "in" | "ft") || x.abs() >= BEYOND_UNITS {
+        return model;
+    }
     let metric = |name: &str| LENGTHS.iter().find(|u| u.name == name);
-    let fits = |x: f64| x == 0.0 || !x.is_finite() || (0.1..1e4).contains(&x.abs());
-    let is_metric = !matches!(model.name, "in" | "ft");
     // Up to a whole number of the larger unit, down to a tenth of the smaller one.
     let least = if x.abs() < 1.0 { 0.1 } else { 1.0 };
-    let other = ["km", "m", "mm", "um"].into_iter().filter_map(metric).find(|u| convert(x, model, **u, 1).abs() >= least).or(metric("um"));
-    let unit = match other {
-        Some(other) if is_metric && !fits(x) => *other,
-        _ => model,
-    };
-    (three_digits(convert(x, model, unit, 1)), unit)
+    let units = ["km", "m", "mm", "um"].into_iter().filter_map(metric);
+    units.clone().find(|u| convert(x, model, **u, 1).abs() >= least).or(metric("um")).copied().unwrap_or(model)
+}
+
+/// An angle in radians as messages tell it: degrees with two decimals, or three digits where it is smaller than those show.
+pub fn angle_text(radians: f64) -> String {
+    let degrees = degrees(radians);
+    let text = if degrees.abs() < 1.0 { three_digits(degrees) } else { format!("{degrees:.2}") };
+    let text = if text.contains('.') && !text.contains('e') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text}°")
 }
 
 /// A number with three digits, all those before the dot, and no zeros at its end.
@@ -192,7 +207,9 @@ fn three_digits(x: f64) -> String {
     }
     let size = crate::base::math::log10(x.abs()).floor();
     if !(-4.0..15.0).contains(&size) {
-        return format!("{x:.2e}");
+        let text = format!("{x:.2e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'));
     }
     let places = (2.0 - size).max(0.0) as usize;
     let text = format!("{x:.places$}");
@@ -240,6 +257,9 @@ mod tests {
         assert_eq!(told(0.0003, "m"), "0.3mm");
         assert_eq!(told(0.3, "mm"), "0.3mm");
         assert_eq!([told(5000.0, "mm"), told(1234.567, "mm"), told(25_000.0, "mm")], ["5000mm", "1235mm", "25m"]);
+        assert_eq!([told(1e60, "mm"), told(1.5e-30, "m")], ["1e60mm", "1.5e-24um"]);
+        assert_eq!([super::angle_text(0.5), super::angle_text(std::f64::consts::FRAC_PI_6)], ["28.65°", "30°"]);
+        assert_eq!([super::angle_text(1e-3), super::angle_text(-1e-9), super::angle_text(0.0)], ["0.0573°", "-5.73e-8°", "0°"]);
         assert_eq!([told(-1e-3, "mm"), told(0.0, "m"), told(0.31, "in"), told(4.0 / 3.0, "cm")], ["-1um", "0m", "0.31in", "1.33cm"]);
     }
 

@@ -6,6 +6,7 @@ use super::network::typed;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::math;
 use crate::base::origin::Origin;
+use crate::base::text::real;
 use crate::base::tolerance::NEAREST;
 
 /// What can be wrong with a curve.
@@ -236,10 +237,11 @@ impl Describe for CurveFault {
             }
             Self::DuplicatePoints { .. } => duplicate_points(self, say),
             Self::Collinear { points: [a, m, b], .. } => {
-                let on = [say.point(*a), say.point(*m), say.point(*b)];
-                Report::new("E404", format!("no circle goes through {}, {} and {}: they lie on a line", on[0], on[1], on[2]))
+                let on = say.points(&[*a, *m, *b]).join(", ");
+                let typed = |p: &DVec3| format!("({}, {}, {})", real(p.x), real(p.y), real(p.z));
+                Report::new("E404", format!("no circle goes through three points of one line: {on}"))
                     .label(Subject::Argument("through"), "on the line through the other two")
-                    .help(format!("move it off the line, or say line({}, {})", on[0], on[2]))
+                    .help(format!("move it off the line, or say line({}, {})", typed(a), typed(b)))
             }
             Self::Rho { rho, .. } => Report::new("E405", format!("`rho` must be between 0 and 1, ends excluded, got {rho}"))
                 .label(Subject::Argument("rho"), "below 0.5 an ellipse, 0.5 a parabola, above a hyperbola")

@@ -132,7 +132,7 @@ impl Describe for CutFault {
                     .help("please report it with this script; curves moved by a little may do meanwhile")
             }
             Self::CutOpen { cutter, surface, ends, outside } => {
-                let places: Vec<String> = ends.iter().map(|p| say.point(*p)).collect();
+                let places = say.points(ends);
                 let why = match ends.len() {
                     _ if *outside => "all of it lies beyond the border".to_owned(),
                     0 => "both ends are on the border, and what lies beside it goes on round the surface".to_owned(),

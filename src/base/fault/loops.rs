@@ -153,9 +153,12 @@ fn open(fault: &LoopFault, say: &dyn Say) -> Report {
         LoopRole::Outer => "the outer loop does not close",
         LoopRole::Hole(_) => "the hole does not close",
     };
-    let report = Report::new("E502", format!("{what}: {name} starts at {} and ends at {}", say.point(ends.0), say.point(ends.1)))
-        .at(*of, "an open curve")
-        .note(format!("the gap is {}; the model's tolerance is {}", say.length(ends.0.distance(ends.1)), say.length(*tolerance)));
+    let (start, end) = say.pair(ends.0, ends.1);
+    let report = Report::new("E502", format!("{what}: {name} starts at {start} and ends at {end}")).at(*of, "an open curve").note(format!(
+        "the gap is {}; the model's tolerance is {}",
+        say.length(ends.0.distance(ends.1)),
+        say.length(*tolerance)
+    ));
     let names: Vec<String> = together.iter().map(|o| say.name(*o)).collect();
     match closes {
         _ if !names.is_empty() && names.iter().all(|n| !n.is_empty()) => {
@@ -216,9 +219,12 @@ fn meet(fault: &LoopFault, say: &dyn Say) -> Report {
     // Curves that were carried to a surface are up to a quarter of the tolerance off.
     let close = *apart > 0.5 * tolerance;
     let message = match run {
-        Some((from, to)) => format!("{whom} run along each other from {} to {}", say.point(*from), say.point(*to)),
+        Some((from, to)) => {
+            let (from, to) = say.pair(*from, *to);
+            format!("{whom} run along each other from {from} to {to}")
+        }
         None => {
-            let list: Vec<String> = places.iter().take(SHOWN).map(|p| say.point(*p)).collect();
+            let list = say.points(&places[..places.len().min(SHOWN)]);
             let more = places.len().saturating_sub(SHOWN);
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
             format!("{whom} meet at {}{more}", list.join(" and "))

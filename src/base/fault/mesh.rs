@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
+use crate::base::text::decimals;
 
 /// The setting that makes angles of elements larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -555,12 +556,12 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         F::Inverted { surface, count, uv, at, free } => Report::new(
             "E715",
             format!(
-                "{count} element{} of {} turned over or without area, the first at {} (u {:.3}, v {:.3})",
+                "{count} element{} of {} turned over or without area, the first at {} (u {}, v {})",
                 if *count == 1 { "" } else { "s" },
                 say.quoted(*surface, "a face"),
                 say.point(*at),
-                uv.0,
-                uv.1
+                decimals(uv.0, 3),
+                decimals(uv.1, 3)
             ),
         )
         .at(*surface, if *free { "has no room for convex quads there" } else { "folds there" })

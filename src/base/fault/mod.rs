@@ -33,7 +33,7 @@ pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;
 pub use surface::{SurfaceFault, Touching};
 pub use sweep::SweepFault;
-pub use values::ValueFault;
+pub use values::{LengthRange, ValueFault};
 
 use super::origin::Origin;
 
@@ -163,8 +163,17 @@ pub trait Say {
     fn name(&self, origin: Origin) -> String;
     /// A length in model units, for example `0.310 mm`.
     fn length(&self, length: f64) -> String;
-    /// A point in model units, for example `(4.000, 0.000, 1.250)`.
-    fn point(&self, point: DVec3) -> String;
+    /// Places, for example `(4, 0, 1.25) m`, with digits that tell them apart.
+    fn points(&self, places: &[DVec3]) -> Vec<String>;
+    /// One place.
+    fn point(&self, place: DVec3) -> String {
+        self.points(&[place]).pop().unwrap_or_default()
+    }
+    /// Two places.
+    fn pair(&self, a: DVec3, b: DVec3) -> (String, String) {
+        let mut texts = self.points(&[a, b]).into_iter();
+        (texts.next().unwrap_or_default(), texts.next().unwrap_or_default())
+    }
     /// An angle given in radians, for example `5.88°`.
     fn angle(&self, radians: f64) -> String;
     /// The name in backquotes, or `otherwise` when it has none.
@@ -184,8 +193,8 @@ impl Say for Plain {
     fn length(&self, length: f64) -> String {
         format!("{length:.6}")
     }
-    fn point(&self, p: DVec3) -> String {
-        format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+    fn points(&self, places: &[DVec3]) -> Vec<String> {
+        places.iter().map(|p| format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)).collect()
     }
     fn angle(&self, radians: f64) -> String {
         format!("{:.4}°", radians.to_degrees())

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::math;
 use crate::base::origin::Origin;
+use crate::base::text::decimals;
 use crate::base::tolerance::SNAP_SHARE;
 
 /// What can go wrong with networks and chains, or deserves a word. Lengths and points are in model units.
@@ -287,36 +288,25 @@ impl Describe for NetworkFault {
                 .edit(Subject::Call, Edit::Declare("tolerance", smaller))
             }
             Self::NoMeeting { a, b, near, tolerance } => no_meeting(*a, *b, (*near, *tolerance), say),
-            Self::PointOff { of, point, nearest, tolerance } => Report::new(
-                "E507",
-                format!(
-                    "the point {} is not on {}: the nearest point of the curve, {}, is {} away",
-                    say.point(*point),
-                    say.quoted(*of, "the curve"),
-                    say.point(*nearest),
-                    say.length(point.distance(*nearest))
-                ),
-            )
-            .at(*of, "this curve")
-            .note(tolerance_note(*tolerance, say)),
+            Self::PointOff { of, point, nearest, tolerance } => {
+                let ((given, found), curve) = (say.pair(*point, *nearest), say.quoted(*of, "the curve"));
+                let away = say.length(point.distance(*nearest));
+                Report::new("E507", format!("the point {given} is not on {curve}: the nearest point of the curve, {found}, is {away} away"))
+                    .at(*of, "this curve")
+                    .note(tolerance_note(*tolerance, say))
+            }
             Self::SeveralMeetings { a, b, candidates } => several_meetings(*a, *b, candidates, say),
             Self::SharesRun { a, b, runs } => shares_run(*a, *b, runs, say),
             Self::InUse { of, users } => in_use(*of, users, say),
             Self::SnapFixed { a, b, snap, asked, settled } => snap_fixed([a, b], (*snap, *asked), *settled, say),
-            Self::SharedRun { owner, other, run, length } => Report::new(
-                "N512",
-                format!(
-                    "{} and {} share a run of {} from {} to {}; it belongs to {}",
-                    say.quoted(*owner, "one curve"),
-                    say.quoted(*other, "another"),
-                    say.length(*length),
-                    say.point(run.0),
-                    say.point(run.1),
-                    say.quoted(*owner, "the first")
-                ),
-            )
-            .at(*other, "runs over it")
-            .at(*owner, "owns it"),
+            Self::SharedRun { owner, other, run, length } => {
+                let ((from, to), long) = (say.pair(run.0, run.1), say.length(*length));
+                let (one, another) = (say.quoted(*owner, "one curve"), say.quoted(*other, "another"));
+                let first = say.quoted(*owner, "the first");
+                Report::new("N512", format!("{one} and {another} share a run of {long} from {from} to {to}; it belongs to {first}"))
+                    .at(*other, "runs over it")
+                    .at(*owner, "owns it")
+            }
             Self::Snapped { end, to, length, asked } => snapped(end, (*to, *length), *asked, say),
             Self::NearMiss { end, other, nearest, other_end, tolerance } => near_miss(end, (*other, *nearest, *other_end), *tolerance, say),
             Self::NoLength { of, at, length, tolerance } => Report::new(
@@ -337,14 +327,13 @@ impl Describe for NetworkFault {
 fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn Say) -> Report {
     let moved = end.at.distance(to);
     let far = moved > SNAP_SHARE * length;
+    let (from, onto) = say.pair(end.at, to);
     let words = format!(
-        "the {} of {} moved by {}{} from {} to {}",
+        "the {} of {} moved by {}{} from {from} to {onto}",
         if end.last { "end" } else { "start" },
         say.quoted(end.of, "a curve"),
         say.length(moved),
-        if far { format!(", {} % of its length,", rounded(100.0 * moved / length)) } else { String::new() },
-        say.point(end.at),
-        say.point(to)
+        if far { format!(", {} % of its length,", rounded(100.0 * moved / length)) } else { String::new() }
     );
     let report = Report::new(if far { "W223" } else { "N513" }, words).at(end.of, end.verb());
     if !far {
@@ -389,26 +378,15 @@ fn tolerance_note(tolerance: f64, say: &dyn Say) -> String {
 fn ends_miss(a: &CurveEnd, b: &CurveEnd, (near, tolerance): (bool, f64), say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
     let wanted = typed(say, round_above(gap));
-    let report = Report::new(
-        "E501",
-        format!(
-            "{} and {} miss each other by {} at {}",
-            say.quoted(a.of, "one curve"),
-            say.quoted(b.of, "another"),
-            say.length(gap),
-            say.point(a.at)
-        ),
-    )
-    .at(a.of, a.verb())
-    .at(b.of, b.verb())
-    .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
-    .note(format!("the other curve {} at {}", if b.last { "ends" } else { "starts" }, say.point(b.at)));
+    let (one, other) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"));
+    let (here, there) = say.pair(a.at, b.at);
+    let report = Report::new("E501", format!("{one} and {other} miss each other by {} at {here}", say.length(gap)))
+        .at(a.of, a.verb())
+        .at(b.of, b.verb())
+        .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
+        .note(format!("the other curve {} at {there}", if b.last { "ends" } else { "starts" }));
     if !near {
-        return report.help(format!(
-            "a curve is missing from {} to {}, or one that is here ends elsewhere",
-            say.point(a.at),
-            say.point(b.at)
-        ));
+        return report.help(format!("a curve is missing from {here} to {there}, or one that is here ends elsewhere"));
     }
     report
         .help(format!("end both at one point, or declare `snap {wanted}`"))
@@ -419,40 +397,24 @@ fn ends_miss(a: &CurveEnd, b: &CurveEnd, (near, tolerance): (bool, f64), say: &d
 fn boundary_open(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
     let side = |end: &CurveEnd| if end.last { "ends" } else { "starts" };
     let gap = a.at.distance(b.at);
-    Report::new(
-        "E502",
-        format!(
-            "the boundary does not close: {} {} at {}, {} {} at {}",
-            say.quoted(a.of, "one curve"),
-            side(a),
-            say.point(a.at),
-            say.quoted(b.of, "another"),
-            side(b),
-            say.point(b.at)
-        ),
-    )
-    .at(a.of, a.verb())
-    .at(b.of, b.verb())
-    .help("add a curve that joins these two points")
-    .note(format!("the gap is {}; the model's tolerance is {}", say.length(gap), say.length(tolerance)))
+    let (here, there) = say.pair(a.at, b.at);
+    let (one, other) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"));
+    Report::new("E502", format!("the boundary does not close: {one} {} at {here}, {other} {} at {there}", side(a), side(b)))
+        .at(a.of, a.verb())
+        .at(b.of, b.verb())
+        .help("add a curve that joins these two points")
+        .note(format!("the gap is {}; the model's tolerance is {}", say.length(gap), say.length(tolerance)))
 }
 
 fn chain_broken(a: &CurveEnd, b: &CurveEnd, (reversed_fits, snaps): (bool, bool), tolerance: f64, say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
-    let report = Report::new(
-        "E503",
-        format!(
-            "the chain breaks: {} ends at {}, {} starts at {}, {} apart",
-            say.quoted(a.of, "one part"),
-            say.point(a.at),
-            say.quoted(b.of, "the next"),
-            say.point(b.at),
-            say.length(gap)
-        ),
-    )
-    .at(a.of, "ends here")
-    .at(b.of, "starts elsewhere")
-    .note(tolerance_note(tolerance, say));
+    let (here, there) = say.pair(a.at, b.at);
+    let (one, next) = (say.quoted(a.of, "one part"), say.quoted(b.of, "the next"));
+    let report =
+        Report::new("E503", format!("the chain breaks: {one} ends at {here}, {next} starts at {there}, {} apart", say.length(gap)))
+            .at(a.of, "ends here")
+            .at(b.of, "starts elsewhere")
+            .note(tolerance_note(tolerance, say));
     let name = say.name(b.of);
     if let (true, Some((put, from, to))) = (reversed_fits, turned_run(&name)) {
         report.help(format!("`{put}` runs from {from} to {to}")).edit(Subject::Call, Edit::Instead { put, of: name })
@@ -481,7 +443,8 @@ fn turned_run(typed: &str) -> Option<(String, String, String)> {
 }
 
 fn chain_repeats(a: Origin, b: Origin, stretch: (DVec3, DVec3), say: &dyn Say) -> Report {
-    Report::new("E504", format!("the chain runs twice over the stretch from {} to {}", say.point(stretch.0), say.point(stretch.1)))
+    let (from, to) = say.pair(stretch.0, stretch.1);
+    Report::new("E504", format!("the chain runs twice over the stretch from {from} to {to}"))
         .at(a, "runs over it first")
         .at(b, "runs over it again")
         .help("end the first part where the second one begins")
@@ -503,25 +466,19 @@ fn chain_ambiguous(of: Origin, at: DVec3, candidates: &[Origin], say: &dyn Say) 
 fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), (near, tolerance): (bool, f64), say: &dyn Say) -> Report {
     let gap = a.1.distance(b.1);
     let wider = if near { format!("; {} would let them meet", typed(say, round_up(gap))) } else { String::new() };
-    Report::new(
-        "E507",
-        format!(
-            "{} and {} do not meet: they come closest at {} and {}, {} apart",
-            say.quoted(a.0, "one curve"),
-            say.quoted(b.0, "the other"),
-            say.point(a.1),
-            say.point(b.1),
-            say.length(gap)
-        ),
-    )
-    .at(a.0, "this curve")
-    .at(b.0, "and this one")
-    .note(format!("{}{wider}", tolerance_note(tolerance, say)))
+    let (one, other) = (say.quoted(a.0, "one curve"), say.quoted(b.0, "the other"));
+    let (here, there) = say.pair(a.1, b.1);
+    Report::new("E507", format!("{one} and {other} do not meet: they come closest at {here} and {there}, {} apart", say.length(gap)))
+        .at(a.0, "this curve")
+        .at(b.0, "and this one")
+        .note(format!("{}{wider}", tolerance_note(tolerance, say)))
 }
 
 fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn Say) -> Report {
     const SHOWN: usize = 6;
-    let list: Vec<String> = candidates.iter().take(SHOWN).map(|(p, f)| format!("{} ({:.1}%)", say.point(*p), 100.0 * f)).collect();
+    let shown: Vec<DVec3> = candidates.iter().take(SHOWN).map(|c| c.0).collect();
+    let one = |(p, c): (&String, &(DVec3, f64))| format!("{p} ({}%)", decimals(100.0 * c.1, 1));
+    let list: Vec<String> = say.points(&shown).iter().zip(candidates).map(one).collect();
     let more = if candidates.len() > SHOWN { format!(" and {} more", candidates.len() - SHOWN) } else { String::new() };
     let (name_a, name_b) = (say.name(a), say.name(b));
     let report = Report::new(
@@ -547,7 +504,11 @@ fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn
 }
 
 fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> Report {
-    let list: Vec<String> = runs.iter().map(|(p, q)| format!("from {} to {}", say.point(*p), say.point(*q))).collect();
+    let run = |(p, q): &(DVec3, DVec3)| {
+        let (from, to) = say.pair(*p, *q);
+        format!("from {from} to {to}")
+    };
+    let list: Vec<String> = runs.iter().map(run).collect();
     Report::new(
         "E509",
         format!("{} and {} share a run {}, not a point", say.quoted(a, "one curve"), say.quoted(b, "the other"), list.join(" and ")),
@@ -571,20 +532,21 @@ fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: 
     let (of, nearest, is_end) = other;
     let gap = end.at.distance(nearest);
     let wanted = typed(say, round_above(gap));
+    let (here, there) = say.pair(end.at, nearest);
     let report = Report::new(
         "W514",
         format!(
             "the {} of {} at {} misses {}{} by {}",
             if end.last { "end" } else { "start" },
             say.quoted(end.of, "a curve"),
-            say.point(end.at),
+            here,
             if is_end { "the end of " } else { "" },
             say.quoted(of, "another"),
             say.length(gap)
         ),
     )
     .at(end.of, end.verb())
-    .at(of, format!("passes {}", say.point(nearest)))
+    .at(of, format!("passes {there}"))
     .note(tolerance_note(tolerance, say));
     // `snap` moves ends to ends.
     if is_end {

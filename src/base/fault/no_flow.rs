@@ -130,13 +130,11 @@ pub(super) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
             .label(Subject::Argument("closed"), "asked for here")
             .at(*open, "open")
             .help("leave out `closed: true`, or take a closed curve"),
-        NoFlow::NoPole { pole, nearest } => report(format!(
-            "no curves end together at the pole {}; the nearest end is {} away at {}",
-            say.point(*pole),
-            say.length(pole.distance(*nearest)),
-            say.point(*nearest)
-        ))
-        .label(Subject::Argument("pole"), "not a common end")
-        .help("the pole is the point in which all curves of one family end"),
+        NoFlow::NoPole { pole, nearest } => {
+            let ((here, there), away) = (say.pair(*pole, *nearest), say.length(pole.distance(*nearest)));
+            report(format!("no curves end together at the pole {here}; the nearest end is {away} away at {there}"))
+                .label(Subject::Argument("pole"), "not a common end")
+                .help("the pole is the point in which all curves of one family end")
+        }
     }
 }

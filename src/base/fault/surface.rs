@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::no_flow::NoFlow;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
+use crate::base::text::{decimals, real};
 
 /// How two faces touch that share no edge there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -364,34 +365,24 @@ fn describe_flow(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         .at(*b, "does not meet this one")
         .note(format!("{found} of {wanted} crossings of the grid were found"))
         .help("let every curve along u cross every curve along v, or leave one of these two out"),
-        F::GridDouble { a, b, first, second } => Report::new(
-            "E603",
-            format!(
-                "{} and {} meet twice, at {} and at {}",
-                say.quoted(*a, "one curve"),
-                say.quoted(*b, "another one"),
-                say.point(*first),
-                say.point(*second)
-            ),
-        )
-        .at(*a, "this curve")
-        .at(*b, "and this one")
-        .help("take the run with one of the two meetings: `c[A..B]`"),
-        F::GridNotMonotone { curve, a, b, first, second } => Report::new(
-            "E604",
-            format!(
-                "along {} the curves come in the wrong order: {} at {}, {} at {}",
-                say.quoted(*curve, "one curve"),
-                say.quoted(*a, "the first"),
-                say.point(*first),
-                say.quoted(*b, "the next"),
-                say.point(*second)
-            ),
-        )
-        .at(*curve, "met in another order than its neighbours")
-        .at(*a, "should come before")
-        .at(*b, "this one")
-        .help("every curve along u must meet the curves along v in the same order"),
+        F::GridDouble { a, b, first, second } => {
+            let (here, there) = say.pair(*first, *second);
+            let (one, other) = (say.quoted(*a, "one curve"), say.quoted(*b, "another one"));
+            Report::new("E603", format!("{one} and {other} meet twice, at {here} and at {there}"))
+                .at(*a, "this curve")
+                .at(*b, "and this one")
+                .help("take the run with one of the two meetings: `c[A..B]`")
+        }
+        F::GridNotMonotone { curve, a, b, first, second } => {
+            let (here, there) = say.pair(*first, *second);
+            let (one, next) = (say.quoted(*a, "the first"), say.quoted(*b, "the next"));
+            let along = say.quoted(*curve, "one curve");
+            Report::new("E604", format!("along {along} the curves come in the wrong order: {one} at {here}, {next} at {there}"))
+                .at(*curve, "met in another order than its neighbours")
+                .at(*a, "should come before")
+                .at(*b, "this one")
+                .help("every curve along u must meet the curves along v in the same order")
+        }
         F::FamilyCrosses { a, b, at } => Report::new(
             "E605",
             format!(
@@ -422,7 +413,7 @@ fn describe_flow(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
 /// W606–N608, E611, W614, E62x, W651, E655: one surface.
 fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
     use SurfaceFault as F;
-    let uv = |(u, v): (f64, f64)| format!("u {u:.3}, v {v:.3}");
+    let uv = |(u, v): (f64, f64)| format!("u {}, v {}", decimals(u, 3), decimals(v, 3));
     Some(match fault {
         F::PatchSingular { surface, uv: place, at } => {
             Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
@@ -476,7 +467,7 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         .help("build the curve on the surface, or `project` it"),
         F::LoopOutsideParameters { of, surface, uv } => {
             let (curve, of_surface) = (say.quoted(*of, "the curve"), say.quoted(*surface, "the surface"));
-            Report::new("E613", format!("{curve} leaves {of_surface} at u = {:.6}, v = {:.6}: both run from 0 to 1", uv.0, uv.1))
+            Report::new("E613", format!("{curve} leaves {of_surface} at u = {}, v = {}: both run from 0 to 1", real(uv.0), real(uv.1)))
                 .at(*of, "x and y of this loop are u and v")
                 .at(*surface, "this surface")
         }
@@ -497,12 +488,12 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         F::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(
             "W614",
             format!(
-                "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {:.6} to {:.6}, at {}",
+                "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {} to {}, at {}",
                 say.quoted(*surface, "this surface"),
                 say.length(*width),
                 say.length(*neighbour),
-                from_to.0,
-                from_to.1,
+                decimals(from_to.0, 6),
+                decimals(from_to.1, 6),
                 say.point(*at)
             ),
         )
@@ -515,38 +506,33 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         .at(*axis, "must be one straight line")
         .help("axis: line((0, 0, 0), (0, 0, 1))")
         .edit(Subject::Call, Edit::Set("axis", "line((0, 0, 0), (0, 0, 1))".to_owned())),
-        F::GeneratrixOnAxis { profile, from, to } => Report::new(
-            "E622",
-            format!("{} lies in the axis from {} to {}", say.quoted(*profile, "the profile"), say.point(*from), say.point(*to)),
-        )
-        .at(*profile, "sweeps no area there")
-        .help("leave that stretch out: `profile[A..B]`"),
+        F::GeneratrixOnAxis { profile, from, to } => {
+            let (from, to) = say.pair(*from, *to);
+            Report::new("E622", format!("{} lies in the axis from {from} to {to}", say.quoted(*profile, "the profile")))
+                .at(*profile, "sweeps no area there")
+                .help("leave that stretch out: `profile[A..B]`")
+        }
         F::GeneratrixCrossesAxis { profile, at, fraction } => Report::new(
             "E623",
             format!(
-                "{} meets the axis between its ends, at {}, {:.1} % along",
+                "{} meets the axis between its ends, at {}, {} % along",
                 say.quoted(*profile, "the profile"),
                 say.point(*at),
-                fraction * 100.0
+                decimals(fraction * 100.0, 1)
             ),
         )
         .at(*profile, "meets the axis")
-        .help(format!("turn one side of it only: `profile[0%..{:.6}%]`", fraction * 100.0))
+        .help(format!("turn one side of it only: `{}[0%..{}%]`", named_or(say.name(*profile), "profile"), decimals(fraction * 100.0, 6)))
         .edit(
             Subject::Argument("profile"),
-            Edit::Instead { of: say.name(*profile), put: format!("{}[0%..{:.6}%]", say.name(*profile), fraction * 100.0) },
+            Edit::Instead { of: say.name(*profile), put: format!("{}[0%..{}%]", say.name(*profile), decimals(fraction * 100.0, 6)) },
         ),
-        F::SweepDegenerate { profile, from, to } => Report::new(
-            "E624",
-            format!(
-                "{} runs along the direction of the sweep from {} to {}: no area",
-                say.quoted(*profile, "the profile"),
-                say.point(*from),
-                say.point(*to)
-            ),
-        )
-        .at(*profile, "parallel to the sweep")
-        .help("choose another `by:`, or leave that stretch out"),
+        F::SweepDegenerate { profile, from, to } => {
+            let ((from, to), which) = (say.pair(*from, *to), say.quoted(*profile, "the profile"));
+            Report::new("E624", format!("{which} runs along the direction of the sweep from {from} to {to}: no area"))
+                .at(*profile, "parallel to the sweep")
+                .help("choose another `by:`, or leave that stretch out")
+        }
         F::GridUneven { surface, line, index, ratio, at } => Report::new(
             "W651",
             format!(
@@ -572,6 +558,11 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         .edit(Subject::Call, Edit::Instead { of: "plane".to_owned(), put: "coons".to_owned() }),
         _ => return None,
     })
+}
+
+/// A name, or a word that stands for one that is missing.
+fn named_or(name: String, otherwise: &str) -> String {
+    if name.is_empty() { otherwise.to_owned() } else { name }
 }
 
 /// A name in backquotes, or what stands for one that is missing.

@@ -17,6 +17,31 @@ pub enum ValueFault {
         /// What is allowed, in words.
         range: String,
     },
+    /// E306: a length outside its range.
+    LengthOutside {
+        /// Parameter name.
+        argument: &'static str,
+        /// The length, or the largest of a point's coordinates, model units.
+        found: f64,
+        /// What is allowed.
+        range: LengthRange,
+    },
+    /// E306: the normal of a plane that the curve leaves.
+    NotItsPlane {
+        /// Parameter name.
+        argument: &'static str,
+        /// By how much, model units.
+        by: f64,
+    },
+    /// E306: a direction that should be at right angles to another one.
+    NotAcross {
+        /// Parameter name.
+        argument: &'static str,
+        /// The angle between the two, radians.
+        angle: f64,
+        /// What it should be at right angles to, in words.
+        to: &'static str,
+    },
     /// E301: one of several forms is incomplete.
     Missing {
         /// The function.
@@ -118,11 +143,58 @@ pub enum ValueFault {
     },
 }
 
+/// Edges that are told where one is wanted.
+const EDGES_SHOWN: usize = 4;
+
+/// The lengths that are allowed. Lengths and points are model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LengthRange {
+    /// Above zero.
+    Positive,
+    /// Up to this, either way.
+    Within(f64),
+    /// Below a radius on one side, at this place where it changes along the curve.
+    BelowRadius(f64, Option<DVec3>),
+    /// So small that both sides of the corner here still meet.
+    MeetsAtCorner(DVec3),
+    /// So small that something is left of the side between these points.
+    LeavesOfSide(DVec3, DVec3),
+}
+
+impl LengthRange {
+    fn words(&self, say: &dyn Say) -> String {
+        match self {
+            Self::Positive => "above 0".to_owned(),
+            Self::Within(limit) => format!("within {} either way", say.length(*limit)),
+            Self::BelowRadius(radius, None) => format!("below the radius, {}, on this side", say.length(*radius)),
+            Self::BelowRadius(radius, Some(at)) => {
+                format!("below {} on this side, the curve's radius at {}", say.length(*radius), say.point(*at))
+            }
+            Self::MeetsAtCorner(at) => format!("small enough for both sides of the corner at {} to meet", say.point(*at)),
+            Self::LeavesOfSide(from, to) => {
+                let (from, to) = say.pair(*from, *to);
+                format!("small enough to leave something of the side from {from} to {to}")
+            }
+        }
+    }
+}
+
+/// E306 in words.
+fn outside(argument: &'static str, found: String, range: &str) -> Report {
+    Report::new("E306", format!("`{argument}` must be {range}, got {found}")).label(Subject::Argument(argument), found)
+}
+
 impl Describe for ValueFault {
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::OutsideRange { argument, found, range } => {
-                Report::new("E306", format!("`{argument}` must be {range}, got {found}")).label(Subject::Argument(argument), found.clone())
+            Self::OutsideRange { argument, found, range } => outside(argument, found.clone(), range),
+            Self::LengthOutside { argument, found, range } => outside(argument, say.length(*found), &range.words(say)),
+            Self::NotItsPlane { argument, by } => {
+                let found = format!("one that the curve leaves by {}", say.length(*by));
+                outside(argument, found, "the normal of a plane that holds the curve")
+            }
+            Self::NotAcross { argument, angle, to } => {
+                outside(argument, format!("{} to it", say.angle(*angle)), &format!("at right angles to {to}"))
             }
             Self::Missing { function, what, example } => {
                 Report::new("E301", format!("`{function}` needs {what}")).label(Subject::Call, "missing here").help(*example)
@@ -151,7 +223,8 @@ impl Describe for ValueFault {
                     n => format!("{n} edges of {surface} lie there"),
                 };
                 let report = Report::new("E215", message).label(Subject::Call, "asked for here");
-                places.iter().take(4).fold(report, |r, p| r.note(format!("one has its middle at {}", say.point(*p))))
+                let shown = &places[..places.len().min(EDGES_SHOWN)];
+                say.points(shown).iter().fold(report, |r, p| r.note(format!("one has its middle at {p}")))
             }
             Self::NothingSelected { of, keyword } => Report::new("W728", format!("this selects nothing for the {keyword}"))
                 .at(*of, "an empty list")

@@ -27,8 +27,8 @@ impl Say for Plain {
         text::real(length)
     }
 
-    fn point(&self, p: DVec3) -> String {
-        format!("({}, {}, {})", text::real(p.x), text::real(p.y), text::real(p.z))
+    fn points(&self, places: &[DVec3]) -> Vec<String> {
+        places.iter().map(|p| format!("({}, {}, {})", text::real(p.x), text::real(p.y), text::real(p.z))).collect()
     }
 
     fn angle(&self, radians: f64) -> String {

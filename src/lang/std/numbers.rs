@@ -28,6 +28,11 @@ fn outside(argument: &'static str, x: f64, range: &str) -> Stop {
     ValueFault::OutsideRange { argument, found: number_text(x), range: range.to_owned() }.into()
 }
 
+/// The same of a quantity, with its unit.
+fn outside_of(cx: &Cx, argument: &'static str, x: Quantity, range: &str) -> Stop {
+    ValueFault::OutsideRange { argument, found: cx.quantity(x), range: range.to_owned() }.into()
+}
+
 /// Sine and cosine of degrees, exact at multiples of 30° where they are rational.
 fn sin_cos_degrees(x: f64) -> (f64, f64) {
     let turn = x.rem_euclid(360.0);
@@ -44,13 +49,13 @@ fn sin_cos_degrees(x: f64) -> (f64, f64) {
 }
 
 /// The result of rounding, which asks for whole numbers: bare ones, or whole multiples of a step.
-fn rounded(x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) -> Result<Quantity, Stop> {
+fn rounded(cx: &Cx, x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) -> Result<Quantity, Stop> {
     match to {
         None if x.dim.is_none() => Ok(Quantity::bare(round(x.value))),
         None => {
             Err(ValueFault::Missing { function: "round", what: "a step to round a quantity to", example: "round(12.3mm, to: 1mm)" }.into())
         }
-        Some(step) if step.value <= 0.0 => Err(outside("to", step.value, "more than 0")),
+        Some(step) if step.value <= 0.0 => Err(outside_of(cx, "to", step, "more than 0")),
         Some(step) => {
             one_dim(&[x, step], "to")?;
             // Dividing by a fraction's reciprocal keeps steps like 0.1 exact.
@@ -65,9 +70,9 @@ fn rounded(x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) -> Result<Q
     }
 }
 
-fn dot_root(_: &mut Cx, x: Quantity) -> Result<Quantity, Stop> {
+fn dot_root(cx: &mut Cx, x: Quantity) -> Result<Quantity, Stop> {
     if x.value < 0.0 {
-        return Err(outside("x", x.value, "0 or more"));
+        return Err(outside_of(cx, "x", x, "0 or more"));
     }
     match x.dim.root(2) {
         Some(dim) => Ok(Quantity::new(x.value.sqrt(), dim)),
@@ -177,7 +182,7 @@ builtins! {
         x: Quantity,
         /// Step of the same dimension.
         to: Option<Quantity>,
-    ) -> Quantity = |_, x, to| rounded(x, to, f64::floor);
+    ) -> Quantity = |cx, x, to| rounded(cx, x, to, f64::floor);
 
     /// The smallest whole number, or multiple of a step, not below a value.
     ///
@@ -189,7 +194,7 @@ builtins! {
         x: Quantity,
         /// Step of the same dimension.
         to: Option<Quantity>,
-    ) -> Quantity = |_, x, to| rounded(x, to, f64::ceil);
+    ) -> Quantity = |cx, x, to| rounded(cx, x, to, f64::ceil);
 
     /// The nearest whole number, or multiple of a step; halves go away from zero.
     ///
@@ -202,7 +207,7 @@ builtins! {
         x: Quantity,
         /// Step of the same dimension.
         to: Option<Quantity>,
-    ) -> Quantity = |_, x, to| rounded(x, to, f64::round);
+    ) -> Quantity = |cx, x, to| rounded(cx, x, to, f64::round);
 
     /// What is left after taking away whole multiples; has the sign of the second.
     ///
@@ -215,10 +220,10 @@ builtins! {
         a: Quantity,
         /// Another of the same dimension, not 0.
         b: Quantity,
-    ) -> Quantity = |_, a, b| {
+    ) -> Quantity = |cx, a, b| {
         let dim = one_dim(&[a, b], "b")?;
         if b.value == 0.0 {
-            return Err(outside("b", 0.0, "another number than 0"));
+            return Err(outside_of(cx, "b", b, "another number than 0"));
         }
         Ok(Quantity::new(a.value - b.value * (a.value / b.value).floor(), dim))
     };
@@ -251,10 +256,11 @@ builtins! {
     fn tan(
         /// An angle with its unit.
         angle: Degrees,
-    ) -> f64 = |_, angle| {
+    ) -> f64 = |cx, angle| {
         let (sine, cosine) = sin_cos_degrees(angle.0);
         if cosine == 0.0 {
-            return Err(outside("angle", angle.0, "an angle that has a tangent"));
+            let angle = Quantity::new(angle.0, Dim::ANGLE);
+            return Err(outside_of(cx, "angle", angle, "an angle that has a tangent"));
         }
         Ok(if sine == 0.0 { 0.0 } else { math::tan(radians(angle.0)) })
     };
