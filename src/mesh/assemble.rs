@@ -1,5 +1,7 @@
 //! Counts, nodes and elements of a set of faces that share their borders.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::build::Input;
@@ -18,8 +20,9 @@ use super::relations::Relations;
 use super::reuse::{Inside, Known, recalled};
 use super::rows::{self, Wish};
 use super::sizing::{MOST, Remark, Sizing};
+use super::together::Asked;
 use super::uneven::Uneven;
-use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, uneven, verify};
+use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, together, uneven, verify};
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -107,6 +110,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
     let (mut sizing, mut wishes, mut relations) = begin(input, layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
     let (mut looks, mut before, mut worth) = (LOOKS, Vec::new(), 0);
+    let mut asked = BTreeMap::new();
     for _ in 0..ROUNDS + LOOKS + (2 + HALVED as usize) * layout.faces.len() {
         job.go_on()?;
         let mut unknown = sizing.stretches(layout);
@@ -176,6 +180,22 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
                     mesh = fill(input, &border, &prepared, (keyed, true), job)?;
                 }
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
+            }
+            let together = together::part(&made, &prepared, (&mut mesh, &limits));
+            if let Some(first) = together.first() {
+                match together::ask(layout, &prepared, &together, &mut asked) {
+                    Some(Asked::Rows(rows)) => {
+                        relations.raise(&rows, &counts);
+                        last = Vec::new();
+                    }
+                    Some(Asked::Anew) => {
+                        (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+                        narrow.clear();
+                        (last, before) = (Vec::new(), Vec::new());
+                    }
+                    None => return Err(together::fault(input, layout, &mesh, first)),
+                }
+                continue;
             }
             let found = verify::unsound(input, (&*layout, &nodes), &prepared, &mesh);
             let coarse = |f: &usize| {

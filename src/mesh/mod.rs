@@ -51,6 +51,7 @@ mod shape_check;
 pub mod sizing;
 pub mod sources;
 pub mod strips;
+mod together;
 pub mod trilateral;
 mod uneven;
 pub mod verify;
@@ -63,4 +64,4 @@ pub use plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
 pub use quality::Quality;
 
 /// Version of the mesher: one more whenever the same plan gives another mesh, so that golden files can name it as the cause.
-pub const VERSION: u32 = 38;
+pub const VERSION: u32 = 39;

@@ -18,6 +18,8 @@ pub enum Uneven {
     Beside(f64),
     /// Its map would have angles as sharp, radians.
     Sharp(f64),
+    /// One edge would stand for two, inside it and inside another face.
+    Together,
 }
 
 /// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.

@@ -299,6 +299,13 @@ pub enum MeshFault {
         /// Whether that is at a tip, which is as narrow for elements of every size.
         tip: bool,
     },
+    /// E720 of two faces: an element or an edge inside one is that of the other.
+    FallTogether {
+        /// The surfaces; twice the same for two faces of one.
+        surfaces: [Origin; 2],
+        /// Where.
+        at: DVec3,
+    },
     /// E703 without a count: an edge glued so far beside a face that no step keeps the chord error.
     GapTooWide {
         /// How far the edge is from the surface, model units.
@@ -595,6 +602,18 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             _ if *tip => "`method: mapped` goes round the tip in rows",
             _ => "a smaller `size`, or `method: mapped`",
         }),
+        F::FallTogether { surfaces: [first, second], at } => Report::new(
+            "E720",
+            format!(
+                "{} and {} fall together at {}: one edge or element stands for two there",
+                say.quoted(*first, "a face"),
+                say.quoted(*second, "another face"),
+                say.point(*at)
+            ),
+        )
+        .at(*first, "this face")
+        .at(*second, "and this one have the same nodes there")
+        .help("a `count` of 2 or more on the borders that run beside that place, or a smaller `size`"),
         F::Unsound { mesh: (mesh, name), surface, method, elements: [triangles, quads], what, at } => Report::new(
             "E999",
             format!("a bug in loft: the mesh `{name}` is not right on {}: {what}, at {}", say.quoted(*surface, "a face"), say.point(*at)),

@@ -17,7 +17,7 @@ use crate::surface::Surface;
 const LEAST: f64 = 0.1;
 
 /// An edge by its nodes in the mesh, or by its places in a chart, the lower first.
-type Edge = (u32, u32);
+pub(in crate::mesh) type Edge = (u32, u32);
 
 /// Divides such edges at their middles in (u, v); whether there were any. Nodes have to be numbered again then.
 pub(in crate::mesh) fn divide(made: &Made, prepared: &mut [Prepared], mesh: &Mesh) -> bool {
@@ -86,12 +86,12 @@ fn local(ready: &Prepared, edge: Edge) -> Option<Edge> {
     found.next().map(|(a, b)| ordered(a, b))
 }
 
-fn ordered(a: u32, b: u32) -> Edge {
+pub(in crate::mesh) fn ordered(a: u32, b: u32) -> Edge {
     (a.min(b), a.max(b))
 }
 
 /// Edges that lie inside two faces or more, with these.
-fn twins(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<(Edge, Vec<usize>)> {
+pub(in crate::mesh) fn twins(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<(Edge, Vec<usize>)> {
     let places = element_ranges(prepared);
     let border = made.nodes.total;
     let inside = par::map(prepared.len(), |f| {
@@ -167,7 +167,7 @@ fn divide_edge(ready: &mut Prepared, (a, b): Edge) -> bool {
 }
 
 /// Whether a triangle lies with the surface, not across or against it, and is no sliver.
-fn is_upright(surface: &Surface, corners: [(f64, f64); 3]) -> bool {
+pub(in crate::mesh) fn is_upright(surface: &Surface, corners: [(f64, f64); 3]) -> bool {
     let [a, b, c] = corners.map(|(u, v)| surface.point(u, v));
     let third = |x: [f64; 3]| x.iter().sum::<f64>() / 3.0;
     let normal = surface.normal(third(corners.map(|c| c.0)), third(corners.map(|c| c.1)));
