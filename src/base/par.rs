@@ -1,12 +1,10 @@
 //! Work on several threads with results in order: the same bytes whatever the number of threads.
 //!
-//! Whoever helps works for the job of the thread that asked, and looks at it before each item. The only place that knows rayon. Without the feature `parallel` every function here is a plain loop.
+//! Whoever helps works for the job and the budget of the thread that asked, and looks at the job before each item. The only place that knows rayon. Without the feature `parallel` every function here is a plain loop.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::job;
-#[cfg(feature = "parallel")]
-use super::work;
+use super::{job, work};
 
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
@@ -25,18 +23,40 @@ fn pool() -> Option<&'static rayon::ThreadPool> {
     POOL.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(n).build().ok()).as_ref()
 }
 
+/// What a thread that helps works for: the job and the budget of the thread that asked.
+struct Helper {
+    watched: job::Watched,
+    budget: Option<work::Budget>,
+}
+
+/// A thread helps until this is dropped.
+struct Entered {
+    _job: job::Entered,
+    _budget: work::Charging,
+}
+
+impl Helper {
+    fn of_this_thread() -> Self {
+        Self { watched: job::watched(), budget: work::budget() }
+    }
+
+    fn enter(&self) -> Entered {
+        Entered { _job: self.watched.enter(), _budget: work::Charging::to(self.budget.clone()) }
+    }
+}
+
 /// `[f(0), f(1), … f(n - 1)]`, made on several threads when `n > 1`.
 pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "parallel")]
     if n > 1 {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
-            let (watched, purse) = (job::watched(), work::purse());
-            let item = |_: &mut job::Entered, k: usize| {
+            let helper = Helper::of_this_thread();
+            let item = |_: &mut Entered, k: usize| {
                 job::look();
-                work::paid(purse.as_ref(), || f(k))
+                f(k)
             };
-            return pool.install(|| (0..n).into_par_iter().map_init(|| watched.enter(), item).collect());
+            return pool.install(|| (0..n).into_par_iter().map_init(|| helper.enter(), item).collect());
         }
     }
     let item = |k: usize| {
@@ -58,12 +78,12 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
     if items.len() > size {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
-            let (watched, purse) = (job::watched(), work::purse());
-            let one = |_: &mut job::Entered, (k, part): (usize, &mut [T])| {
+            let helper = Helper::of_this_thread();
+            let one = |_: &mut Entered, (k, part): (usize, &mut [T])| {
                 job::look();
-                work::paid(purse.as_ref(), || f(k, part));
+                f(k, part);
             };
-            pool.install(|| items.par_chunks_mut(size).enumerate().for_each_init(|| watched.enter(), one));
+            pool.install(|| items.par_chunks_mut(size).enumerate().for_each_init(|| helper.enter(), one));
             return;
         }
     }
@@ -84,12 +104,12 @@ pub fn is_unwinding() -> bool {
 pub fn on_stack<T: Send>(bytes: usize, work: impl FnOnce() -> T + Send) -> T {
     let mut work = Some(work);
     let mut result = None;
-    let purse = super::work::purse();
+    let helper = Helper::of_this_thread();
     let started = std::thread::scope(|scope| {
-        let (work, result, watched, purse) = (&mut work, &mut result, job::watched(), &purse);
+        let (work, result, helper) = (&mut work, &mut result, &helper);
         let body = move || {
-            let _entered = watched.enter();
-            *result = super::work::paid(purse.as_ref(), || work.take().map(|w| w()));
+            let _entered = helper.enter();
+            *result = work.take().map(|w| w());
         };
         match std::thread::Builder::new().stack_size(bytes).spawn_scoped(scope, body) {
             Ok(handle) => handle.join(),

@@ -1,8 +1,8 @@
-//! Work that is weighed while it runs: evaluations of curves and surfaces, and what other loops say of themselves, against an
-//! allowance. Counts decide, never the clock, so that what is refused on one machine and one thread is refused on all.
+//! Work that is counted while it runs: evaluations of curves and surfaces, and what other loops say of themselves, against a
+//! budget. Counts decide, never the clock, so that what is refused on one machine and one thread is refused on all.
 //!
-//! Loops deep in the kernel return points, not results. What goes over its allowance is therefore unwound to where the
-//! allowance was given ([`Purse::within`]), as rayon and std hand a panic on; the panic hook is not called.
+//! Loops deep in the kernel return points, not results. What goes over its budget is therefore unwound to where the
+//! budget was set ([`Budget::within`]), as rayon and std hand a panic on; the panic hook is not called.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -10,40 +10,45 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Units that a thread counts by itself before it takes them from the purse.
+/// Units that a thread counts by itself before it charges them.
 const AT_A_TIME: u64 = 4096;
 
 thread_local! {
-    /// What this thread spends from.
-    static PURSE: RefCell<Option<Purse>> = const { RefCell::new(None) };
-    /// What it spent and has not taken from there yet.
-    static LOOSE: Cell<u64> = const { Cell::new(0) };
+    /// What the work of this thread is charged to.
+    static BUDGET: RefCell<Option<Budget>> = const { RefCell::new(None) };
+    /// What this thread spent and has not charged yet.
+    static PENDING: Cell<u64> = const { Cell::new(0) };
 }
 
-/// More work than was allowed.
+/// More work than the budget allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exceeded;
 
 #[derive(Debug, Default)]
 struct Counts {
-    allowed: AtomicU64,
+    limit: AtomicU64,
     spent: AtomicU64,
+    /// The budget that is charged as well, where this one only measures a part of its work.
+    whole: Option<Budget>,
 }
 
-/// An allowance of work, shared by the threads that do it.
+/// A budget of work, shared by the threads that do it.
 #[derive(Clone, Debug)]
-pub struct Purse(Arc<Counts>);
+pub struct Budget(Arc<Counts>);
 
-impl Purse {
+impl Budget {
     /// So many units; one is about an evaluation of a curve.
-    pub fn new(allowed: u64) -> Self {
-        Self(Arc::new(Counts { allowed: AtomicU64::new(allowed), spent: AtomicU64::new(0) }))
+    pub fn new(limit: u64) -> Self {
+        Self(Arc::new(Counts { limit: AtomicU64::new(limit), ..Counts::default() }))
     }
 
-    /// Adds to the allowance of what is being done. The sum is the same in every run where this is not called by parallel work.
+    /// Adds to the budget of what is being done. The sum is the same in every run where this is not called by parallel work.
     pub fn allow(&self, more: u64) {
-        let sum = self.0.allowed.load(Ordering::Relaxed).saturating_add(more);
-        self.0.allowed.store(sum, Ordering::Relaxed);
+        if let Some(whole) = &self.0.whole {
+            return whole.allow(more);
+        }
+        let sum = self.0.limit.load(Ordering::Relaxed).saturating_add(more);
+        self.0.limit.store(sum, Ordering::Relaxed);
     }
 
     /// Units spent so far, but for the last few of other threads.
@@ -51,24 +56,31 @@ impl Purse {
         self.0.spent.load(Ordering::Relaxed)
     }
 
-    fn is_empty(&self) -> bool {
-        self.spent() > self.0.allowed.load(Ordering::Relaxed)
+    fn charge(&self, units: u64) {
+        self.0.spent.fetch_add(units, Ordering::Relaxed);
+        if let Some(whole) = &self.0.whole {
+            whole.charge(units);
+        }
     }
 
-    /// Runs `work` at the cost of this purse, starting from nothing spent; what another purse pays around it goes on afterwards.
+    fn is_exceeded(&self) -> bool {
+        self.0.whole.as_ref().map_or_else(|| self.spent() > self.0.limit.load(Ordering::Relaxed), Self::is_exceeded)
+    }
+
+    /// Runs `work` within this budget, starting from nothing spent; a budget around it is not charged and goes on afterwards.
     ///
-    /// Fails where the work goes over the allowance, in its midst: what it changed is left as it then is.
+    /// Fails where the work goes over the budget, in its midst: what it changed is left as it then is.
     pub fn within<T>(&self, work: impl FnOnce() -> T) -> Result<T, Exceeded> {
         let before = self.0.spent.swap(0, Ordering::Relaxed);
-        let allowed = self.0.allowed.load(Ordering::Relaxed);
-        let paid = Paid::by(Some(self.clone()));
+        let limit = self.0.limit.load(Ordering::Relaxed);
+        let charging = Charging::to(Some(self.clone()));
         let done = catch_unwind(AssertUnwindSafe(work));
-        drop(paid);
-        let empty = self.is_empty();
+        drop(charging);
+        let exceeded = self.is_exceeded();
         self.0.spent.store(before, Ordering::Relaxed);
-        self.0.allowed.store(allowed, Ordering::Relaxed);
+        self.0.limit.store(limit, Ordering::Relaxed);
         match done {
-            Ok(_) if empty => Err(Exceeded),
+            Ok(_) if exceeded => Err(Exceeded),
             Ok(made) => Ok(made),
             Err(panic) if is_ours(panic.as_ref()) => Err(Exceeded),
             Err(panic) => resume_unwind(panic),
@@ -80,23 +92,25 @@ fn is_ours(panic: &(dyn Any + Send)) -> bool {
     panic.is::<Exceeded>()
 }
 
-/// While it lives the thread spends from another purse.
-struct Paid {
-    before: Option<Purse>,
-    loose: u64,
+/// While it lives, work of this thread is charged to its budget, or to none; what is pending is charged when it is dropped.
+#[derive(Debug)]
+pub struct Charging {
+    before: Option<Budget>,
+    pending: u64,
 }
 
-impl Paid {
-    fn by(purse: Option<Purse>) -> Self {
-        Self { before: PURSE.replace(purse), loose: LOOSE.replace(0) }
+impl Charging {
+    /// Charges `budget` from now on.
+    pub fn to(budget: Option<Budget>) -> Self {
+        Self { before: BUDGET.replace(budget), pending: PENDING.replace(0) }
     }
 }
 
-impl Drop for Paid {
+impl Drop for Charging {
     fn drop(&mut self) {
-        let spent = LOOSE.replace(self.loose);
-        if let Some(purse) = PURSE.replace(self.before.take()) {
-            purse.0.spent.fetch_add(spent, Ordering::Relaxed);
+        let spent = PENDING.replace(self.pending);
+        if let Some(budget) = BUDGET.replace(self.before.take()) {
+            budget.charge(spent);
         }
     }
 }
@@ -104,41 +118,44 @@ impl Drop for Paid {
 /// Says that `units` of work are done or about to be done.
 #[inline]
 pub fn spend(units: u64) {
-    let loose = LOOSE.get() + units;
-    LOOSE.set(loose);
-    if loose >= AT_A_TIME {
+    let pending = PENDING.get().saturating_add(units);
+    PENDING.set(pending);
+    if pending >= AT_A_TIME {
         settle();
     }
 }
 
 #[cold]
 fn settle() {
-    let spent = LOOSE.replace(0);
-    let empty = PURSE.with_borrow(|purse| {
-        let Some(purse) = purse else { return false };
-        purse.0.spent.fetch_add(spent, Ordering::Relaxed);
-        purse.is_empty()
+    let spent = PENDING.replace(0);
+    let exceeded = BUDGET.with_borrow(|budget| {
+        let Some(budget) = budget else { return false };
+        budget.charge(spent);
+        budget.is_exceeded()
     });
-    if empty && !super::par::is_unwinding() {
+    if exceeded && !super::par::is_unwinding() {
         resume_unwind(Box::new(Exceeded));
     }
 }
 
-/// Runs `work` at nobody's cost: what is made once for everyone, and what has a purse of its own inside.
-pub fn free<T>(work: impl FnOnce() -> T) -> T {
-    let _paid = Paid::by(None);
+/// Runs `work` without charging anyone: what is made once for everyone, and what has a budget of its own inside.
+pub fn uncharged<T>(work: impl FnOnce() -> T) -> T {
+    let _charging = Charging::to(None);
     work()
 }
 
-/// The purse this thread spends from.
-pub fn purse() -> Option<Purse> {
-    PURSE.with_borrow(Clone::clone)
+/// Runs `work` at the charge of whoever is charged already, and says how many units it took.
+pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
+    let part = Budget(Arc::new(Counts { limit: AtomicU64::new(u64::MAX), whole: budget(), ..Counts::default() }));
+    let charging = Charging::to(Some(part.clone()));
+    let made = work();
+    drop(charging);
+    (made, part.spent())
 }
 
-/// Runs a part of parallel work at the cost of the purse of the whole.
-pub fn paid<T>(purse: Option<&Purse>, work: impl FnOnce() -> T) -> T {
-    let _paid = Paid::by(purse.cloned());
-    work()
+/// The budget that work of this thread is charged to.
+pub fn budget() -> Option<Budget> {
+    BUDGET.with_borrow(Clone::clone)
 }
 
 #[cfg(test)]
@@ -147,12 +164,15 @@ mod tests {
     use crate::base::par;
 
     #[test]
-    fn work_ends_where_its_purse_is_empty_whatever_the_threads() {
-        let purse = Purse::new(100_000);
-        let each = |n: u64| purse.within(|| par::map(1000, |_| spend(n)).len());
+    fn work_ends_where_its_budget_is_spent_whatever_the_threads() {
+        let budget = Budget::new(100_000);
+        let each = |n: u64| budget.within(|| par::map(1000, |_| spend(n)).len());
         assert_eq!(each(100), Ok(1000));
         assert_eq!(each(101), Err(Exceeded));
         assert_eq!(each(100), Ok(1000));
+        let mut items = vec![0_u8; 1000];
+        assert_eq!(budget.within(|| par::chunks_mut(&mut items, 10, |_, _| spend(1001))), Err(Exceeded));
+        assert_eq!(budget.within(|| par::chunks_mut(&mut items, 10, |_, _| spend(1000))), Ok(()));
     }
 
     #[test]
@@ -160,15 +180,15 @@ mod tests {
         let endless = || loop {
             spend(1);
         };
-        assert_eq!(Purse::new(1000).within(endless), Err::<(), Exceeded>(Exceeded));
+        assert_eq!(Budget::new(1000).within(endless), Err::<(), Exceeded>(Exceeded));
     }
 
     #[test]
-    fn a_purse_inside_another_pays_for_itself_and_free_work_costs_nothing() {
-        let (outer, inner) = (Purse::new(10), Purse::new(10_000));
+    fn a_budget_inside_another_is_charged_alone_and_uncharged_work_costs_nothing() {
+        let (outer, inner) = (Budget::new(10), Budget::new(10_000));
         let work = || {
             spend(10);
-            free(|| spend(1_000_000));
+            uncharged(|| spend(1_000_000));
             inner.within(|| spend(10_000))
         };
         assert_eq!(outer.within(work), Ok(Ok(())));
@@ -177,8 +197,34 @@ mod tests {
     }
 
     #[test]
-    fn a_bug_goes_on_through_a_purse() {
-        let caught = catch_unwind(|| Purse::new(10).within(|| assert_eq!(1, 2)));
+    fn measured_work_is_told_exactly_and_charged_to_the_whole() {
+        let all = || {
+            spend(1);
+            let part = measured(|| par::map(100, |k| spend(k as u64)).len());
+            spend(49);
+            part
+        };
+        assert_eq!(all(), (100, 4950));
+        assert_eq!(Budget::new(5000).within(all), Ok((100, 4950)));
+        assert_eq!(Budget::new(4999).within(all), Err(Exceeded));
+        let raised = || {
+            measured(|| budget().map(|budget| budget.allow(5000)));
+            all()
+        };
+        assert_eq!(Budget::new(0).within(raised), Ok((100, 4950)));
+        let endless = || {
+            measured(|| {
+                loop {
+                    spend(1)
+                }
+            })
+        };
+        assert_eq!(Budget::new(5000).within(endless), Err::<((), u64), Exceeded>(Exceeded));
+    }
+
+    #[test]
+    fn a_bug_goes_on_through_a_budget() {
+        let caught = catch_unwind(|| Budget::new(10).within(|| assert_eq!(1, 2)));
         assert!(caught.is_err());
     }
 }

@@ -378,12 +378,12 @@ impl Curve {
             _ => lengths_of(self, &self.knots()),
         };
         // Made once for everyone, whoever comes first.
-        self.0.lengths.get_or_init(|| Arc::new(work::free(table)))
+        self.0.lengths.get_or_init(|| Arc::new(work::uncharged(table)))
     }
 
     /// Its smooth pieces with bounds, made on first use.
     pub(crate) fn pieces(&self) -> &Pieces {
-        self.0.pieces.get_or_init(|| Arc::new(work::free(|| Pieces::of(self))))
+        self.0.pieces.get_or_init(|| Arc::new(work::uncharged(|| Pieces::of(self))))
     }
 
     /// Parameters between which the curve is one analytic piece, ends included.

@@ -111,8 +111,8 @@ impl Cx<'_> {
         let before = first.clone();
         let values = self.bind(code, id, builtin, first, args)?;
         self.machine.site.expr = id;
-        let purse = self.machine.purse.clone();
-        let called = purse.within(|| (builtin.call)(self, values));
+        let budget = self.machine.budget.clone();
+        let called = budget.within(|| (builtin.call)(self, values));
         match called.unwrap_or_else(|Exceeded| Err(ValueFault::Work.into())) {
             Ok(value) => {
                 if self.tolerance.is_none()
@@ -211,7 +211,7 @@ impl Cx<'_> {
         let old_base = ::std::mem::replace(&mut self.machine.base, base);
         self.machine.calls.push(Frame { name: bound.name, site: Site { expr: id, ..site }, origin: Origin::NONE });
         self.machine.site = Site { module, declaration, member: site.member, expr: *body };
-        let result = work::free(|| self.run_fn(callee, params, given, *body)).and_then(|value| match returns {
+        let result = work::uncharged(|| self.run_fn(callee, params, given, *body)).and_then(|value| match returns {
             Some(ty) => {
                 let ty = Ty::written(self.names.text(ty.name), ty.lists).unwrap_or(Ty::Any);
                 let subject = format!("the result of `{}`", self.names.text(bound.name));

@@ -19,7 +19,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity};
 use crate::base::limits;
 use crate::base::origin::Origin;
-use crate::base::work::{self, Purse};
+use crate::base::work::{self, Budget};
 
 /// Declarations inside each other's evaluation; reached by cycles through branches alone, since dependencies are
 /// evaluated first.
@@ -91,7 +91,7 @@ pub struct Machine {
     pub(super) words: Vec<Word>,
     pub(super) steps: u64,
     /// What a call may take.
-    pub(super) purse: Purse,
+    pub(super) budget: Budget,
     /// Members of lists held.
     pub(super) room: Room,
     next_look: u64,
@@ -121,7 +121,7 @@ impl Default for Machine {
             running: Vec::new(),
             words: Vec::new(),
             steps: 0,
-            purse: Purse::new(limits::CALL_WORK),
+            budget: Budget::new(limits::CALL_WORK),
             room: Room::default(),
             next_look: STEPS_A_LOOK,
             depth: 0,
@@ -293,8 +293,8 @@ impl Cx<'_> {
     /// The value of a declaration, evaluated on first use.
     pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
         if matches!(self.machine.at(module).states[index as usize], State::Waiting) && !self.recall(module, index) {
-            // It has its own calls to pay for.
-            return work::free(|| self.evaluate(module, index));
+            // Its own calls have their own budgets.
+            return work::uncharged(|| self.evaluate(module, index));
         }
         let asked = self.machine.at(module).asked[index as usize];
         self.machine.asked.join(asked);

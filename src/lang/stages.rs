@@ -227,8 +227,8 @@ pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Stop> {
 pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
     let found = made_mesh(cx, mesh)?;
     // A call that asks a mesh may look at all of it.
-    if let Some(purse) = work::purse() {
-        purse.allow((found.triangles.len() + found.quads.len() + found.lines.len()) as u64 * WORK_OF_AN_ELEMENT);
+    if let Some(budget) = work::budget() {
+        budget.allow((found.triangles.len() + found.quads.len() + found.lines.len()) as u64 * WORK_OF_AN_ELEMENT);
     }
     Ok(found)
 }

@@ -403,8 +403,8 @@ pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
 /// Raises what a mesh or face may take to what so many elements are worth, with what was `worth` for it before.
 pub fn allow(elements: u64, worth: &mut u64) {
     let now = elements.min(MESH_ELEMENTS).saturating_mul(WORK_OF_AN_ELEMENT);
-    if let Some(purse) = work::purse() {
-        purse.allow(now.saturating_sub(*worth));
+    if let Some(budget) = work::budget() {
+        budget.allow(now.saturating_sub(*worth));
     }
     *worth = now.max(*worth);
 }

@@ -195,7 +195,7 @@ impl Quick {
             _ => Vec::new(),
         };
         // Made once for everyone, whoever comes first.
-        self.net.thirds.get_or_init(|| work::free(made))
+        self.net.thirds.get_or_init(|| work::uncharged(made))
     }
 
     /// The point alone.

@@ -28,7 +28,7 @@ use crate::base::job::Job;
 use crate::base::limits::{MESH_ELEMENTS, MESH_WORK};
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
-use crate::base::work::{Exceeded, Purse};
+use crate::base::work::{Exceeded, Budget};
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
 use crate::mesh::faces::{Frame, Prepared, middle, too_much_work};
@@ -93,7 +93,7 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
     }
     let all = || grown(made, face, (border, sheet, outline), job);
     let surface = || made.input.model.surfaces[face.surface.index()].surface.origin();
-    let ready = Purse::new(MESH_WORK).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
+    let ready = Budget::new(MESH_WORK).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
     if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
         known.keep_free(key, Taken::of(&ready, free));
     }
