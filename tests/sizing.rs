@@ -16,7 +16,8 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::Curve;
 use lofting::geometry::build::line;
 use lofting::mesh::plan::{Place, Refine};
-use lofting::mesh::{Built, Input, Mesh, Method, Plan, build};
+use lofting::mesh::reuse::Reuse;
+use lofting::mesh::{Built, Input, Mesh, Method, Outline, Plan, build};
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
 use lofting::network::graph::Input as NetInput;
@@ -349,5 +350,28 @@ fn each_setting_is_told_where_it_decides() {
         ("floor", "strip of", "% by min_size"),
     ] {
         told(mesh, part, words);
+    }
+}
+
+/// A mesh that is refused for its work must be refused whatever was made before: what is taken over is charged as if it were made.
+#[test]
+fn work_is_the_same_whatever_was_made_before() {
+    let scene = scene(2);
+    let (tolerance, mut reuse) = (tolerance(), Reuse::default());
+    for method in [Method::Mapped, Method::Delaunay] {
+        let mut plan = scene.plan(0.5, vec![]);
+        (plan.method, plan.angle_error) = (method, Some((0.1, Origin::NONE)));
+        let input = Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
+        let work = |reuse: Option<&Reuse>| {
+            let (built, work) = Outline::new(&input).unwrap().measured(&input, reuse, &Job::new());
+            (built.unwrap().mesh.triangles.len(), work)
+        };
+        let cold = work(None);
+        assert!(cold.1 > 100, "{cold:?}");
+        let (first, faces) = (work(Some(&reuse)), reuse.faces());
+        let again = work(Some(&reuse));
+        assert!(reuse.faces() > faces, "nothing was taken over");
+        assert_eq!([first, again], [cold; 2], "{method:?}");
+        reuse.end_run();
     }
 }

@@ -27,7 +27,7 @@ use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::limits::MESH_ELEMENTS;
-use crate::base::par;
+use crate::base::{par, work};
 use crate::surface::Domain;
 use crate::surface::quick::Quick;
 
@@ -343,13 +343,15 @@ impl Fill<'_> {
             return self.ready.fill(&inside.diagonals, self.triangles, self.quads);
         }
         let surface = &input.model.surfaces[self.ready.surface.index()].surface;
-        self.ready.points(surface, self.nodes);
-        let (first, own) = (self.ready.first, &*self.nodes);
-        let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
-        let diagonals = self.ready.diagonals(surface, &node, input.tolerance.point);
+        let (diagonals, work) = work::measured(|| {
+            self.ready.points(surface, self.nodes);
+            let (first, own) = (self.ready.first, &*self.nodes);
+            let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
+            self.ready.diagonals(surface, &node, input.tolerance.point)
+        });
         self.ready.fill(&diagonals, self.triangles, self.quads);
         if let Some((known, key)) = self.key {
-            known.keep_inside(key, Inside { nodes: self.nodes.to_vec(), diagonals });
+            known.keep_inside(key, (Inside { nodes: self.nodes.to_vec(), diagonals }, work));
         }
     }
 }

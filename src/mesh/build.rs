@@ -20,7 +20,7 @@ use crate::base::job::Job;
 use crate::base::limits::MESH_WORK;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::base::work::{Budget, Exceeded};
+use crate::base::work::{self, Budget, Exceeded};
 use crate::model::{Model, PatchId, SurfaceId};
 use crate::network::Network;
 use crate::surface::Domain;
@@ -102,9 +102,13 @@ impl Outline {
     /// Fails with E702, E703 (counts), E704 (only quads is impossible), E705 or E230 (a face that cannot be mapped),
     /// E217 (too many elements), E715 (turned elements), E666 (faces to be joined that cover each other), E672 (a set in part).
     pub fn build(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
-        Budget::new(MESH_WORK)
-            .within(|| self.built(input, reuse, job))
-            .unwrap_or_else(|Exceeded| Err(faces::too_much_work(input, Origin::NONE)))
+        self.measured(input, reuse, job).0
+    }
+
+    /// The same, with the work that it took but for that of its free faces; as much as it may where it took more.
+    pub fn measured(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> (Result<Built>, u64) {
+        let within = Budget::new(MESH_WORK).within(|| work::measured(|| self.built(input, reuse, job)));
+        within.unwrap_or_else(|Exceeded| (Err(faces::too_much_work(input, Origin::NONE)), MESH_WORK))
     }
 
     fn built(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {

@@ -19,14 +19,25 @@ use super::shape_check::Turned;
 use super::trilateral::Blocks;
 use crate::base::digest::{Content, Digest, Digester};
 use crate::base::fault::Result;
+use crate::base::work;
 use crate::model::SurfaceId;
 
 /// Runs that make meshes for which a part is kept that none of them used.
 const RUNS: u64 = 4;
 
-/// Parts of one kind by their keys, with the run that used each last.
+/// Parts of one kind by their keys.
+///
+/// What is taken over is charged the work that it took to make: a mesh that is refused for its work is refused whatever was made before.
 #[derive(Debug)]
-pub struct Store<T>(Mutex<BTreeMap<Digest, (T, u64)>>);
+pub struct Store<T>(Mutex<BTreeMap<Digest, Part<T>>>);
+
+/// A part, the work that it took, and the run that used it last.
+#[derive(Debug)]
+struct Part<T> {
+    made: T,
+    work: u64,
+    run: u64,
+}
 
 impl<T> Default for Store<T> {
     fn default() -> Self {
@@ -36,18 +47,22 @@ impl<T> Default for Store<T> {
 
 impl<T: Clone> Store<T> {
     fn find(&self, key: Digest, run: u64) -> Option<T> {
-        let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let part = parts.get_mut(&key)?;
-        part.1 = run;
-        Some(part.0.clone())
+        let (made, work) = {
+            let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            let part = parts.get_mut(&key)?;
+            part.run = run;
+            (part.made.clone(), part.work)
+        };
+        work::spend(work);
+        Some(made)
     }
 
-    fn keep(&self, key: Digest, part: T, run: u64) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, (part, run));
+    fn keep(&self, key: Digest, (made, work): (T, u64), run: u64) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Part { made, work, run });
     }
 
     fn tidy(&self, run: u64) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|_, part| part.1 + RUNS > run);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|_, part| part.run + RUNS > run);
     }
 }
 
@@ -94,7 +109,7 @@ impl Reuse {
     pub fn chord(&self, key: Digest, measure: impl FnOnce() -> f64) -> f64 {
         self.chords.find(key, self.run).unwrap_or_else(|| {
             let measured = measure();
-            self.chords.keep(key, measured, self.run);
+            self.chords.keep(key, (measured, 0), self.run);
             measured
         })
     }
@@ -149,10 +164,10 @@ impl Known<'_> {
         self.reuse.insides.find(key, self.reuse.run)
     }
 
-    /// Keeps the inside of a face.
-    pub fn keep_inside(&self, key: Digest, inside: Inside) {
+    /// Keeps the inside of a face, which took so much work.
+    pub fn keep_inside(&self, key: Digest, (inside, work): (Inside, u64)) {
         self.reuse.worked.store(true, Ordering::Relaxed);
-        self.reuse.insides.keep(key, Arc::new(inside), self.reuse.run);
+        self.reuse.insides.keep(key, (Arc::new(inside), work), self.reuse.run);
     }
 
     /// The inside of a free face, when it was made before.
@@ -160,7 +175,8 @@ impl Known<'_> {
         let Reuse { free, shelf, run, .. } = self.reuse;
         let found = free.find(key, *run).or_else(|| {
             let taken = Arc::new(Taken::read(&shelf.as_ref()?.face(key)?)?);
-            free.keep(key, taken.clone(), *run);
+            // A free face has its own budget, within which it was made.
+            free.keep(key, (taken.clone(), 0), *run);
             Some(taken)
         })?;
         self.reuse.faces.fetch_add(1, Ordering::Relaxed);
@@ -174,7 +190,7 @@ impl Known<'_> {
         if let Some(shelf) = self.reuse.shelf.as_ref().filter(|_| taken.is_large()) {
             shelf.put_face(key, &taken.bytes());
         }
-        self.reuse.free.keep(key, Arc::new(taken), self.reuse.run);
+        self.reuse.free.keep(key, (Arc::new(taken), 0), self.reuse.run);
     }
 
     /// The key of a face: its surface, where its nodes lie, and the points of its border. `border` are the points of all
@@ -217,12 +233,13 @@ impl Content for Shape {
 /// The steps found before under the key, or what `make` finds; failures are not kept.
 pub fn recalled_if_sound(known: Option<&Known>, key: impl FnOnce(&Known) -> Digest, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
     let Some(known) = known else { return make() };
-    let (key, run) = (key(known), known.reuse.run);
+    let (key, run) = (work::uncharged(|| key(known)), known.reuse.run);
     if let Some(found) = known.reuse.steps.find(key, run) {
         return Ok(found);
     }
-    let made = make()?;
-    known.reuse.steps.keep(key, made, run);
+    let (made, work) = work::measured(make);
+    let made = made?;
+    known.reuse.steps.keep(key, (made, work), run);
     Ok(made)
 }
 
@@ -234,11 +251,11 @@ pub fn recalled<T: Clone>(
     make: impl FnOnce() -> T,
 ) -> T {
     let Some(known) = known else { return make() };
-    let (key, run) = (key(known), known.reuse.run);
+    let (key, run) = (work::uncharged(|| key(known)), known.reuse.run);
     if let Some(found) = store(known.reuse).find(key, run) {
         return found;
     }
-    let made = make();
-    store(known.reuse).keep(key, made.clone(), run);
+    let (made, work) = work::measured(make);
+    store(known.reuse).keep(key, (made.clone(), work), run);
     made
 }
