@@ -602,6 +602,44 @@ fn text_that_is_none_is_told() {
 }
 
 #[test]
+fn a_limit_of_elements_holds_in_every_command_and_method() {
+    let methods = ["", "method: delaunay", "method: quadtree", "method: isoline", "elements: quads", "elements: quads method: delaunay"];
+    let meshes: Vec<String> = methods.iter().enumerate().map(|(k, m)| format!("mesh m{k} of plate {{ size: 10mm  {m} }}\n")).collect();
+    let text = format!("{MANY_STEPS}{}", meshes.concat());
+    let folder = Folder::new("limit").with("m.loft", &text);
+    let refused = |run: &Run, least: usize| {
+        let named = run.err.matches("the limit is 50 elements, `--max-elements` sets another").count();
+        assert!(run.status == 1 && named >= least, "status {}: {}", run.status, run.err);
+    };
+    for rest in [&["run"][..], &["check"]] {
+        let all = |most: &[&str]| folder.loft(&[rest, most, &["m.loft"]].concat());
+        refused(&all(&["--max-elements", "50"]), methods.len());
+        assert_eq!(all(&["--max-elements", "5000"]).status, 0);
+        assert_eq!(all(&[]).status, 0);
+    }
+    refused(&folder.loft(&["render", "m.loft", "--of", "m0", "-o", "m.png", "--max-elements", "50"]), 1);
+    assert_eq!(folder.loft(&["test", "--accept", "m.loft"]).status, 0);
+    assert_eq!(folder.loft(&["test", "m.loft"]).status, 0);
+    let tested = folder.loft(&["test", "--max-elements", "50", "m.loft"]);
+    assert!(tested.status == 1 && tested.out.contains("E217"), "{}", tested.out);
+    let asked = |most: &[&str]| run(&folder.0, &[&["repl"][..], most, &["m.loft"]].concat(), Some(b"len(m0.triangles)\n"));
+    assert!(asked(&[]).out.contains("200"));
+    let asked = asked(&["--max-elements", "50"]);
+    assert!((asked.out.clone() + &asked.err).contains("the limit is 50 elements"), "{}{}", asked.out, asked.err);
+    let zero = folder.loft(&["check", "--max-elements", "0", "m.loft"]);
+    assert!(zero.status == 2 && zero.err.contains("1..=1000000000"), "{}", zero.err);
+}
+
+/// A square with room for many elements.
+const MANY_STEPS: &str = r#"units mm
+curve south = line((0, 0), (100, 0))
+curve east = line((100, 0), (100, 100))
+curve north = line((100, 100), (0, 100))
+curve west = line((0, 100), (0, 0))
+surface plate = coons(south, east, north, west)
+"#;
+
+#[test]
 fn the_reference_manual_is_current() {
     let folder = Folder::new("reference");
     let manual = folder.loft(&["doc", "--markdown"]).out;

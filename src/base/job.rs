@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::fault::{Fault, Result};
+use super::limits::MESH_ELEMENTS;
 use super::par;
 
 #[derive(Debug, Default)]
@@ -45,12 +46,13 @@ impl Drop for Phase {
     }
 }
 
-/// A stop flag, the phase the work is in and two counters, shared between the work and whoever waits for it.
+/// A stop flag, the phase the work is in and two counters, shared between the work and whoever waits for it; and how much it may make.
 ///
 /// Counters never change a result.
 #[derive(Debug, Default)]
 pub struct Job {
     shared: Arc<Shared>,
+    most_elements: Option<u64>,
 }
 
 /// What unwinds from a look to the watch.
@@ -133,6 +135,16 @@ impl Job {
     /// A job that nobody watches.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The same for work whose meshes may have so many elements each.
+    pub fn with_most_elements(self, most: u64) -> Self {
+        Self { most_elements: Some(most), ..self }
+    }
+
+    /// Elements that a mesh may have.
+    pub fn most_elements(&self) -> u64 {
+        self.most_elements.unwrap_or(MESH_ELEMENTS)
     }
 
     /// Asks the work to stop at its next question.

@@ -29,12 +29,12 @@ limits! {
     pub const LIST_MEMBERS: usize = 10_000_000;
     /// Members of all lists that are held at a time, with 3 for each list itself: 32 bytes each, under 1 GiB together with what they hold.
     pub const MEMBERS_MADE: usize = 20_000_000;
-    /// Elements of one mesh.
+    /// Elements of one mesh where `--max-elements` sets no other number.
     pub const MESH_ELEMENTS: u64 = 100_000_000;
     /// Steps of a mesh along one stretch of border between two corners.
     pub const MESH_STEPS: u32 = 1_000_000;
     /// Work of one mesh or one of its free faces, in evaluations of curves and surfaces, beside that of its elements.
-    pub const MESH_WORK: u64 = 10_000_000;
+    pub const MESH_WORK: u64 = 16_000_000;
     /// The same for each element of the mesh.
     pub const WORK_OF_AN_ELEMENT: u64 = 500;
     /// Work of one call, in evaluations of curves and surfaces.
@@ -56,6 +56,9 @@ limits! {
     /// Reports printed in full in one run.
     pub const REPORTS_SHOWN: usize = 20;
 }
+
+/// Elements of one mesh that `--max-elements` can set at most: nodes are numbered with 32 bits.
+pub const MESH_ELEMENTS_MOST: u64 = 1_000_000_000;
 
 /// Least number of pixels along a side of a picture.
 pub const PICTURE_LEAST: u32 = 16;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::{Arg, ArgMatches, value_parser};
 
-use super::{Command, Exit, Terminal, interrupt};
+use super::{Command, Exit, Terminal, interrupt, options};
 use crate::session::golden::{Difference, NoDiff, diff};
 
 /// Compares two models or goldens.
@@ -18,11 +18,13 @@ fn arguments(command: clap::Command) -> clap::Command {
     command
         .arg(file("old", "A", "A script or a golden"))
         .arg(file("new", "B", "The other one"))
+        .arg(options::most_elements())
         .after_help("Exit status: 0 no difference, 1 they differ, 2 wrong usage.")
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     let (Some(old), Some(new)) = (matches.get_one::<PathBuf>("old"), matches.get_one::<PathBuf>("new")) else { return Exit::Usage };
+    options::read_limits(matches);
     let (started, job) = (Instant::now(), interrupt::job());
     let clock = move || started.elapsed().as_secs_f64();
     match diff(old, new, &clock, &job) {

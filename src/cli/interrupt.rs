@@ -20,6 +20,19 @@ struct Watched {
     outputs: Vec<Staging>,
     /// The program goes on after an interrupted job.
     session: bool,
+    /// Elements that a mesh may have, where the command line says so.
+    most_elements: Option<u64>,
+}
+
+impl Watched {
+    /// A job within the limits of the command line.
+    fn new_job(&self) -> Arc<Job> {
+        let job = Job::new();
+        Arc::new(match self.most_elements {
+            Some(most) => job.with_most_elements(most),
+            None => job,
+        })
+    }
 }
 
 static WATCHED: OnceLock<Mutex<Watched>> = OnceLock::new();
@@ -39,8 +52,20 @@ pub fn entry_job() -> Arc<Job> {
     handle();
     let mut watched = watched();
     watched.session = true;
-    watched.job = Arc::default();
+    watched.job = watched.new_job();
     watched.job.clone()
+}
+
+/// A job within the limits of the command line that Ctrl-C does not stop.
+pub fn own_job() -> Arc<Job> {
+    watched().new_job()
+}
+
+/// Says how many elements a mesh may have, before any job is asked for.
+pub fn set_most_elements(most: u64) {
+    let mut watched = watched();
+    watched.most_elements = Some(most);
+    watched.job = watched.new_job();
 }
 
 fn handle() {

@@ -4,6 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
+use super::interrupt;
+use crate::base::limits::{MESH_ELEMENTS, MESH_ELEMENTS_MOST};
+
 /// What was asked for on the command line of a model.
 pub struct Options {
     /// Scripts; `-` is standard input.
@@ -72,6 +75,7 @@ pub fn add_shared(command: clap::Command) -> clap::Command {
                 .value_parser(value_parser!(u16).range(1..))
                 .help("How many threads may work [default: one per core]; results do not depend on it"),
         )
+        .arg(most_elements())
         .arg(flag("strict", "Warnings count as errors"))
         .arg(flag("timings", "Shows the seconds of each phase"))
         .arg(flag("verbose", "Shows how things were found: flows, methods, counts, notes").short('v'))
@@ -83,6 +87,20 @@ pub fn add_shared(command: clap::Command) -> clap::Command {
                 .action(ArgAction::Append)
                 .help("A further place that imports and modules may be read from"),
         )
+}
+
+/// The limit on meshes of whatever runs a model.
+pub fn most_elements() -> Arg {
+    let most = Arg::new("max-elements").long("max-elements").value_name("N");
+    let most = most.value_parser(value_parser!(u64).range(1..=MESH_ELEMENTS_MOST));
+    most.help(format!("Elements that a mesh may have before it is refused (E217) [default: {MESH_ELEMENTS}]"))
+}
+
+/// Sets the limit on meshes of all runs of this command.
+pub fn read_limits(matches: &ArgMatches) {
+    if let Some(most) = matches.get_one::<u64>("max-elements") {
+        interrupt::set_most_elements(*most);
+    }
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -130,6 +148,7 @@ impl Options {
         {
             return Err(format!("`--set {name}` is given twice"));
         }
+        read_limits(matches);
         crate::base::par::set_threads(matches.get_one::<u16>("threads").map_or(0, |n| usize::from(*n)));
         Ok(options)
     }

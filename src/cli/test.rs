@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
-use super::{Command, Exit, Terminal, interrupt};
+use super::{Command, Exit, Terminal, interrupt, options};
 use crate::session::golden::{self, CaseResult, Settings, Test, Verdict};
 use crate::session::staging::Staging;
 
@@ -30,6 +30,7 @@ fn arguments(command: clap::Command) -> clap::Command {
         .arg(jobs.help("How many models run at the same time [default: one per core]"))
         .arg(flag("list", "Prints the names and runs nothing"))
         .arg(junit.help("Also writes the results as JUnit XML"))
+        .arg(options::most_elements())
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
@@ -44,6 +45,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         terminal.print(&names.map(|name| format!("{name}\n")).collect::<String>());
         return Exit::Fine;
     }
+    options::read_limits(matches);
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = matches.get_one::<u16>("jobs").map_or_else(cores, |n| usize::from(*n));
     let (started, job) = (Instant::now(), interrupt::job());

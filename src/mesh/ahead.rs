@@ -13,7 +13,7 @@ use super::rows;
 use super::sizing::{Decision, Sizing};
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
-use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
+use crate::base::limits::MESH_STEPS;
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
 
@@ -112,7 +112,8 @@ pub fn refuse_large(input: &Input, layout: &Layout, sizing: &Sizing, job: &Job) 
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let least = face.size.0.min(sizing.wanted.sources.least()).max(sizing.wanted.written);
         let across = surface.hull().diagonal() / least;
-        if across * across < SMALL * MESH_ELEMENTS as f64 {
+        let most = input.plan.most_elements as f64;
+        if across * across < SMALL * most {
             continue;
         }
         for coarse in COARSE {
@@ -122,10 +123,10 @@ pub fn refuse_large(input: &Input, layout: &Layout, sizing: &Sizing, job: &Job) 
             let points = nodes.points(layout, &input.plan.points);
             let made = Made { input, layout, nodes: &nodes, points: &points, wanted: &sizing.wanted };
             let Some([elements, by_size]) = free_face::elements_ahead(&made, face) else { continue };
-            if elements > MESH_ELEMENTS as f64 {
+            if elements > most {
                 let refines = input.plan.refines.iter().map(|r| r.size).min_by(|a, b| a.0.total_cmp(&b.0));
-                let refined = refines.filter(|_| by_size <= MESH_ELEMENTS as f64).map(|size| size.1);
-                return Err(faces::too_many(input.plan, refined.unwrap_or_else(|| of_size(input, face.size.1)), elements as u64));
+                let refined = refines.filter(|_| by_size <= most).map(|size| size.1);
+                return Err(faces::too_many(input.plan, refined.unwrap_or_else(|| of_size(input, face.size.1)), Some(elements as u64)));
             }
             break;
         }
@@ -156,7 +157,7 @@ pub fn refuse_counts(
     let of_faces: Vec<u64> = layout.faces.iter().zip(&relations.of_face).map(elements).collect();
     let lines = layout.curves.iter().flatten().map(|u| u64::from(counts[u.atom]));
     let total = of_faces.iter().copied().chain(lines).fold(0, u64::saturating_add);
-    if total <= MESH_ELEMENTS {
+    if total <= input.plan.most_elements {
         faces::allow(total, worth);
         return Ok(());
     }
@@ -164,5 +165,5 @@ pub fn refuse_counts(
     let around: Vec<usize> = largest.map_or_else(|| (0..stretches).collect(), |f| layout.faces[f].stretches().collect());
     let longest = around.into_iter().max_by_key(|k| counts[*k]);
     let of = longest.map_or(input.plan.origin, |k| of_count(input, layout, sizing, (k, counts[k])));
-    Err(faces::too_many(input.plan, of, total))
+    Err(faces::too_many(input.plan, of, Some(total)))
 }

@@ -26,7 +26,6 @@ use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, str
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
-use crate::base::limits::MESH_ELEMENTS;
 use crate::base::{par, work};
 use crate::surface::Domain;
 use crate::surface::quick::Quick;
@@ -176,7 +175,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
                     continue;
                 }
                 if twins::divide(&made, &mut prepared, &mesh) {
-                    number(&made, &mut prepared)?;
+                    number(&made, &mut prepared);
                     mesh = fill(input, &border, &prepared, (keyed, true), job)?;
                 }
                 shape_check::refuse_concave(input, &prepared, &mesh)?;
@@ -286,40 +285,45 @@ fn prepare(made: &Made, relations: &Relations, counts: &[u32]) -> Result<Vec<Pre
         faces::prepare(made.input, layout, made.nodes, &layout.faces[f], &rows)
     })?;
     faces::refuse_triangles(made.input, layout, &prepared)?;
-    number(made, &mut prepared)?;
+    number(made, &mut prepared);
     Ok(prepared)
 }
 
-/// Makes the free faces.
+/// Free faces that are made before their elements are counted against what a mesh may have.
+const AT_A_TIME: usize = 64;
+
+/// Makes the free faces; E217 for more elements than a mesh may have.
 fn free(made: &Made, prepared: &mut [Prepared], (known, job): (Option<&Known>, &Job)) -> Result<()> {
     let faces = &made.layout.faces;
     let which: Vec<usize> = (0..faces.len()).filter(|f| faces[*f].free).collect();
     job.expect(which.len() as u64);
-    let ready = par::try_map(which.len(), |k| {
-        job.go_on()?;
-        let ready = free_face::prepare(made, &faces[which[k]], (known, job));
-        job.advance(1);
-        ready
-    })?;
-    for (f, ready) in which.into_iter().zip(ready) {
-        prepared[f] = ready;
+    let mut total: u64 = (0..faces.len()).filter(|f| !faces[*f].free).map(|f| prepared[f].triangles + prepared[f].quads).sum();
+    for some in which.chunks(AT_A_TIME) {
+        let ready = par::try_map(some.len(), |k| {
+            job.go_on()?;
+            let ready = free_face::prepare(made, &faces[some[k]], (known, job));
+            job.advance(1);
+            ready
+        })?;
+        for (f, ready) in some.iter().zip(ready) {
+            total += ready.triangles + ready.quads;
+            prepared[*f] = ready;
+        }
+        if total > made.input.plan.most_elements {
+            return Err(faces::too_many(made.input.plan, made.input.plan.size_origin(), None));
+        }
     }
-    number(made, prepared)
+    number(made, prepared);
+    Ok(())
 }
 
-/// Ids of the inner nodes, face by face; E217 for more elements than a mesh may have.
-fn number(made: &Made, prepared: &mut [Prepared]) -> Result<()> {
+/// Ids of the inner nodes, face by face.
+fn number(made: &Made, prepared: &mut [Prepared]) {
     let mut first = made.nodes.total;
-    let mut total = 0;
     for ready in prepared.iter_mut() {
-        total += ready.triangles + ready.quads;
-        if total > MESH_ELEMENTS {
-            return Err(faces::too_many(made.input.plan, made.input.plan.size_origin(), total));
-        }
         ready.number(first);
         first += ready.inner as u32;
     }
-    Ok(())
 }
 
 /// One face being filled: its parts of the arrays.

@@ -15,7 +15,7 @@ use super::plan::{Elements, Method, Plan};
 use super::trilateral::{Blocks, LatticeFrame};
 use super::uneven::Uneven;
 use crate::base::fault::{Fault, MeshFault, Result};
-use crate::base::limits::{MESH_ELEMENTS, WORK_OF_AN_ELEMENT};
+use crate::base::limits::WORK_OF_AN_ELEMENT;
 use crate::base::origin::Origin;
 use crate::base::text::real;
 use crate::base::work;
@@ -388,9 +388,9 @@ pub fn limits_of(input: &Input) -> Limits {
     Limits::of(input)
 }
 
-/// Too many elements, before anything is allocated.
-pub fn too_many(plan: &Plan, of: Origin, elements: u64) -> Fault {
-    MeshFault::TooMany { of, name: plan.name.clone(), elements, limit: MESH_ELEMENTS }.into()
+/// Too many elements, before anything is allocated; `None` where it is not known how many.
+pub fn too_many(plan: &Plan, of: Origin, elements: Option<u64>) -> Fault {
+    MeshFault::TooMany { of, name: plan.name.clone(), elements, limit: plan.most_elements }.into()
 }
 
 /// More work than a mesh may take, of a face or of all.
@@ -402,7 +402,7 @@ pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
 
 /// Raises what a mesh or face may take to what so many elements are worth, with what was `worth` for it before.
 pub fn allow(elements: u64, worth: &mut u64) {
-    let now = elements.min(MESH_ELEMENTS).saturating_mul(WORK_OF_AN_ELEMENT);
+    let now = elements.saturating_mul(WORK_OF_AN_ELEMENT);
     if let Some(budget) = work::budget() {
         budget.allow(now.saturating_sub(*worth));
     }

@@ -77,9 +77,10 @@ impl Teller<'_> {
             rules,
             refines,
             groups,
+            most_elements,
         } = self.input.plan;
         (name, size, (chord_error.map(|c| c.0), angle_error.map(|a| a.0))).tell(to);
-        (*elements, *order, (*method, *conforming)).tell(to);
+        (*elements, *order, (*method, *conforming, *most_elements)).tell(to);
         surfaces.len().tell(to);
         for (id, flipped) in surfaces {
             let named = &self.input.model.surfaces[id.index()];

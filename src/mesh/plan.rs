@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
+use crate::base::limits::MESH_ELEMENTS;
 use crate::base::origin::Origin;
 use crate::model::imprint::Imprint;
 use crate::model::{Course, PatchId, SurfaceId};
@@ -190,6 +191,8 @@ pub struct Plan {
     pub refines: Vec<Refine>,
     /// Named sets beside those that every surface gets.
     pub groups: Vec<GroupRequest>,
+    /// Elements that it may have, those that it is thinned from included; 1 at least.
+    pub most_elements: u64,
 }
 
 impl Plan {
@@ -221,8 +224,15 @@ impl Plan {
             rules: Vec::new(),
             refines: Vec::new(),
             groups: Vec::new(),
+            most_elements: MESH_ELEMENTS,
         }
     }
+
+    /// Inner nodes that one of its faces may have: each has about two triangles.
+    pub fn most_nodes(&self) -> usize {
+        (self.most_elements / 2).max(1) as usize
+    }
+
     /// What lengths grow by a unit of distance.
     pub fn slope(&self) -> f64 {
         self.growth.map_or(GROWTH, |g| g.0) - 1.0

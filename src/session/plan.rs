@@ -44,6 +44,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let scene = Scene::of(cx, module, surfaces)?;
     let finder = Finder { scene: &scene, module, tolerance };
     let mut plan = Plan::of(&spec.name, Vec::new());
+    plan.most_elements = cx.job.most_elements();
     plan.origin = spec.origin;
     let mut faces = Faces::default();
     for (value, _) in &spec.things {

@@ -48,8 +48,8 @@ pub enum MeshFault {
         of: Origin,
         /// The mesh.
         name: String,
-        /// How many.
-        elements: u64,
+        /// How many; `None` where that is not known.
+        elements: Option<u64>,
         /// How many may be.
         limit: u64,
     },
@@ -364,9 +364,10 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help(format!("list {curve} in the mesh too, so that its ends become nodes"))
         }
         F::TooMany { of, name, elements, limit } => {
-            Report::new("E217", format!("the mesh `{name}` of {} elements is too much", many(*elements)))
+            let size = elements.map_or_else(|| format!("more than {}", many(*limit)), many);
+            Report::new("E217", format!("the mesh `{name}` of {size} elements is too much"))
                 .at(*of, "asked for here")
-                .help(format!("a larger value; the limit is {limit} elements"))
+                .help(format!("a larger value; the limit is {limit} elements, `--max-elements` sets another"))
         }
         F::TooMuchWork { of, name, surface } => {
             let report = Report::new("E217", format!("the mesh `{name}` takes more work than it may")).at(*of, "asked for here");

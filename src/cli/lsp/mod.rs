@@ -14,7 +14,7 @@ use clap::ArgMatches;
 use lsp_server::{Connection, ErrorCode, Message, Response};
 use serde_json::{Value, json};
 
-use super::{Command, Exit, Terminal};
+use super::{Command, Exit, Terminal, options};
 use server::Server;
 
 /// Serves an editor.
@@ -22,10 +22,11 @@ pub const COMMAND: Command = Command { name: "lsp", about: "Language server for 
 
 fn arguments(command: clap::Command) -> clap::Command {
     // Editors like to say which way they talk.
-    command.arg(clap::Arg::new("stdio").long("stdio").action(clap::ArgAction::SetTrue).hide(true))
+    command.arg(options::most_elements()).arg(clap::Arg::new("stdio").long("stdio").action(clap::ArgAction::SetTrue).hide(true))
 }
 
-fn run(_: &ArgMatches, terminal: &Terminal) -> Exit {
+fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
+    options::read_limits(matches);
     let (connection, threads) = Connection::stdio();
     let served = serve(&connection);
     drop(connection);

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use super::document::Document;
 use crate::base::job::Job;
+use crate::cli::interrupt;
 use crate::lang::assist::{Known, Shape};
 use crate::lang::cx::Cx;
 use crate::lang::diag::{Diagnostic, Sources};
@@ -96,7 +97,7 @@ impl Facts {
 impl Running {
     /// Starts a run; gives the model back when there can be no thread.
     pub fn start(mut live: Live, document: &Document, (depth, unsaved): (Depth, Unsaved), wanted: BTreeSet<String>) -> Option<Self> {
-        let job = Arc::new(Job::new());
+        let job = interrupt::own_job();
         let (uri, revision, text, watched) = (document.uri.clone(), document.revision, document.text.clone(), job.clone());
         live.set_unsaved(unsaved);
         let work = move || {

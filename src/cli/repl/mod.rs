@@ -20,7 +20,7 @@ use rustyline::history::FileHistory;
 use rustyline::{CompletionType, Config, Editor};
 
 use super::progress::with_progress;
-use super::{Command, Exit, Terminal, interrupt, summary};
+use super::{Command, Exit, Terminal, interrupt, options, summary};
 use crate::base::limits;
 use crate::session::disk::{read_limited, words};
 use crate::session::notebook::{Answer, Notebook, Part};
@@ -36,7 +36,7 @@ const GREETING: &str = "loft session: declarations define, expressions ask, `:he
 const PROMPT: &str = "loft> ";
 
 fn arguments(command: clap::Command) -> clap::Command {
-    command.arg(Arg::new("model").value_name("MODEL").help("A script to go on with"))
+    command.arg(Arg::new("model").value_name("MODEL").help("A script to go on with")).arg(options::most_elements())
 }
 
 fn notebook(color: bool) -> Notebook {
@@ -45,6 +45,7 @@ fn notebook(color: bool) -> Notebook {
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
+    options::read_limits(matches);
     let watched = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
     let mut book = notebook(terminal.color_out && watched);
     if let Some(model) = matches.get_one::<String>("model") {

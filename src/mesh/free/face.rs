@@ -25,10 +25,10 @@ use super::taken::{self, Taken};
 use super::tree::DEEPEST;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
-use crate::base::limits::{MESH_ELEMENTS, MESH_WORK};
+use crate::base::limits::MESH_WORK;
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
-use crate::base::work::{Exceeded, Budget};
+use crate::base::work::{Budget, Exceeded};
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
 use crate::mesh::faces::{Frame, Prepared, middle, too_much_work};
@@ -163,7 +163,7 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
             let bent = !made.input.model.surfaces[face.surface.index()].surface.is_flat();
             let limit = plan.chord_error.or(plan.angle_error).filter(|_| bent).map(|limit| limit.1);
             let of = limit.unwrap_or_else(|| crate::mesh::ahead::of_size(made.input, face.size.1));
-            crate::mesh::faces::too_many(plan, of, 2 * MESH_ELEMENTS)
+            crate::mesh::faces::too_many(plan, of, None)
         }
     }
 }

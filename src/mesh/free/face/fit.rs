@@ -10,7 +10,6 @@ use super::{Made, SPACING, outlined};
 use crate::base::bbox::Box3;
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::Job;
-use crate::base::limits::MESH_ELEMENTS;
 use crate::mesh::edges::Limits;
 use crate::mesh::explain::{Decider, Tally, Why};
 use crate::mesh::faces::limits_of;
@@ -50,8 +49,6 @@ const BEYOND: f64 = 1.6;
 const SMOOTH_GRADED: usize = 8;
 /// The same for corners of cells, which start far from where they end.
 const SMOOTH_TREE: usize = 30;
-/// Most inner nodes of a face.
-pub(super) const MOST: usize = MESH_ELEMENTS as usize / 2;
 /// What stands for the edges of a border among sources.
 const BORDER: u32 = u32::MAX;
 /// First lengths over those that bends ask for: triangles are not all equilateral.
@@ -126,7 +123,7 @@ pub(super) fn fitting(
     fit.refuse_large(&field)?;
     let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
     if matches!(web, Err(Trouble::Full)) {
-        return Err(fit.too_large(&field, 2.0 * MESH_ELEMENTS as f64));
+        return Err(fit.too_large(&field, None));
     }
     Ok(web.map(|web| {
         let deciders = fit.deciders(&field, &web);
@@ -146,7 +143,7 @@ pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 
     let even = Even(spacing * face.size.0);
     let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
     let care = Care { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
-    let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: MOST, guard: None };
+    let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: made.input.plan.most_nodes(), guard: None };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))
 }
@@ -244,7 +241,7 @@ impl Fit<'_> {
 
     fn task<'t>(&'t self, field: &'t dyn Field, guard: &'t dyn Guard) -> Task<'t> {
         let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
-        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, guard: Some(guard) }
+        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: Some(guard) }
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.

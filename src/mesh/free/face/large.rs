@@ -1,9 +1,9 @@
 //! Faces that would have more elements than a mesh may have: told before they are made, at the setting that asks for most of them.
 
 use super::SPACING;
-use super::fit::{Fit, MOST};
+use super::fit::Fit;
 use crate::base::fault::{Fault, Result};
-use crate::base::limits::{MESH_ELEMENTS, MESH_WORK, WORK_OF_AN_ELEMENT};
+use crate::base::limits::{MESH_WORK, WORK_OF_AN_ELEMENT};
 use crate::base::origin::Origin;
 use crate::mesh::ahead::of_size;
 use crate::mesh::edges::Limits;
@@ -26,32 +26,39 @@ impl Fit<'_> {
     /// E217 where wanted lengths, grown from short edges and by bends, ask for too much.
     pub(super) fn refuse_large(&self, field: &Blend) -> Result<()> {
         let across = self.surface.hull().diagonal() / field.least();
-        if across * across < SMALL * MESH_WORK as f64 / WORK_OF_AN_ELEMENT as f64 {
+        let most = self.made.input.plan.most_elements;
+        if across * across < SMALL * most.min(MESH_WORK / WORK_OF_AN_ELEMENT) as f64 {
             return Ok(());
         }
         let [elements] = self.expected([field]);
-        if elements > MESH_ELEMENTS as f64 {
-            return Err(self.too_large(field, elements));
+        if elements > most as f64 {
+            return Err(self.too_large(field, Some(elements)));
         }
         allow(elements as u64, &mut 0);
         Ok(())
     }
 
-    /// The fault for so many elements.
-    pub(super) fn too_large(&self, field: &Blend, elements: f64) -> Fault {
-        too_many(self.made.input.plan, self.asks(field), elements as u64)
+    /// Most inner nodes of the face.
+    pub(super) fn most(&self) -> usize {
+        self.made.input.plan.most_nodes()
+    }
+
+    /// The fault for so many elements, or for more than there may be.
+    pub(super) fn too_large(&self, field: &Blend, elements: Option<f64>) -> Fault {
+        too_many(self.made.input.plan, self.asks(field), elements.map(|n| n as u64))
     }
 
     /// The fault where limits alone decide.
     pub(super) fn too_many_for_limits(&self) -> Fault {
         let of = self.limit(self.limits.chord.is_some());
-        too_many(self.made.input.plan, of, 2 * MESH_ELEMENTS)
+        too_many(self.made.input.plan, of, None)
     }
 
     /// About how many elements each field asks for.
     fn expected<const N: usize>(&self, fields: [&dyn Field; N]) -> [f64; N] {
         let lattice = Lattice::Crystal;
-        let task = |field| Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: MOST, guard: None };
+        let task =
+            |field| Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: None };
         expected_nodes(fields.map(task).each_ref()).map_or([0.0; N], |nodes| nodes.map(|n| 2.0 * n))
     }
 
@@ -67,12 +74,12 @@ impl Fit<'_> {
         let (edges, rules) = (alone(field, &edges, None), alone(field, &rules, None));
         let (bends, size) = (alone(field, &none, field.background.clone()), Even(self.face.size.0 * field.spacing));
         let [grown, by_edges, by_rules, by_bends, by_size] = self.expected([&grown, &edges, &rules, &bends, &size]);
-        if let Some(growth) = plan.growth.filter(|g| g.0 < GROWTH && grown <= MESH_ELEMENTS as f64) {
+        if let Some(growth) = plan.growth.filter(|g| g.0 < GROWTH && grown <= plan.most_elements as f64) {
             return growth.1;
         }
         let own = of_size(self.made.input, self.face.size.1);
         let most = by_edges.max(by_rules).max(by_bends);
-        if by_size > MESH_ELEMENTS as f64 || by_size >= most {
+        if by_size > plan.most_elements as f64 || by_size >= most {
             own
         } else if by_bends == most {
             self.limit(self.limits.chord.is_some() && !self.turns_more(field))

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::fit::{Fit, MOST, Shown};
+use super::fit::{Fit, Shown};
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::Job;
 use crate::mesh::edges::Limits;
@@ -30,7 +30,7 @@ impl Fit<'_> {
         let flat = Limits::default();
         let limits = if self.surface.is_flat() { &flat } else { &self.limits };
         let point = self.made.input.tolerance.point;
-        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: MOST, point };
+        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: self.most(), point };
         match lay(&ask, job)? {
             Ok(laid) => Ok(Ok((laid.web, laid.deciders, Some(laid.tally)))),
             Err(Failure::Trouble(Trouble::Full)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::{self, Job};
 use crate::mesh::free::build::{Lattice, Task, Trouble, plant};
-use crate::mesh::free::face::fit::{Fit, LESS, MOST};
+use crate::mesh::free::face::fit::{Fit, LESS};
 use crate::mesh::free::face::longest::longest_side;
 use crate::mesh::free::ground::{Even, Field, Ground};
 use crate::mesh::free::improve::Gardener;
@@ -114,7 +114,7 @@ impl Maker<'_> {
         let cells: &dyn Field = if quads { &twice } else { wanted };
         let lattice = if self.fit.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Squares };
         let (ground, outline) = (self.fit.sheet, &self.halves.outline);
-        let most = if quads { MOST / 4 } else { MOST };
+        let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
         let task = Task { ground, field: cells, outline, care: self.fit.care, lattice, most, guard: None };
         let web = match plant(&task, job)? {
             Ok(web) => web,
