@@ -24,7 +24,7 @@ use super::together::Asked;
 use super::uneven::Uneven;
 use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, together, uneven, verify};
 use crate::base::digest::Digest;
-use crate::base::fault::Result;
+use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::{par, work};
 use crate::surface::Domain;
@@ -68,6 +68,9 @@ fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Quick> {
 /// Times that the steps of the border of a face that closes on itself are halved for it.
 const HALVED: u32 = 6;
 
+/// The same where triangles beside its border lean.
+const LEANING: u32 = 3;
+
 /// Whether a face that is made freely meets itself at a seam or in a pole.
 fn closes(face: &Face) -> bool {
     let mut round: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).collect();
@@ -86,6 +89,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Opt
             Ok(done) => return Ok(finish(input, layout, done)),
             // What was only made freely for better angles has a map.
             Err(_) if keep_maps(&mut layout) => job.go_on()?,
+            Err(fault) if halve_leaning(input, &mut layout, &fault) => job.go_on()?,
             Err(fault) => return Err(fault),
         }
     }
@@ -97,6 +101,22 @@ fn keep_maps(layout: &mut Layout) -> bool {
     for face in layout.faces.iter_mut().filter(|face| matches!(face.uneven, Some(Uneven::Sharp(_)))) {
         face.keep_map();
         any = true;
+    }
+    any
+}
+
+/// Halves the steps of the borders of faces made with as few triangles as may be on which nothing keeps a limit: what stands beside a
+/// long step of a border leans over the surface, however small it is. Whether there were any.
+fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
+    let Fault::Mesh(fault) = fault else { return false };
+    let MeshFault::NotReached { surface, reached, .. } = &**fault else { return false };
+    let of = |face: &Face| input.model.surfaces[face.surface.index()].surface.origin();
+    let mut any = false;
+    for face in layout.faces.iter_mut().filter(|face| reached.is_infinite() && of(face) == *surface) {
+        if face.method.is_sparing() && face.halved < LEANING {
+            face.halved += 1;
+            any = true;
+        }
     }
     any
 }

@@ -38,6 +38,11 @@ impl Limits {
         Self { chord: plan.chord_error.map(|c| c.0), angle: plan.angle_error.map(|a| a.0), near: input.tolerance.point }
     }
 
+    /// The same where no step turns by more than this, radians.
+    pub fn turning(self, most: f64) -> Self {
+        Self { angle: Some(self.angle.map_or(most, |angle| angle.min(most))), ..self }
+    }
+
     /// Share of the angle that a turn may be over it, along a curve of this length that turns by `whole` in all: what the
     /// length changes by where an end moves by the tolerance, and the tangents at both ends where a point between moves.
     pub fn turn_room(&self, length: f64, whole: f64) -> f64 {

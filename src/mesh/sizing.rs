@@ -1,5 +1,7 @@
 //! Which setting decides each stretch: rules by rank, written counts shared out, wishes of size, chord and angle.
 
+use std::f64::consts::FRAC_PI_3;
+
 use glam::DVec3;
 
 use super::build::Input;
@@ -167,9 +169,11 @@ impl Sizing {
         (sizing.paces, sizing.strained) = pace::along(input, layout, &ask);
         drop(rows);
         sizing.mark_refined(input, layout, &sizes);
+        let sparing = sparing_borders(input, layout, &limits);
         let least = par::try_map(n, |k| {
             let bias = bias_of(k);
             let divided = |count: u32| sizing.paces[k].as_ref().map_or_else(|| steps(count, bias), |pace| pace.steps(count));
+            let limits = if sparing[k] { limits.turning(TURN) } else { limits };
             let atom = &layout.pieces.atoms[k];
             let key = |_: &Known| {
                 let track = &layout.parts[atom.track].track;
@@ -606,6 +610,22 @@ fn own_sizes(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
         }
     }
     own.into_iter().map(|own| own.unwrap_or((size, None))).collect()
+}
+
+/// Largest turn of a border across one step where triangles may be as long as the chord error lets them, radians: 60°. What
+/// stands beside a step that turns more leans over the surface, however small it is.
+const TURN: f64 = FRAC_PI_3;
+
+/// Stretches whose steps a chord error alone may make so long that triangles beside them lean: those of bent faces made with
+/// as few triangles as may be.
+fn sparing_borders(input: &Input, layout: &Layout, limits: &Limits) -> Vec<bool> {
+    let mut found = vec![false; layout.pieces.atoms.len()];
+    let bent = |face: &&Face| !input.model.surfaces[face.surface.index()].surface.is_flat();
+    if limits.chord.is_some() {
+        let faces = layout.faces.iter().filter(|face| face.method.is_sparing()).filter(bent);
+        faces.flat_map(|face| face.stretches()).for_each(|k| found[k] = true);
+    }
+    found
 }
 
 /// Least steps of the borders of a face that is made freely between two poles, before they are halved: with fewer there may be
