@@ -37,6 +37,12 @@ limits! {
     pub const MESH_WORK: u64 = 16_000_000;
     /// The same for each element of the mesh.
     pub const WORK_OF_AN_ELEMENT: u64 = 500;
+    /// Work of the network or of the surface model, in evaluations of curves and surfaces, beside that of its parts.
+    pub const STAGE_WORK: u64 = 50_000_000;
+    /// The same for each curve or surface.
+    pub const WORK_OF_A_PART: u64 = 200_000;
+    /// Work of one output or picture, in evaluations of curves and surfaces.
+    pub const FILE_WORK: u64 = 100_000_000;
     /// Work of one call, in evaluations of curves and surfaces.
     pub const CALL_WORK: u64 = 25_000_000;
     /// Pixels along a side of a picture.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::counts::{largest, share};
 use super::parity::{self, Sum};
-use crate::base::job;
+use crate::base::{job, work};
 use crate::model::glue::root;
 
 /// One stretch (or one inner direction of a face without a side that could tell).
@@ -238,6 +238,7 @@ impl<'a> Solver<'a> {
     fn pass_on(&mut self) -> Result<(), Conflict> {
         loop {
             let mut changed = false;
+            work::spend(self.relations.len() as u64);
             for r in 0..self.relations.len() {
                 job::look();
                 changed |= match &self.relations[r] {
@@ -313,6 +314,7 @@ impl<'a> Solver<'a> {
         let mut counts: Vec<u32> = shares.iter().zip(open).map(|(n, (_, c))| n / c.unsigned_abs() as u32).collect();
         let mut left = target - counts.iter().zip(open).map(|(n, (_, c))| n * c.unsigned_abs() as u32).sum::<u32>();
         while left > 0 {
+            work::spend(open.len() as u64);
             // A strip that lies on the side twice takes two at a time.
             let fits = |i: &usize| open[*i].1.unsigned_abs() as u32 <= left;
             let room = |i: &usize| weights[*i] / f64::from(counts[*i] + 1);
@@ -332,6 +334,7 @@ impl<'a> Solver<'a> {
         let sum: u32 = counts.iter().zip(open).map(|(n, (_, c))| n * c.unsigned_abs() as u32).sum();
         let mut left = target.checked_sub(sum)?;
         while left > 0 {
+            work::spend(open.len() as u64);
             let more = |i: usize| open[i].1.unsigned_abs() as u32 * self.strips[open[i].0].step();
             let room = |i: &usize| f64::from(self.strips[open[*i].0].wish) / f64::from(counts[*i]);
             let fits = (0..open.len()).filter(|i| more(*i) <= left);
@@ -379,6 +382,7 @@ impl<'a> Solver<'a> {
     fn raise(&mut self) -> Result<(), Conflict> {
         loop {
             let mut changed = false;
+            work::spend(self.relations.len() as u64);
             for r in 0..self.relations.len() {
                 job::look();
                 changed |= match &self.relations[r] {
@@ -408,6 +412,7 @@ impl<'a> Solver<'a> {
     /// Raises the strips with the longest steps until `deficit` is made up.
     fn lift(&mut self, relation: usize, candidates: &[(usize, i64)], mut deficit: i64) -> Result<(), Conflict> {
         while deficit > 0 {
+            work::spend(candidates.len() as u64);
             let step = |k: &usize| self.strips[candidates[*k].0].length / f64::from(self.count[candidates[*k].0]);
             let free = (0..candidates.len()).filter(|k| self.strips[candidates[*k].0].fixed.is_none());
             let Some((s, c)) = largest(free, step, self.near).map(|k| candidates[k]) else {

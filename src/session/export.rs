@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::report::{OutputRow, RenamedRow};
 use crate::base::fault::{Edit, FileFault, Say};
+use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
+use crate::base::work::{Budget, Exceeded};
 use crate::io::curves::{Drawing, Polyline, curve_format_for};
 use crate::io::endings::{Sort, misfit};
 use crate::io::iges;
@@ -27,6 +29,11 @@ const LOOKS: usize = 64;
 
 /// Writes one output; gives its row, and warnings about what the format cannot hold go to the sink of `cx`.
 pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
+    let within = Budget::new(FILE_WORK).within(|| written(cx, spec, files));
+    within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.path_origin, path: spec.path.clone() }.into()))
+}
+
+fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
     let Some((first, origin)) = spec.things.first() else {
         return Err(unsupported(spec.origin, "there is nothing to export".to_owned()));
     };

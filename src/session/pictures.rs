@@ -15,8 +15,10 @@ use super::run::Wanted;
 use super::shades;
 use crate::base::bbox::Box3;
 use crate::base::fault::FileFault;
+use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::base::work::{Budget, Exceeded};
 use crate::draw::picture::{FORMATS, Format, Picture, Settings};
 use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
 use crate::geometry::Curve;
@@ -82,7 +84,12 @@ impl Stage<'_> {
 }
 
 /// Writes one picture; gives its row. `model` is the name of the script without its ending.
-pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn Files, Outputs)) -> Result<OutputRow, Stop> {
+pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, to: (&dyn Files, Outputs)) -> Result<OutputRow, Stop> {
+    let within = Budget::new(FILE_WORK).within(|| written(cx, spec, model, to));
+    within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.origin, path: spec.path.clone() }.into()))
+}
+
+fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn Files, Outputs)) -> Result<OutputRow, Stop> {
     let format = format_of(spec)?;
     let tolerance = cx.tolerance()?;
     let sound = cx.sound(ModuleId::MAIN)?;

@@ -5,10 +5,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveEnd, Fault, Say};
+use crate::base::fault::{CurveEnd, Fault, Say, ValueFault};
 use crate::base::job::Job;
-use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD};
+use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_PART};
 use crate::base::tolerance::Tolerance;
+use crate::base::work::{Budget, Exceeded};
 use crate::geometry::Curve;
 use crate::lang::cx::{Cx, Parts, Pipeline, Snapping, Stop, Turn};
 use crate::lang::plans::MeshSpec;
@@ -174,7 +175,9 @@ impl Pipeline for Stages<'_> {
             let before = kept.networks.get(&module).filter(|before| before.tolerance == tolerance);
             before.map(|before| before.network.clone())
         });
-        let network = Arc::new(Network::build_after(before.as_deref(), inputs, (&points, &tolerance), cx.job, &mut said)?);
+        let (parts, job) = (inputs.len(), cx.job);
+        let made = || Network::build_after(before.as_deref(), inputs, (&points, &tolerance), job, &mut said);
+        let network = Arc::new(within_work("the network", parts, made)?);
         say_all(cx, &said);
         if let (Some(mut kept), Some(inputs)) = (self.kept(), again) {
             kept.networks.insert(module, KeptNetwork { inputs, points, tolerance, network: network.clone(), said });
@@ -194,7 +197,9 @@ impl Pipeline for Stages<'_> {
             return Ok(before.model.clone());
         }
         let _phase = cx.job.phase("surfaces");
-        let model = Arc::new(Model::build(surfaces, &network, &tolerance, cx.job)?);
+        let (parts, job) = (surfaces.len(), cx.job);
+        let made = || Model::build(surfaces, &network, &tolerance, job);
+        let model = Arc::new(within_work("the surface model", parts, made)?);
         if let Some(mut kept) = self.kept() {
             kept.models.insert(module, KeptModel { tolerance, network, model: model.clone() });
         }
@@ -217,6 +222,12 @@ impl Pipeline for Stages<'_> {
         self.note(made.lines.iter().map(|line| format!("mesh {}: {line}", spec.name)));
         Ok(made.mesh)
     }
+}
+
+/// Makes something of so many curves or surfaces; E217 where that takes too much work.
+fn within_work<T>(what: &'static str, parts: usize, make: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    let limit = STAGE_WORK.saturating_add(WORK_OF_A_PART.saturating_mul(parts as u64));
+    Budget::new(limit).within(make).unwrap_or_else(|Exceeded| Err(ValueFault::StageWork { what }.into()))
 }
 
 /// A mesh with what is said about it.

@@ -136,6 +136,13 @@ pub enum FileFault {
         /// The system's words.
         why: String,
     },
+    /// E217: an output that takes more work than one may.
+    TooMuchWork {
+        /// The export or picture.
+        of: Origin,
+        /// As written.
+        path: String,
+    },
     /// E809: modules import each other.
     ImportCycle {
         /// The `use` that closes the ring.
@@ -246,6 +253,9 @@ impl FileFault {
             Self::OverInput { of, path, what } => Report::new("E813", format!("\"{path}\" is {what}, which this would replace"))
                 .at(*of, "written here")
                 .help("give the output another name"),
+            Self::TooMuchWork { of, path } => Report::new("E217", format!("\"{path}\" takes more work than it may"))
+                .at(*of, "to be written here")
+                .help("fewer or simpler things in one file, and points that are not far off by mistake"),
             Self::CannotWrite { of, path, why } => {
                 Report::new("E808", format!("cannot write \"{path}\": {why}")).at(*of, "to be written here")
             }

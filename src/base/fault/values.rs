@@ -134,6 +134,11 @@ pub enum ValueFault {
     },
     /// E217: a call that takes more work than one may.
     Work,
+    /// E217: a stage over all curves or surfaces that takes more work than it may.
+    StageWork {
+        /// What would be made, for example "the network".
+        what: &'static str,
+    },
     /// E217: a list or work limit.
     Limit {
         /// What would be made, for example "a mesh of 4 000 000 000 elements".
@@ -254,6 +259,8 @@ impl Describe for ValueFault {
             Self::Work => Report::new("E217", "this takes more work than it may")
                 .label(Subject::Call, "made here")
                 .help("fewer or simpler parts, and points that are not far off by mistake"),
+            Self::StageWork { what } => Report::new("E217", format!("{what} takes more work than it may"))
+                .help("fewer or simpler curves and surfaces, and points that are not far off by mistake"),
             Self::Limit { what, limit } => {
                 Report::new("E217", format!("{what} is too much")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))
             }
