@@ -1,4 +1,4 @@
-"""A session of `loft repl` as a person has it: driven key by key in a real terminal (tmux).
+"""A session of `loft repl` as a person has it: driven key by key in a real terminal (tmux), and in one that shows sixels.
 
     python3 terminal.py LOFT FOLDER
 
@@ -6,7 +6,9 @@ Prints each step that fails with what the screen showed, and "N passed, N failed
 """
 
 import os
+import pty
 import re
+import select
 import shutil
 import subprocess
 import sys
@@ -44,6 +46,17 @@ STEPS = [
     ([":load kept.loft", "Enter"], [r"kept\.loft: 4 names"]),
     ([":mesh fine", "Enter"], [r"mesh fine: \d+ nodes"]),
     # Ctrl-C leaves a line, Ctrl-D the session.
+    # An editor that changes the script, one that fails, one that changes nothing, one that empties it, and one that is not there.
+    ([("editor", "sed -i s/500mm/250mm/ $1"), ":edit", "Enter"], [r"edited: fine redefined", r"mesh fine"]),
+    ([":mesh fine", "Enter"], [r"mesh fine: 252 nodes"]),
+    ([("editor", "exit 3"), ":edit", "Enter"], [r"sh failed; nothing was changed"]),
+    ([("editor", "true"), ":edit", "Enter"], [r"edited: nothing changed"]),
+    ([("editor", ": > $1"), ":edit", "Enter"], [r"edited: .*fine removed", r"roof removed"]),
+    ([":undo", "Enter"], [r"undid: .*fine removed"]),
+    ([":mesh fine", "Enter"], [r"mesh fine: 252 nodes"]),
+    # A terminal without sixels is asked once, and gets no picture.
+    ([":render roof", "Enter"], [r"^roof\.png: \d+ × \d+ pixels, \d+ bytes$", "!P0;1;0q"]),
+    (["20 + 22", "Enter"], [r"^42$"]),
     (["curve lost = (", "C-c"], [r"^loft>$"]),
     (["1 + 1", "Enter"], [r"^2$"]),
     (["C-d"], [r"session over"]),
@@ -57,7 +70,9 @@ class Terminal:
         self.socket = ["tmux", "-L", f"loft-{os.getpid()}", "-f", "/dev/null"]
         home = os.path.join(folder, "home")
         os.makedirs(home)
-        command = f"cd {folder} && env HOME={home} XDG_DATA_HOME={home} TERM=screen {loft} repl; echo session over; sleep 60"
+        self.folder = folder
+        variables = f"HOME={home} XDG_DATA_HOME={home} TERM=screen VISUAL= EDITOR='sh editor'"
+        command = f"cd {folder} && env {variables} {loft} repl; echo session over; sleep 60"
         size = ["-x", "110", "-y", "2000"]
         subprocess.run([*self.socket, "new-session", "-d", *size, "-s", "s", "sh", "-c", command], check=True)
 
@@ -66,6 +81,11 @@ class Terminal:
         return "\n".join(line.rstrip() for line in shown.stdout.rstrip().split("\n"))
 
     def press(self, key):
+        if isinstance(key, tuple):
+            name, text = key
+            with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+                file.write(text + "\n")
+            return
         # What is no name of a key is typed as it is.
         literal = [] if re.fullmatch(r"Enter|Tab|Up|C-\w", key) else ["-l"]
         subprocess.run([*self.socket, "send-keys", "-t", "s", *literal, "--", key], check=True)
@@ -87,6 +107,77 @@ def is_met(wanted, text):
     if wanted.startswith("!"):
         return re.search(wanted[1:], text, re.M) is None
     return re.search(wanted, text, re.M) is not None
+
+
+def decoded(text):
+    """Width and height of sixels, and how many of the pixels are set."""
+    body = text[text.index('"') + 1 :]
+    width, height = (int(n) for n in re.match(r"1;1;(\d+);(\d+)", body).groups())
+    body = body[body.index("#") :]
+    columns = count = row = 0
+    for token in re.finditer(r"#[\d;]+|!(\d+)([?-~])|([?-~])|\$|-", body):
+        if token[0] == "-":
+            row += 6
+        if token[0] in "$-":
+            columns = 0
+        if token[0][0] in "#$-":
+            continue
+        times, sign = (int(token[1]), token[2]) if token[1] else (1, token[3])
+        columns += times
+        count += times * bin(ord(sign) - 63).count("1")
+        if columns > width or row >= height:
+            raise ValueError("a pixel beside the picture")
+    return width, height, count
+
+
+def sixel(loft, folder):
+    """A terminal with sixels: it is asked, answers behind keys that are typed meanwhile, and gets a picture and the keys' answer."""
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.chdir(folder)
+        for name in ("KITTY_WINDOW_ID", "TERM_PROGRAM", "LOFT_PICTURES", "NO_COLOR"):
+            os.environ.pop(name, None)
+        os.environ.update(TERM="xterm", HOME=folder, XDG_DATA_HOME=folder)
+        os.execv(loft, [loft, "repl"])
+    seen = b""
+
+    def until(wanted, seconds=30):
+        nonlocal seen
+        end = time.monotonic() + seconds
+        while wanted not in seen and time.monotonic() < end:
+            if select.select([terminal], [], [], 0.1)[0]:
+                try:
+                    seen += os.read(terminal, 65536)
+                except OSError:
+                    break
+        return wanted in seen
+
+    found = []
+    try:
+        found.append(until(b"loft> "))
+        os.write(terminal, b"curve a = line((0, 0, 0), (4m, 0, 1m))\r")
+        found.append(until(b"1 link"))
+        os.write(terminal, b":render a\r")
+        found.append(until(b"\x1b[c"))
+        os.write(terminal, b"123 + 456\r7 *\x1b[?62;4;22c")
+        found.append(until(b"\x1b\\"))
+        found.append(until(b"579"))
+        # What was typed without its end is there to go on with.
+        os.write(terminal, b" 111\r")
+        found.append(until(b"777"))
+        picture = re.search(rb"\x1bP0;1;0q(.*?)\x1b\\", seen, re.S)
+        width, height, count = decoded(picture[1].decode()) if picture else (0, 0, 1)
+        found.append(width > 100 and width * height == count)
+        os.write(terminal, b":render a\r")
+        asked = seen.count(b"\x1b[c")
+        seen = b""
+        found.append(until(b"\x1b\\") and asked == 1 and b"\x1b[c" not in seen)
+    finally:
+        os.close(terminal)
+        os.waitpid(pid, 0)
+    if not all(found):
+        print(f"terminal: sixels {found}\n{seen[-2000:]!r}", file=sys.stderr)
+    return found
 
 
 def main():
@@ -113,13 +204,15 @@ def main():
                 time.sleep(0.05)
             else:
                 failed += 1
-                print(f"terminal: {' '.join(keys)}\n  wanted {wanted}\n  the screen shows\n{seen}", file=sys.stderr)
+                print(f"terminal: {' '.join(map(str, keys))}\n  wanted {wanted}\n  the screen shows\n{seen}", file=sys.stderr)
                 before = terminal.screen()
                 continue
             passed += 1
             before = text
     finally:
         terminal.close()
+    found = sixel(loft, folder)
+    passed, failed = passed + found.count(True), failed + found.count(False)
     print(f"terminal: {passed} passed, {failed} failed")
     return 1 if failed else 0
 
