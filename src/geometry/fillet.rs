@@ -12,7 +12,7 @@ use super::build::{all_different, composite, enough, finite, finite_points};
 use super::composite::Composite;
 use super::curve::{Curve, Kind, Shape};
 use super::offset_build::{height_over, smooth_pieces};
-use crate::base::fault::{CurveFault, Result, ValueFault};
+use crate::base::fault::{CurveFault, LengthRange, Result, ValueFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NEAREST, NUDGE, ROUNDING_SHARE};
@@ -93,7 +93,7 @@ fn positive(size: f64, argument: &'static str, origin: Origin) -> Result<()> {
     if size > 0.0 {
         return Ok(());
     }
-    Err(ValueFault::OutsideRange { argument, found: size.to_string(), range: "above 0".to_owned() }.into())
+    Err(ValueFault::LengthOutside { argument, found: size, range: LengthRange::Positive }.into())
 }
 
 /// The runs of a curve between its corners.
