@@ -254,8 +254,14 @@ impl Refusal<'_> {
     /// `def rib(y): return line(…)`, `function rib(y) = …`, `let rib(y) = …`.
     fn function_word(&self) -> Option<Meant> {
         let word = self.text(self.base, self.base + 1);
-        let own = self.tokens.kinds[self.base] == Kind::Let;
         let open = self.base + 2;
+        let keyword = self.tokens.kinds[self.base];
+        // A `fn` of ours whose body stands in braces, or behind a colon where a type may be.
+        let block = || match self.closer(open).and_then(|close| self.kind(close + 1)) {
+            Some(Kind::Colon) => self.find(self.base, Kind::Equals).is_none(),
+            behind => behind == Some(Kind::OpenCurly),
+        };
+        let own = keyword == Kind::Let || keyword == Kind::Fn && self.kind(open) == Some(Kind::OpenRound) && block();
         if !(own || FUNCTION_WORDS.contains(&word)) || self.kind(open) != Some(Kind::OpenRound) {
             return None;
         }
@@ -330,19 +336,24 @@ impl Refusal<'_> {
         }
     }
 
-    /// `export(fine, "x.stl")`, `export fine, "x.stl"`, `export "x.stl" of fine`.
+    /// `export(fine, "x.stl")`, `export fine, "x.stl"`, `export "x.stl" of fine`, `export fine as "x.stl"`, `export fine to x.stl`.
     fn called_output(&self) -> Option<Meant> {
         if !matches!(self.tokens.kinds[self.base], Kind::Export | Kind::Picture) {
             return None;
         }
         let called = self.kind(self.base + 1) == Some(Kind::OpenRound) && self.closer(self.base + 1) == Some(self.end - 1);
         let (first, end) = if called { (self.base + 2, self.end - 1) } else { (self.base + 1, self.end) };
-        let path = (first..end).find(|&t| self.tokens.kinds[t] == Kind::Text)?;
+        let Some(path) = (first..end).find(|&t| self.tokens.kinds[t] == Kind::Text) else {
+            let path = self.find(first, Kind::To)? + 1;
+            let typed = format!("{} \"{}\"", self.text(self.base, path), self.text(path, end));
+            return self.replaced("the name of a file stands in quotes", typed);
+        };
         let things = if path == first {
             let skip = usize::from(matches!(self.kind(path + 1), Some(Kind::Comma | Kind::Of | Kind::In)));
             self.text(path + 1 + skip, end)
         } else {
-            self.text(first, path).trim_end().trim_end_matches(',').trim_end()
+            let as_word = path > first && self.tokens.kinds[path - 1] == Kind::As;
+            self.text(first, path - usize::from(as_word)).trim_end().trim_end_matches(',').trim_end()
         };
         self.replaced(
             "the file stands behind `to`",
