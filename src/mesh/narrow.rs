@@ -70,6 +70,9 @@ fn of_face(made: &Made, face: &Face) -> Vec<Narrow> {
     let Some((border, _, outline)) = outlined(made, face) else { return Vec::new() };
     let gaze = Gaze { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
     let mut found = gaze.polygon();
+    if face.halved > 0 {
+        found.extend(super::girth::look(made, face));
+    }
     if face.takes_quads()
         && let Some(halves) = super::free::face::halved(made, face, &border, &outline)
     {

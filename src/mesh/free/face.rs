@@ -5,6 +5,7 @@ mod fit;
 mod large;
 mod longest;
 mod quads;
+mod rings;
 mod sparing;
 
 pub(in crate::mesh) use border::Border;
@@ -13,6 +14,7 @@ pub use border::places;
 pub use fit::FILLED;
 pub(in crate::mesh) use fit::elements_ahead;
 pub(in crate::mesh) use quads::halved;
+pub(in crate::mesh) use rings::way_round;
 
 use border::border;
 use fit::{fitting, near};
@@ -81,7 +83,10 @@ pub(in crate::mesh) fn outlined(made: &Made, face: &Face) -> Option<(Border, She
 
 /// Makes the face, or takes it over from an earlier run.
 pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -> Result<Prepared> {
-    let (border, sheet, outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
+    let (border, sheet, mut outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
+    if face.halved > 0 && face.is_grown() {
+        rings::add_rings(made, face, &border, (&sheet, &mut outline));
+    }
     let key = known.map(|known| {
         let odd = if face.takes_quads() { quads::odd(made, face) } else { Vec::new() };
         (known, taken::key(known, made, face, (&border, &outline), (&odd, &near(made, face, &outline))))
@@ -108,7 +113,8 @@ fn grown(made: &Made, face: &Face, (border, sheet, outline): (Border, Sheet, Out
         Ok(fitted) => fitted,
         Err(trouble) => return Err(fault(made, face, &border, trouble)),
     };
-    let fixed = web.fixed as usize;
+    // Rings are fixed, but no part of the border.
+    let fixed = border.uv.len();
     // At a pole the chart has an edge that is a point in space.
     let node = |n: u32| border.ids.get(n as usize).copied();
     let flat = |t: &[u32; 3]| (0..3).any(|k| node(t[k]).is_some() && node(t[k]) == node(t[(k + 1) % 3]));
