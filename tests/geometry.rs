@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use lofting::base::origin::Origin;
+use lofting::geometry::fit::Fit;
 use lofting::geometry::{Curve, Ends, Kind, Spline, build};
 use serde_json::Value;
 
@@ -113,6 +114,12 @@ fn spline_with_given_tangents() {
         assert!(curve.point(number(&sample["t"])).distance(point(&sample["point"])) < 1e-12);
     }
     close(curve.length(), number(&fit["arc_length"]), 1e-12, "length");
+    let how = Fit { start: Some(tangents[0]), end: Some(tangents[1]), ..Fit::default() };
+    let met = lofting::geometry::fit::fit(&points(&fit["data"]), &how, Origin::NONE).unwrap();
+    let nurbs = met.to_nurbs(&lofting::base::tolerance::Tolerance::new(1e-6, 10.0)).unwrap();
+    for (i, expected) in poles.iter().enumerate() {
+        assert!(nurbs.pole(i).distance(*expected) < 1e-12, "pole {i} of a fit");
+    }
 }
 
 #[test]
@@ -696,6 +703,32 @@ mod mistakes {
         for degree in 2..5 {
             let ring = build::bspline(&five, degree, None, true, NONE).unwrap();
             assert!(ring.start().distance(ring.end()) < 1e-14 && ring.kinks(&Tolerance::new(1e-6, 1.0)).is_empty(), "{degree}");
+        }
+    }
+}
+
+/// Points of cubics with few spans are fitted by few spans, near all of them, forwards and backwards alike.
+#[test]
+fn fits_are_near_their_points_with_few_spans() {
+    let spans = |curve: &Curve| curve.knots().len() - 1;
+    let far = |curve: &Curve, points: &[DVec3]| points.iter().map(|p| lofting::geometry::closest(curve, *p).distance).fold(0.0, f64::max);
+    for (bends, most) in [(1, 2), (2, 5), (4, 11), (8, 22)] {
+        let turn = std::f64::consts::PI * f64::from(bends) / 120.0;
+        let points: Vec<DVec3> =
+            (0..=120).map(|i| DVec3::new(0.1 * f64::from(i), lofting::base::math::sin(turn * f64::from(i)), 0.0)).collect();
+        let backwards: Vec<DVec3> = points.iter().rev().copied().collect();
+        for tolerance in [0.1, 0.01] {
+            let how = Fit { tolerance: Some(tolerance), ..Fit::default() };
+            let curve = lofting::geometry::fit::fit(&points, &how, Origin::NONE).unwrap();
+            assert!(far(&curve, &points) <= tolerance * (1.0 + 1e-9), "{bends} {tolerance}: {}", far(&curve, &points));
+            assert!(curve.start().distance(points[0]) < 1e-12 && curve.end().distance(points[120]) < 1e-12);
+            assert!(spans(&curve) <= most, "{bends} bends, {tolerance}: {} spans", spans(&curve));
+            let other = lofting::geometry::fit::fit(&backwards, &how, Origin::NONE).unwrap();
+            assert!(far(&other, &points) <= tolerance * (1.0 + 1e-9) && spans(&other) <= most, "{bends} {tolerance}: {}", spans(&other));
+            let larger: Vec<DVec3> = points.iter().map(|p| *p * 1024.0).collect();
+            let how = Fit { tolerance: Some(tolerance * 1024.0), ..Fit::default() };
+            let large = lofting::geometry::fit::fit(&larger, &how, Origin::NONE).unwrap();
+            assert_eq!(spans(&large), spans(&curve));
         }
     }
 }

@@ -66,6 +66,8 @@ pub enum Kind {
     Project,
     /// Curve in which surfaces meet.
     Meet,
+    /// Curve through or near many points.
+    Fit,
 }
 
 impl Kind {
@@ -89,6 +91,7 @@ impl Kind {
             Self::Iso => "iso",
             Self::Project => "project",
             Self::Meet => "meet",
+            Self::Fit => "fit",
         }
     }
 }

@@ -37,19 +37,8 @@ pub fn grid(rows: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Resul
 
 /// The bicubic net of [`grid`], with derivatives across the border where they are given.
 pub fn fitted(rows: &[Vec<DVec3>], tangents: &Tangents, origin: Origin, tolerance: &Tolerance) -> Result<(NurbsSurface, Vec<Fault>)> {
-    let (nu, nv) = (rows.first().map_or(0, Vec::len), rows.len());
-    if nu < 2 || nv < 2 {
-        let (what, given) = ("each direction of a grid", nu.min(nv));
-        return Err(CurveFault::TooFewPoints { of: origin, what, argument: "points", needed: 2, given }.into());
-    }
-    if let Some(j) = rows.iter().position(|row| row.len() != nu) {
-        let (found, range) = (format!("{} in row {j}", rows[j].len()), format!("rows of {nu} points each, like the first one"));
-        return Err(ValueFault::OutsideRange { argument: "points", found, range }.into());
-    }
-    let columns: Vec<Vec<DVec3>> = (0..nu).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
-    let (spans_u, mut notes) = spans(rows, "row", origin, tolerance)?;
-    let (spans_v, more) = spans(&columns, "column", origin, tolerance)?;
-    notes.extend(more);
+    let ((spans_u, spans_v), notes) = mean_spans(rows, origin, tolerance)?;
+    let (nu, nv) = (rows[0].len(), rows.len());
 
     // First along u, row by row; the border derivatives in v travel as two more rows.
     let twist = |k: usize| tangents.across_u.is_some().then_some(tangents.twists[k]);
@@ -70,6 +59,24 @@ pub fn fitted(rows: &[Vec<DVec3>], tangents: &Tangents, origin: Origin, toleranc
     }
     let knots = (unit_knots(&spans_u), unit_knots(&spans_v));
     Ok((NurbsSurface { degree: (3, 3), knots, poles: net, counts: (mu, mv) }, notes))
+}
+
+/// Mean spans along u and along v of a grid; warnings too (W651). Fails as [`grid`] does.
+pub(super) fn mean_spans(rows: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Result<((Vec<f64>, Vec<f64>), Vec<Fault>)> {
+    let (nu, nv) = (rows.first().map_or(0, Vec::len), rows.len());
+    if nu < 2 || nv < 2 {
+        let (what, given) = ("each direction of a grid", nu.min(nv));
+        return Err(CurveFault::TooFewPoints { of: origin, what, argument: "points", needed: 2, given }.into());
+    }
+    if let Some(j) = rows.iter().position(|row| row.len() != nu) {
+        let (found, range) = (format!("{} in row {j}", rows[j].len()), format!("rows of {nu} points each, like the first one"));
+        return Err(ValueFault::OutsideRange { argument: "points", found, range }.into());
+    }
+    let columns: Vec<Vec<DVec3>> = (0..nu).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
+    let (spans_u, mut notes) = spans(rows, "row", origin, tolerance)?;
+    let (spans_v, more) = spans(&columns, "column", origin, tolerance)?;
+    notes.extend(more);
+    Ok(((spans_u, spans_v), notes))
 }
 
 /// Poles of the C2 cubic through points on given spans.

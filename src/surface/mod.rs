@@ -17,6 +17,7 @@ mod divide;
 mod extent;
 pub mod extrude;
 mod faces;
+pub mod fit;
 mod flow_words;
 mod foot;
 pub mod gordon;

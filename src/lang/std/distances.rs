@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::kinds::Faces;
+use super::kinds::CurveOrFaces;
 use super::vectors::{not_zero, together, vector};
 use crate::base::fault::ValueFault;
 use crate::base::math;
 use crate::base::par;
 use crate::builtins;
+use crate::geometry::closest;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Point, Vector};
@@ -150,9 +151,9 @@ builtins! {
         }))
     };
 
-    /// How far points are from a surface or shell.
+    /// How far points are from a curve, surface or shell.
     ///
-    /// A record: `distances` in order of the points, positive on the side of the normal, and of their sizes `max`, `mean`
+    /// A record: `distances` in order of the points, of faces positive on the side of the normal, and of their sizes `max`, `mean`
     /// and `rms`; `at` is the point that is farthest.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
@@ -161,8 +162,8 @@ builtins! {
     /// let worst = off.max // => 4mm
     /// ```
     fn deviation(
-        /// A surface or a shell.
-        from: Faces,
+        /// A curve, a surface or a shell.
+        from: CurveOrFaces,
         /// Points.
         points: Vec<Point>,
     ) -> Value = |cx, from, points| {
@@ -170,9 +171,15 @@ builtins! {
             let (found, range) = ("an empty list".to_owned(), "at least one point".to_owned());
             return Err(ValueFault::OutsideRange { argument: "points", found, range }.into());
         }
-        let surfaces: Vec<Nearest> = from.surfaces().iter().map(Nearest::new).collect();
+        let (surfaces, curve) = match &from {
+            CurveOrFaces::Faces(faces) => (faces.surfaces().iter().map(Nearest::new).collect::<Vec<Nearest>>(), None),
+            CurveOrFaces::Curve(chain) => (Vec::new(), Some(chain.to_curve()?)),
+        };
         let off = par::map(points.len(), |k| {
             let p = points[k].0;
+            if let Some(curve) = &curve {
+                return closest(curve, p).distance;
+            }
             let feet = surfaces.iter().map(|s| (s.at(p), s.surface()));
             let nearest = feet.reduce(|best, next| if next.0.distance < best.0.distance { next } else { best });
             nearest.map_or(0.0, |(foot, surface)| {

@@ -145,6 +145,25 @@ impl FromValue for Faces {
     }
 }
 
+/// A curve, or faces.
+#[derive(Clone, Debug)]
+pub enum CurveOrFaces {
+    /// A curve.
+    Curve(Chain),
+    /// Faces of surfaces and shells.
+    Faces(Faces),
+}
+
+impl FromValue for CurveOrFaces {
+    const TY: Ty = Ty::OneOf(&[Ty::Curve, Faces::TY]);
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Curve(chain) => Some(Self::Curve(chain)),
+            faces => Faces::from_value(faces).map(Self::Faces),
+        }
+    }
+}
+
 impl Faces {
     /// Those of one shell.
     pub fn of_shell(shell: Arc<ShellValue>) -> Self {

@@ -11,6 +11,7 @@ mod choosing;
 mod curves;
 mod data;
 mod distances;
+mod fits;
 pub(in crate::lang) mod imprint;
 mod joins;
 pub mod kinds;
@@ -95,6 +96,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     distances::BUILTINS,
     data::BUILTINS,
     curves::BUILTINS,
+    fits::BUILTINS,
     roundings::BUILTINS,
     network::BUILTINS,
     surfaces::BUILTINS,

@@ -148,7 +148,7 @@ fn by_centre(part: Surface, tolerance: &Tolerance) -> ([i64; 3], f64, Surface) {
     (sheet.centroid.to_array().map(whole), sheet.area, part)
 }
 
-fn rows(net: Vec<Vec<Point>>) -> Vec<Vec<DVec3>> {
+pub(super) fn rows(net: Vec<Vec<Point>>) -> Vec<Vec<DVec3>> {
     net.into_iter().map(|row| row.into_iter().map(|p| p.0).collect()).collect()
 }
 
