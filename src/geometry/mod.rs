@@ -33,4 +33,5 @@ pub use curve::{Curve, Jet, Kind};
 pub use intersect::{Hit, intersect, self_intersect};
 pub use motion::Motion;
 pub use nurbs::Nurbs;
+pub(crate) use offset_build::height_over;
 pub use spread::{Spread, spread};

@@ -157,6 +157,7 @@ codes! {
     now "E661", "loops-meet", "two holes of a face meet";
     now "E662", "hole-in-hole", "a hole lies inside another one";
     now "E663", "curve-given-twice", "one curve is given twice where each is wanted once";
+    now "W664", "offset-folds", "an offset folds over";
     now "E666", "imprint-overlap", "faces that are to be joined cover each other";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
     now "E672", "set-in-part", "a set would hold a part of a curve";

@@ -7,6 +7,7 @@ use glam::{DVec3, DVec4};
 
 use super::core::{Domain, Surface};
 use super::nurbs::NurbsSurface;
+use super::offset::beside;
 use super::rail::Lean;
 use super::revolve::Axis;
 use super::shape::Shape;
@@ -57,6 +58,13 @@ impl Surface {
     }
 }
 
+impl Surface {
+    /// A net within `tolerance.point` of the points at a distance along the normals of a smooth surface over a square.
+    pub(super) fn offset_net(&self, distance: f64, tolerance: &Tolerance) -> Result<NurbsSurface> {
+        Fit { beside: distance, ..Fit::new(self, tolerance) }.run()
+    }
+}
+
 fn swept(profile: &Chain, path: Path, tolerance: &Tolerance) -> Result<NurbsSurface> {
     let profile = profile.to_curve()?.to_nurbs(tolerance)?;
     Ok(match path {
@@ -81,6 +89,8 @@ struct Fit<'s> {
     tolerance: &'s Tolerance,
     us: Vec<f64>,
     vs: Vec<f64>,
+    /// How far beside the surface, along its normals.
+    beside: f64,
 }
 
 impl<'s> Fit<'s> {
@@ -89,11 +99,15 @@ impl<'s> Fit<'s> {
         let stops = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
         // A triangle is read over the square: its rows all run over 0…1.
         let us = if surface.domain() == Domain::Triangle { vec![0.0, 1.0] } else { stops(&us) };
-        Self { surface, tolerance, us, vs: stops(&vs) }
+        Self { surface, tolerance, us, vs: stops(&vs), beside: 0.0 }
     }
 
     /// Point, ∂u, ∂v and ∂uv over the square.
     fn jets(&self, us: &[At], vs: &[At]) -> Vec<Jet2> {
+        if self.beside != 0.0 {
+            let places = vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v)));
+            return places.map(|place| beside(self.surface, place, self.beside)).collect();
+        }
         if self.surface.domain() != Domain::Triangle {
             return self.surface.jets(us, vs);
         }

@@ -318,6 +318,17 @@ pub enum SurfaceFault {
         /// Where.
         at: DVec3,
     },
+    /// W664 `offset-folds`: an offset turns back over itself.
+    OffsetFolds {
+        /// The offset.
+        surface: Origin,
+        /// How far, model units.
+        distance: f64,
+        /// The largest distance to that side without a fold, as sampled.
+        largest: f64,
+        /// The place of the surface below that bends tightest.
+        at: DVec3,
+    },
     /// E655 `plane-not-flat`: boundary curves that lie in no one plane.
     PlaneNotFlat {
         /// The curve with the point farthest off.
@@ -543,6 +554,17 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*surface, "one parameter serves all rows")
         .help("resample the rows: `[for r in rows: spline(r).points(20)]`"),
+        F::OffsetFolds { surface, distance, largest, at } => {
+            let message = format!(
+                "{} folds over: at {} the surface bends with a radius of {}, less than the distance, {}",
+                say.quoted(*surface, "this offset"),
+                say.point(*at),
+                say.length(*largest),
+                say.length(distance.abs())
+            );
+            let most = say.length(largest.copysign(*distance));
+            Report::new("W664", message).at(*surface, "turns back there").help(format!("a distance of less than {most} does not fold"))
+        }
         F::PlaneNotFlat { curve, off, at, tolerance } => Report::new(
             "E655",
             format!(
@@ -730,6 +752,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::GeneratrixCrossesAxis { .. }
         | F::SweepDegenerate { .. }
         | F::GridUneven { .. }
+        | F::OffsetFolds { .. }
         | F::PlaneNotFlat { .. } => Report::new("E999", "a fault that another table has words for"),
     }
 }

@@ -27,6 +27,7 @@ mod text;
 mod topology;
 mod transforms;
 mod vectors;
+mod walls;
 
 /// A parameter of a function.
 #[derive(Debug)]
@@ -103,6 +104,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     sweeps::BUILTINS,
     transforms::BUILTINS,
     topology::BUILTINS,
+    walls::BUILTINS,
     imprint::BUILTINS,
     joins::BUILTINS,
     mesh::BUILTINS,
