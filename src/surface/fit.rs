@@ -6,7 +6,7 @@
 use glam::{DVec3, DVec4};
 
 use super::core::{Surface, SurfaceKind};
-use super::interpolate::{Tangents, fitted, mean_spans};
+use super::interpolate::{Spans, Tangents, fitted, mean_spans};
 use super::nurbs::NurbsSurface;
 use super::rail::Lean;
 use crate::base::fault::{Fault, Result};
@@ -27,7 +27,7 @@ pub fn fit(rows: &[Vec<DVec3>], within: Option<f64>, origin: Origin, tolerance: 
 }
 
 /// Derivatives across the border from parabolas through the three points next to it.
-fn parabolic(rows: &[Vec<DVec3>], spans: &(Vec<f64>, Vec<f64>)) -> Tangents {
+fn parabolic(rows: &[Vec<DVec3>], spans: &Spans) -> Tangents {
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<DVec3>>();
     let across_u: (Vec<DVec3>, Vec<DVec3>) = rows.iter().map(|row| (bessel(row, &spans.0), bessel_last(row, &spans.0))).unzip();
     let columns = (0..rows[0].len()).map(|i| (bessel(&column(i), &spans.1), bessel_last(&column(i), &spans.1)));
@@ -50,7 +50,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(rows: &'a [Vec<DVec3>], spans: &(Vec<f64>, Vec<f64>), within: f64) -> Self {
+    fn new(rows: &'a [Vec<DVec3>], spans: &Spans, within: f64) -> Self {
         let columns = (0..rows[0].len()).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
         let shares = |spans: &[f64]| {
             let total: f64 = spans.iter().sum();

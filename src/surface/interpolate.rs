@@ -61,8 +61,11 @@ pub fn fitted(rows: &[Vec<DVec3>], tangents: &Tangents, origin: Origin, toleranc
     Ok((NurbsSurface { degree: (3, 3), knots, poles: net, counts: (mu, mv) }, notes))
 }
 
+/// Spans along u and along v.
+pub(super) type Spans = (Vec<f64>, Vec<f64>);
+
 /// Mean spans along u and along v of a grid; warnings too (W651). Fails as [`grid`] does.
-pub(super) fn mean_spans(rows: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Result<((Vec<f64>, Vec<f64>), Vec<Fault>)> {
+pub(super) fn mean_spans(rows: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Result<(Spans, Vec<Fault>)> {
     let (nu, nv) = (rows.first().map_or(0, Vec::len), rows.len());
     if nu < 2 || nv < 2 {
         let (what, given) = ("each direction of a grid", nu.min(nv));
