@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::Jet2;
+use super::breaks::{chain_breaks, tidy};
 use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend};
 use super::quick::Quick;
@@ -69,6 +70,10 @@ const BEHIND: f64 = 2.0;
 const LEAST: usize = 24;
 /// Samples in a cell between breaks, at the least.
 const EACH: usize = 4;
+/// Samples of a surface between its breaks, at the most.
+const MOST: usize = 1 << 18;
+/// Even cells along each direction of a surface with three sides, at the most.
+const CELLS: f64 = 127.0;
 /// Samples of a border that no curve carries.
 const BORDER: usize = 64;
 /// Local minima tried.
@@ -87,8 +92,7 @@ impl Nearest {
     }
 
     fn sample(&mut self) {
-        let (us, vs) = self.whole.cells();
-        (self.xs, self.ys) = (stations(&us), stations(&vs));
+        (self.xs, self.ys) = self.stations();
         self.quick = self.whole.quick();
         self.points = self.whole.square_jets(&self.xs, &self.ys).iter().map(|jet| jet.p).collect();
         let (nx, ny) = (self.xs.len(), self.ys.len());
@@ -104,6 +108,31 @@ impl Nearest {
                 self.blocks.push(block);
             }
         }
+    }
+
+    /// Where the surface is sampled: in each cell between its breaks, for a smooth curve may be sharply bent between two of its
+    /// knots; where both directions have very many, in the cells of its shape alone.
+    fn stations(&self) -> (Vec<f64>, Vec<f64>) {
+        let (us, vs) = self.whole.cells();
+        let (mut xs, mut ys) = self.whole.breaks();
+        if self.whole.domain() == Domain::Triangle {
+            // Lines of constant u or v are none of the square there: even cells no wider than the narrowest between breaks.
+            let gaps = |k: usize| match self.whole.side(k) {
+                Side::Chain { chain, .. } => {
+                    let stops = [vec![0.0], chain_breaks(&chain), vec![1.0]].concat();
+                    stops.windows(2).map(|w| w[1] - w[0]).fold(1.0, f64::min)
+                }
+                _ => 1.0,
+            };
+            let narrowest = (0..self.whole.n_sides()).map(gaps).fold(1.0, f64::min);
+            let cells = (1.0 / narrowest).ceil().min(CELLS) as usize;
+            xs = (1..cells).map(|k| k as f64 / cells as f64).collect();
+            ys.clone_from(&xs);
+        }
+        xs.extend(&us);
+        ys.extend(&vs);
+        let (xs, ys) = (stations(&tidy(xs, EPSILON)), stations(&tidy(ys, EPSILON)));
+        if xs.len().saturating_mul(ys.len()) <= MOST { (xs, ys) } else { (stations(&us), stations(&vs)) }
     }
 
     /// Point and derivatives at a place of the unit square.
