@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::loops::Loop;
+use super::nearest::down;
 use super::shells::Joins;
 use super::topology::{EdgeId, Model, Patch, PatchId, SurfaceId};
 use crate::base::math::angle_between;
@@ -103,7 +104,8 @@ impl Border<'_> {
 
 impl Model {
     /// Stretches that faces of some surfaces share; those of which `wanted` says so, told both faces and edges. Borders up to
-    /// `near` apart are shared. They come by the first of their faces, in the order of the list, then along its border.
+    /// `near` apart are shared. They come by the first of their faces, in the order of the list, then along its border; where
+    /// more than two faces meet, each two of them have one.
     pub fn contacts(
         &self,
         (members, near): (&[SurfaceId], f64),
@@ -128,7 +130,7 @@ impl Model {
         self.across(members, (&edges, &joins), one)
     }
 
-    /// What is found of each stretch that two faces share, given by their borders and its number, in the order of [`borders_in_order`].
+    /// What is found of each stretch that two faces share, given by their borders and its number, in the order of [`pairs_in_order`].
     fn across<T: Send>(
         &self,
         members: &[SurfaceId],
@@ -138,10 +140,10 @@ impl Model {
         let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
         let borders = self.borders((&faces, &loops), (edges, joins));
-        let order = borders_in_order(&borders);
-        let found = par::map(order.len(), |n| match borders[order[n]].as_slice() {
-            [a, b] => one(a, b, order[n]),
-            _ => None,
+        let pairs = pairs_in_order(&borders);
+        let found = par::map(pairs.len(), |n| {
+            let (atom, a, b) = pairs[n];
+            one(&borders[atom][a], &borders[atom][b], atom)
         });
         found.into_iter().flatten().collect()
     }
@@ -196,10 +198,14 @@ pub struct Turn {
     pub turn: f64,
 }
 
-/// Atoms with two borders: by the first one's face, then along its border.
-fn borders_in_order(borders: &[Vec<Border>]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..borders.len()).filter(|atom| borders[*atom].len() == 2).collect();
-    let key = |atom: &usize| (borders[*atom][0].rank, borders[*atom][0].piece, borders[*atom][0].station(0.5));
+/// Each two borders on one atom, with the atom: by the first one's face, then along its border.
+fn pairs_in_order(borders: &[Vec<Border>]) -> Vec<(usize, usize, usize)> {
+    let of_atom = |atom: usize| {
+        let count = borders[atom].len();
+        (0..count).flat_map(move |a| (a + 1..count).map(move |b| (atom, a, b)))
+    };
+    let mut order: Vec<(usize, usize, usize)> = (0..borders.len()).flat_map(of_atom).collect();
+    let key = |(atom, a, _): &(usize, usize, usize)| (borders[*atom][*a].rank, borders[*atom][*a].piece, borders[*atom][*a].station(0.5));
     order.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
@@ -266,19 +272,13 @@ impl Model {
 /// A place on a border by its arc length: (u, v), point and unit tangent.
 type Place = ((f64, f64), DVec3, DVec3);
 
-/// Arc length and distance of the point of a border nearest to a point, near a place, by projection on the tangent.
-fn foot(jet: impl Fn(f64) -> Place, p: DVec3, near: f64, (low, high): (f64, f64)) -> (f64, f64) {
-    let (mut best, mut s) = ((near, f64::INFINITY), near);
-    for _ in 0..ROUNDS {
+/// Arc length and distance of the point of a border nearest to a point, near a place.
+fn foot(jet: impl Fn(f64) -> Place, p: DVec3, near: f64, range: (f64, f64)) -> (f64, f64) {
+    let jet = |s: f64| {
         let (_, q, tangent) = jet(s);
-        let distance = q.distance(p);
-        if distance >= best.1 {
-            break;
-        }
-        best = (s, distance);
-        s = (s + (p - q).dot(tangent)).clamp(low, high);
-    }
-    best
+        (q, tangent)
+    };
+    down(&jet, p, near, range)
 }
 
 /// Walks the stretch that two borders share.

@@ -16,18 +16,7 @@ const ROUNDS: u32 = 20;
 /// nearer than half of what their distances are more than the way between them: what may hold a nearer one is halved.
 pub fn nearest(jet: impl Fn(f64) -> (DVec3, DVec3), (from, to): (f64, f64), p: DVec3) -> (f64, f64) {
     let at = |s: f64| (s, jet(s).0.distance(p));
-    let projected = |start: (f64, f64)| {
-        let mut best = start;
-        for _ in 0..ROUNDS {
-            let (point, tangent) = jet(best.0);
-            let next = at((best.0 + (p - point).dot(tangent)).clamp(from, to));
-            if next.1 >= best.1 {
-                break;
-            }
-            best = next;
-        }
-        best
-    };
+    let projected = |start: (f64, f64)| down(&jet, p, start.0, (from, to));
     let places: Vec<(f64, f64)> = (0..=STRETCHES).map(|k| from + (to - from) * f64::from(k) / f64::from(STRETCHES)).map(at).collect();
     let mut best = places.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).map_or((from, f64::INFINITY), projected);
     let mut open: Vec<((f64, f64), (f64, f64))> = places.windows(2).map(|w| (w[0], w[1])).collect();
@@ -41,6 +30,21 @@ pub fn nearest(jet: impl Fn(f64) -> (DVec3, DVec3), (from, to): (f64, f64), p: D
             best = projected(middle);
         }
         open.extend([(a, middle), (middle, b)]);
+    }
+    best
+}
+
+/// Arc length and distance of a place nearer to a point than a given one, by projection on the tangent as long as that helps.
+pub fn down(jet: &impl Fn(f64) -> (DVec3, DVec3), p: DVec3, start: f64, (from, to): (f64, f64)) -> (f64, f64) {
+    let (mut best, mut s) = ((start, f64::INFINITY), start);
+    for _ in 0..ROUNDS {
+        let (point, tangent) = jet(s);
+        let distance = point.distance(p);
+        if distance >= best.1 {
+            break;
+        }
+        best = (s, distance);
+        s = (s + (p - point).dot(tangent)).clamp(from, to);
     }
     best
 }

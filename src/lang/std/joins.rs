@@ -93,7 +93,8 @@ builtins! {
     /// One record for each stretch that they share: by the faces of the first list, then along the border of each. `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
     /// 0 to 90 degrees whatever their sides; of each the least, the largest, the mean and the place of the largest. They are
     /// taken at 200 or more equally spaced points and refined round the extremes. `c0` says that the gap stays within
-    /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are told.
+    /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are told. Where more
+    /// than two faces meet, each two of them have a record.
     /// Of a shell these are its edges between two faces, glued as the shell glues them. Faces that share no edge are E618;
     /// `within:` takes borders that are so far apart for shared ones.
     /// ```loft
@@ -141,11 +142,12 @@ builtins! {
 fields! {
     /// How far the borders of the faces at an edge are apart at most.
     ///
-    /// `none` where only one face is.
+    /// `none` where only one face is; where more than two meet it is the largest of each two.
     fn gap(of: EdgeOf) -> Option<Length> = |cx, of| Ok(along(cx, &of)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length));
     /// Largest angle between the normals of the faces at an edge.
     ///
-    /// From 0 to 90 degrees, whatever their sides; `none` where only one face is.
+    /// From 0 to 90 degrees, whatever their sides; `none` where only one face is, and where more than two meet the largest of
+    /// each two.
     fn angle(of: EdgeOf) -> Option<Angle> = |cx, of| {
         Ok(along(cx, &of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
     };

@@ -1,5 +1,6 @@
 //! Patches, edges, vertices and loops of surfaces and shells, and places on surfaces.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -181,7 +182,8 @@ builtins! {
     /// Edges at which the faces of surfaces or shells turn by more than an angle.
     ///
     /// It is the angle between the normals of the two faces on one side, 0 where they go on smoothly, 180 degrees where they
-    /// fold back; the largest along the edge counts, at 200 or more places. Free edges are none (`.rims`).
+    /// fold back; the largest along the edge counts, at 200 or more places, and of more than two faces the largest of each two.
+    /// Free edges are none (`.rims`).
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
@@ -359,15 +361,9 @@ fields! {
     fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| Ok(skin(cx, &Faces::of_shell(of))?.0);
     /// The vertices of a shell: the ends of its edges.
     fn vertices(of: Arc<ShellValue>) -> Vec<VertexOf> = |cx, of| {
-        let mut found: Vec<VertexOf> = Vec::new();
-        for edge in skin(cx, &Faces::of_shell(of))?.0 {
-            for vertex in [edge.1.ends.0, edge.1.ends.1] {
-                if found.iter().all(|v| v.1 != vertex) {
-                    found.push(VertexOf(edge.0.clone(), vertex));
-                }
-            }
-        }
-        Ok(found)
+        let (edges, mut seen) = (skin(cx, &Faces::of_shell(of))?.0, BTreeSet::new());
+        let ends = edges.iter().flat_map(|edge| [edge.1.ends.0, edge.1.ends.1].map(|vertex| VertexOf(edge.0.clone(), vertex)));
+        Ok(ends.filter(|vertex| seen.insert(vertex.1)).collect())
     };
     /// For each face of a shell the edges around it, in order.
     fn loops(of: Arc<ShellValue>) -> Vec<Vec<EdgeOf>> = |cx, of| {
