@@ -5,6 +5,7 @@
 //! comment above each says its name. Thickness, area and material are not ours: the properties name material 1 and
 //! leave the rest to the analyst; one that may not be left open is a comment with its number.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::blocks::write_records;
@@ -138,22 +139,23 @@ struct Property {
 /// One property per surface and curve and kind of card, in order of their elements.
 fn properties(deck: &Deck, groups: &[String], names: &mut Names) -> Vec<Property> {
     let mesh = deck.mesh;
+    let of_group: BTreeMap<&str, &String> = mesh.groups.iter().rev().map(|group| group.name.as_str()).zip(groups.iter().rev()).collect();
+    let mut known: BTreeMap<Option<String>, (String, Vec<&str>)> = BTreeMap::new();
     let mut properties: Vec<Property> = Vec::new();
     for kind in KINDS {
         let (card, _) = property_of(card(deck, kind));
         for run in runs(mesh, kind) {
-            if properties.iter().any(|known| known.card == card && known.of == run.name) {
-                continue;
-            }
-            let known = properties.iter().find(|known| known.of == run.name).map(|known| known.name.clone());
-            let name = known.unwrap_or_else(|| match &run.name {
-                None => "elements of no surface".to_owned(),
-                Some(name) => match mesh.groups.iter().position(|group| group.name == *name) {
-                    Some(g) => groups[g].clone(),
-                    None => names.give(name),
-                },
+            let (name, cards) = known.entry(run.name.clone()).or_insert_with(|| {
+                let name = match &run.name {
+                    None => "elements of no surface".to_owned(),
+                    Some(name) => of_group.get(name.as_str()).map_or_else(|| names.give(name), |group| (*group).clone()),
+                };
+                (name, Vec::new())
             });
-            properties.push(Property { of: run.name, card, name });
+            if !cards.contains(&card) {
+                cards.push(card);
+                properties.push(Property { of: run.name, card, name: name.clone() });
+            }
         }
     }
     properties
@@ -168,13 +170,15 @@ fn write_properties(deck: &Deck, properties: &[Property], out: &mut dyn Write) -
             false => writeln!(out, "$ {card} {number}: {name}\n{card:8}{number:<8}1")?,
         }
     }
+    let places: BTreeMap<(&str, Option<&str>), usize> =
+        properties.iter().enumerate().map(|(k, known)| ((known.card, known.of.as_deref()), k)).collect();
     let mut sections = Vec::new();
     for kind in KINDS {
         let card = card(deck, kind);
         for run in runs(deck.mesh, kind) {
-            let of = properties.iter().position(|known| known.card == property_of(card).0 && known.of == run.name);
+            let of = places.get(&(property_of(card).0, run.name.as_deref()));
             let upright = matches!(card, "CBAR" | "CBEAM" | "CBEAM3").then(|| upright(deck.mesh, run.elements.clone()));
-            sections.push(Section { kind, card, property: of.unwrap_or(0) as u64 + 1, upright, elements: run.elements });
+            sections.push(Section { kind, card, property: of.map_or(0, |k| *k) as u64 + 1, upright, elements: run.elements });
         }
     }
     Ok(sections)

@@ -34,8 +34,10 @@ const LONGEST: usize = 80;
 pub fn sets(mesh: &Mesh, naming: Naming) -> (Vec<Set<'_>>, Vec<Loss>) {
     let mut names = Names::of_mesh(naming, mesh);
     let mut sets: Vec<Set> = mesh.groups.iter().map(|group| Set { name: names.give(&group.name), group: Cow::Borrowed(group) }).collect();
+    let mut ranges: BTreeMap<&str, Vec<&FaceRange>> = BTreeMap::new();
+    mesh.faces.iter().for_each(|face| ranges.entry(&face.name).or_default().push(face));
     for name in own_names(mesh) {
-        let group = of_ranges(mesh, name);
+        let group = of_ranges(mesh, name, ranges.remove(name).unwrap_or_default());
         sets.push(Set { name: names.give(name), group: Cow::Owned(group) });
     }
     (sets, names.losses)
@@ -43,20 +45,15 @@ pub fn sets(mesh: &Mesh, naming: Naming) -> (Vec<Set<'_>>, Vec<Loss>) {
 
 /// Names of ranges that no group has, in order.
 fn own_names(mesh: &Mesh) -> Vec<&str> {
-    let mut own: Vec<&str> = Vec::new();
-    for face in &mesh.faces {
-        if !own.contains(&face.name.as_str()) && !mesh.groups.iter().any(|group| group.name == face.name) {
-            own.push(&face.name);
-        }
-    }
-    own
+    let mut known: BTreeSet<&str> = mesh.groups.iter().map(|group| group.name.as_str()).collect();
+    mesh.faces.iter().map(|face| face.name.as_str()).filter(|name| known.insert(name)).collect()
 }
 
-/// The set of the ranges of a name.
-fn of_ranges(mesh: &Mesh, name: &str) -> Group {
+/// The set of ranges that have one name.
+fn of_ranges<'a>(mesh: &Mesh, name: &str, faces: impl IntoIterator<Item = &'a FaceRange>) -> Group {
     let mut group = Group { name: name.to_owned(), ..Group::default() };
     let mut nodes = BTreeSet::new();
-    for face in mesh.faces.iter().filter(|face| face.name == name) {
+    for face in faces {
         group.lines.extend(face.lines.clone());
         group.triangles.extend(face.triangles.clone());
         group.quads.extend(face.quads.clone());

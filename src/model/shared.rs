@@ -1,6 +1,6 @@
 //! Edges as faces share them: a whole edge of the model, or what became one edge where the faces of a shell were glued.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
@@ -106,16 +106,21 @@ pub struct SharedEdges {
 impl SharedEdges {
     /// Free edges in loops, each loop from its first edge on; what does not close stands as it is.
     pub fn rims(&self) -> Vec<Vec<usize>> {
-        let mut free: Vec<usize> = (0..self.edges.len()).filter(|k| self.edges[*k].faces.len() == 1).collect();
+        let mut free: BTreeSet<usize> = (0..self.edges.len()).filter(|k| self.edges[*k].faces.len() == 1).collect();
+        let mut touching: BTreeMap<VertexId, BTreeSet<usize>> = BTreeMap::new();
+        for k in &free {
+            let ends = self.edges[*k].ends;
+            [ends.0, ends.1].into_iter().for_each(|end| _ = touching.entry(end).or_default().insert(*k));
+        }
         let mut loops = Vec::new();
-        while !free.is_empty() {
-            let first = free.remove(0);
+        while let Some(first) = free.pop_first() {
             let (start, mut at) = self.edges[first].ends;
             let mut around = vec![first];
             while at != start {
-                let touches = |k: &usize| self.edges[*k].ends.0 == at || self.edges[*k].ends.1 == at;
-                let Some(place) = free.iter().position(touches) else { break };
-                let next = free.remove(place);
+                let Some(here) = touching.get_mut(&at) else { break };
+                here.retain(|k| free.contains(k));
+                let Some(next) = here.pop_first() else { break };
+                free.remove(&next);
                 let ends = self.edges[next].ends;
                 at = if ends.0 == at { ends.1 } else { ends.0 };
                 around.push(next);

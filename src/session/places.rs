@@ -1,6 +1,6 @@
 //! Where outputs stand: each in a file of its own, and none over a file that the script reads.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::disk::{Disk, same_file};
@@ -16,10 +16,12 @@ pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) -> BTreeSet<String>
     let pictures = cx.pictures().into_iter().map(|spec| (spec.path_origin, spec.path));
     let outputs: Vec<(Origin, String)> = exports.chain(pictures).collect();
     let mut files: Vec<(String, Vec<(Origin, String)>)> = Vec::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for (of, path) in outputs {
         // What may not be written at all is told when it is tried.
         let Some(file) = disk.file_of(&path) else { continue };
-        match files.iter_mut().find(|known| known.0 == file) {
+        let place = *known.entry(file.clone()).or_insert(files.len());
+        match files.get_mut(place) {
             Some((_, same)) => same.push((of, path)),
             None => files.push((file, vec![(of, path)])),
         }
@@ -47,12 +49,9 @@ pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) -> BTreeSet<String>
 /// The fault for outputs that are one file: of a family when one place of the script says all of them.
 fn several(cx: &Cx, same: Vec<(Origin, String)>) -> FileFault {
     let count = same.len();
-    let mut outputs: Vec<(Origin, String)> = Vec::new();
-    for (of, path) in same {
-        if !outputs.iter().any(|(known, _)| cx.span_of(*known) == cx.span_of(of)) {
-            outputs.push((of, path));
-        }
-    }
+    let mut places = BTreeSet::new();
+    let mut outputs = same;
+    outputs.retain(|(of, _)| places.insert(cx.span_of(*of)));
     let members = (outputs.len() == 1).then_some(count);
     FileFault::SameFile { outputs, members }
 }
