@@ -7,7 +7,7 @@ use super::shells::ShellRequest;
 use super::sides::Component;
 use super::topology::{Model, SurfaceId};
 use crate::base::bbox::Box3;
-use crate::base::fault::{CutFault, Fault, SurfaceFault, Touching};
+use crate::base::fault::{CurveFault, CutFault, Fault, Result, SurfaceFault, Touching};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -18,6 +18,8 @@ use crate::surface::meet::{with_curve, with_surfaces};
 
 /// Points of a skin that are tried before it counts as not inside another one: those on that one do not tell.
 const POINTS: usize = 16;
+/// Where on the border of a face they are, as shares of its length.
+const PLACES: [f64; 4] = [0.37, 0.71, 0.13, 0.89];
 /// Directions, along no axis or diagonal, in which a point is looked from until two of them agree.
 const WAYS: [DVec3; 6] = [
     DVec3::new(0.531, 0.617, 0.581),
@@ -34,30 +36,51 @@ const APART: f64 = 16.0;
 
 impl Model {
     /// Turns closed components so that they point out of the material. One that encloses nothing keeps its sides.
-    pub(super) fn turn_outwards(&self, components: &mut [Component], tolerance: &Tolerance) {
+    ///
+    /// Fails with E413 where it cannot be told whether one skin lies inside another one.
+    pub(super) fn turn_outwards(&self, components: &mut [Component], tolerance: &Tolerance) -> Result<()> {
         let mut skins: Vec<Skin> = components.iter().map(|c| self.skin(c)).collect();
         for skin in &mut skins {
             if measure::points_inwards(&skin.faces) == Some(true) {
                 skin.turn();
             }
         }
-        let depths: Vec<usize> =
-            (0..skins.len()).map(|k| (0..skins.len()).filter(|j| *j != k && skins[*j].holds(&skins[k], tolerance)).count()).collect();
-        for ((skin, component), depth) in skins.iter().zip(components).zip(depths) {
-            let inwards = depth % 2 == 1;
+        for (k, (skin, component)) in skins.iter().zip(components).enumerate() {
+            let mut inwards = false;
+            for (_, other) in skins.iter().enumerate().filter(|(j, _)| *j != k) {
+                inwards ^= other.holds(skin, tolerance)?;
+            }
             component.faces.iter_mut().zip(&skin.faces).for_each(|(face, (_, other))| face.1 = *other != inwards);
         }
+        Ok(())
     }
 
     /// W667 for each two skins of a shell that touch, cross or lie on each other.
-    pub(super) fn tell_touching(&self, request: &ShellRequest, skins: &[Component], tolerance: &Tolerance, sink: &mut Vec<Fault>) {
+    ///
+    /// Fails with E413 where that cannot be told of any two of their faces.
+    pub(super) fn tell_touching(
+        &self,
+        request: &ShellRequest,
+        skins: &[Component],
+        tolerance: &Tolerance,
+        sink: &mut Vec<Fault>,
+    ) -> Result<()> {
         let surface = |id: SurfaceId| &self.surfaces[id.index()].surface;
         for (k, skin) in skins.iter().enumerate() {
             for other in &skins[k + 1..] {
                 let pairs = skin.faces.iter().flat_map(|(a, _)| other.faces.iter().map(move |(b, _)| (*a, *b)));
                 let near = |(a, b): &(SurfaceId, SurfaceId)| surface(*a).hull().touches(&surface(*b).hull(), tolerance.point);
-                let found = pairs.filter(near).filter_map(|(a, b)| Some((a, b, touching(surface(a), surface(b), tolerance)?)));
-                let found: Vec<_> = found.collect();
+                let (mut found, mut lost) = (Vec::new(), None);
+                for (a, b) in pairs.filter(near) {
+                    match touching(surface(a), surface(b), tolerance) {
+                        Ok(how) => found.extend(how.map(|how| (a, b, how))),
+                        Err(fault) => lost = lost.or(Some(fault)),
+                    }
+                }
+                // That they touch is known where any two of their faces tell it.
+                if let (true, Some(fault)) = (found.is_empty(), lost) {
+                    return Err(fault);
+                }
                 // That they cover each other says more than that they cross.
                 let covers = found.iter().position(|(_, _, (how, _))| *how == Touching::Overlap);
                 if let Some(&(a, b, (how, at))) = found.get(covers.unwrap_or(0)) {
@@ -67,6 +90,7 @@ impl Model {
                 }
             }
         }
+        Ok(())
     }
 
     fn skin(&self, component: &Component) -> Skin {
@@ -74,20 +98,27 @@ impl Model {
         let faces: Vec<(Surface, bool)> = component.faces.iter().map(|(id, other)| (surface(*id), *other)).collect();
         let hull = faces.iter().fold(Box3::EMPTY, |all, (s, _)| all.union(s.hull()));
         let patches: Vec<_> = component.faces.iter().flat_map(|(id, _)| self.patches_of(*id)).collect();
-        let points = patches.iter().map(|p| self.loop_of(*p).at(0.37).1).take(POINTS).collect();
+        let loops: Vec<_> = patches.iter().take(POINTS).map(|p| self.loop_of(*p)).collect();
+        // A few faces are looked at in several places each.
+        let points = PLACES.iter().flat_map(|f| loops.iter().map(|around| around.at(*f).1)).take(POINTS).collect();
         Skin { faces, hull, points }
     }
 }
 
 /// How two faces touch that share no edge, and where.
-fn touching(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Option<(Touching, DVec3)> {
-    match with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), Origin::NONE, tolerance) {
-        Ok(common) => common.curves.first().map(|c| (Touching::Meeting, c.point(0.5))),
+///
+/// Fails with E413 when what they have in common was not found.
+fn touching(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Option<(Touching, DVec3)>> {
+    match with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), a.origin(), tolerance) {
+        Ok(common) => {
+            let at = common.curves.first().map(|c| c.point(0.5)).or(common.touches.first().copied());
+            Ok(at.map(|at| (Touching::Meeting, at)))
+        }
         Err(Fault::Cut(fault)) => match *fault {
-            CutFault::RunAlong { at, .. } => Some((Touching::Overlap, at)),
-            _ => None,
+            CutFault::RunAlong { at, .. } => Ok(Some((Touching::Overlap, at))),
+            other => Err(other.into()),
         },
-        Err(_) => None,
+        Err(fault) => Err(fault),
     }
 }
 
@@ -104,13 +135,19 @@ impl Skin {
         self.faces.iter_mut().for_each(|(_, other)| *other = !*other);
     }
 
-    /// Whether another skin, which does not cross this one, lies inside this one, which points outwards.
-    fn holds(&self, other: &Self, tolerance: &Tolerance) -> bool {
+    /// Whether another skin, which does not cross this one, lies inside this one, which points outwards; E413 where no point of
+    /// it tells.
+    fn holds(&self, other: &Self, tolerance: &Tolerance) -> Result<bool> {
         // A skin inside this one has no point outside its box.
         if !other.points.iter().all(|p| self.hull.distance_squared(*p) == 0.0) {
-            return false;
+            return Ok(false);
         }
-        other.points.iter().find_map(|p| self.has_inside(*p, tolerance)).unwrap_or(false)
+        let inside = other.points.iter().find_map(|p| self.has_inside(*p, tolerance));
+        inside.ok_or_else(|| {
+            let of = other.faces.first().map_or(Origin::NONE, |(face, _)| face.origin());
+            let at = other.points.first().copied().unwrap_or_default();
+            CurveFault::NotConverged { of, what: "on which side of another closed skin this one lies".to_owned(), at }.into()
+        })
     }
 
     /// Whether a point lies inside: two lines from it agree. `None` where it lies on the skin or too few lines cross it cleanly.

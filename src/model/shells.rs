@@ -141,13 +141,13 @@ impl Model {
                     return Err(self.not_connected(first, apart));
                 }
                 if !request.branches {
-                    self.tell_touching(request, &components, tolerance, sink);
+                    self.tell_touching(request, &components, tolerance, sink)?;
                 }
                 let (mut closed, open): (Vec<Component>, Vec<_>) = components.into_iter().partition(|c| c.closed);
-                self.turn_outwards(&mut closed, tolerance);
+                self.turn_outwards(&mut closed, tolerance)?;
                 components = closed.into_iter().chain(open).collect();
             }
-            [only] if only.closed => self.turn_outwards(&mut components, tolerance),
+            [only] if only.closed => self.turn_outwards(&mut components, tolerance)?,
             _ => {}
         }
         // What became an edge has no side.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::atoms::Atoms;
 use super::glue::root;
 use super::topology::{EdgeId, Model, PatchId, SurfaceId};
+use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 
@@ -104,7 +105,15 @@ fn spread(first: SurfaceId, neighbours: &[Vec<(SurfaceId, bool, usize)>], sides:
 impl Model {
     /// Faces of a list with the sides that they show together: those that close to a skin point out of what they enclose, out of
     /// the material where one skin lies inside another; all others stay as they are. Borders up to `near` apart are one edge.
-    pub fn outward(&self, listed: &[(SurfaceId, bool)], near: f64, network: &Network, tolerance: &Tolerance) -> Vec<(SurfaceId, bool)> {
+    ///
+    /// Fails with E413 where it cannot be told whether one skin lies inside another one.
+    pub fn outward(
+        &self,
+        listed: &[(SurfaceId, bool)],
+        near: f64,
+        network: &Network,
+        tolerance: &Tolerance,
+    ) -> Result<Vec<(SurfaceId, bool)>> {
         let members = listed.iter().map(|s| s.0).collect();
         let (edges, joins) = self.joins(&members, near, network, tolerance);
         let slivers = self.slivers(&members, (&edges, &joins.pieces), near);
@@ -112,8 +121,8 @@ impl Model {
         let whole: Vec<SurfaceId> = members.iter().copied().filter(|s| !self.is_thin(*s, &slivers)).collect();
         let mut components = components(&whole, &usages);
         components.retain(|c| c.closed && c.one_sided.is_none());
-        self.turn_outwards(&mut components, tolerance);
+        self.turn_outwards(&mut components, tolerance)?;
         let sides: BTreeMap<SurfaceId, bool> = components.into_iter().flat_map(|c| c.faces).collect();
-        listed.iter().map(|(surface, own)| (*surface, sides.get(surface).copied().unwrap_or(*own))).collect()
+        Ok(listed.iter().map(|(surface, own)| (*surface, sides.get(surface).copied().unwrap_or(*own))).collect())
     }
 }

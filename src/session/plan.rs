@@ -54,7 +54,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
     let near = scene.model.reach(alone.iter().copied(), None, &tolerance);
     plan.glue.extend(alone.into_iter().map(|s| (s, near)));
-    finder.turn(&mut plan, &faces, near, spec, sink);
+    finder.turn(&mut plan, &faces, near, spec, sink)?;
     settings(&mut plan, spec);
     for rule in &spec.rules {
         let first = plan.rules.len();
@@ -176,12 +176,12 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 
 impl Finder<'_> {
     /// Gives faces that are of no closed shell the sides of the shell that they would make, and turns all where that is asked.
-    fn turn(&self, plan: &mut Plan, faces: &Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) {
+    fn turn(&self, plan: &mut Plan, faces: &Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(), Stop> {
         let mut loose = faces.loose.clone();
         loose.retain(|(s, _)| !faces.closed.contains(s));
         let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
         let sides: BTreeMap<SurfaceId, bool> =
-            self.scene.model.outward(&loose, near, &self.scene.network, &self.tolerance).into_iter().collect();
+            self.scene.model.outward(&loose, near, &self.scene.network, &self.tolerance)?.into_iter().collect();
         let flip = spec.flip.filter(|said| said.0);
         for (surface, other) in &mut plan.surfaces {
             *other = sides.get(surface).copied().unwrap_or(*other) != flip.is_some();
@@ -189,6 +189,7 @@ impl Finder<'_> {
         if let (Some((_, rule)), true) = (flip, plan.surfaces.is_empty()) {
             sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
         }
+        Ok(())
     }
 
     /// Adds a thing of the `of` list.
