@@ -536,3 +536,41 @@ fn skins_of_a_shell_that_touch_are_told() {
         assert!(said.len() == 1 && said[0].starts_with("`a_w` and `b_"), "{near:?}: {said:?}");
     }
 }
+
+#[test]
+fn skins_that_touch_in_a_point_are_told() {
+    let text = |at: f64| {
+        let ball = "let ball = revolve(arc((0, 0, -1), (0, 0, 1), through: (1, 0, 0)))";
+        format!("units m\n{ball}\nsurface a = move(ball, by: (3, 0, 0))\nsurface b = move(ball, by: ({at}, 0, 0))\nshell s of a, b\n")
+    };
+    for (at, wanted) in [(5.0, 1), (5.01, 0), (4.9, 1)] {
+        let outcome = run("point", &text(at));
+        assert_eq!(outcome.diagnostics.iter().filter(|d| d.code.0 == "W667").count(), wanted, "{at}");
+    }
+}
+
+/// Surfaces that one expression makes, or that have no short name, have sets of their own, in the mesh and by its faces.
+#[test]
+fn sets_of_different_surfaces_stay_apart() {
+    let text = "units m
+surface a = plane(polyline([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], closed: true))
+mesh two of [for k in 1..3: move(a, by: (2 * k, 0, 0))] { size: 500mm }
+mesh lines of move(a,
+  by: (2, 0, 0)), move(a,
+  by: (4, 0, 0)) { size: 500mm }
+mesh parts of split(a, by: line((0, 0.5, 0), (1, 0.5, 0))) { size: 500mm }
+";
+    let outcome = run("apart", text);
+    let mesh = |name: &str| &outcome.meshes.iter().find(|m| m.0 == name).unwrap().1;
+    for (name, wanted) in [("two", 2), ("lines", 2), ("parts", 2)] {
+        let mesh = mesh(name);
+        assert_eq!(mesh.groups.len(), wanted, "{name}: {:?}", mesh.groups.iter().map(|g| &g.name).collect::<Vec<_>>());
+        let mut of_groups: Vec<(&str, Vec<u32>)> = mesh.groups.iter().map(|g| (g.name.as_str(), g.triangles.clone())).collect();
+        let mut of_faces = std::collections::BTreeMap::<&str, Vec<u32>>::new();
+        mesh.faces.iter().for_each(|face| of_faces.entry(&face.name).or_default().extend(face.triangles.clone()));
+        of_groups.sort();
+        assert_eq!(of_groups, of_faces.into_iter().collect::<Vec<_>>(), "{name}");
+        assert!(mesh.groups.iter().all(|group| !group.name.is_empty()), "{name}");
+        assert_eq!(mesh.groups.iter().map(|group| group.triangles.len()).sum::<usize>(), mesh.triangles.len(), "{name}");
+    }
+}

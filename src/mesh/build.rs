@@ -1,6 +1,6 @@
 //! From a plan to a mesh: the entry points for the floors above.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
@@ -139,8 +139,12 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
     let mut built = Built::default();
     let mut ranges: sets::Ranges = Vec::new();
     let mut offsets = Vec::new();
+    let names = sets::names(input);
     for part in &mut parts {
-        let mesh = std::mem::take(&mut part.mesh);
+        let mut mesh = std::mem::take(&mut part.mesh);
+        for (face, ((_, surface), ..)) in mesh.faces.iter_mut().zip(&part.ranges) {
+            face.name = names.get(surface).cloned().unwrap_or_default();
+        }
         let (t, q) = (built.mesh.triangles.len() as u32, built.mesh.quads.len() as u32);
         offsets.push(built.mesh.nodes.len() as u32);
         ranges.extend(part.ranges.iter().map(|(s, a, b)| (*s, a.start + t..a.end + t, b.start + q..b.end + q)));
@@ -150,11 +154,10 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
     (built.mesh.name, built.mesh.order) = (input.plan.name.clone(), input.plan.order);
     let named: Vec<(&Layout, &Nodes, u32)> = parts.iter().zip(offsets).map(|(p, offset)| (&p.layout, &p.nodes, offset)).collect();
     let mut groups = Vec::new();
-    let mut done: Vec<SurfaceId> = Vec::new();
+    let mut done: BTreeSet<SurfaceId> = BTreeSet::new();
     for (surface, _) in &input.plan.surfaces {
-        if !done.contains(surface) {
-            done.push(*surface);
-            groups.push(sets::of_surface(input, &built.mesh, &ranges, *surface));
+        if done.insert(*surface) {
+            groups.push(sets::of_surface(&built.mesh, &ranges, (*surface, &names[surface])));
         }
     }
     for request in &input.plan.groups {
@@ -164,12 +167,12 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
     Ok(built)
 }
 
-/// Sets of one name as one: pieces of a surface, whose elements are all of it. Those without a name stay apart.
+/// Sets of one name as one: pieces of a surface, whose elements are all of it.
 fn together(groups: Vec<Group>) -> Vec<Group> {
     let mut out: Vec<Group> = Vec::with_capacity(groups.len());
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
     for group in groups {
-        let Some(place) = places.get(&group.name).filter(|_| !group.name.is_empty()) else {
+        let Some(place) = places.get(&group.name) else {
             places.insert(group.name.clone(), out.len());
             out.push(group);
             continue;

@@ -1,5 +1,7 @@
 //! Named sets: one per surface, then those asked for.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec3;
 
 use super::beside;
@@ -24,9 +26,42 @@ fn sorted(mut list: Vec<u32>) -> Vec<u32> {
     list
 }
 
+/// What the set of each surface is called: pieces of one surface like that one, any others apart, with their number behind
+/// a name that several have (one expression may make many) and behind `surface` where they have none.
+pub fn names(input: &Input) -> BTreeMap<SurfaceId, String> {
+    let surface = |id: SurfaceId| &input.model.surfaces[id.index()];
+    let kin = |a: SurfaceId, b: SurfaceId| {
+        let of = |id: SurfaceId| surface(id).surface.part_of().iter().chain(std::iter::once(&surface(id).surface));
+        of(a).any(|x| of(b).any(|y| x.is(y)))
+    };
+    let taken: BTreeSet<&str> = input.plan.surfaces.iter().map(|(id, _)| surface(*id).name.as_str()).collect();
+    let mut found: BTreeMap<SurfaceId, String> = BTreeMap::new();
+    let mut alike: BTreeMap<&str, Vec<SurfaceId>> = BTreeMap::new();
+    for (id, _) in &input.plan.surfaces {
+        if found.contains_key(id) {
+            continue;
+        }
+        let own = surface(*id).name.as_str();
+        let known = alike.entry(own).or_default();
+        let name = match known.iter().find(|other| !own.is_empty() && kin(**other, *id)) {
+            Some(other) => found[other].clone(),
+            None if known.is_empty() && !own.is_empty() => own.to_owned(),
+            None => {
+                let base = if own.is_empty() { "surface" } else { own };
+                let numbers = known.len()..;
+                let mut free = numbers.map(|n| format!("{base}[{n}]")).filter(|name| !taken.contains(name.as_str()));
+                free.next().unwrap_or_default()
+            }
+        };
+        known.push(*id);
+        found.insert(*id, name);
+    }
+    found
+}
+
 /// The set of one surface.
-pub fn of_surface(input: &Input, mesh: &Mesh, ranges: &Ranges, surface: SurfaceId) -> Group {
-    of_faces(mesh, ranges, &input.model.surfaces[surface.index()].name, &Target::Surface(surface))
+pub fn of_surface(mesh: &Mesh, ranges: &Ranges, (surface, name): (SurfaceId, &str)) -> Group {
+    of_faces(mesh, ranges, name, &Target::Surface(surface))
 }
 
 /// The set of the faces that a target speaks of.
