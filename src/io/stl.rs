@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::blocks::{write_fixed, write_records};
 use super::deck::{Deck, Encoding, Format, Loss};
 use super::sets::{Names, Naming, left_out, names_lost};
+use crate::base::job;
 use crate::base::text::{push_real, push_single};
 use crate::mesh::{FaceRange, Mesh};
 
@@ -33,6 +34,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     header.iter_mut().zip(title.bytes()).for_each(|(to, from)| *to = from);
     out.write_all(&header)?;
     let (triangles, quads) = (mesh.triangles.len(), mesh.quads.len());
+    let moved = single_precision(deck)?;
     let count = u32::try_from(triangles + 2 * quads).map_err(|_| io::Error::other("more triangles than STL can count"))?;
     out.write_all(&count.to_le_bytes())?;
     write_fixed::<50>(out, triangles, |i, record| facet(deck, mesh.triangles[i], record))?;
@@ -44,7 +46,38 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
             facet(deck, b, second);
         }
     })?;
-    Ok(left_out(mesh, true).into_iter().chain(names_lost(mesh, deck.options, "the sets", |_| true)).collect())
+    let losses = moved.into_iter().chain(left_out(mesh, true));
+    Ok(losses.chain(names_lost(mesh, deck.options, "the sets", |_| true)).collect())
+}
+
+/// Share of the shortest edge by which nodes may move without a word where they are rounded.
+const SHARE: f64 = 0.01;
+
+/// What is lost where coordinates are rounded to single precision: far from the origin whole edges.
+///
+/// Fails where corners of a triangle fall together.
+fn single_precision(deck: &Deck) -> io::Result<Option<Loss>> {
+    let mesh = deck.mesh;
+    let rounded = |p: DVec3| p.as_vec3().as_dvec3();
+    let (mut moved, mut shortest) = (0.0_f64, f64::INFINITY);
+    let triangles = mesh.triangles.iter().copied().chain((0..mesh.quads.len()).flat_map(|quad| halves(mesh, quad)));
+    for nodes in job::looking(triangles) {
+        let corners = corners(deck, nodes);
+        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
+            moved = moved.max(a.distance(rounded(a)));
+            shortest = shortest.min(a.distance(b));
+            if a != b && rounded(a) == rounded(b) {
+                let place = a.to_array().map(|x| x.to_string()).join(", ");
+                return Err(io::Error::other(format!(
+                    "binary STL has single precision, in which corners of a triangle at ({place}) {} are one: write it with \
+                     `encoding: text`, or move the model to the origin",
+                    deck.unit
+                )));
+            }
+        }
+    }
+    let told = || format!("all digits of the nodes: they move by up to {moved:.1e} {}, and `encoding: text` keeps them", deck.unit);
+    Ok((moved > SHARE * shortest).then(|| Loss::LeftOut(told())))
 }
 
 /// The two triangles of a quad, cut from its first corner to its third: those by which areas and errors are measured.
