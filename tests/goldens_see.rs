@@ -71,6 +71,7 @@ curve bow = arc((0, 0, 0), (width, 0, 0), through: (width / 2, -40, 0))
 curve brace = line((0, 100, 0), (0, 100, 80))
 surface plate = trim(plane(rim), holes: [hole])
 surface skirt = ruled(bow, line((0, 0, 50), (width, 0, 50)))
+shell lone of skirt
 group west of hole
 group south of bow, mark
 mesh fine of plate, skirt { size: 20mm  on hole { count: 24 } }
@@ -91,8 +92,9 @@ const SEEN: &[(&str, &str, &str, &str)] = &[
         "a surface turned over",
         "ruled(bow, line((0, 0, 50), (width, 0, 50)))",
         "ruled(line((0, 0, 50), (width, 0, 50)), bow)",
-        "skirt: side, y ",
+        "skirt: turned over, it shows its other side",
     ),
+    ("a shell of another side", "shell lone of skirt", "shell lone of skirt { flip: true }", "lone: turned over"),
     ("swapped groups", "west of hole\ngroup south of bow, mark", "south of hole\ngroup west of bow, mark", "group west: points 1 is new"),
     ("a group of another member", "group west of hole", "group west of brace", "group west: centroid"),
     ("a count of a rule", "count: 24", "count: 25", "settings \"fine on 1\": count 24 → 25"),

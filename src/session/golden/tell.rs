@@ -59,11 +59,27 @@ fn one(change: &Change, allowance: Allowance) -> Vec<Said> {
             // Words of which none was there are those of another version of loft.
             let fresh: Vec<&str> = moves.iter().filter(|m| m.old.is_none()).map(|m| m.word).collect();
             let many = fresh.len() > 2;
-            let told = moves.iter().filter(|m| !(many && m.old.is_none())).flat_map(|m| in_words(m, moves, allowance));
+            let over = is_turned_over(moves, allowance);
+            let is_said = |m: &&Move| !(many && m.old.is_none()) && !(over && matches!(m.word, "side" | "inside" | "hash"));
+            let turned = over.then(|| "turned over, it shows its other side".to_owned());
+            let told = turned.into_iter().chain(moves.iter().filter(is_said).flat_map(|m| in_words(m, moves, allowance)));
             let words = told.chain(many.then(|| format!("{} are new", fresh.join(", "))));
             head.into_iter().chain(words.map(|w| Said::Words(format!("{}: {w}", subject(new))))).collect()
         }
     }
+}
+
+/// Whether something shows its other side and nothing else about its place changed: what tells the side has the other sign.
+fn is_turned_over(moves: &[Move], allowance: Allowance) -> bool {
+    let negated = |m: &Move| match (m.kind, &m.old, &m.new) {
+        (Kind::Real(measure), Some(Value::Real(a, _)), Some(Value::Real(b, _))) => allowance.excess(measure, -a, *b).is_none(),
+        (Kind::List(measure), Some(Value::List(a, _)), Some(Value::List(b, _))) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| allowance.excess(measure, -a, *b).is_none())
+        }
+        _ => false,
+    };
+    let sides = || moves.iter().filter(|m| matches!(m.word, "side" | "inside"));
+    sides().count() > 0 && sides().all(negated) && moves.iter().all(|m| matches!(m.word, "side" | "inside" | "hash"))
 }
 
 /// What a line speaks of.
