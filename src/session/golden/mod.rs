@@ -32,5 +32,5 @@ pub use diff::{Difference, NoDiff, diff};
 pub use discover::{State, Test, discover};
 pub use file::{Flaw, Golden, Maker};
 pub use junit::text as junit_text;
-pub use run::{CaseResult, Settings, Verdict, name_of, names, run_all, run_one};
+pub use run::{CaseResult, Settings, Verdict, name_of, names, run_all, run_one, run_one_again};
 pub use tell::Said;

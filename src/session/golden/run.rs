@@ -1,5 +1,6 @@
 //! Runs models and compares what they say with their goldens, or writes the goldens anew.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
@@ -20,7 +21,8 @@ use crate::io::FileError;
 use crate::lang::cx::Cx;
 use crate::session::disk::{Disk, Outputs, read_limited};
 use crate::session::guard::guarded;
-use crate::session::run::{self, Outcome, Task};
+use crate::session::kept::Kept;
+use crate::session::run::{self, Again, Outcome, Task};
 use crate::session::staging::Staging;
 
 /// How tests are run.
@@ -159,6 +161,11 @@ fn watched_one(test: &Test, settings: &Settings) -> Vec<CaseResult> {
 
 /// Runs one model in all its cases.
 pub fn run_one(test: &Test, settings: &Settings) -> Vec<CaseResult> {
+    run_one_again(test, settings, &mut Kept::default())
+}
+
+/// Runs one model in all its cases; `kept` holds what runs before left, and what these leave when they are over.
+pub fn run_one_again(test: &Test, settings: &Settings, kept: &mut Kept) -> Vec<CaseResult> {
     let wanted = |name: &str| settings.filter.is_none_or(|filter| name.contains(filter));
     let alone = |result: CaseResult| if wanted(&result.name) { vec![result] } else { Vec::new() };
     let golden_name = test.golden.to_string_lossy().replace('\\', "/");
@@ -192,9 +199,12 @@ pub fn run_one(test: &Test, settings: &Settings) -> Vec<CaseResult> {
         Ok((golden, flaws)) if flaws.is_empty() || settings.accept => golden,
         Ok((_, flaws)) | Err(flaws) => return alone(unreadable(test, &golden_name, &flaws, settings.accept)),
     };
-    let model = Model { test, text: &text, settings, golden: &golden, scratch: Scratch::new() };
+    let before = RefCell::new(std::mem::take(kept));
+    let model = Model { test, text: &text, settings, golden: &golden, scratch: Scratch::new(), kept: before };
     let runs: Vec<_> = golden.head.runs().into_iter().filter(|(case, _)| wanted(&name_of(test, case.as_deref()))).collect();
-    if settings.accept { model.accept(&runs) } else { model.compare_all(&runs) }
+    let results = if settings.accept { model.accept(&runs) } else { model.compare_all(&runs) };
+    *kept = model.kept.into_inner();
+    results
 }
 
 /// Why a file cannot be read.
@@ -225,6 +235,8 @@ struct Model<'a> {
     settings: &'a Settings<'a>,
     golden: &'a Golden,
     scratch: Scratch,
+    /// What each case takes over from those before.
+    kept: RefCell<Kept>,
 }
 
 /// One run: what it found and where its files are.
@@ -264,13 +276,17 @@ impl Model<'_> {
         };
         let mut seen = Looks::default();
         let look = &mut |cx: &mut Cx<'_>| seen = looks::of(cx);
-        let outcome: Outcome = guarded(|| run::run_seen(&task, &disk, self.settings.job, look)).map_err(|bug| {
+        // A bug may leave half of something: then the next case starts from nothing.
+        let mut kept = self.kept.take();
+        let again = || run::run_again(&task, &disk, self.settings.job, Again { kept: &mut kept, light: false, look });
+        let outcome: Outcome = guarded(again).map_err(|bug| {
             let help = "please report it with the script and this text";
             CaseResult::new(&name, Verdict::Bug, format!("a bug in loft: {}", bug.what)).help(help)
         })?;
         if outcome.interrupted {
             return Err(CaseResult::new(&name, Verdict::Interrupted, "interrupted"));
         }
+        self.kept.replace(kept);
         if let Some(bug) = outcome.diagnostics.iter().find(|d| d.code.0 == "E999") {
             return Err(CaseResult::new(&name, Verdict::Bug, bug.message.clone()).help("please report it with the script and this text"));
         }
