@@ -574,3 +574,37 @@ mesh parts of split(a, by: line((0, 0.5, 0), (1, 0.5, 0))) { size: 500mm }
         assert_eq!(mesh.groups.iter().map(|group| group.triangles.len()).sum::<usize>(), mesh.triangles.len(), "{name}");
     }
 }
+
+/// Groups of edges that no declared curve follows: of a trimmed surface, its mirrored copy and an imprinted shell.
+#[test]
+fn groups_of_edges_hold_all_nodes_on_them_and_no_others() {
+    let text = "units m
+curve c = circle(center: (2, 2, 0), radius: 0.5)
+surface plate = trim(plane(polyline([(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0)], closed: true)), holes: [c])
+let other = mirror(plate, normal: (1, 0, 0))
+group rim of plate.edge(c)
+group copy of other.edge(mirror(c, normal: (1, 0, 0)))
+mesh plates of plate, other { size: 300mm  order: 2 }
+surface slab = plane(polyline([(10, 0, 0), (14, 0, 0), (14, 4, 0), (10, 4, 0)], closed: true))
+surface tube = extrude(circle(center: (12, 2, -1), radius: 0.5), by: (0, 0, 2))
+shell s of slab, tube { imprint: true }
+group seam of s.edges.on(circle(center: (12, 2, 0), radius: 0.5))
+group low of s.edges.on(plane(at: (0, 0, -1), normal: (0, 0, 1)))
+mesh joined of s { size: 300mm }
+";
+    let outcome = run("edges", text);
+    let circles = [
+        ("plates", "rim", [2.0, 2.0, 0.0]),
+        ("plates", "copy", [-2.0, 2.0, 0.0]),
+        ("joined", "seam", [12.0, 2.0, 0.0]),
+        ("joined", "low", [12.0, 2.0, -1.0]),
+    ];
+    for (mesh, group, [x, y, z]) in circles {
+        let mesh = &outcome.meshes.iter().find(|m| m.0 == mesh).unwrap().1;
+        let held = &mesh.groups.iter().find(|g| g.name == group).unwrap().nodes;
+        let lies = |p: &glam::DVec3| ((p.x - x).hypot(p.y - y) - 0.5).abs() < 1e-6 && (p.z - z).abs() < 1e-6;
+        let there: Vec<u32> = (0..mesh.nodes.len() as u32).filter(|n| lies(&mesh.nodes[*n as usize])).collect();
+        assert!(there.len() >= 12, "{group}: {there:?}");
+        assert_eq!(*held, there, "{group}");
+    }
+}
