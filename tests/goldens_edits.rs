@@ -1,6 +1,6 @@
 //! Random edits of the examples: a number that changes the model fails its golden, what changes nothing does not.
 //!
-//! A few dozen edits in `cargo test`; `LOFT_EDITS` says how many, and `.ci/run` asks for 1000 of each kind. Examples with
+//! A few dozen edits in `cargo test`; `LOFT_EDITS` says how many of each kind. Examples with
 //! large meshes are left out: nearly all of their time goes into those.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
