@@ -140,9 +140,9 @@ codes! {
     now "N638", "guide-extended", "a guide was extended";
     now "W639", "sweep-self-intersects", "a sweep crosses itself";
     now "E640", "sections-different-guides", "sections touch different guides";
-    later "E641", "net-incomplete", "a net of profiles and guides has holes";
-    later "E642", "sections-cross", "sections cross each other";
-    later "E643", "guide-order-differs", "guides meet sections in different orders";
+    now "E641", "net-incomplete", "a net of profiles and guides has holes";
+    now "E642", "sections-cross", "sections cross each other";
+    now "E643", "guide-order-differs", "guides meet sections in different orders";
     now "W644", "section-scaled", "a section was scaled to its guides";
     now "W651", "grid-uneven", "the points of a grid are unevenly spaced";
     later "E652", "pole-tangent-parallel", "tangents at a pole are parallel";

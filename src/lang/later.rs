@@ -10,7 +10,7 @@ use super::syntax::foreign::{PRINTS, range};
 use super::value::{ModuleId, Value};
 use super::{module::bound, std};
 
-const FUNCTIONS: &[&str] = &["gordon", "skin", "hermite", "scatter", "blend", "join", "hydrostatics"];
+const FUNCTIONS: &[&str] = &["hermite", "scatter", "blend", "join", "hydrostatics"];
 
 const ENDINGS: &[&str] = &["stp", "step"];
 

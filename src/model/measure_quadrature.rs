@@ -13,6 +13,10 @@ const ORDERS: [usize; 4] = [4, 7, 11, 16];
 const DEEPEST: u32 = 12;
 /// Cells examined in all.
 const MOST_CELLS: usize = 1 << 17;
+/// With more pieces than this a surface is divided at its network lines and kinks only: knots of its curves, where third
+/// derivatives jump, are then left to the halving, which goes no deeper than [`COARSE`].
+const PIECES: usize = 1 << 12;
+const COARSE: u32 = 3;
 
 /// Sums of N functions.
 type Sums<const N: usize> = [f64; N];
@@ -37,6 +41,8 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let (us, vs) = surface.breaks();
+    let coarse = (us.len() + 1) * (vs.len() + 1) > PIECES && surface.domain() == Domain::Square;
+    let ((us, vs), deepest) = if coarse { (surface.cells(), COARSE) } else { ((us, vs), DEEPEST) };
     // A triangle's lines do not follow the square.
     let (us, vs) = if surface.domain() == Domain::Triangle { (Vec::new(), vs) } else { (us, vs) };
     let stops = |inner: Vec<f64>, (low, high): (f64, f64)| -> Vec<f64> {
@@ -66,7 +72,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
                 break;
             }
         }
-        if small(&apart, &scale, share) || cell.depth == DEEPEST || seen + open.len() >= MOST_CELLS {
+        if small(&apart, &scale, share) || cell.depth >= deepest || seen + open.len() >= MOST_CELLS {
             for i in 0..N {
                 sum[i] += value[i];
                 error[i] += apart[i];

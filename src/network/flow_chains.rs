@@ -122,7 +122,7 @@ fn origins(chains: &[Chain]) -> Vec<Origin> {
 }
 
 /// Of the two ways to go round the second ring, whether its own direction keeps nearer to the first ring.
-fn same_way(chains: &[Chain], a: Ring, b: Ring) -> bool {
+pub(super) fn same_way(chains: &[Chain], a: Ring, b: Ring) -> bool {
     const SAMPLES: usize = 8;
     let spread = |forward: bool| -> f64 {
         // Stretches between crossings: on the first ring always forward, on the second one either way.
@@ -146,7 +146,7 @@ fn same_way(chains: &[Chain], a: Ring, b: Ring) -> bool {
 }
 
 /// A failure of node lists in measurements. Ends that miss by a little are the cause of all that follows from it.
-fn explain(
+pub(super) fn explain(
     chains: &[Chain],
     (nodes, lists): (&[DVec3], &[NodeList]),
     (fault, hints): (FlowFault, &FlowOptions),

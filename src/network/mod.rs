@@ -12,6 +12,7 @@ mod hits;
 mod layout;
 pub mod meet;
 mod near;
+pub mod net;
 mod rings;
 mod shared;
 mod slice;

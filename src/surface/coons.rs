@@ -86,16 +86,18 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     }
     let mut notes = Vec::new();
     let flow = grid.flow;
+    // A curve of an exact net begins at its crossing, not at an end within the tolerance of it.
+    let snap = if settings.method == Method::Gordon { tolerance.rounding } else { tolerance.point };
     let ends_v = (grid.poles.0.is_some(), grid.poles.1.is_some());
     let along_u = prepare(
         grid,
-        Family { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false) },
+        Family { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false), snap },
         tolerance,
         &mut notes,
     )?;
     let along_v = prepare(
         grid,
-        Family { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v },
+        Family { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v, snap },
         tolerance,
         &mut notes,
     )?;
@@ -178,6 +180,8 @@ struct Family<'a> {
     closed: bool,
     /// Whether the first and last node of this family's curves are poles.
     poles: (bool, bool),
+    /// An end nearer than this to its border lies on it, model units.
+    snap: f64,
 }
 
 /// A curve with its raw fraction at every node of its direction, trimmed to the border and, when closed, begun at the seam.
@@ -193,7 +197,7 @@ fn prepare(grid: &Grid, family: Family, tolerance: &Tolerance, notes: &mut Vec<F
         let (first, last) = if member.reversed { (1.0, 0.0) } else { (0.0, 1.0) };
         let mut raw = member.crossings.clone();
         if family.closed {
-            return shifted(chain, member, tolerance);
+            return shifted(chain, member, family.snap, tolerance);
         }
         if family.poles.0 || raw.is_empty() {
             raw.insert(0, first);
@@ -202,7 +206,7 @@ fn prepare(grid: &Grid, family: Family, tolerance: &Tolerance, notes: &mut Vec<F
             raw.push(last);
         }
         let n = raw.len();
-        let least = tolerance.point / chain.length();
+        let least = family.snap / chain.length();
         if (raw[0] - first).abs() <= least {
             raw[0] = first;
         }
@@ -218,9 +222,9 @@ fn prepare(grid: &Grid, family: Family, tolerance: &Tolerance, notes: &mut Vec<F
 }
 
 /// A closed chain begun at its first crossing, so that the seam is at 0 and 1.
-fn shifted(chain: Chain, member: &Member, tolerance: &Tolerance) -> Result<Prepared> {
+fn shifted(chain: Chain, member: &Member, snap: f64, tolerance: &Tolerance) -> Result<Prepared> {
     let start = member.crossings.first().copied().unwrap_or(0.0);
-    let least = tolerance.point / chain.length();
+    let least = snap / chain.length();
     let at_seam = start <= least || start >= 1.0 - least;
     let chain = if at_seam { chain } else { chain.slice(start, start, tolerance)? };
     let after = |raw: f64| if at_seam { raw } else { (raw - start).rem_euclid(1.0) };
@@ -244,8 +248,8 @@ fn trimmed(
     let (from, to) = (raw[0], raw[raw.len() - 1]);
     let border = |k: usize| family.across.get(k).map_or(Origin::NONE, |m| grid.chains[m.curve].origin());
     for (end, here, k) in [(first, from, 0), (last, to, family.across.len().saturating_sub(1))] {
-        if here != end {
-            let length = (here - end).abs() * chain.length();
+        let length = (here - end).abs() * chain.length();
+        if length > family.snap.max(tolerance.point) {
             notes.push(SurfaceFault::EndTrimmed { curve: chain.origin(), border: border(k), end: chain.point(end), length }.into());
         }
     }
@@ -290,7 +294,8 @@ fn averages(curves: &[Prepared], grid: &Grid, across: &[Member], tolerance: &Tol
         .collect())
 }
 
-fn evenly(n: usize) -> Vec<f64> {
+/// Values from 0 to 1 at equal distances.
+pub(super) fn evenly(n: usize) -> Vec<f64> {
     (0..n).map(|i| i as f64 / (n - 1) as f64).collect()
 }
 

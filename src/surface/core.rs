@@ -451,7 +451,7 @@ impl Surface {
     }
 
     /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.
-    pub(super) fn cells(&self) -> (Vec<f64>, Vec<f64>) {
+    pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         let (us, vs) = self.0.parts.shape.cells();
         let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
         match (self.0.parts.flipped, self.ground()) {

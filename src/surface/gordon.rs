@@ -14,12 +14,14 @@
 
 use super::blend::Blend;
 use super::coons::{Made, finish};
-use super::core::{Surface, SurfaceKind};
-use super::rail::Rail;
+use super::core::{Surface, SurfaceKind, unit_normal};
+use super::rail::{Lean, Rail};
+use super::shape::Shape;
 use super::weights::{Axis, Rule};
 use crate::base::fault::Fault;
+use crate::base::math;
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 
 /// A complete net of curves in common parameters.
@@ -53,16 +55,88 @@ pub struct Named {
 
 /// The Gordon surface of a net, with warnings (W614). Without curves along v it is the spline surface through those along u.
 pub fn gordon(net: CurveNet, named: Named, tolerance: &Tolerance) -> (Surface, Vec<Fault>) {
+    blended(net, named, false, tolerance)
+}
+
+/// [`gordon`], or blended linearly between neighbours with a kink along each inner curve (`straight`).
+pub(super) fn blended(net: CurveNet, named: Named, straight: bool, tolerance: &Tolerance) -> (Surface, Vec<Fault>) {
     let CurveNet { mut along_u, mut along_v, nodes, closed } = net;
     for (rails, closed) in [(&mut along_u, closed.1), (&mut along_v, closed.0)] {
         if closed && let Some(first) = rails.first().cloned() {
             rails.push(first);
         }
     }
-    let rule = |closed: bool| if closed { Rule::Periodic } else { Rule::Spline };
+    let rule = |closed: bool| match (straight, closed) {
+        (true, _) => Rule::Linear,
+        (_, true) => Rule::Periodic,
+        _ => Rule::Spline,
+    };
     let u = Axis::new(nodes.0, if along_v.is_empty() { Rule::Lagrange } else { rule(closed.0) });
     let blend = Blend::new(u, Axis::new(nodes.1, rule(closed.1)), along_v, along_u);
     let mut notes = Vec::new();
     let made = Made { origin: named.origin, kind: named.kind, flow: named.flow, closed, chains: named.chains };
     (finish(blend, made, tolerance, &mut notes), notes)
+}
+
+/// Places along each curve at which a net is compared with its surface.
+const COMPARED: usize = 32;
+
+/// How a surface through a net keeps to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetCheck {
+    /// Largest distance of a curve from the surface at the curve's own parameters, model units.
+    pub residual: f64,
+    /// Largest distance between two curves at their crossing, model units.
+    pub gap: f64,
+    /// Largest turn of the normal across inner curves and closed seams, kink lines left out, radians.
+    pub turn: f64,
+}
+
+impl Surface {
+    /// Compares a surface blended from a net with its curves at 33 places each; `None` for other surfaces.
+    pub fn net_check(&self, tolerance: &Tolerance) -> Option<NetCheck> {
+        let Shape::Blend(blend) = &self.parts().shape else { return None };
+        let (u, v) = blend.axes();
+        let mut check = NetCheck { residual: 0.0, gap: 0.0, turn: 0.0 };
+        for (g, &y) in blend.along_u().iter().zip(&v.nodes) {
+            for (f, &x) in blend.along_v().iter().zip(&u.nodes) {
+                if !matches!((f, g), (Rail::Point(_), _) | (_, Rail::Point(_))) {
+                    check.gap = check.gap.max(f.point(y).distance(g.point(x)));
+                }
+            }
+        }
+        let lean = (Lean::After, Lean::After);
+        for x in (0..=COMPARED).map(|k| k as f64 / COMPARED as f64) {
+            for (rail, &y) in blend.along_u().iter().zip(&v.nodes) {
+                check.residual = check.residual.max(blend.jet(x, y, lean).p.distance(rail.point(x)));
+            }
+            for (rail, &y) in blend.along_v().iter().zip(&u.nodes) {
+                check.residual = check.residual.max(blend.jet(y, x, lean).p.distance(rail.point(x)));
+            }
+            // Off the nodes, where no curve decides.
+            let inner = (x * (1.0 - NUDGE)).max(NUDGE);
+            for across_u in [true, false] {
+                let (axis, rails, kinks, closed) = match across_u {
+                    true => (u, blend.along_u(), &self.parts().kinks.0, self.parts().closed.0),
+                    false => (v, blend.along_v(), &self.parts().kinks.1, self.parts().closed.1),
+                };
+                let smooth = axis.nodes[1..axis.nodes.len() - 1].iter().filter(|x| kinks.iter().all(|k| (k - **x).abs() > NUDGE));
+                let corner = |rail: &Rail| tolerance.is_kink(rail.jet(1.0, Lean::Before).d1, rail.jet(0.0, Lean::After).d1);
+                let chained = || rails.iter().filter(|rail| rail.chain().is_some());
+                let seam = (closed && !chained().any(corner)).then_some((1.0, 0.0));
+                for (a, b) in smooth.map(|x| (*x, *x)).chain(seam) {
+                    let normal = |at: f64, lean: Lean| {
+                        unit_normal(&match across_u {
+                            true => blend.jet(at, inner, (lean, Lean::After)),
+                            false => blend.jet(inner, at, (Lean::After, lean)),
+                        })
+                    };
+                    if let (Some(before), Some(after)) = (normal(a, Lean::Before), normal(b, Lean::After)) {
+                        check.turn = check.turn.max(math::angle_between(before, after));
+                    }
+                }
+            }
+        }
+        Some(check)
+    }
 }

@@ -43,6 +43,7 @@ mod review;
 pub mod revolve;
 mod ruled;
 mod shape;
+pub mod skin;
 mod spread;
 mod square;
 mod strands;

@@ -12,6 +12,7 @@ mod edit;
 mod files;
 mod loops;
 mod mesh;
+mod nets;
 mod network;
 mod no_flow;
 mod surface;
@@ -29,6 +30,7 @@ pub use edit::Edit;
 pub use files::{FileFault, Malformed};
 pub use loops::{LoopFault, LoopRole};
 pub use mesh::{Cure, MeshFault};
+pub use nets::NetFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;
 pub use surface::{SurfaceFault, Touching};
@@ -57,6 +59,8 @@ pub enum Fault {
     Cut(Box<CutFault>),
     /// Family 6: sweeps.
     Sweep(Box<SweepFault>),
+    /// Family 6: nets of profiles and guides.
+    Net(Box<NetFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -217,6 +221,7 @@ impl Describe for Fault {
             Self::Loop(f) => f.describe(say),
             Self::Cut(f) => f.describe(say),
             Self::Sweep(f) => f.describe(say),
+            Self::Net(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -243,6 +248,7 @@ impl Fault {
             (Self::Loop(a), Self::Loop(b)) => same(&**a, &**b),
             (Self::Cut(a), Self::Cut(b)) => same(&**a, &**b),
             (Self::Sweep(a), Self::Sweep(b)) => same(&**a, &**b),
+            (Self::Net(a), Self::Net(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -275,6 +281,7 @@ from_family!(
     Loop(LoopFault),
     Cut(CutFault),
     Sweep(SweepFault),
+    Net(NetFault),
     Mesh(MeshFault),
     File(FileFault)
 );

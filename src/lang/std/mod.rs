@@ -18,6 +18,7 @@ pub mod kinds;
 mod lists;
 mod measures;
 pub(in crate::lang) mod mesh;
+mod nets;
 mod network;
 mod numbers;
 mod roundings;
@@ -102,6 +103,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     network::BUILTINS,
     surfaces::BUILTINS,
     sweeps::BUILTINS,
+    nets::BUILTINS,
     transforms::BUILTINS,
     topology::BUILTINS,
     walls::BUILTINS,
