@@ -171,15 +171,21 @@ impl Layout {
         layout.points = layout.pieces.of_anchor[nodes..last].to_vec();
         layout.meets = met.flat_map(|part| layout.pieces.of_track[part].iter().map(|u| u.atom)).collect();
         let stretches = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.atom).collect();
-        layout.creases = of_face.iter().enumerate().map(|(k, face)| (*face, stretches(creased + k))).collect();
+        let mut creases: Vec<(usize, Vec<usize>)> = of_face.iter().enumerate().map(|(k, n)| (*n, stretches(creased + k))).collect();
+        // Patches that are slivers have no face.
+        let mut face_of: Vec<Option<usize>> = Vec::with_capacity(patches.len());
         for (patch, flipped) in patches {
             let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
             if input.model.is_sliver(*patch, (&layout.edges, &layout.pieces), reach(input, std::iter::once(*patch))) {
+                face_of.push(None);
                 continue;
             }
+            face_of.push(Some(layout.faces.len()));
             let face = layout.face(input, (*patch, *flipped), junction);
             layout.faces.push(face);
         }
+        creases.retain_mut(|crease| face_of[crease.0].map(|face| crease.0 = face).is_some());
+        layout.creases = creases;
         if with_lines {
             let along = |(k, (_, chain)): (usize, &(String, Chain))| match alone.iter().find(|a| a.0 == k) {
                 Some((_, part)) => layout.pieces.of_track[*part].clone(),
