@@ -50,17 +50,17 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves and each other and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, the forms of other languages it knows, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 6_900),
+    ("base", 7_800),
     ("geometry", 5_500),
-    ("network", 3_650),
-    ("surface", 11_000),
-    ("model", 5_000),
-    ("mesh", 21_400),
+    ("network", 3_800),
+    ("surface", 15_200),
+    ("model", 5_300),
+    ("mesh", 22_300),
     ("io", 8_500),
     ("draw", 3_000),
-    ("lang", 25_400),
+    ("lang", 26_800),
     ("session", 11_300),
-    ("cli", 4_200),
+    ("cli", 4_900),
 ];
 
 const LONGEST_FILE: usize = 800;
