@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::network::typed;
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
@@ -435,7 +436,7 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 Cure::Auto => "without `method: mapped` the face is made freely, with larger angles".to_owned(),
                 Cure::Rows => "the steps of this face are written out: another `count` or `bias` on its sides".to_owned(),
                 Cure::Size(size) => {
-                    format!("`size: {}` on this face, or `method: delaunay`, which takes as short steps", say.length(*size))
+                    format!("`size: {}` on this face, or `method: delaunay`, which takes as short steps", typed(say, *size))
                 }
                 Cure::Method => "`method: delaunay` on this face".to_owned(),
                 Cure::Near => "a smaller `size` on this face, or `near` this place".to_owned(),
