@@ -205,6 +205,9 @@ pub fn likely(surface: (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), al
     surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, held: false, tries: 0 })
 }
 
+/// Sides of a triangle over the chord error that it keeps however the surface bends: no place over it is further away.
+const SMALL: f64 = 0.5;
+
 /// Isosceles triangles over an edge.
 struct Apex {
     /// Height over base.
@@ -230,9 +233,12 @@ fn surely_tall(
     let closed = turning(surface);
     let inside = |uv: DVec2| surface.is_flat() || (closed.0 || (0.0..=1.0).contains(&uv.x)) && (closed.1 || (0.0..=1.0).contains(&uv.y));
     let point = |uv: DVec2| surface.point_by(quick, uv.x, uv.y);
-    let mut h = from;
+    let (mut h, least) = (from, (SMALL * limit).min(from));
     for way in [aside, -aside] {
         for k in 0..GUESSES + tries {
+            if h <= least {
+                return least;
+            }
             let corners = [along * (-0.5 * h), along * (0.5 * h), way * (tall * h)].map(|d| spot.step(d).map(|step| at + step));
             let [Some(a), Some(b), Some(c)] = corners else { break };
             let hold = |uv: DVec2| {
@@ -326,7 +332,7 @@ pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
         return f64::INFINITY;
     }
     let share = 1.0 / 8.0 + (k2 / k1).max(0.0) / 24.0;
-    let by_chord = chord.map_or(f64::INFINITY, |limit| (limit / (k1 * share)).sqrt());
+    let by_chord = chord.map_or(f64::INFINITY, |limit| (limit / (k1 * share)).sqrt().max(SMALL * limit));
     let by_angle = angle.map_or(f64::INFINITY, |limit| limit / k1);
     by_chord.min(by_angle)
 }
