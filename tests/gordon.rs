@@ -91,6 +91,36 @@ fn every_network_is_contained_and_smooth() {
     }
 }
 
+/// Largest distance of two surfaces at equal (u, v), u and v turned round as it suits best, as a share of the size.
+fn same_points(a: &Surface, b: &Surface, size: f64) -> f64 {
+    let places: Vec<(f64, f64)> = (0..=6).flat_map(|i| (0..=6).map(move |j| (f64::from(i) / 6.0, f64::from(j) / 6.0))).collect();
+    let off = |turned: (bool, bool)| {
+        let one = |x: f64, turned: bool| if turned { 1.0 - x } else { x };
+        places.iter().map(|&(u, v)| a.point(u, v).distance(b.point(one(u, turned.0), one(v, turned.1)))).fold(0.0, f64::max)
+    };
+    [(false, false), (true, false), (false, true), (true, true)].map(off).into_iter().fold(f64::INFINITY, f64::min) / size
+}
+
+#[test]
+fn order_and_direction_change_nothing() {
+    let mut chance: u64 = 11;
+    let mut next = |n: usize| {
+        chance = chance.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (chance >> 33) as usize % n
+    };
+    for (name, gap) in NETWORKS {
+        let (first, size) = as_given(name, gap, 1.0);
+        for round in 0..20 {
+            let families = network(name).map(|mut family| {
+                (1..family.len()).rev().for_each(|k| family.swap(k, next(k + 1)));
+                family.iter().map(|c| c.chain(1.0, next(2) == 1)).collect()
+            });
+            let off = same_points(&first, &surface(families, gap).0, size);
+            assert!(off <= 1e-12, "{name}, round {round}: {off:e} of the size");
+        }
+    }
+}
+
 #[test]
 fn a_script_builds_a_network() {
     let mut text = String::new();

@@ -7,23 +7,32 @@ use super::flow::{Flow, FlowFault, FlowKind, FlowOptions, Member, NodeList};
 use super::layout::{Layout, lay_out};
 use crate::base::job;
 
-/// A ring seen from the first crossing: curve, fraction there, and at the second crossing where there is one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A ring with the places where the other family passes it: all of them, and there are one or two.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ring {
     /// Place in the list of curves.
     pub curve: usize,
-    /// Fraction at the first curve that crosses it.
-    pub first: f64,
-    /// Fraction at the second one.
-    pub second: Option<f64>,
+    /// Its meetings with the curves that cross it, in their order.
+    pub passages: Vec<Passage>,
+}
+
+/// A place where a curve crosses a ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// Fraction on the ring.
+    pub at: f64,
+    /// Place of the curve in the list of curves.
+    pub by: usize,
+    /// Fraction on that curve.
+    pub there: f64,
 }
 
 /// Node lists in order of writing, and who decides what they cannot.
 pub struct Grid<'a> {
     /// One list per curve.
     pub lists: &'a [NodeList],
-    /// Whether two rings run the same way, asked where at most two curves cross them.
-    pub same_way: &'a dyn Fn(Ring, Ring) -> bool,
+    /// Whether two neighbouring rings run the same way, asked where at most two curves cross them.
+    pub same_way: &'a dyn Fn(&Ring, &Ring) -> bool,
 }
 
 /// A division into families, to be laid out.

@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::chain::Chain;
-use super::detect::{Grid, Ring, detect_grid, shared};
+use super::detect::{Grid, detect_grid, shared};
 use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
 use super::meet::{closest_points, meet};
+use super::ring_way::same_way;
 use super::snap::may_snap;
 use crate::base::fault::{CurveEnd, Fault, NetworkFault, NoFlow, Result, SurfaceFault};
 use crate::base::job;
@@ -45,7 +46,7 @@ pub fn of_chains(chains: &[Chain], options: &ChainFlow, tolerance: &Tolerance) -
         Some(p) => Some(nearest(&nodes, p, tolerance).ok_or_else(|| no_pole(chains, p))?),
     };
     let hints = FlowOptions { along_u: options.along_u.clone(), along_v: options.along_v.clone(), pole, closed: options.closed };
-    let grid = Grid { lists: &lists, same_way: &|a, b| same_way(chains, a, b) };
+    let grid = Grid { lists: &lists, same_way: &|a, b| same_way(chains, a, b, tolerance) };
     match detect_grid(&grid, &hints) {
         Ok(flow) => Ok((flow, nodes)),
         Err(fault) => Err(explain(chains, (&nodes, &lists), (fault, &hints), tolerance)),
@@ -119,30 +120,6 @@ fn no_pole(chains: &[Chain], pole: DVec3) -> Fault {
 
 fn origins(chains: &[Chain]) -> Vec<Origin> {
     chains.iter().map(Chain::origin).collect()
-}
-
-/// Of the two ways to go round the second ring, whether its own direction keeps nearer to the first ring.
-pub(super) fn same_way(chains: &[Chain], a: Ring, b: Ring) -> bool {
-    const SAMPLES: usize = 8;
-    let spread = |forward: bool| -> f64 {
-        // Stretches between crossings: on the first ring always forward, on the second one either way.
-        let turn = |from: f64, to: f64, forward: bool| if forward { (to - from).rem_euclid(1.0) } else { -(from - to).rem_euclid(1.0) };
-        let stretches = match (a.second, b.second) {
-            (Some(a2), Some(b2)) => vec![
-                ((a.first, turn(a.first, a2, true)), (b.first, turn(b.first, b2, forward))),
-                ((a2, turn(a2, a.first, true)), (b2, turn(b2, b.first, forward))),
-            ],
-            _ => vec![((a.first, 1.0), (b.first, if forward { 1.0 } else { -1.0 }))],
-        };
-        let at = |ring: Ring, (from, by): (f64, f64), x: f64| chains[ring.curve].point((from + by * x).rem_euclid(1.0));
-        let places = (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64);
-        stretches
-            .iter()
-            .flat_map(|&(sa, sb)| places.clone().map(move |x| (sa, sb, x)))
-            .map(|(sa, sb, x)| at(a, sa, x).distance_squared(at(b, sb, x)))
-            .sum()
-    };
-    spread(true) <= spread(false)
 }
 
 /// A failure of node lists in measurements. Ends that miss by a little are the cause of all that follows from it.

@@ -1,6 +1,6 @@
 //! Lays a division into families out as a flow: completeness, orders, directions, borders [math notes §7, steps 4–7].
 
-use super::detect::{Division, Grid, Ring, shared};
+use super::detect::{Division, Grid, Passage, Ring, shared};
 use super::flow::{Flow, FlowFault, FlowKind, FlowOptions, Member, NodeList, Overhang};
 
 /// A division with what it is judged by.
@@ -45,19 +45,31 @@ pub fn lay_out(layout: &Layout) -> Result<Flow, Failure> {
         rows.rotate_left(start);
     }
 
-    let row_reference = psi.first().map(|&c| (c, columns.iter().map(|&m| along(c, m, 0)).collect::<Vec<f64>>()));
+    let ring = |curve: usize, others: &[(usize, f64, f64)]| Ring {
+        curve,
+        passages: others.iter().map(|&(by, at, there)| Passage { at, by, there }).collect(),
+    };
+    let row_ways = closed_u.then(|| {
+        let passed = |n: usize| columns.iter().map(|&m| (phi[m], along(psi[n], m, n), along(phi[m], m, n))).collect::<Vec<_>>();
+        let rings: Vec<Ring> = rows.iter().map(|&n| ring(psi[n], &passed(n))).collect();
+        ways(layout.grid, &rings, rows.iter().position(|&n| n == 0).unwrap_or(0))
+    });
     let mut along_u = Vec::with_capacity(psi.len());
-    for &n in &rows {
+    for (k, &n) in rows.iter().enumerate() {
         let at: Vec<f64> = columns.iter().map(|&m| along(psi[n], m, n)).collect();
         let nodes: Vec<usize> = columns.iter().map(|&m| crossings[m][n]).collect();
         let others: Vec<usize> = columns.iter().map(|&m| phi[m]).collect();
-        let reversed = direction(layout.grid, (psi[n], &at), row_reference.as_ref(), closed_u, (&others, &nodes))?;
+        let reversed = direction((psi[n], &at), row_ways.as_ref().map(|ways| ways[k]), (&others, &nodes))?;
         along_u.push(Member { curve: psi[n], reversed, crossings: at });
     }
-    let reference = (phi[guide], rows.iter().map(|&n| along(phi[guide], guide, n)).collect::<Vec<f64>>());
+    let column_ways = closed_v.then(|| {
+        let passed = |m: usize| rows.iter().map(|&n| (psi[n], along(phi[m], m, n), along(psi[n], m, n))).collect::<Vec<_>>();
+        let rings: Vec<Ring> = columns.iter().map(|&m| ring(phi[m], &passed(m))).collect();
+        ways(layout.grid, &rings, columns.iter().position(|&m| m == guide).unwrap_or(0))
+    });
     let start_pole = start_pole(layout, guide);
     let mut along_v = Vec::with_capacity(phi.len());
-    for &m in &columns {
+    for (k, &m) in columns.iter().enumerate() {
         let at: Vec<f64> = rows.iter().map(|&n| along(phi[m], m, n)).collect();
         let nodes: Vec<usize> = rows.iter().map(|&n| crossings[m][n]).collect();
         let others: Vec<usize> = rows.iter().map(|&n| psi[n]).collect();
@@ -67,7 +79,7 @@ pub fn lay_out(layout: &Layout) -> Result<Flow, Failure> {
                 monotone(phi[m], &at, reversed, (&others, &nodes))?;
                 reversed
             }
-            None => direction(layout.grid, (phi[m], &at), Some(&reference), closed_v, (&others, &nodes))?,
+            None => direction((phi[m], &at), column_ways.as_ref().map(|ways| ways[k]), (&others, &nodes))?,
         };
         along_v.push(Member { curve: phi[m], reversed, crossings: at });
     }
@@ -165,22 +177,29 @@ fn start_pole(layout: &Layout, guide: usize) -> Option<usize> {
     }
 }
 
-/// Whether a curve meets the others in falling order; rings by their cyclic order.
-fn direction(
-    grid: &Grid,
-    (curve, at): (usize, &[f64]),
-    reference: Option<&(usize, Vec<f64>)>,
-    closed: bool,
-    others: (&[usize], &[usize]),
-) -> Result<bool, Failure> {
-    if !closed {
+/// Whether each ring runs against the one at place `first`, from neighbour to neighbour: only where at most two curves pass
+/// them, as more than two tell by their order.
+fn ways(grid: &Grid, rings: &[Ring], first: usize) -> Vec<bool> {
+    let mut ways = vec![false; rings.len()];
+    if rings.iter().any(|ring| ring.passages.len() > 2) {
+        return ways;
+    }
+    let upward = (first + 1..rings.len()).map(|k| (k - 1, k));
+    for (from, to) in upward.chain((0..first).rev().map(|k| (k + 1, k))) {
+        ways[to] = ways[from] != !(grid.same_way)(&rings[from], &rings[to]);
+    }
+    ways
+}
+
+/// Whether a curve meets the others in falling order; rings (`way`) by their cyclic order, or as they are told where they have none.
+fn direction((curve, at): (usize, &[f64]), way: Option<bool>, others: (&[usize], &[usize])) -> Result<bool, Failure> {
+    let Some(way) = way else {
         let reversed = at.len() > 1 && at[at.len() - 1] < at[0];
         monotone(curve, at, reversed, others)?;
         return Ok(reversed);
-    }
+    };
     if at.len() <= 2 {
-        let ring = |curve: usize, at: &[f64]| Ring { curve, first: at[0], second: at.get(1).copied() };
-        return Ok(reference.is_some_and(|(c, base)| *c != curve && !(grid.same_way)(ring(*c, base), ring(curve, at))));
+        return Ok(way);
     }
     // From the first crossing on, fractions rise or fall all the way round.
     let turns: Vec<f64> = at.iter().map(|f| (f - at[0]).rem_euclid(1.0)).collect();

@@ -13,6 +13,7 @@ mod layout;
 pub mod meet;
 mod near;
 pub mod net;
+mod ring_way;
 mod rings;
 mod shared;
 mod slice;

@@ -1,32 +1,44 @@
 //! Nets of profiles and guides: the two families are said, what they span is found like any flow.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 use super::chain::Chain;
 use super::detect::{Grid, detect_grid, shared};
 use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
-use super::flow_chains::{explain, node_lists, same_way};
+use super::flow_chains::{explain, node_lists};
 use super::meet::closest_points;
+use super::ring_way::same_way;
 use super::snap::may_snap;
 use crate::base::fault::{Fault, NetFault, Result};
+use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
 
 /// Places along a curve at which two curves are compared.
 const COMPARED: usize = 32;
 
 /// Each curve once: one that runs along another over its whole length, either way, is the same curve given twice, as a net
-/// closed by repeating its first curve has it.
+/// closed by repeating its first curve has it. Of curves that differ within the tolerance the one kept is told by its points,
+/// not by its place in the list; it runs like the first one given.
 pub fn distinct(family: Vec<Chain>, tolerance: &Tolerance) -> Vec<Chain> {
     let mut kept: Vec<Chain> = Vec::with_capacity(family.len());
     for chain in family {
-        if !kept.iter().any(|other| runs_along(other, &chain, tolerance)) {
-            kept.push(chain);
+        let same = kept.iter_mut().find_map(|other| runs_along(other, &chain, tolerance).map(|turned| (other, turned)));
+        match same {
+            None => kept.push(chain),
+            Some((other, turned)) => {
+                if compare(&chain, other).is_lt() {
+                    *other = if turned { chain.reversed() } else { chain };
+                }
+            }
         }
     }
     kept
 }
 
-fn runs_along(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
+/// Whether `b` runs along `a`, and then whether the other way round.
+fn runs_along(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Option<bool> {
     let at = |k: usize| k as f64 / COMPARED as f64;
     let all = |turned: bool| {
         (0..=COMPARED).all(|k| {
@@ -34,7 +46,18 @@ fn runs_along(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
             tolerance.same_point(a.point(at(k)), p)
         })
     };
-    (a.length() - b.length()).abs() <= COMPARED as f64 * tolerance.point && (all(false) || all(true))
+    let as_long = (a.length() - b.length()).abs() <= COMPARED as f64 * tolerance.point;
+    [false, true].into_iter().find(|turned| as_long && all(*turned))
+}
+
+/// Order of curves by their points, whichever way they run.
+fn compare(a: &Chain, b: &Chain) -> Ordering {
+    let first_of = |x: DVec3, y: DVec3| if compare_points(x, y).is_lt() { x } else { y };
+    let place = |chain: &Chain, k: usize| {
+        let f = k as f64 / COMPARED as f64;
+        first_of(chain.point(f), chain.point(1.0 - f))
+    };
+    (0..=COMPARED / 2).map(|k| compare_points(place(a, k), place(b, k))).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
 /// The flow of profiles (along u) and guides (along v), with the points of its nodes; `chains` has the profiles first.
@@ -44,7 +67,7 @@ fn runs_along(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
 pub fn of_net(chains: &[Chain], profiles: usize, tolerance: &Tolerance) -> Result<(Flow, Vec<DVec3>)> {
     let (nodes, lists) = node_lists(chains, tolerance)?;
     let hints = FlowOptions { along_u: (0..profiles).collect(), along_v: (profiles..chains.len()).collect(), ..FlowOptions::default() };
-    let grid = Grid { lists: &lists, same_way: &|a, b| same_way(chains, a, b) };
+    let grid = Grid { lists: &lists, same_way: &|a, b| same_way(chains, a, b, tolerance) };
     match detect_grid(&grid, &hints) {
         Ok(flow) => Ok((flow, nodes)),
         Err(fault) => Err(net_fault(chains, (&nodes, &lists), (fault, &hints), tolerance)),
