@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::super::chain_breaks;
 use super::laws::{Law, Station, halved, samples};
 use crate::base::fault::{Fault, Result, SurfaceFault, SweepFault, ValueFault};
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::network::meet::{closest_points, meet};
@@ -117,8 +117,9 @@ impl Section {
             match found.as_slice() {
                 [] => return Ok(Err(j)),
                 [one] => {
-                    anchors.push(one.fa);
-                    on_guides.push(one.fb);
+                    let (fa, fb) = sharpened(chain, &guide.chain, (one.fa, one.fb));
+                    anchors.push(snapped(fa, chain, tolerance));
+                    on_guides.push(snapped(fb, &guide.chain, tolerance));
                 }
                 [one, two, ..] => {
                     let fault =
@@ -157,6 +158,41 @@ impl Section {
         const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
         let arm = |s: &Self, f: f64| s.chain.point(f) - s.anchor(0);
         PLACES.iter().map(|&f| arm(self, f).distance_squared(arm(other, f))).sum()
+    }
+}
+
+/// Fractions of the nearest points of two curves beside a meeting, to rounding.
+fn sharpened(a: &Chain, b: &Chain, (mut fa, mut fb): (f64, f64)) -> (f64, f64) {
+    const STEPS: usize = 4;
+    for _ in 0..STEPS {
+        let (p, q) = (a.jet(fa), b.jet(fb));
+        let (apart, x, y) = (q.p - p.p, p.d1, -q.d1);
+        // Least squares for p + x·s + y·t = q.
+        let (xx, xy, yy) = (x.dot(x), x.dot(y), y.dot(y));
+        let area = xx * yy - xy * xy;
+        if area <= NUDGE * xx * yy {
+            break;
+        }
+        let (r, s) = (apart.dot(x), apart.dot(y));
+        let next = ((fa + (yy * r - xy * s) / area).clamp(0.0, 1.0), (fb + (xx * s - xy * r) / area).clamp(0.0, 1.0));
+        // Beside a corner a step may lead away.
+        if a.point(next.0).distance(b.point(next.1)) >= apart.length() {
+            break;
+        }
+        (fa, fb) = next;
+    }
+    (fa, fb)
+}
+
+/// A fraction within a tolerance of an end is that end.
+fn snapped(f: f64, chain: &Chain, tolerance: &Tolerance) -> f64 {
+    let near = tolerance.point / chain.length();
+    if f <= near {
+        0.0
+    } else if f >= 1.0 - near {
+        1.0
+    } else {
+        f
     }
 }
 
