@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3, DVec4};
 
-use super::frame::bent;
 use crate::base::fault::{Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, Tolerance};
@@ -98,22 +97,6 @@ impl Deformation {
         };
         (0..=degree).map(|i| weighted(moved(i), piece[i].w)).collect()
     }
-}
-
-/// The smallest rotation that turns the line or plane of some points to that of others.
-pub fn turned(from: &[DVec3], to: &[DVec3]) -> DMat3 {
-    let direction = |points: &[DVec3]| -> DVec3 {
-        let (first, last) = (points[0], points[points.len() - 1]);
-        if points.len() < 3 {
-            return (last - first).normalize_or_zero();
-        }
-        points.windows(2).map(|w| (w[0] - first).cross(w[1] - first)).sum::<DVec3>().normalize_or_zero()
-    };
-    let (a, b) = (direction(from), direction(to));
-    if a == DVec3::ZERO || b == DVec3::ZERO {
-        return DMat3::IDENTITY;
-    }
-    DMat3::from_cols(bent(a, b, DVec3::X), bent(a, b, DVec3::Y), bent(a, b, DVec3::Z))
 }
 
 /// (1 − β) A + β B with β = 3x² − 2x³, piece by piece; smooth where both are.

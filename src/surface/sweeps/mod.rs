@@ -13,6 +13,7 @@ mod measure;
 mod net;
 mod sections;
 mod single;
+mod synchronized;
 
 pub use along::{Settings as AlongSettings, along};
 pub use build::{Input, Method, sweep};

@@ -1,11 +1,12 @@
 //! The net of a sweep: stations along the main guide, a section at each, and the guides between [math notes §10.3].
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::deform::{self, Deformation, Pieces};
 use super::laws::{Law, Main, Station, check_section, plane_normal, samples};
 use super::marks::Marks;
 use super::sections::{Guide, Section, against, aligned, apart};
+use super::synchronized::{self, Divided};
 use crate::base::fault::{Fault, Result, SweepFault, ValueFault};
 use crate::base::job;
 use crate::base::math;
@@ -154,6 +155,7 @@ fn directions(guides: &mut [Guide], sections: &mut [Section], law: Law, closed: 
 
 /// Fractions of the main guide for all stations: sections, breaks of all guides, ends, and more where it turns.
 fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, closed: bool, tolerance: &Tolerance) -> Vec<f64> {
+    let divided = Divided { guides, sections };
     let mut ws: Vec<f64> = sections.iter().map(|s| s.on_guides[0]).collect();
     let near = NUDGE.max(tolerance.point / main.chain.length());
     let mut offer = |w: f64| {
@@ -169,7 +171,7 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
     guides[0].breaks(tolerance).into_iter().for_each(&mut offer);
     for (j, guide) in guides.iter().enumerate().skip(1) {
         for f in guide.breaks(tolerance) {
-            let w = if law == Law::Synchronized { ratio(sections, j, f, true) } else { main.carried(guide.chain.point(f)).unwrap_or(-1.0) };
+            let w = if law == Law::Synchronized { divided.on_main(j, f) } else { main.carried(guide.chain.point(f)).unwrap_or(-1.0) };
             offer(w);
         }
     }
@@ -179,44 +181,39 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
         all.push(ws[k]);
         let next = if k + 1 < ws.len() { ws[k + 1] } else { 1.0 };
         if next > ws[k] + near {
-            let parts = (turning(main, (ws[k], next)) / TURN).ceil().max(1.0) as usize;
+            let parts = (turning(main, (law == Law::Synchronized).then_some(divided), (ws[k], next)) / TURN - NUDGE).ceil().max(1.0) as usize;
             all.extend((1..parts).map(|n| ws[k] + (next - ws[k]) * n as f64 / parts as f64));
         }
     }
     all
 }
 
-/// By how much sections and the main guide's direction turn between two of its fractions, radians.
-fn turning(main: &mut Main, (from, to): (f64, f64)) -> f64 {
+/// By how much sections and the directions of the guides turn between two fractions of the main one, radians.
+fn turning(main: &mut Main, divided: Option<Divided>, (from, to): (f64, f64)) -> f64 {
     // Looked at in eight parts, so that a whole turn is one.
     const PARTS: usize = 8;
     let at = |k: usize| from + (to - from) * k as f64 / PARTS as f64;
-    let mut whole = (0.0, 0.0);
+    let guides = divided.map_or(1, |d| d.guides.len());
+    let (mut section, mut ways) = (0.0, vec![0.0; guides]);
     for k in 0..PARTS {
-        let (a, b) = (main.station(at(k)).turn, main.station(at(k + 1)).turn);
-        whole.0 += [0, 1, 2].map(|c| math::angle_between(a.col(c), b.col(c))).into_iter().fold(0.0, f64::max);
-        whole.1 += math::angle_between(main.chain.jet(at(k)).d1, main.chain.jet_before(at(k + 1)).d1);
-    }
-    whole.0.max(whole.1)
-}
-
-/// Between the sections' own fractions in proportion: of the main guide by one of guide `j`, or the other way round.
-fn ratio(sections: &[Section], j: usize, x: f64, inverse: bool) -> f64 {
-    let pair = |s: &Section| if inverse { (s.on_guides[j], s.on_guides[0]) } else { (s.on_guides[0], s.on_guides[j]) };
-    let mut nodes = vec![(0.0, 0.0)];
-    nodes.extend(sections.iter().map(pair).filter(|p| p.0 > 0.0 && p.0 < 1.0));
-    nodes.push((1.0, 1.0));
-    for end in sections.iter().map(pair) {
-        if end.0 <= 0.0 {
-            nodes[0] = end;
-        } else if end.0 >= 1.0 {
-            let last = nodes.len() - 1;
-            nodes[last] = end;
+        section += match divided {
+            Some(divided) => synchronized::angle(divided.turn((at(k), at(k + 1)))),
+            None => {
+                let (a, b) = (main.station(at(k)).turn, main.station(at(k + 1)).turn);
+                [0, 1, 2].map(|c| math::angle_between(a.col(c), b.col(c))).into_iter().fold(0.0, f64::max)
+            }
+        };
+        for (j, way) in ways.iter_mut().enumerate() {
+            let (chain, a, b) = match divided {
+                Some(d) if j > 0 => (&d.guides[j].chain, d.on_guide(j, at(k)), d.on_guide(j, at(k + 1))),
+                _ => (main.chain, at(k), at(k + 1)),
+            };
+            // What the ends of a part do not show, as of a helix, its curvature does.
+            let bend = chain.jet(0.5 * (a + b)).d2.length() / chain.length() * (b - a);
+            *way += math::angle_between(chain.jet(a).d1, chain.jet_before(b).d1).max(bend);
         }
     }
-    let k = nodes.partition_point(|n| n.0 <= x).clamp(1, nodes.len() - 1);
-    let (a, b) = (nodes[k - 1], nodes[k]);
-    a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
+    ways.into_iter().fold(section, f64::max)
 }
 
 /// Fractions of all guides at a station, after those of the station before.
@@ -234,7 +231,7 @@ fn on_guides(
     let mut row = vec![station.w];
     for (j, guide) in guides.iter().enumerate().skip(1) {
         if law == Law::Synchronized {
-            row.push(ratio(sections, j, station.w, false));
+            row.push(Divided { guides, sections }.on_guide(j, station.w));
             continue;
         }
         let passes = guide.passes(station, tolerance);
@@ -297,7 +294,17 @@ fn ribs(
         }
         deform::level(&mut pieces);
     }
-    for (&w, on_guides) in ws.iter().zip(fractions) {
+    let divided = Divided { guides: &made.guides, sections };
+    let returns = made.closed.0 && sections.len() == 1;
+    // Of each section those by ascending and by descending fractions.
+    let synchronized: Vec<[Vec<DMat3>; 2]> = match law {
+        Law::Synchronized if !all_given => {
+            let carried = |s: &Section| [true, false].map(|up| divided.turns(s.on_guides[0], ws, up, (made.closed.0, returns)));
+            sections.iter().map(carried).collect()
+        }
+        _ => Vec::new(),
+    };
+    for (place, (&w, on_guides)) in ws.iter().zip(fractions).enumerate() {
         job::look();
         if let Some(k) = sections.iter().position(|s| s.on_guides[0] == w) {
             made.ribs.push(Rib { w, on_guides, chain: sections[k].chain.clone(), breaks: marks.rows[k].clone() });
@@ -314,11 +321,12 @@ fn ribs(
             (k, _) => vec![k - 1, k],
         };
         let mut copies = Vec::with_capacity(2);
-        for &k in &neighbours {
+        for (nth, &k) in neighbours.iter().enumerate() {
             let section = &sections[k];
             let anchors: Vec<(f64, DVec3)> = made.order.iter().map(|&j| (section.anchors[j], section.anchor(j))).collect();
             let turn = if law == Law::Synchronized {
-                deform::turned(&anchors.iter().map(|a| a.1).collect::<Vec<_>>(), &targets)
+                let ascending = if neighbours.len() == 2 { nth == 0 } else { section.on_guides[0] <= w };
+                synchronized[k][usize::from(!ascending)][place]
             } else {
                 station.turn * main.station(section.on_guides[0]).turn.transpose()
             };
