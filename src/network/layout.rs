@@ -186,7 +186,7 @@ fn ways(grid: &Grid, rings: &[Ring], first: usize) -> Vec<bool> {
     }
     let upward = (first + 1..rings.len()).map(|k| (k - 1, k));
     for (from, to) in upward.chain((0..first).rev().map(|k| (k + 1, k))) {
-        ways[to] = ways[from] != !(grid.same_way)(&rings[from], &rings[to]);
+        ways[to] = ways[from] == (grid.same_way)(&rings[from], &rings[to]);
     }
     ways
 }

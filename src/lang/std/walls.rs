@@ -13,9 +13,9 @@ choices! {
         /// Half of it on either side of the face.
         Both = "both",
         /// On the side of the normal.
-        Outer = "outer",
+        Front = "front",
         /// On the other side.
-        Inner = "inner",
+        Back = "back",
     }
 }
 
@@ -30,14 +30,14 @@ builtins! {
     /// surface tube = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 3m))
     /// shell pipe of thicken(tube, 100mm)
     /// check pipe.volume == tube.area * 100mm within 1e-9%
-    /// let faces = len(thicken(tube, 100mm, side: outer)) // => 4
+    /// let faces = len(thicken(tube, 100mm, side: front)) // => 4
     /// ```
     fn thicken(
         /// A surface, or a shell of one face.
         of: SurfaceOrShell,
         /// How thick the wall is, above 0.
         thickness: Length,
-        /// Where it stands: half on either side, on the side of the normal, or on the other one.
+        /// Where it stands: half on either side, on the side of the normal (`-face` turns it), or on the other one.
         side: WallSide = "both",
     ) -> Vec<Surface> = |cx, of, thickness, side| {
         let t = thickness.0;
@@ -50,8 +50,8 @@ builtins! {
         };
         let reach = match side {
             WallSide::Both => (-0.5 * t, 0.5 * t),
-            WallSide::Outer => (0.0, t),
-            WallSide::Inner => (-t, 0.0),
+            WallSide::Front => (0.0, t),
+            WallSide::Back => (-t, 0.0),
         };
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
         let (made, notes) = thicken(face, reach, origin, &tolerance)?;

@@ -60,9 +60,9 @@ fn one(change: &Change, allowance: Allowance) -> Vec<Said> {
             let fresh: Vec<&str> = moves.iter().filter(|m| m.old.is_none()).map(|m| m.word).collect();
             let many = fresh.len() > 2;
             let over = is_turned_over(moves, allowance);
-            let is_said = |m: &&Move| !(many && m.old.is_none()) && !(over && matches!(m.word, "side" | "inside" | "hash"));
+            let is_left_out = |m: &Move| many && m.old.is_none() || over && matches!(m.word, "side" | "inside" | "hash");
             let turned = over.then(|| "turned over, it shows its other side".to_owned());
-            let told = turned.into_iter().chain(moves.iter().filter(is_said).flat_map(|m| in_words(m, moves, allowance)));
+            let told = turned.into_iter().chain(moves.iter().filter(|m| !is_left_out(m)).flat_map(|m| in_words(m, moves, allowance)));
             let words = told.chain(many.then(|| format!("{} are new", fresh.join(", "))));
             head.into_iter().chain(words.map(|w| Said::Words(format!("{}: {w}", subject(new))))).collect()
         }

@@ -181,7 +181,8 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
         all.push(ws[k]);
         let next = if k + 1 < ws.len() { ws[k + 1] } else { 1.0 };
         if next > ws[k] + near {
-            let parts = (turning(main, (law == Law::Synchronized).then_some(divided), (ws[k], next)) / TURN - NUDGE).ceil().max(1.0) as usize;
+            let parts =
+                (turning(main, (law == Law::Synchronized).then_some(divided), (ws[k], next)) / TURN - NUDGE).ceil().max(1.0) as usize;
             all.extend((1..parts).map(|n| ws[k] + (next - ws[k]) * n as f64 / parts as f64));
         }
     }
