@@ -93,7 +93,7 @@ enum Known {
     Blend(BlendStrip),
     Profile(Line),
     Net(NetStrip),
-    Framed(FramedStrip),
+    Framed(Box<FramedStrip>),
 }
 
 impl Surface {
@@ -202,7 +202,7 @@ impl Shape {
                 Self::Blend(s) => Known::Blend(s.strip(along_u, ends)),
                 Self::Sweep(s) if !along_u => Known::Profile(s.profile().line(ends.0, ends.1)),
                 Self::Nurbs(s) => Known::Net(s.strip(along_u, ends)),
-                Self::Framed(s) if along_u => Known::Framed(s.strip(ends)),
+                Self::Framed(s) if along_u => Known::Framed(Box::new(s.strip(ends))),
                 Self::Framed(s) => Known::Profile(s.profile().line(ends.0, ends.1)),
                 _ => Known::Nothing,
             };

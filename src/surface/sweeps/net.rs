@@ -110,9 +110,9 @@ fn seams(guides: &mut [Guide], sections: &mut [Section], tolerance: &Tolerance) 
         return Err(ValueFault::OutsideRange { argument: "guides", found, range: "all closed, or all open".to_owned() }.into());
     }
     if closed {
-        for j in 0..guides.len() {
+        for (j, guide) in guides.iter_mut().enumerate() {
             let start = sections[0].on_guides[j];
-            guides[j] = guides[j].from(start, tolerance)?;
+            *guide = guide.from(start, tolerance)?;
             sections.iter_mut().for_each(|s| s.on_guides[j] = (s.on_guides[j] - start).rem_euclid(1.0));
         }
     }
@@ -130,23 +130,23 @@ fn common_normal(sections: &[Section], main: &Chain) -> DVec3 {
 
 /// Turns the guides to run as the main one does; E635 where one meets the sections in another order.
 fn directions(guides: &mut [Guide], sections: &mut [Section], law: Law, closed: bool, main: &mut Main) -> Result<()> {
-    for j in 1..guides.len() {
+    for (j, guide) in guides.iter_mut().enumerate().skip(1) {
         let (first, last) = (sections[0].on_guides[j], sections[sections.len() - 1].on_guides[j]);
         let backwards = if sections.len() > 1 && !closed {
             last < first
         } else {
             let station = main.station(sections[0].on_guides[0]);
-            against(&guides[j], first, &station, law, main.chain.jet(station.w).d1)
+            against(guide, first, &station, law, main.chain.jet(station.w).d1)
         };
         if backwards {
-            guides[j] = guides[j].reversed();
+            *guide = guide.reversed();
             for section in sections.iter_mut() {
                 let f = &mut section.on_guides[j];
                 *f = if closed && *f == 0.0 { 0.0 } else { 1.0 - *f };
             }
         }
         if let Some(w) = sections.windows(2).find(|w| w[1].on_guides[j] <= w[0].on_guides[j]) {
-            let fault = SweepFault::GuideDoublesBack { guide: guides[j].given.origin(), law: law.name(), at: w[1].anchor(j) };
+            let fault = SweepFault::GuideDoublesBack { guide: guide.given.origin(), law: law.name(), at: w[1].anchor(j) };
             return Err(fault.into());
         }
     }
