@@ -373,3 +373,53 @@ fn free_faces_that_did_not_change_are_taken_over() {
     let named = folder.reused(&loose(0.0, "").replace("s2_2", "corner"), &mut kept);
     assert!(named.faces >= 4 * 8, "{named:?}");
 }
+
+/// What a run says, by report: the message, the first label, help and notes.
+fn told(text: &str, kept: Option<&mut Kept>) -> Vec<(String, String, Option<String>, usize)> {
+    let disk = Disk::new(Some(Path::new("model.loft")), None, &[], Outputs::Counted).unwrap();
+    let (clock, job) = (|| 0.0, Job::default());
+    let task = Task {
+        name: "model.loft",
+        text: text.as_bytes(),
+        sets: &[],
+        row: None,
+        strict: false,
+        keep_going: false,
+        full: true,
+        picture: None,
+        clock: &clock,
+    };
+    let outcome = match kept {
+        Some(kept) => run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {} }),
+        None => run(&task, &disk, &job),
+    };
+    let line = |d: &lofting::lang::diag::Diagnostic| (d.message.clone(), d.labels[0].text.clone(), d.help.clone(), d.fixes.len());
+    outcome.diagnostics.iter().map(line).collect()
+}
+
+/// Names that an unknown one is compared with are counted: beyond the first reports their number has a bound, and which
+/// reports say what was meant depends on places alone, not on what is evaluated first or was taken over.
+#[test]
+fn unknown_names_are_compared_a_bounded_number_of_times() {
+    const BOUND: usize = 50_000;
+    let scripts: [fn(usize) -> String; 2] = [
+        |n| (0..n).map(|k| format!("let a{k:05} = b{k:05}\n")).collect(),
+        |n| (0..n).map(|k| format!("fn a{k:05}(x: number): number = x\nlet v{k} = b{k:05}(1)\n")).collect(),
+    ];
+    for script in scripts {
+        for n in [15, 300, 2400] {
+            // The first one asks for what stands behind all others, and for the tolerance.
+            let text = format!("units m\nlet first = [curve_of(z), line((0, 0, 0), (1, 0, 0)).length]\n{}", script(n));
+            let text = format!("{}let z = first_z\n", text.replace("curve_of(z)", "z"));
+            let found = told(&text, None);
+            let near = |d: &(String, String, Option<String>, usize)| d.1.starts_with("did you mean `a");
+            let said = found.iter().filter(|d| near(d)).count();
+            assert_eq!(found.len(), n + 1, "{:?}", found.last());
+            assert!(found.iter().take(20.min(n)).all(near), "{n}: {:?}", &found[..3]);
+            assert!(said >= 20.min(n) && said * n <= BOUND + 30 * n, "{said} of {n}");
+            assert!(found.iter().all(|d| d.1.starts_with("did you mean") == (d.3 == 1)));
+            let mut kept = Kept::default();
+            assert!((0..2).all(|_| told(&text, Some(&mut kept)) == found), "{n}");
+        }
+    }
+}

@@ -10,6 +10,7 @@ use super::later;
 use super::lookalikes;
 use super::module::State;
 use super::names::Name;
+use super::near::{Among, Unknown};
 use super::room::LIST_COST;
 use super::std::{self, Builtin};
 use super::syntax::ast::{Arg, DeclarationKind, Expr, ExprId, FnParam, Keyword, Span};
@@ -353,13 +354,8 @@ impl Cx<'_> {
                     let draft = self.error(code, "E211", format!("`{label}.{text}` is a function"), span, "functions are not values");
                     return Err(draft.help(format!("call it: `{label}.{text}(…)`")).stop());
                 }
-                let names: Vec<String> = self.machine.at(module).names().map(|n| self.names.text(n).to_owned()).collect();
-                let near = meant(&text, names.iter().map(String::as_str)).map(str::to_owned);
-                let draft = self.error(code, "E214", format!("`{label}` declares no `{text}`"), span, "not in that script");
-                Err(match near {
-                    Some(near) => draft.help(format!("`{label}.{near}`")).put(span, near).stop(),
-                    None => draft.stop(),
-                })
+                self.note_unknown(code.module, span, Unknown { name, of: module, among: Among::Members });
+                Err(self.error(code, "E214", format!("`{label}` declares no `{text}`"), span, "not in that script").stop())
             }
         }
     }

@@ -4,7 +4,6 @@ use super::cx::{Cx, Stop};
 use super::diag::{Diagnostic, FileId, Label};
 use super::eval::Code;
 use super::syntax::ast::Span;
-use crate::base::fault::Edit;
 
 /// Calls shown above a failure.
 const CALLS_SHOWN: usize = 3;
@@ -63,14 +62,6 @@ impl Draft<'_, '_> {
     /// With help that is this text in the place of that stretch, in the same file.
     pub fn put(mut self, span: Span, text: impl Into<String>) -> Self {
         self.diagnostic = self.diagnostic.put(span, text);
-        self
-    }
-
-    /// With help that takes a script of this name for a module.
-    pub fn used(mut self, span: Span, name: &str) -> Self {
-        let what = format!("\"{name}.loft\" as {name}");
-        self.diagnostic.help = Some(format!("use {what}"));
-        self.diagnostic = self.diagnostic.fix(span, Edit::Declare("use", what));
         self
     }
 

@@ -105,6 +105,8 @@ pub struct Machine {
     pub(super) stages: u32,
     pub(super) defaults: std::collections::BTreeMap<(usize, usize), Value>,
     pub(super) filed: Vec<(Option<(ModuleId, u32)>, Diagnostic)>,
+    /// Names that nothing binds, of which it is not yet told what was meant.
+    pub(super) unknown: super::near::Unknowns,
     /// What the declaration being evaluated asked for beside values.
     pub(super) asked: Asked,
 }
@@ -131,6 +133,7 @@ impl Default for Machine {
             stages: 0,
             defaults: std::collections::BTreeMap::new(),
             filed: Vec::new(),
+            unknown: super::near::Unknowns::new(),
             asked: Asked::default(),
         }
     }

@@ -1,14 +1,14 @@
 //! Words of later versions: known, and refused by one error instead of being taken for a mistake.
 
 use super::cx::{Cx, Stop};
-use super::elsewhere::{instead, meant};
+use super::elsewhere::instead;
 use super::eval::Code;
-use super::lookalikes;
-use super::names::{Name, nearest};
+use super::names::Name;
+use super::near::{Among, Unknown};
+use super::std;
 use super::syntax::ast::{Arg, Expr, ExprId, Keyword, Span};
 use super::syntax::foreign::{PRINTS, range};
 use super::value::{ModuleId, Value};
-use super::{module::bound, std};
 
 const FUNCTIONS: &[&str] = &["hermite", "scatter", "blend", "join", "hydrostatics"];
 
@@ -53,17 +53,9 @@ impl Cx<'_> {
             let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, "a function, not a value");
             return Err(draft.help(format!("call it: `{text}(…)`")).stop());
         }
-        let found = self.near_name(code.module, &text);
-        let near = found.as_ref().map(|found| found.0.clone());
-        let label = match found {
-            Some((near, Some((keyword, line)))) => format!("did you mean `{near}` ({keyword}, line {line})?"),
-            Some((near, None)) => format!("did you mean `{near}`?"),
-            None => "no such name".to_owned(),
-        };
-        let used = near.is_none() && self.files.resolve(&self.machine.at(code.module).path, &format!("{text}.loft")).is_ok();
-        let alike = near.as_deref().and_then(|near| lookalikes::difference(&text, near));
-        let draft = self.error(code, "E201", format!("`{text}` is not defined"), span, label).puts(span, near).notes(alike);
-        Err(if used { draft.used(span, &text).stop() } else { draft.stop() })
+        let locals = self.machine.locals[self.machine.base..].iter().map(|l| l.0).collect();
+        self.note_unknown(code.module, span, Unknown { name, of: code.module, among: Among::Values(locals) });
+        Err(self.error(code, "E201", format!("`{text}` is not defined"), span, "no such name").stop())
     }
 
     /// E201 or E230: a function that is none.
@@ -86,18 +78,8 @@ impl Cx<'_> {
             let draft = self.error(code, "E201", message, span, "cannot be called");
             return if typed.is_empty() { draft.stop() } else { draft.ways(code.span(id), &typed).stop() };
         }
-        let mut names: Vec<String> = std::builtins().chain(std::fields()).map(|b| b.name.to_owned()).collect();
-        let module = self.machine.at(code.module);
-        names.extend(
-            module
-                .script
-                .declarations
-                .iter()
-                .filter(|d| d.keyword == Keyword::Fn)
-                .filter_map(bound)
-                .map(|b| self.names.text(b.name).to_owned()),
-        );
-        if PRINTS.contains(&text.as_str()) && !names.contains(&text) {
+        let is_word = || std::builtins().chain(std::fields()).any(|b| b.name == text);
+        if PRINTS.contains(&text.as_str()) && !is_word() {
             let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
             return draft.help("`report` puts a value into the report; in a session an expression is shown by typing it").stop();
         }
@@ -121,14 +103,12 @@ impl Cx<'_> {
             let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
             return draft.ways(code.span(id), &[typed]).stop();
         }
-        if let Some(other) = instead(&text).filter(|_| !names.contains(&text)) {
+        if let Some(other) = instead(&text).filter(|_| !is_word()) {
             let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
             return draft.help(format!("for example `{other}`")).stop();
         }
-        let near = meant(&text, names.iter().map(String::as_str)).map(str::to_owned);
-        let label = near.as_ref().map_or_else(|| "no such function".to_owned(), |near| format!("did you mean `{near}`?"));
-        let alike = near.as_deref().and_then(|near| lookalikes::difference(&text, near));
-        self.error(code, "E201", format!("there is no function `{text}`"), span, label).puts(span, near).notes(alike).stop()
+        self.note_unknown(code.module, span, Unknown { name, of: code.module, among: Among::Functions });
+        self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function").stop()
     }
 
     /// What may have been meant by calling a thing: its settings in braces, or a member of it.
@@ -145,32 +125,9 @@ impl Cx<'_> {
         }
     }
 
-    /// The nearest name in sight, with keyword and line when it is declared.
-    fn near_name(&self, module: ModuleId, text: &str) -> Option<(String, Option<(&'static str, usize)>)> {
-        let m = self.machine.at(module);
-        let locals = self.machine.locals[self.machine.base..].iter().map(|l| self.names.text(l.0));
-        let declared: Vec<(&str, u32, &'static str)> = m
-            .script
-            .declarations
-            .iter()
-            .filter(|d| d.keyword != Keyword::Fn)
-            .filter_map(|d| bound(d).map(|b| (self.names.text(b.name), b.span.start, keyword_word(d.keyword))))
-            .collect();
-        let words = ["true", "false", "none", "pi"].into_iter().filter(|w| w.eq_ignore_ascii_case(text));
-        let near = nearest(text, words.chain(locals).chain(declared.iter().map(|d| d.0)))?;
-        let place = declared.iter().find(|d| d.0 == near).map(|d| (d.2, self.sources.place(m.file, d.1).map_or(1, |p| p.line)));
-        Some((near.to_owned(), place))
-    }
-
     /// Whether some param of the script lists this name among its choices.
     fn is_param_word(&self, module: ModuleId, name: Name) -> bool {
-        use super::syntax::ast::{Allowed, DeclarationKind, Expr};
-        self.machine.at(module).script.declarations.iter().any(|d| match &d.kind {
-            DeclarationKind::Param { allowed: Some(Allowed::Choices(items)), .. } => {
-                items.iter().any(|i| matches!(d.nodes[i.index()].expr, Expr::Name(n) if n == name))
-            }
-            _ => false,
-        })
+        self.machine.at(module).is_choice(name)
     }
 }
 

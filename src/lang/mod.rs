@@ -32,6 +32,7 @@ pub mod members;
 pub mod memory;
 mod module;
 pub mod names;
+mod near;
 mod operators;
 pub mod origins;
 mod outputs;

@@ -7,7 +7,7 @@ use super::diag::FileId;
 use super::memory::{Asked, Keys};
 use super::names::Name;
 use super::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
-use super::syntax::ast::{Bound, Declaration, DeclarationKind, Script, Span};
+use super::syntax::ast::{Allowed, Bound, Declaration, DeclarationKind, Expr, Script, Span};
 use super::units::LengthUnit;
 use super::value::{ModuleId, Value};
 use crate::base::digest::Digest;
@@ -92,6 +92,8 @@ pub(super) struct Module {
     by_name: Vec<u32>,
     /// Names of declarations that did not parse, sorted.
     broken: Vec<Name>,
+    /// Words that params list as their choices, sorted.
+    choices: Vec<Name>,
     /// State of each declaration.
     pub states: Vec<State>,
     /// Walk through dependencies that met a declaration last.
@@ -135,6 +137,8 @@ impl Module {
         }
         let mut broken: Vec<Name> = script.broken.iter().map(|b| b.name).collect();
         broken.sort_unstable();
+        let mut choices: Vec<Name> = script.declarations.iter().flat_map(choices).collect();
+        choices.sort_unstable();
         let module = Self {
             file,
             path,
@@ -144,6 +148,7 @@ impl Module {
             unit: super::units::MILLIMETRE,
             by_name,
             broken,
+            choices,
             entered: vec![0; states.len()],
             asked: vec![Asked::default(); states.len()],
             states,
@@ -174,10 +179,27 @@ impl Module {
         self.broken.binary_search(&name).is_ok()
     }
 
+    /// Whether some param lists this name among its choices.
+    pub fn is_choice(&self, name: Name) -> bool {
+        self.choices.binary_search(&name).is_ok()
+    }
+
     /// All names bound here.
     pub fn names(&self) -> impl Iterator<Item = Name> + '_ {
         self.script.declarations.iter().filter_map(|d| bound(d).map(|b| b.name))
     }
+}
+
+/// The words that a param lists as its choices.
+fn choices(declaration: &Declaration) -> impl Iterator<Item = Name> + '_ {
+    let items = match &declaration.kind {
+        DeclarationKind::Param { allowed: Some(Allowed::Choices(items)), .. } => items.as_slice(),
+        _ => &[],
+    };
+    items.iter().filter_map(|i| match declaration.nodes[i.index()].expr {
+        Expr::Name(name) => Some(name),
+        _ => None,
+    })
 }
 
 /// The name that a declaration binds.

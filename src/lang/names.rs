@@ -135,7 +135,7 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
             continue;
         }
         let alike = wanted.iter().zip(&letters).take_while(|(a, b)| a == b).count();
-        let rank = (distance(&wanted, &letters), wanted.len() - alike);
+        let rank = (distance(&wanted, &letters, limit.0), wanted.len() - alike);
         if rank < limit {
             best = Some((rank, candidate));
         }
@@ -144,7 +144,8 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
 }
 
 /// Twice the number of letters inserted, deleted, replaced or swapped with their neighbour; a change of case, or of a letter for one of another script that looks like it, costs one.
-fn distance(a: &[char], b: &[char]) -> usize {
+/// Something above `most` where it is more than that.
+fn distance(a: &[char], b: &[char], most: usize) -> usize {
     let width = b.len() + 1;
     let (mut two_back, mut back) = (vec![0; width], (0..width).map(|j| 2 * j).collect::<Vec<usize>>());
     for i in 1..=a.len() {
@@ -160,6 +161,10 @@ fn distance(a: &[char], b: &[char]) -> usize {
             if i > 1 && j > 1 && x == b[j - 2] && a[i - 2] == y {
                 row[j] = row[j].min(two_back[j - 2] + 2);
             }
+        }
+        // What follows is made from these two rows.
+        if row.iter().chain(&back).all(|d| *d > most) {
+            return most + 1;
         }
         two_back = std::mem::replace(&mut back, row);
     }

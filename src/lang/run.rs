@@ -1,5 +1,6 @@
 //! A run from the first declaration to the last report: phases around the tolerance, and what is said in the end.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::cx::{Cx, SAID_JUST_NOW, Stop};
@@ -186,16 +187,16 @@ impl Cx<'_> {
         self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
         self.idle_tolerances();
         let skipped = self.skipped();
-        let filed = std::mem::take(&mut self.machine.filed);
+        let mut filed = std::mem::take(&mut self.machine.filed);
+        self.tell_meant(&mut filed);
         let mut out: Vec<Diagnostic> = Vec::with_capacity(filed.len());
-        let mut noted: Vec<(ModuleId, u32)> = Vec::new();
+        let mut noted = BTreeSet::new();
         for (owner, mut diagnostic) in filed {
             if let Some(owner) = owner
                 && diagnostic.severity() == Severity::Error
-                && !noted.contains(&owner)
+                && noted.insert(owner)
             {
-                noted.push(owner);
-                if let Some(note) = skipped.iter().find(|s| s.0 == owner).map(|s| self.not_built(owner, &s.1)) {
+                if let Some(note) = skipped.get(&owner).map(|members| self.not_built(owner, members)) {
                     diagnostic.notes.push(note);
                 }
             }
@@ -226,19 +227,15 @@ impl Cx<'_> {
     }
 
     /// For each failed declaration what was skipped because of it.
-    #[allow(clippy::type_complexity)]
-    fn skipped(&self) -> Vec<((ModuleId, u32), Vec<(ModuleId, u32)>)> {
-        let mut out: Vec<((ModuleId, u32), Vec<(ModuleId, u32)>)> = Vec::new();
+    fn skipped(&self) -> BTreeMap<(ModuleId, u32), Vec<(ModuleId, u32)>> {
+        let mut out: BTreeMap<(ModuleId, u32), Vec<(ModuleId, u32)>> = BTreeMap::new();
         for (m, module) in self.machine.modules.iter().enumerate() {
             for (i, state) in module.states.iter().enumerate() {
                 let State::Skipped(cm, cd) = state else { continue };
                 if self.machine.in_cycle.contains(&(ModuleId::at(m), i as u32)) {
                     continue;
                 }
-                match out.iter_mut().find(|o| o.0 == (*cm, *cd)) {
-                    Some(found) => found.1.push((ModuleId::at(m), i as u32)),
-                    None => out.push(((*cm, *cd), vec![(ModuleId::at(m), i as u32)])),
-                }
+                out.entry((*cm, *cd)).or_default().push((ModuleId::at(m), i as u32));
             }
         }
         out
