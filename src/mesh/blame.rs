@@ -79,17 +79,19 @@ fn of_face(
         Remark::Sharp { angle, at: mesh.nodes[t[0] as usize], surface, faces: 1, cure: blame.cure(foreseen, t) }
     });
     let why = if least.0 < SMALL { blame.why(least) } else { None };
-    let tell = |why| format!("; least angle {}° at {}: {why}", digits(least.0.to_degrees()), place(mesh.nodes[least.1[0] as usize]));
+    let tell = |why| {
+        format!(
+            "; least angle {}° at {}: {why}",
+            digits(least.0.to_degrees()),
+            super::reasons::point(made.input, mesh.nodes[least.1[0] as usize])
+        )
+    };
     Some(Seen { line: why.map(tell).unwrap_or_default(), sharp })
 }
 
 fn angle(mesh: &Mesh, c: [u32; 3]) -> f64 {
     let [a, b, d] = c.map(|n| mesh.nodes[n as usize]);
     if a == b || a == d { 0.0 } else { angle_between(b - a, d - a) }
-}
-
-fn place(p: DVec3) -> String {
-    format!("({:.3}, {:.3}, {:.3})", p.x + 0.0, p.y + 0.0, p.z + 0.0)
 }
 
 /// A number with three digits that count.

@@ -10,9 +10,10 @@ use crate::base::text::real;
 use crate::model::{Course, EdgePart};
 use crate::network::Chain;
 
-/// A point with three digits behind the point.
-fn point(p: DVec3) -> String {
-    format!("({:.3}, {:.3}, {:.3})", p.x + 0.0, p.y + 0.0, p.z + 0.0)
+/// A place as far as the tolerance tells it, model units.
+pub fn point(input: &Input, p: DVec3) -> String {
+    let p = input.tolerance.rounded(p);
+    format!("({}, {}, {})", real(p.x), real(p.y), real(p.z))
 }
 
 /// A clause by its number: rules first, then `near` and `in`.
@@ -40,7 +41,7 @@ fn target(input: &Input, target: &Target) -> String {
         Target::Patches(all) => {
             all.first().map_or_else(|| "no face".to_owned(), |p| format!("a face of {}", surface(input.model.patches[p.index()].surface)))
         }
-        Target::Point(p) => point(*p),
+        Target::Point(p) => point(input, *p),
     }
 }
 
@@ -52,7 +53,7 @@ fn edge(input: &Input, courses: &[Course]) -> String {
     match (part, surface) {
         (Some(part), Some(surface)) => {
             let at = input.model.track(part.edge, input.network).point(0.5 * (part.s.0 + part.s.1));
-            format!("an edge of {} at {}", input.model.surfaces[surface.index()].name, point(at))
+            format!("an edge of {} at {}", input.model.surfaces[surface.index()].name, point(input, at))
         }
         _ => "an edge".to_owned(),
     }
@@ -64,16 +65,16 @@ fn curve(input: &Input, chain: &Chain) -> String {
         let curve = input.network.links[link.index()].curve;
         input.network.curves[curve.index()].name.clone()
     });
-    name.filter(|n| !n.is_empty()).unwrap_or_else(|| format!("a curve at {}", point(chain.point(0.5))))
+    name.filter(|n| !n.is_empty()).unwrap_or_else(|| format!("a curve at {}", point(input, chain.point(0.5))))
 }
 
 fn refined(input: &Input, k: usize) -> String {
     let refine = &input.plan.refines[k];
     let place = match refine.at.as_slice() {
-        [Place::Point(p)] => format!("near {}", point(*p)),
+        [Place::Point(p)] => format!("near {}", point(input, *p)),
         [Place::Chain(chain)] => format!("near {}", curve(input, chain)),
-        [Place::Box(b)] => format!("in the box {} to {}", point(b.min), point(b.max)),
-        [Place::Box(b), ..] => format!("in boxes from {} on", point(b.min)),
+        [Place::Box(b)] => format!("in the box {} to {}", point(input, b.min), point(input, b.max)),
+        [Place::Box(b), ..] => format!("in boxes from {} on", point(input, b.min)),
         all => format!("near {} places", all.len()),
     };
     format!("size {} {place}", real(refine.size.0))
@@ -113,7 +114,7 @@ pub fn of_face(input: &Input, deciders: &[Decider]) -> String {
     let total: usize = deciders.iter().map(|d| d.nodes).sum();
     let part = |d: &Decider| match d.why {
         Why::Size => format!("{} by the size", d.nodes),
-        why => format!("{} by {}, one at {}", d.nodes, cause(input, why), point(d.at)),
+        why => format!("{} by {}, one at {}", d.nodes, cause(input, why), point(input, d.at)),
     };
     let parts: Vec<String> = deciders.iter().filter(|d| d.nodes > 0).map(part).collect();
     if parts.is_empty() { String::new() } else { format!("; {total} nodes inside: {}", parts.join(", ")) }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Describe, Report, Say};
 use crate::base::origin::Origin;
+use crate::base::text::{decimals, real};
 
 /// What can go wrong when sections travel along guides, or deserves a word. Lengths are model units.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,9 +140,9 @@ impl Describe for SweepFault {
             F::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(
                 "E634",
                 format!(
-                    "{} does not reach the station at {:.1}% of the main guide, {}: under the {law} law it stays {} off, nearest at {}",
+                    "{} does not reach the station at {}% of the main guide, {}: under the {law} law it stays {} off, nearest at {}",
                     say.quoted(*guide, "a guide"),
-                    100.0 * station,
+                    decimals(100.0 * station, 1),
                     say.point(*at),
                     say.length(*miss),
                     say.point(*nearest)
@@ -173,10 +174,10 @@ impl Describe for SweepFault {
             F::GuideExtended { guide, length, share, end } => Report::new(
                 "N638",
                 format!(
-                    "{} was made {} longer ({:.1}% of its length), to {}, so that it reaches every station",
+                    "{} was made {} longer ({}% of its length), to {}, so that it reaches every station",
                     say.quoted(*guide, "a guide"),
                     say.length(*length),
-                    100.0 * share,
+                    decimals(100.0 * share, 1),
                     say.point(*end)
                 ),
             )
@@ -196,17 +197,17 @@ impl Describe for SweepFault {
             .help("draw one of them through a point of the other, or leave this guide out of `guides:`"),
             F::SectionScaled { section, scale, at } => Report::new(
                 "W644",
-                format!("{} is scaled by {scale:.3} to touch its guides at {}", say.quoted(*section, "a section"), say.point(*at)),
+                format!("{} is scaled by {} to touch its guides at {}", say.quoted(*section, "a section"), few(*scale), say.point(*at)),
             )
             .at(*section, "the nearest section to that station")
             .help("draw one more section there"),
             F::GuideCusp { guide, at, fraction } => Report::new(
                 "E636",
                 format!(
-                    "{} turns back on itself at {}, {:.1}% of its length",
+                    "{} turns back on itself at {}, {}% of its length",
                     say.quoted(*guide, "the path"),
                     say.point(*at),
-                    100.0 * fraction
+                    decimals(100.0 * fraction, 1)
                 ),
             )
             .at(*guide, "has no direction there that a section could follow")
@@ -224,6 +225,11 @@ impl Describe for SweepFault {
             }
         }
     }
+}
+
+/// A factor with three digits that count.
+fn few(x: f64) -> String {
+    real(format!("{x:.2e}").parse().unwrap_or(x))
 }
 
 /// E631–E633: what a law asks of sections.
