@@ -1,5 +1,6 @@
 //! The report of a run for people: aligned tables on standard output.
 
+use crate::base::job;
 use crate::base::text::columns as width;
 use crate::base::tolerance::Tolerance;
 use crate::session::report::{Cell, Report, Table};
@@ -26,8 +27,8 @@ impl Grid {
         let lines = || std::iter::once(&self.head).chain(&self.rows);
         // A column without any value says nothing.
         let shown: Vec<usize> = (0..columns).filter(|&c| self.rows.iter().any(|r| !r[c].is_empty())).collect();
-        let widths: Vec<usize> = (0..columns).map(|c| lines().map(|r| width(&r[c])).max().unwrap_or(0)).collect();
-        for (number, row) in lines().enumerate() {
+        let widths: Vec<usize> = (0..columns).map(|c| job::looking(lines()).map(|r| width(&r[c])).max().unwrap_or(0)).collect();
+        for (number, row) in job::looking(lines().enumerate()) {
             let mut line = String::new();
             for (k, &c) in shown.iter().enumerate() {
                 let pad = " ".repeat(widths[c] - width(&row[c]));
@@ -182,7 +183,7 @@ pub fn print_table(table: &Table, out: &mut String, color: bool) {
         })
         .collect();
     let mut grid = Grid::new(&head.iter().map(String::as_str).collect::<Vec<_>>());
-    for row in &table.rows {
+    for row in job::looking(&table.rows) {
         grid.rows.push((0..head.len()).map(|c| row.get(c).map(cell).unwrap_or_default()).collect());
     }
     grid.print(out, color);

@@ -41,6 +41,14 @@ impl Terminal {
         lose(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
     }
 
+    /// The same in pieces, as long as `go_on` says so; whether it said so to the end.
+    pub fn print_while(&self, text: &str, go_on: &dyn Fn() -> bool) -> bool {
+        let mut out = io::stdout().lock();
+        let (whole, written) = write_while(&mut out, text.as_bytes(), go_on);
+        lose(written);
+        whole
+    }
+
     /// How the program ends: a text that standard output did not take is an error of a run without others. A full disk
     /// is told; a reader that has gone (`loft doc | head`) knows.
     pub fn end(&self, exit: Exit) -> Exit {
@@ -72,5 +80,40 @@ impl Terminal {
 pub fn lose(written: io::Result<()>) {
     if let Err(error) = written {
         LOST.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+}
+
+/// Bytes that are written between two questions whether to go on.
+const PIECE: usize = 4096;
+
+/// Writes in pieces as long as `go_on` says so; whether it said so to the end, and how the writing went.
+fn write_while(out: &mut impl Write, text: &[u8], go_on: &dyn Fn() -> bool) -> (bool, io::Result<()>) {
+    for piece in text.chunks(PIECE) {
+        if !go_on() {
+            return (false, Ok(()));
+        }
+        if let Err(error) = out.write_all(piece).and_then(|()| out.flush()) {
+            return (true, Err(error));
+        }
+    }
+    (true, Ok(()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn a_long_text_is_written_as_long_as_it_is_wanted() {
+        let text = vec![b'x'; 10 * PIECE + 1];
+        for (wanted, written) in [(0, 0), (1, PIECE), (3, 3 * PIECE), (11, text.len()), (20, text.len())] {
+            let (mut out, left) = (Vec::new(), Cell::new(wanted));
+            let go_on = || left.replace(left.get().saturating_sub(1)) > 0;
+            let (whole, ended) = write_while(&mut out, &text, &go_on);
+            assert!(ended.is_ok());
+            assert_eq!((out.len(), whole), (written, written == text.len()));
+        }
     }
 }

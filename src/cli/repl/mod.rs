@@ -75,9 +75,13 @@ pub(super) fn opened(model: &str, terminal: &Terminal) -> Result<Notebook, Exit>
     Ok(book)
 }
 
-/// Shows an answer without its pictures.
+/// Shows an answer without its pictures; Ctrl-C stops a long one.
 fn print(answer: &Answer, terminal: &Terminal, watched: bool) {
-    terminal.print(&text_of(answer, terminal.color_out && watched));
+    let job = interrupt::entry_job();
+    let text = job.watch(|| text_of(answer, terminal.color_out && watched));
+    if !text.is_ok_and(|text| terminal.print_while(&text, &|| job.go_on().is_ok())) {
+        terminal.print("\nstopped: the rest is not shown\n");
+    }
 }
 
 /// Shows the pictures of an answer where the terminal can; it is asked for that once, and what is typed meanwhile is kept.
