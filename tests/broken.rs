@@ -232,12 +232,17 @@ fn fixes_of_broken_scripts_mend_them() {
 /// Help that shows code and replaces nothing: the code is an example, or something to add whose place is the user's to choose.
 const EXAMPLES: &[(&str, &str)] = &[
     // Signatures.
+    ("E211", "`trim("),
     ("E301", "`"),
     ("E302", "`"),
     // What is to be chosen.
     ("E509", "`meet(a, b)` lists"),
     ("E603", "take the run with one of the two meetings"),
     ("E622", "leave that stretch out"),
+    ("E634", "draw this guide as far"),
+    ("E635", "take the run of it that goes one way"),
+    ("E636", "take the runs before and after it"),
+    ("E641", "draw both through one point"),
     ("E658", "bound one of them"),
     ("E666", "trim one of them by the border of the other"),
     ("E666", "`mesh "),

@@ -379,8 +379,20 @@ impl Cx<'_> {
         let (sa, sb) = (at.code.span(at.a), at.code.span(at.b));
         let cell = [left, right].into_iter().find_map(|v| if let Value::Text(text) = v { self.cell_of(text) } else { None });
         let ways = self.along_axes(at, left, right);
+        let cut = self.cut_off(at, left, right);
         let draft = self.error(at.code, "E211", doing, at.op_span, format!("`{}` here", symbol(at.op))).and(sb, b).and(sa, a).notes(cell);
-        if ways.is_empty() { draft.stop() } else { draft.ways(at.code.span(at.id), &ways).stop() }
+        match cut {
+            Some(cut) => draft.help(cut).stop(),
+            None if ways.is_empty() => draft.stop(),
+            None => draft.ways(at.code.span(at.id), &ways).stop(),
+        }
+    }
+
+    /// What is written where a surface is taken from another one as bodies are elsewhere.
+    fn cut_off(&self, at: At<'_>, left: &Value, right: &Value) -> Option<String> {
+        let cuts = matches!(left, Value::Surface(_)) && matches!(right, Value::Surface(_) | Value::Shell(_));
+        let (a, b) = (self.source(at.code, at.a), self.source(at.code, at.b));
+        (at.op == Binary::Minus && cuts).then(|| format!("`trim({a}, by: {b}, keep: P)`, where `P` is a point of the part that stays"))
     }
 
     /// `A + 2m` as a step along each axis.

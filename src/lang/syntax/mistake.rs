@@ -353,6 +353,12 @@ fn no_keyword(source: &str, file: FileId, at: Span, next: Option<Span>, binds: b
             .help(format!("let {word} = …, or `point`, `curve`, `surface` for what belongs to the model"))
             .put(Span { start: at.start, end: at.start }, "let ");
     }
+    let behind = source[at.end as usize..].trim_start_matches([' ', '\t']);
+    if let Some(sign) = ["+=", "-=", "*=", "/="].iter().find(|sign| behind.starts_with(**sign)) {
+        let operator = sign.trim_end_matches('=');
+        return Diagnostic::new("E106", format!("`{word}` cannot be changed by `{sign}`"), file, at, "no declaration starts with this")
+            .help(format!("a name keeps its value; what comes of it has a name of its own: `let … = {word} {operator} …`"));
+    }
     let message =
         if matches!(word, "if" | "for") { format!("no declaration starts with `{word}`") } else { format!("`{word}` is not a keyword") };
     let report = Diagnostic::new("E106", message, file, at, "no declaration starts with this");
