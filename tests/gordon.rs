@@ -13,6 +13,7 @@ use lofting::base::bbox::Box3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::nurbs;
+use lofting::model::measure::area_within;
 use lofting::network::{Chain, net};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::surface::coons::{Grid, Method, Settings, build};
@@ -119,6 +120,25 @@ fn order_and_direction_change_nothing() {
             assert!(off <= 1e-12, "{name}, round {round}: {off:e} of the size");
         }
     }
+}
+
+/// Sum of the flat triangles of n × m cells.
+fn flat_area(surface: &Surface, (n, m): (usize, usize)) -> f64 {
+    let row = |j: usize| (0..=n).map(|i| surface.point(i as f64 / n as f64, j as f64 / m as f64)).collect::<Vec<DVec3>>();
+    let rows: Vec<Vec<DVec3>> = (0..=m).map(row).collect();
+    let triangle = |a: DVec3, b: DVec3, c: DVec3| 0.5 * (b - a).cross(c - a).length();
+    let cell = |a: &[DVec3], b: &[DVec3], i: usize| triangle(a[i], a[i + 1], b[i]) + triangle(b[i + 1], b[i], a[i + 1]);
+    rows.windows(2).flat_map(|w| (0..n).map(move |i| cell(&w[0], &w[1], i))).sum()
+}
+
+#[test]
+fn the_area_of_a_net_with_many_knots_is_as_exact_as_any() {
+    let surface = as_given("spiralwing", 3e-4, 1.0).0;
+    let (area, error) = area_within(&surface);
+    assert!(error <= 1e-10 * area, "{area} with {error:e}");
+    let (rough, fine) = (flat_area(&surface, (240, 60)), flat_area(&surface, (480, 120)));
+    let off = (fine + (fine - rough) / 3.0 - area).abs() / area;
+    assert!(off < 1e-4 && off < (fine - rough).abs() / area, "{area}, triangles {rough}, {fine}: {off:e}");
 }
 
 #[test]

@@ -13,10 +13,8 @@ const ORDERS: [usize; 4] = [4, 7, 11, 16];
 const DEEPEST: u32 = 12;
 /// Cells examined in all.
 const MOST_CELLS: usize = 1 << 17;
-/// With more pieces than this a surface is divided at its network lines and kinks only: knots of its curves, where third
-/// derivatives jump, are then left to the halving, which goes no deeper than [`COARSE`].
-const PIECES: usize = 1 << 12;
-const COARSE: u32 = 3;
+/// Points evaluated at once in the first division: what a row and a column share is then evaluated once.
+const BATCH: usize = 1 << 15;
 
 /// Sums of N functions.
 type Sums<const N: usize> = [f64; N];
@@ -41,8 +39,6 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let (us, vs) = surface.breaks();
-    let coarse = (us.len() + 1) * (vs.len() + 1) > PIECES && surface.domain() == Domain::Square;
-    let ((us, vs), deepest) = if coarse { (surface.cells(), COARSE) } else { ((us, vs), DEEPEST) };
     // A triangle's lines do not follow the square.
     let (us, vs) = if surface.domain() == Domain::Triangle { (Vec::new(), vs) } else { (us, vs) };
     let stops = |inner: Vec<f64>, (low, high): (f64, f64)| -> Vec<f64> {
@@ -52,9 +48,12 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     let mut open: Vec<Cell> =
         vs.windows(2).flat_map(|y| us.windows(2).map(move |x| Cell { x: (x[0], x[1]), y: (y[0], y[1]), depth: 0 })).collect();
     let share = accuracy / open.len() as f64;
-    let first: Vec<(Sums<N>, Sums<N>)> = open.iter().map(|cell| product(surface, cell, &rules[0], f)).collect();
+    let first = products(surface, (&us, &vs), &rules[0], f);
+    let second = products(surface, (&us, &vs), &rules[1], f);
     let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
-    let mut known: Vec<Option<Sums<N>>> = first.into_iter().map(|(value, _)| Some(value)).collect();
+    let mut known: Vec<Option<[Sums<N>; 2]>> = first.into_iter().zip(second).map(|(a, b)| Some([a.0, b.0])).collect();
+    // Where the first division has many cells each of them may still be halved.
+    let most = MOST_CELLS.max(2 * open.len());
     // The last cell is taken first: turn the list round so that sums run in one order.
     open.reverse();
     known.reverse();
@@ -62,17 +61,19 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     while let (Some(cell), Some(start)) = (open.pop(), known.pop()) {
         job::look();
         seen += 1;
-        let mut value = start.unwrap_or_else(|| product(surface, &cell, &rules[0], f).0);
+        let known_of = |k: usize| start.as_ref().and_then(|values| values.get(k)).copied();
+        let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f).0);
+        let mut value = by_rule(0);
         let mut apart = [f64::INFINITY; N];
-        for rule in &rules[1..] {
-            let next = product(surface, &cell, rule, f).0;
+        for k in 1..rules.len() {
+            let next = by_rule(k);
             apart = std::array::from_fn(|i| (next[i] - value[i]).abs());
             value = next;
             if small(&apart, &scale, share) {
                 break;
             }
         }
-        if small(&apart, &scale, share) || cell.depth >= deepest || seen + open.len() >= MOST_CELLS {
+        if small(&apart, &scale, share) || cell.depth >= DEEPEST || seen + open.len() >= most {
             for i in 0..N {
                 sum[i] += value[i];
                 error[i] += apart[i];
@@ -94,13 +95,52 @@ fn small<const N: usize>(apart: &Sums<N>, scale: &Sums<N>, share: f64) -> bool {
     apart.iter().zip(scale).all(|(a, s)| *a <= share * s)
 }
 
+/// [`product`] on each cell between stops in x and y, x fastest.
+fn products<const N: usize>(
+    surface: &Surface,
+    (us, vs): (&[f64], &[f64]),
+    rule: &[(f64, f64)],
+    f: &impl Fn(&Jet2) -> Sums<N>,
+) -> Vec<(Sums<N>, Sums<N>)> {
+    let order = rule.len();
+    let on = |stops: &[f64]| -> Vec<f64> {
+        stops.windows(2).flat_map(|w| rule.iter().map(move |(x, _)| 0.5 * (w[0] + w[1]) + 0.5 * (w[1] - w[0]) * x)).collect()
+    };
+    let columns = on(us);
+    let rows = (BATCH / (columns.len() * order).max(1)).clamp(1, vs.len());
+    let mut found = Vec::with_capacity((us.len() - 1) * (vs.len() - 1));
+    for first in (0..vs.len() - 1).step_by(rows) {
+        job::look();
+        let band = &vs[first..(first + rows + 1).min(vs.len())];
+        let jets = surface.square_jets(&columns, &on(band));
+        for (j, y) in band.windows(2).enumerate() {
+            for (i, x) in us.windows(2).enumerate() {
+                let area = 0.25 * (x[1] - x[0]) * (y[1] - y[0]);
+                let at = |k: usize| &jets[(j * order + k / order) * columns.len() + i * order + k % order];
+                found.push(weighed((0..order * order).map(at), area, rule, f));
+            }
+        }
+    }
+    found
+}
+
 /// One rule on one cell: the integrals and those of the absolute values.
 fn product<const N: usize>(surface: &Surface, cell: &Cell, rule: &[(f64, f64)], f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let on = |(a, b): (f64, f64)| rule.iter().map(|(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x).collect::<Vec<f64>>();
     let jets = surface.square_jets(&on(cell.x), &on(cell.y));
     let area = 0.25 * (cell.x.1 - cell.x.0) * (cell.y.1 - cell.y.0);
+    weighed(jets.iter(), area, rule, f)
+}
+
+/// The integrals and those of the absolute values from the jets of a rule.
+fn weighed<'a, const N: usize>(
+    jets: impl Iterator<Item = &'a Jet2>,
+    area: f64,
+    rule: &[(f64, f64)],
+    f: &impl Fn(&Jet2) -> Sums<N>,
+) -> (Sums<N>, Sums<N>) {
     let (mut sum, mut size) = ([0.0; N], [0.0; N]);
-    for (k, jet) in jets.iter().enumerate() {
+    for (k, jet) in jets.enumerate() {
         let weight = area * rule[k % rule.len()].1 * rule[k / rule.len()].1;
         for (i, value) in f(jet).into_iter().enumerate() {
             sum[i] += weight * value;

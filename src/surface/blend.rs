@@ -114,13 +114,18 @@ impl Blend {
         }
         for (k, (i, w)) in a.iter().enumerate() {
             let mut f = along_v(k, i);
-            for (j, z) in b.iter() {
-                let p = self.corner(i, j);
-                f.p -= p * z[0];
-                f.d1 -= p * z[1];
-                f.d2 -= p * z[2];
-            }
+            self.less_nodes(i, b, &mut f);
             row.add_along_v(&f, w);
+        }
+    }
+
+    /// Takes the nodes of term `i` along v from its curve.
+    fn less_nodes(&self, i: usize, b: &Weights, f: &mut Jet) {
+        for (j, z) in b.iter() {
+            let p = self.corner(i, j);
+            f.p -= p * z[0];
+            f.d1 -= p * z[1];
+            f.d2 -= p * z[2];
         }
     }
 
@@ -171,10 +176,13 @@ impl Blend {
         for &(v, lean) in vs {
             let b = self.v.weights(v, lean);
             let along_v = self.along_v.iter().map(|f| vec![f.jet(v, lean)]).collect();
-            let along_v: Vec<Vec<Jet>> = all_terms(&self.u, along_v);
+            let mut along_v: Vec<Vec<Jet>> = all_terms(&self.u, along_v);
+            along_v.iter_mut().enumerate().for_each(|(i, f)| self.less_nodes(i, &b, &mut f[0]));
             for (c, a) in a.iter().enumerate() {
                 let mut row = Row::default();
-                self.row(a, &b, |_, i| along_v[i][0], &mut row);
+                if !along_v.is_empty() {
+                    a.iter().for_each(|(i, w)| row.add_along_v(&along_v[i][0], w));
+                }
                 for (j, w) in b.iter() {
                     row.add_along_u(&along_u[j][c], w);
                 }
