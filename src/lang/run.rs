@@ -195,10 +195,9 @@ impl Cx<'_> {
             if let Some(owner) = owner
                 && diagnostic.severity() == Severity::Error
                 && noted.insert(owner)
+                && let Some(members) = skipped.get(&owner)
             {
-                if let Some(note) = skipped.get(&owner).map(|members| self.not_built(owner, members)) {
-                    diagnostic.notes.push(note);
-                }
+                diagnostic.notes.push(self.not_built(owner, members));
             }
             match out.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
                 Some(found) => found.fold(diagnostic, self.whole),
