@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn a_long_text_is_written_as_long_as_it_is_wanted() {
         let text = vec![b'x'; 10 * PIECE + 1];
-        for (wanted, written) in [(0, 0), (1, PIECE), (3, 3 * PIECE), (11, text.len()), (20, text.len())] {
+        for (wanted, written) in [(0u32, 0), (1, PIECE), (3, 3 * PIECE), (11, text.len()), (20, text.len())] {
             let (mut out, left) = (Vec::new(), Cell::new(wanted));
             let go_on = || left.replace(left.get().saturating_sub(1)) > 0;
             let (whole, ended) = write_while(&mut out, &text, &go_on);
