@@ -43,8 +43,11 @@ impl Draw {
     }
 }
 
+/// Where tokens begin and end in a text.
+type Places = Vec<(usize, usize)>;
+
 /// Places of numbers (first) and of words, brackets and operators in a script, without comments and strings.
-fn tokens(text: &str) -> (Vec<(usize, usize)>, Vec<(usize, usize)>) {
+fn tokens(text: &str) -> (Places, Places) {
     let bytes = text.as_bytes();
     let (mut numbers, mut others, mut at) = (Vec::new(), Vec::new(), 0);
     let run = |from: usize, of: &dyn Fn(u8) -> bool| from + bytes[from..].iter().take_while(|b| of(**b)).count();
