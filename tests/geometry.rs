@@ -754,7 +754,7 @@ mod roundings {
     /// A side from the origin along a direction: a line, an arc or a cubic in the plane.
     fn side(numbers: &mut Numbers, angle: f64) -> Curve {
         let turned = |along: f64, across: f64| {
-            let (s, c) = angle.sin_cos();
+            let (s, c) = lofting::base::math::sin_cos(angle);
             DVec3::new(along * c - across * s, along * s + across * c, 0.0)
         };
         let (length, bend) = (1.0 + 4.0 * numbers.next(), numbers.next() - 0.5);
