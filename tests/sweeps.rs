@@ -1,4 +1,7 @@
 //! Properties of sweeps: what they contain, what changes nothing, what moves with them.
+#![allow(clippy::panic, reason = "a test fails by panicking")]
+
+use std::slice::from_ref;
 
 use glam::DVec3;
 use lofting::base::origin::Origin;
@@ -131,7 +134,9 @@ fn one_section_on_a_line_is_extruded_and_on_an_arc_revolved() {
     let wanted = extrude(&section, by, Origin::NONE, &tolerance()).expect("a surface");
     let settings = AlongSettings { twist: 0.0, origin: Origin::NONE };
     let carried = along(&section, &way, &settings, &tolerance()).expect("a surface").0;
-    for found in [&carried, &made(&[section.clone()], &[way.clone()], Law::Parallel), &made(&[section.clone()], &[way], Law::Normal)] {
+    for found in
+        [&carried, &made(from_ref(&section), from_ref(&way), Law::Parallel), &made(from_ref(&section), from_ref(&way), Law::Normal)]
+    {
         assert!(apart(&wanted, found) < 1e-12 * SIZE, "{}", apart(&wanted, found));
     }
     let angle = 1.9;
@@ -139,9 +144,11 @@ fn one_section_on_a_line_is_extruded_and_on_an_arc_revolved() {
     let axis = revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };
     let wanted = lofting::surface::revolve(&section, &axis, angle, Origin::NONE, &tolerance()).expect("a surface");
     let carried = along(&section, &round, &settings, &tolerance()).expect("a surface").0;
-    for found in
-        [&carried, &made(&[section.clone()], &[round.clone()], Law::Rotational(axis)), &made(&[section.clone()], &[round], Law::Normal)]
-    {
+    for found in [
+        &carried,
+        &made(from_ref(&section), from_ref(&round), Law::Rotational(axis)),
+        &made(from_ref(&section), from_ref(&round), Law::Normal),
+    ] {
         assert!(apart(&wanted, found) < 1e-12 * SIZE, "{}", apart(&wanted, found));
     }
 }
