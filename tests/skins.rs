@@ -602,7 +602,7 @@ mesh joined of s { size: 300mm }
     for (mesh, group, [x, y, z]) in circles {
         let mesh = &outcome.meshes.iter().find(|m| m.0 == mesh).unwrap().1;
         let held = &mesh.groups.iter().find(|g| g.name == group).unwrap().nodes;
-        let lies = |p: &glam::DVec3| ((p.x - x).hypot(p.y - y) - 0.5).abs() < 1e-6 && (p.z - z).abs() < 1e-6;
+        let lies = |p: &glam::DVec3| (glam::DVec2::new(p.x - x, p.y - y).length() - 0.5).abs() < 1e-6 && (p.z - z).abs() < 1e-6;
         let there: Vec<u32> = (0..mesh.nodes.len() as u32).filter(|n| lies(&mesh.nodes[*n as usize])).collect();
         assert!(there.len() >= 12, "{group}: {there:?}");
         assert_eq!(*held, there, "{group}");
