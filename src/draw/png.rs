@@ -17,7 +17,7 @@ pub fn write(image: &Image, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Pixels of a row, and red, green, blue of all pixels, row by row, as [`write`] wrote them; `None` for any other file.
+/// Pixels of a row, and red, green, blue of all pixels, row by row, as [`write()`] wrote them; `None` for any other file.
 pub fn read(file: &[u8]) -> Option<(usize, Vec<[u8; 3]>)> {
     let mut reader = ::png::Decoder::new(Cursor::new(file)).read_info().ok()?;
     let mut bytes = vec![0; reader.output_buffer_size()?];
