@@ -41,6 +41,8 @@ fn things(ty: Ty) -> Option<Ty> {
     match ty {
         Ty::List(of) | Ty::Rest(of) => of.is_thing().then_some(*of),
         Ty::Optional(of) => things(*of),
+        // Rows of nets stay rows.
+        Ty::OneOf(of) if of.iter().any(|t| matches!(t, Ty::List(Ty::List(_)))) => None,
         Ty::OneOf(of) => of.iter().find_map(|t| things(*t)),
         _ => None,
     }

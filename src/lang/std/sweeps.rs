@@ -140,7 +140,9 @@ builtins! {
 }
 
 crate::fields! {
-    /// Curves across a surface that it is made through: sections of a sweep, curves along v of a net, in the order of u.
+    /// Curves across a surface that it is made through, in the order of u.
+    ///
+    /// Sections of a sweep, curves along v of a net.
     fn stations(
         /// The surface.
         s: Surface,
