@@ -148,7 +148,9 @@ crate::fields! {
         s: Surface,
     ) -> Vec<Chain> = |_cx, s| Ok(s.stations());
 
-    /// The largest angle between the normals on both sides of the curves of its net, corners of the curves left out.
+    /// The largest angle between the normals on both sides of the curves of its net.
+    ///
+    /// Corners of the curves are left out.
     fn patch_angle(
         /// The surface.
         s: Surface,
