@@ -292,11 +292,8 @@ fn it_is_told_what_decided_where() {
         let line = lines.iter().find(|l| l.contains(what)).unwrap();
         words.iter().for_each(|w| assert!(line.contains(w), "{line}"));
     };
-    told(
-        "face 0 of s0",
-        &["delaunay", " by size 0.1 near (10.000, 3.000, 0.000), one at (", " by size 0.5 in the box (0.000, 0.000, -1.000)"],
-    );
-    told("strip of c1", &["by sizes along it", "steps 0.100 to", "% by size 0.1 near (10.000, 3.000, 0.000)"]);
+    told("face 0 of s0", &["delaunay", " by size 0.1 near (10, 3, 0), one at (", " by size 0.5 in the box (0, 0, -1)"]);
+    told("strip of c1", &["by sizes along it", "steps 0.100 to", "% by size 0.1 near (10, 3, 0)"]);
     told("strip of c0", &["% by the size", "% by size 0.5 in the box"]);
     told("strip of c5", &["8 steps, by the size"]);
     plan.method = Method::Mapped;
@@ -338,8 +335,8 @@ fn each_setting_is_told_where_it_decides() {
         ("size", "face 0 of plate", " by growth from shorter edges, one at ("),
         ("size", "strip of eye", "% by the border facing it"),
         ("size", "strip of rim", " by the size"),
-        ("refined", "face 0 of plate", " by size 3 near (150.000, 50.000, 0.000), one at ("),
-        ("refined", "face 0 of plate", " by size 4 in the box (160.000, 0.000, -1.000)"),
+        ("refined", "face 0 of plate", " by size 3 near (150, 50, 0), one at ("),
+        ("refined", "face 0 of plate", " by size 4 in the box (160, 0, -1)"),
         ("refined", "strip of rim", "% by size 4 in the box"),
         ("ruled", "strip of eye", "by the size"),
         ("ruled", "strip of next", "by count 64 on next"),
