@@ -761,3 +761,46 @@ fn nearest_points_of_surfaces() {
         assert!((lofting::surface::closest(&b, p).distance - 0.01).abs() < 1e-9, "{u} {v}");
     }
 }
+
+/// Beside poles one parameter moves the point by next to nothing: whatever side the point is on, the foot is found.
+#[test]
+fn nearest_points_beside_poles() {
+    let t = tolerance();
+    let z = Axis { about: DVec3::ZERO, direction: DVec3::Z };
+    let mut state = 5_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut tried = 0;
+    for case in 0..60 {
+        // A profile from a rim to the axis, which it meets steeply, flatly or squarely.
+        let tip = 40.0 * random() - 20.0;
+        let ends = [DVec3::X * (1.0 + 9.0 * random()), DVec3::Z * tip];
+        let through = DVec3::new(ends[0].x * (0.2 + 0.6 * random()), 0.0, tip * random() + random());
+        let points = if case % 3 == 0 { ends.to_vec() } else { vec![ends[0], through, ends[1]] };
+        let profile = if case % 3 == 0 {
+            line(ends[0], ends[1], Origin::NONE)
+        } else {
+            spline(&points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: false }, Origin::NONE)
+        };
+        let profile = Chain::of_curve(&profile.unwrap());
+        let profile = if case % 2 == 0 { profile } else { profile.reversed() };
+        let angle = if case % 4 < 2 { std::f64::consts::TAU } else { 2.0 };
+        let Ok(face) = revolve(&profile, &z, angle, Origin::NONE, &t) else { continue };
+        tried += 1;
+        let scale = [1.0, 1e-3, 1e3][case % 3];
+        let face = face.moved(&Motion::scaling(DVec3::ONE, scale)).moved(&Motion::translation(DVec3::new(3.0, 2.0, 1.0) * scale));
+        let (nearest, at_start) = (Nearest::new(&face), case % 2 == 1);
+        for _ in 0..40 {
+            // The foot lies on the surface, so the distance is at most the height above it.
+            let (u, near) = (random(), 10f64.powf(-4.0 * random()));
+            let v = if at_start { near } else { 1.0 - near };
+            let height = near * 10f64.powf(-3.0 * random()) * scale * (if random() < 0.5 { 1.0 } else { -1.0 });
+            let p = face.point(u, v) + face.normal(u, v) * height;
+            let found = nearest.at(p);
+            assert!(found.distance <= height.abs() + 1e-9 * scale, "case {case}, ({u}, {v}), {height} above: {} found", found.distance);
+        }
+    }
+    assert!(tried >= 40, "{tried} profiles keep off the axis");
+}

@@ -214,20 +214,55 @@ impl Nearest {
                 ],
             }
         };
-        // All samples of a pole are one start: which of them leads away from it is not known yet.
-        let places = starts.iter().scan(None, |last: &mut Option<(DVec3, usize)>, &k| {
-            let (p, n) = last.map_or((self.points[k], 1), |(p, n)| {
-                if p.distance_squared(self.points[k]) <= EPSILON * EPSILON * p.length_squared() { (p, n) } else { (self.points[k], n + 1) }
-            });
-            *last = Some((p, n));
-            (n <= STARTS).then_some(k)
-        });
-        let found = places.map(|k| {
+        // Samples of one point count as one: of a seam, whose two sides are both tried, and of a pole.
+        let (mut places, mut points, mut last) = (Vec::new(), 0, None);
+        for &k in &starts {
+            let again = last.is_some_and(|l: DVec3| l.distance_squared(self.points[k]) <= EPSILON * EPSILON * l.length_squared());
+            if !again {
+                (points, last) = (points + 1, Some(self.points[k]));
+            }
+            if points > STARTS {
+                break;
+            }
+            places.push(k);
+            if !again {
+                places.extend(self.round_pole(k, p));
+            }
+        }
+        places.sort_unstable();
+        places.dedup();
+        let found = places.into_iter().map(|k| {
             let end = descend(&|x, y| self.jet(x, y), (self.xs[k % nx], self.ys[k / nx]), half_square);
             let point = self.jet(end.place.0, end.place.1).p;
             Closest { uv: self.whole.from_square(end.place.0, end.place.1), point, distance: point.distance(p) }
         });
         found.reduce(|best, next| if next.distance < best.distance { next } else { best }).unwrap_or_else(|| self.closest((0.0, 0.0), p))
+    }
+
+    /// Where a sample is one of a pole, where all samples of a row or column coincide: the local minima of the rows beside.
+    /// From the pole itself no descent can turn into the direction that leads to the point.
+    fn round_pole(&self, k: usize, p: DVec3) -> Vec<usize> {
+        let (nx, ny) = (self.xs.len(), self.ys.len());
+        let (i, j) = (k % nx, k / nx);
+        let least = EPSILON * (self.points[k].length() + self.reach(k));
+        let is_pole = |line: &[usize]| line.iter().all(|n| self.points[*n].distance(self.points[k]) <= least);
+        let far = |k: usize| self.points[k].distance_squared(p);
+        let row = |j: usize| (0..nx).map(|i| j * nx + i).collect::<Vec<_>>();
+        let column = |i: usize| (0..ny).map(|j| j * nx + i).collect::<Vec<_>>();
+        let beside = |at: usize, of: usize| [at.checked_sub(1), (at + 1 < of).then_some(at + 1)].into_iter().flatten();
+        let rings: Vec<Vec<usize>> = if is_pole(&row(j)) {
+            beside(j, ny).map(row).collect()
+        } else if is_pole(&column(i)) {
+            beside(i, nx).map(column).collect()
+        } else {
+            Vec::new()
+        };
+        let mut starts = Vec::new();
+        for ring in rings {
+            let low = |n: usize| beside(n, ring.len()).all(|m| far(ring[n]) <= far(ring[m]));
+            starts.extend((0..ring.len()).filter(|n| low(*n)).map(|n| ring[n]));
+        }
+        starts
     }
 
     /// The foot on the plane.

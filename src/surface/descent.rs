@@ -27,25 +27,26 @@ const STEPS: usize = 60;
 /// leave it only inwards.
 ///
 /// Each step solves the shifted Newton equations; the shift grows until the value falls and shrinks when it falls as
-/// foreseen (Levenberg's rule), so the method is Newton's near a minimum.
+/// foreseen (Levenberg's rule), so the method is Newton's near a minimum. Steps are weighed by the lengths that they move the
+/// point by, not by parameters (Marquardt's scaling): beside a pole one of the two moves it by next to nothing.
 pub fn descend(jet: &impl Fn(f64, f64) -> Jet2, start: (f64, f64), f: impl Fn(&Jet2) -> Local) -> Minimum {
-    let at = |(x, y): (f64, f64)| f(&jet(x, y));
+    let at = |(x, y): (f64, f64)| Scaled::at(&jet(x, y), &f);
     let (mut place, mut here) = (start, at(start));
     let mut shift = 0.0;
     for _ in 0..STEPS {
-        let free = [open(place.0, here.gradient[0]), open(place.1, here.gradient[1])];
+        let free = [open(place.0, here.local.gradient[0]), open(place.1, here.local.gradient[1])];
         if !free[0] && !free[1] {
             break;
         }
-        let [dx, dy] = step(&here, free, shift);
-        let next = ((place.0 + dx).clamp(0.0, 1.0), (place.1 + dy).clamp(0.0, 1.0));
+        let [dx, dy] = step(&here.local, free, shift);
+        let next = ((place.0 + dx / here.lengths[0]).clamp(0.0, 1.0), (place.1 + dy / here.lengths[1]).clamp(0.0, 1.0));
         let moved = (next.0 - place.0).abs().max((next.1 - place.1).abs());
         if moved <= EPSILON {
             break;
         }
         let there = at(next);
-        let scale = here.hessian[0].abs().max(here.hessian[2].abs()).max(f64::MIN_POSITIVE);
-        if there.value < here.value {
+        let scale = here.local.hessian[0].abs().max(here.local.hessian[2].abs()).max(f64::MIN_POSITIVE);
+        if there.local.value < here.local.value {
             (place, here) = (next, there);
             shift *= 0.1;
             if shift < EPSILON * scale {
@@ -62,6 +63,24 @@ pub fn descend(jet: &impl Fn(f64, f64) -> Jet2, start: (f64, f64), f: impl Fn(&J
     Minimum { place }
 }
 
+/// A function at one place by the lengths that each variable moves the point by.
+struct Scaled {
+    local: Local,
+    /// Length of the derivative by x and y.
+    lengths: [f64; 2],
+}
+
+impl Scaled {
+    fn at(jet: &Jet2, f: &impl Fn(&Jet2) -> Local) -> Self {
+        let (x, y) = (jet.du.length(), jet.dv.length());
+        let least = (EPSILON * x.max(y)).max(f64::MIN_POSITIVE.sqrt());
+        let [x, y] = [x.max(least), y.max(least)];
+        let Local { value, gradient: [gx, gy], hessian: [xx, xy, yy] } = f(jet);
+        let local = Local { value, gradient: [gx / x, gy / y], hessian: [xx / (x * x), xy / (x * y), yy / (y * y)] };
+        Self { local, lengths: [x, y] }
+    }
+}
+
 /// Whether a variable may move: not at a border it is pushed against.
 fn open(x: f64, slope: f64) -> bool {
     !(x <= 0.0 && slope >= 0.0 || x >= 1.0 && slope <= 0.0)
@@ -70,16 +89,21 @@ fn open(x: f64, slope: f64) -> bool {
 /// The shifted Newton step in the free variables, downhill always.
 fn step(here: &Local, free: [bool; 2], shift: f64) -> [f64; 2] {
     let [gx, gy] = here.gradient;
-    let [mut xx, xy, mut yy] = here.hessian;
+    let [xx, xy, yy] = here.hessian;
     if free[0] && free[1] {
-        // Lift the smallest eigenvalue above zero: Newton's step goes down only then.
-        let (mean, spread) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
-        let (low, high) = (mean - spread, mean.abs() + spread);
-        let lift = shift + (LEAST_CURVATURE * high - low).max(0.0) * f64::from(u8::from(low < EPSILON * high));
-        (xx, yy) = (xx + lift, yy + lift);
-        let det = xx * yy - xy * xy;
-        if det > 0.0 {
-            return [(xy * gy - yy * gx) / det, (xy * gx - xx * gy) / det];
+        // Along each principal direction of the curvature by its size: where it is negative, Newton's step would climb.
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let spread = (half * half + xy * xy).sqrt();
+        // The direction of the larger eigenvalue, from whichever of its two forms does not cancel.
+        let (a, b) = if half >= 0.0 { (half + spread, xy) } else { (xy, spread - half) };
+        let norm = (a * a + b * b).sqrt();
+        let (a, b) = if norm > 0.0 { (a / norm, b / norm) } else { (1.0, 0.0) };
+        let (high, low) = ((mean + spread).abs(), (mean - spread).abs());
+        let least = LEAST_CURVATURE * high.max(low);
+        let along = (a * gx + b * gy) / (high.max(least) + shift);
+        let across = (a * gy - b * gx) / (low.max(least) + shift);
+        if along.is_finite() && across.is_finite() {
+            return [b * across - a * along, -b * along - a * across];
         }
     }
     let one = |free: bool, g: f64, h: f64| {
