@@ -14,6 +14,8 @@ mod script;
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
+use lofting::mesh::extent::{Extent, Place, agrees, inside, left_out};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
@@ -129,4 +131,129 @@ fn a_broken_mesh_is_seen() {
     assert_eq!(look(&loose, &border, 0), Err(Defect::Loose(100)));
     // An edge of the border that no element has.
     assert!(matches!(look(&whole, &[border.as_slice(), &[[0, 55]]].concat(), 0), Err(Defect::Edge([0, 55], [0, 0], [1, 0]))));
+}
+
+/// A square of six by six cells in the parameter plane with a hole of two by two, in triangles: places, elements, loops.
+fn covered_square() -> (Vec<DVec2>, Vec<[u32; 3]>, Vec<Vec<Place>>) {
+    let at = |i: u32, j: u32| i + 7 * j;
+    let places = (0..49).map(|n| DVec2::new(f64::from(n % 7), f64::from(n / 7)) / 6.0).collect();
+    let cells = (0..36).map(|k| (k % 6, k / 6)).filter(|(i, j)| !((2..4).contains(i) && (2..4).contains(j)));
+    let halves = |(i, j): (u32, u32)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let square = |low: f64, high: f64| [(low, low), (high, low), (high, high), (low, high)].map(|p| (DVec2::from(p), 0.0)).to_vec();
+    let mut hole = square(1.0 / 3.0, 2.0 / 3.0);
+    hole.reverse();
+    (places, cells.flat_map(halves).collect(), vec![square(0.0, 1.0), hole])
+}
+
+/// What elements cover in the parameter plane is that inside the loops: nothing may be filled, missing, there twice or elsewhere.
+#[test]
+fn elements_that_cover_another_part_are_seen() {
+    let (places, whole, loops) = covered_square();
+    let cover = |places: &[DVec2], triangles: &[[u32; 3]]| {
+        let mut covered = Extent::default();
+        triangles.iter().for_each(|t| covered.add(places[t[0] as usize], places[t[1] as usize], places[t[2] as usize]));
+        covered
+    };
+    // Loops that are known to a thousandth see everything that is larger.
+    let about: Vec<Vec<Place>> = loops.iter().map(|l| l.iter().map(|(p, _)| (*p, 1e-3)).collect()).collect();
+    for loops in [&loops, &about] {
+        let agrees = |places: &[DVec2], triangles: &[[u32; 3]]| agrees(cover(places, triangles), inside(loops));
+        assert!(agrees(&places, &whole));
+        let filled = [whole.as_slice(), &[[16, 18, 32], [16, 32, 30]]].concat();
+        assert!(!agrees(&places, &filled), "the hole is filled");
+        for k in 0..whole.len() {
+            let mut less = whole.clone();
+            let one = less.remove(k);
+            assert!(!agrees(&places, &less), "without {k}");
+            assert!(!agrees(&places, &[whole.as_slice(), &[one]].concat()), "{k} twice");
+        }
+        // The hole elsewhere, of the same area.
+        for by in [DVec2::new(0.05, 0.0), DVec2::new(0.0, -0.05)] {
+            let moved: Vec<DVec2> =
+                places.iter().map(|p| if (*p - DVec2::splat(0.5)).abs().max_element() < 0.2 { *p + by } else { *p }).collect();
+            assert!((cover(&moved, &whole).area - cover(&places, &whole).area).abs() < 1e-12);
+            assert!(!agrees(&moved, &whole), "the hole moved by {by}");
+        }
+    }
+    // Exact loops see a hole that moved by a millionth of the face.
+    let moved: Vec<DVec2> =
+        places.iter().map(|p| if (*p - DVec2::splat(0.5)).abs().max_element() < 0.2 { *p + DVec2::splat(2e-4) } else { *p }).collect();
+    assert!(!agrees(cover(&moved, &whole), inside(&loops)));
+}
+
+/// A cap round a pole in six by six cells: u runs round it, with a seam at 0 and 1, and v = 1 is the pole, whose edge in (u, v) has
+/// its tip in the middle of the row below. Places, nodes, number of border places, edges of the loop, elements; `quads` but beside the pole.
+struct Cap {
+    uv: Vec<(f64, f64)>,
+    ids: Vec<u32>,
+    border: usize,
+    around: Vec<[u32; 2]>,
+    elements: Vec<Vec<u32>>,
+}
+
+fn cap(quads: bool) -> Cap {
+    let is_border = |(i, j): (u32, u32)| i == 0 || i == 6 || j == 0;
+    let all: Vec<(u32, u32)> = (0..6).flat_map(|j| (0..7).map(move |i| (i, j))).collect();
+    let mut order: Vec<(u32, u32)> = all.iter().copied().filter(|n| is_border(*n)).collect();
+    order.extend([(0, 6), (6, 6)]);
+    let border = order.len();
+    order.extend(all.iter().copied().filter(|n| !is_border(*n)));
+    let place = |i: u32, j: u32| order.iter().position(|n| *n == (i, j)).unwrap() as u32;
+    let id = |(i, j): (u32, u32)| if j == 6 { 1000 } else { 10 * j + i % 6 };
+    let mut around: Vec<[u32; 2]> = (0..6).map(|i| [place(i, 0), place(i + 1, 0)]).collect();
+    around.extend((0..6).flat_map(|j| [[place(6, j), place(6, j + 1)], [place(0, j + 1), place(0, j)]]));
+    around.push([place(6, 6), place(0, 6)]);
+    let mut elements = Vec::new();
+    for (i, j) in (0..5).flat_map(|j| (0..6).map(move |i| (i, j))) {
+        let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+        elements.extend(if quads { vec![vec![a, b, c, d]] } else { vec![vec![a, b, c], vec![a, c, d]] });
+    }
+    elements.extend((0..6).map(|i| vec![place(i, 5), place(i + 1, 5), if i < 3 { place(0, 6) } else { place(6, 6) }]));
+    let uv = order.iter().map(|(i, j)| (f64::from(*i) / 6.0, f64::from(*j) / 6.0)).collect();
+    let ids = order.iter().map(|n| id(*n)).collect();
+    Cap { uv, ids, border, around, elements }
+}
+
+/// Beside a pole and at a seam what is no element in space is told from what is missing, there twice or elsewhere.
+#[test]
+fn caps_that_are_broken_are_seen() {
+    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|p| (DVec2::from(p), 0.0)).to_vec();
+    let loops = inside(&[corners]);
+    for quads in [false, true] {
+        let whole = cap(quads);
+        let look = |elements: &[Vec<u32>], uv: &[(f64, f64)]| {
+            let mut covered = Extent::default();
+            for e in elements {
+                let at = |k: usize| DVec2::from(uv[e[k] as usize]);
+                if e.len() == 3 { covered.add(at(0), at(1), at(2)) } else { covered.add_quad([at(0), at(1), at(2), at(3)]) }
+            }
+            let slices = elements.iter().map(|e| e.as_slice());
+            left_out(slices, (uv, &whole.ids, whole.border), &whole.around).is_some_and(|out| agrees(covered.and(out), loops))
+        };
+        assert!(look(&whole.elements, &whole.uv), "quads: {quads}");
+        for k in 0..whole.elements.len() {
+            let mut less = whole.elements.clone();
+            let one = less.remove(k);
+            assert!(!look(&less, &whole.uv), "quads: {quads}, without {k}");
+            let twice = [whole.elements.as_slice(), &[one.clone()]].concat();
+            assert!(!look(&twice, &whole.uv), "quads: {quads}, {k} twice");
+            // The cell with the next one, in which nothing is left of the row.
+            less.retain(|e| e.iter().filter(|n| one.contains(n)).count() < 2);
+            assert!(!look(&less, &whole.uv), "quads: {quads}, a hole round {k}");
+        }
+        // The triangle that is a line in space, filled in.
+        let tip = whole.uv.iter().position(|p| *p == (0.5, 5.0 / 6.0)).unwrap() as u32;
+        let [b, a] = whole.around[whole.around.len() - 1];
+        let filled = [whole.elements.as_slice(), &[vec![tip, b, a]]].concat();
+        assert!(look(&filled, &whole.uv), "it covers what was left out");
+        // A place of the loop elsewhere; inner ones may be anywhere.
+        for (k, p) in whole.uv.iter().enumerate() {
+            let mut moved = whole.uv.clone();
+            moved[k] = (p.0 + 0.02, p.1 + 0.03);
+            assert_eq!(look(&whole.elements, &moved), k >= whole.border, "quads: {quads}, {p:?} moved");
+        }
+    }
 }

@@ -72,7 +72,7 @@ const HALVED: u32 = 6;
 const LEANING: u32 = 3;
 
 /// Whether a face that is made freely meets itself at a seam or in a pole.
-fn closes(face: &Face) -> bool {
+pub(super) fn closes(face: &Face) -> bool {
     let mut round: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).collect();
     let all = round.len();
     round.sort_unstable();

@@ -54,6 +54,8 @@ pub struct Prepared {
     pub quads: u64,
     /// Points of the inner nodes, where they are not made from the chart alone.
     pub made: Vec<DVec3>,
+    /// Edges of the loops by place in the chart, with the face on their left; of free faces.
+    pub around: Vec<[u32; 2]>,
     /// What decided the sizes inside; of free faces.
     pub deciders: Vec<Decider>,
     /// Its cells between lines of constant u and v, where it was made of such.
@@ -214,6 +216,7 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
         triangles,
         quads,
         made: Vec::new(),
+        around: Vec::new(),
         deciders: Vec::new(),
         tally: None,
     })
@@ -242,6 +245,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
             triangles: n * n,
             quads: 0,
             made: Vec::new(),
+            around: Vec::new(),
             deciders: Vec::new(),
             tally: None,
         });
@@ -263,6 +267,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         elements: face.elements,
         first: 0,
         made: Vec::new(),
+        around: Vec::new(),
         deciders: Vec::new(),
         tally: None,
     })

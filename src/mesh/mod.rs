@@ -18,6 +18,7 @@ mod creases;
 pub mod data;
 mod edges;
 pub mod explain;
+pub mod extent;
 pub mod faces;
 mod foresee;
 pub mod free;

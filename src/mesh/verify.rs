@@ -9,9 +9,11 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use super::assemble::closes;
 use super::build::Input;
 use super::chart::{Chart, Shape};
 use super::data::Mesh;
+use super::extent::{self, Extent};
 use super::faces::{Frame, Prepared, element_ranges};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
@@ -19,6 +21,7 @@ use super::plan::{Elements, Method};
 use crate::base::fault::{Fault, MeshFault};
 use crate::base::job;
 use crate::base::par;
+use crate::base::text::real;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::surface::{Domain, Surface};
 
@@ -43,7 +46,7 @@ pub struct Claim<'a> {
 }
 
 /// What is wrong with a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Defect {
     /// No element at all.
     Empty,
@@ -61,6 +64,10 @@ pub enum Defect {
     Euler(i64, i64),
     /// Elements that lie over each other in the parameter plane.
     Folded,
+    /// The area that the elements cover in the parameter plane, and the one inside the loops of the surface.
+    Extent(f64, f64),
+    /// A node, and how far it is from its place on the surface, model units.
+    Misplaced(u32, f64),
 }
 
 impl Defect {
@@ -77,13 +84,21 @@ impl Defect {
             Self::Torn => "edges inside are not shared by two elements".to_owned(),
             Self::Euler(found, wanted) => format!("the Euler number inside is {found} and should be {wanted}"),
             Self::Folded => "elements lie over each other".to_owned(),
+            Self::Extent(found, wanted) => {
+                format!(
+                    "elements cover {} of the parameter plane, where the loops of the surface bound {}, or cover other parts of it",
+                    real(found),
+                    real(wanted)
+                )
+            }
+            Self::Misplaced(_, off) => format!("a node is {} from its place on the surface", real(off)),
         }
     }
 
     /// A node that shows the place.
     fn node(self) -> Option<u32> {
         match self {
-            Self::Node(n) | Self::Loose(n) | Self::Edge([n, _], ..) => Some(n),
+            Self::Node(n) | Self::Loose(n) | Self::Edge([n, _], ..) | Self::Misplaced(n, _) => Some(n),
             _ => None,
         }
     }
@@ -267,27 +282,48 @@ fn euler<'a>(loops: impl Iterator<Item = &'a [[u32; 2]]>) -> Option<i64> {
 /// Sine below which a corner of an element is too sharp for its side to be told.
 const SHARP: f64 = WHOLE_NUMBER;
 
-/// Whether the elements of a face lie side by side: over rows by their places, and others by their side where they are turned
-/// over in the parameter plane, which alone tells nothing beside a pole.
-fn unfolded(ready: &Prepared, mesh: &Mesh) -> bool {
+/// What the elements of a face cover in the parameter plane, if they lie side by side: over rows by their places, and others by their
+/// side where they are turned over in the parameter plane, which alone tells nothing beside a pole.
+fn unfolded(ready: &Prepared, mesh: &Mesh) -> Option<Extent> {
     let Chart { shape, frame, surface, .. } = &ready.chart;
     let ascends = |side: &Vec<f64>| side.windows(2).all(|w| w[1] > w[0]);
+    let mut covered = Extent::default();
     match (shape, frame) {
-        (Shape::Grid(grid), _) => grid.sides.iter().all(ascends),
-        (Shape::Lattice(lattice), _) => lattice.sides.iter().all(ascends),
-        (Shape::Blocks(blocks), Frame::Blocks(ids)) => job::looking(&blocks.quads).all(|q| faces_up(surface, (&blocks.uv, ids, mesh), q)),
+        (Shape::Grid(grid), _) if grid.sides.iter().all(ascends) => {
+            let (nu, nv) = grid.size();
+            covered.add_quad([(0, 0), (nu, 0), (nu, nv), (0, nv)].map(|(i, j)| grid.uv(i, j).into()));
+        }
+        (Shape::Lattice(lattice), _) if lattice.sides.iter().all(ascends) => {
+            let n = lattice.size();
+            let [a, b, c] = [(0, 0), (n, 0), (0, n)].map(|(i, j)| lattice.uv(i, j).into());
+            covered.add(a, b, c);
+        }
+        (Shape::Blocks(blocks), Frame::Blocks(ids)) => {
+            let of = (blocks.uv.as_slice(), ids.as_slice(), mesh);
+            job::looking(&blocks.quads).all(|q| faces_up(surface, of, q, &mut covered)).then_some(())?;
+        }
         (Shape::Free(free), Frame::Free(ids)) => {
             let of = (free.uv.as_slice(), ids.as_slice(), mesh);
-            job::looking(&free.triangles).all(|t| faces_up(surface, of, t)) && job::looking(&free.quads).all(|q| faces_up(surface, of, q))
+            let sound = job::looking(&free.triangles).all(|t| faces_up(surface, of, t, &mut covered))
+                && job::looking(&free.quads).all(|q| faces_up(surface, of, q, &mut covered));
+            sound.then_some(())?;
         }
-        _ => false,
+        _ => return None,
     }
+    Some(covered)
 }
 
-/// Whether an element is counter-clockwise in the parameter plane, or at least seen against the normal of the surface.
-fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), corners: &[u32]) -> bool {
+/// Whether an element is counter-clockwise in the parameter plane, or at least seen against the normal of the surface. What it covers
+/// is added to the rest.
+fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), corners: &[u32], covered: &mut Extent) -> bool {
     let at = |k: usize| DVec2::from(uv[corners[k] as usize]);
-    let [a, b] = if corners.len() == 3 { [at(1) - at(0), at(2) - at(0)] } else { [at(2) - at(0), at(3) - at(1)] };
+    let [a, b] = if corners.len() == 3 {
+        covered.add(at(0), at(1), at(2));
+        [at(1) - at(0), at(2) - at(0)]
+    } else {
+        covered.add_quad([at(0), at(1), at(2), at(3)]);
+        [at(2) - at(0), at(3) - at(1)]
+    };
     if a.perp_dot(b) > 0.0 {
         return true;
     }
@@ -300,6 +336,24 @@ fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), 
     let middle = (0..corners.len()).map(at).sum::<DVec2>() / corners.len() as f64;
     let normals = (0..corners.len()).map(at).chain([middle]).map(|at| surface.normal(at.x, at.y));
     normals.into_iter().any(|normal| up.dot(normal) >= 0.0)
+}
+
+/// What is wrong with where the elements of a face lie on its surface.
+fn off_surface(input: &Input, (layout, nodes): (&Layout, &Nodes), (face, ready): (&Face, &Prepared), mesh: &Mesh) -> Option<Defect> {
+    let Some(covered) = unfolded(ready, mesh) else { return Some(Defect::Folded) };
+    let left_out = match (&ready.chart.shape, &ready.chart.frame) {
+        (Shape::Free(free), Frame::Free(ids)) if closes(face) => {
+            let triangles = free.triangles.iter().map(|t| t.as_slice());
+            let elements = triangles.chain(free.quads.iter().map(|q| q.as_slice()));
+            let Some(out) = extent::left_out(elements, (&free.uv, ids, free.border), &ready.around) else { return Some(Defect::Torn) };
+            out
+        }
+        _ => Extent::default(),
+    };
+    if let Err((found, wanted)) = extent::compare(input, (layout, nodes), face, covered.and(left_out)) {
+        return Some(Defect::Extent(found, wanted));
+    }
+    extent::misplaced(input, (face, ready), mesh).map(|(node, off)| Defect::Misplaced(node, off))
 }
 
 /// The first face whose elements are not what it asks for, and what is wrong.
@@ -318,7 +372,7 @@ pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepare
             own: (ready.first, ready.inner as u32),
             euler: own.euler,
         };
-        claim.hold().err().or_else(|| (!unfolded(ready, mesh)).then_some(Defect::Folded))
+        claim.hold().err().or_else(|| off_surface(input, (layout, nodes), (face, ready), mesh))
     });
     found.into_iter().enumerate().find_map(|(f, defect)| Some((f, defect?)))
 }

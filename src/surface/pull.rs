@@ -18,6 +18,9 @@ const DEEPEST: u32 = 12;
 /// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
 const BEND: f64 = 0.25;
 
+/// How much more than at the stations beside it a way may bend between two of them.
+const BENT: f64 = 4.0;
+
 /// What a border of a trimmed surface is in (u, v), from its start to its end in the loop's direction.
 #[derive(Clone, Debug)]
 pub(super) enum Course {
@@ -205,10 +208,34 @@ impl Pull {
 
     /// About where a fraction of the chain lies.
     pub fn guess(&self, f: f64) -> DVec2 {
-        let ascending = self.at[0].0 <= self.at[self.at.len() - 1].0;
-        let k = self.at.partition_point(|s| if ascending { s.0 < f } else { s.0 > f }).clamp(1, self.at.len() - 1);
+        let k = self.after(f);
         let ((a, p), (b, q)) = (self.at[k - 1], self.at[k]);
         p.lerp(q, ((f - a) / (b - a)).clamp(0.0, 1.0))
+    }
+
+    /// The first station, but for the start, that a fraction does not pass.
+    fn after(&self, f: f64) -> usize {
+        let ascending = self.at[0].0 <= self.at[self.at.len() - 1].0;
+        self.at.partition_point(|s| if ascending { s.0 < f } else { s.0 > f }).clamp(1, self.at.len() - 1)
+    }
+
+    /// About where a fraction of the chain lies, and how far from there it may be: by how much the way bends at the stations on the
+    /// smoother side, for a kink lies at a station.
+    pub fn about(&self, f: f64) -> (DVec2, f64) {
+        let k = self.after(f);
+        let (a, b) = (self.at[k - 1].0, self.at[k].0);
+        let slope = |i: usize| (self.at[i].1 - self.at[i - 1].1) / (self.at[i].0 - self.at[i - 1].0);
+        let bend = |i: usize| {
+            let inside = i > 0 && i + 1 < self.at.len();
+            inside.then(|| 2.0 * (slope(i + 1) - slope(i)).length() / (self.at[i + 1].0 - self.at[i - 1].0).abs())
+        };
+        let most = |i: Option<usize>, j: usize| i.and_then(bend).into_iter().chain(bend(j)).reduce(f64::max);
+        let (before, after) = (most((k - 1).checked_sub(1), k - 1), most(Some(k + 1), k));
+        let bent = match (before, after) {
+            (Some(x), Some(y)) => x.min(y),
+            (x, y) => x.or(y).unwrap_or(0.0),
+        };
+        (self.guess(f), BENT * 0.5 * bent * ((f - a) * (b - f)).abs())
     }
 }
 

@@ -259,6 +259,20 @@ impl Surface {
         }
     }
 
+    /// About where a share of the length of a border lies in (u, v), and how far from there it may be; exact on planes and for straight
+    /// lines in (u, v). `None` for a border of which nothing is known there.
+    pub fn border_about(&self, k: usize, share: f64) -> Option<(DVec2, f64)> {
+        let course = self.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
+        match (self.side(k), course) {
+            (Side::Chain { chain, from, to }, _) if self.is_flat() => {
+                Some((self.flat_uv(chain.point(from + (to - from) * share))?.into(), 0.0))
+            }
+            (_, Some(Course::Line(a, b))) => Some((DVec2::from(*a).lerp(DVec2::from(*b), share), 0.0)),
+            (Side::Chain { from, to, .. }, Some(Course::Pull(pull))) => Some(pull.about(from + (to - from) * share)),
+            _ => None,
+        }
+    }
+
     /// How far the borders of a trimmed surface are from it and the end of each from the start of the next one, at most, model
     /// units; 0 for others. Along a border it is measured where it was followed.
     pub fn gap(&self) -> f64 {

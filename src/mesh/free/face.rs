@@ -59,7 +59,7 @@ pub struct Made<'a> {
 
 /// A face without anything in it, for as long as only its border matters.
 pub fn empty(made: &Made, face: &Face) -> Prepared {
-    prepared(made, face, Free::default(), Vec::new(), Vec::new())
+    prepared(made, face, Free::default(), (Vec::new(), Vec::new()), Vec::new())
 }
 
 /// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
@@ -94,7 +94,7 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
     if let Some((known, key)) = key
         && let Some((free, inner, deciders, tally)) = known.free(key).and_then(|taken| taken.parts(border.uv.len()))
     {
-        return Ok(Prepared { deciders, tally, ..prepared(made, face, free, border.ids, inner) });
+        return Ok(Prepared { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) });
     }
     let all = || grown(made, face, (border, sheet, outline), job);
     let surface = || made.input.model.surfaces[face.surface.index()].surface.origin();
@@ -123,10 +123,11 @@ fn grown(made: &Made, face: &Face, (border, sheet, outline): (Border, Sheet, Out
     uv.extend(web.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
     let inner = web.p[fixed..].to_vec();
     let free = Free { uv, border: fixed, triangles, ..Free::default() };
-    Ok(Prepared { deciders, tally, ..prepared(made, face, free, border.ids, inner) })
+    Ok(Prepared { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) })
 }
 
-fn prepared(made: &Made, face: &Face, free: Free, mut ids: Vec<u32>, inner: Vec<DVec3>) -> Prepared {
+/// A face of these places and elements; `ids` and edges of its loops.
+fn prepared(made: &Made, face: &Face, free: Free, (mut ids, around): (Vec<u32>, Vec<[u32; 2]>), inner: Vec<DVec3>) -> Prepared {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let (triangles, quads) = (free.triangles.len() as u64, free.quads.len() as u64);
     ids.resize(free.uv.len(), 0);
@@ -139,6 +140,7 @@ fn prepared(made: &Made, face: &Face, free: Free, mut ids: Vec<u32>, inner: Vec<
         triangles,
         quads,
         made: inner,
+        around,
         deciders: Vec::new(),
         tally: None,
     }

@@ -57,7 +57,7 @@ pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline)
             quad => free.quads.push(quad),
         }
     }
-    Ok(Prepared { deciders, ..prepared(made, face, free, border.ids, inner) })
+    Ok(Prepared { deciders, ..prepared(made, face, free, (border.ids, border.edges), inner) })
 }
 
 /// A trouble with nodes of the whole border.
