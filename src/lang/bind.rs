@@ -78,6 +78,15 @@ impl Cx<'_> {
         first: Option<Value>,
         args: &[Arg],
     ) -> Result<Args, Stop> {
+        let (said, alone) = (self.sink.len(), first.is_none());
+        let bound = self.bound(code, id, builtin, first, args);
+        if alone && matches!(bound, Err(Stop::Failed)) {
+            self.type_out(code, id, builtin, args, said);
+        }
+        bound
+    }
+
+    fn bound(&mut self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: Option<Value>, args: &[Arg]) -> Result<Args, Stop> {
         let rest_at = rest_of(builtin);
         let taken = usize::from(first.is_some());
         // The usual call, positions only, needs no names.

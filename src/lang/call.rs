@@ -76,6 +76,7 @@ impl Cx<'_> {
             return match (self.field_for(name, &value), function) {
                 (Some(field), _) => self.run(code, id, field, Some(value), &[]),
                 (None, Some(function)) => self.run(code, id, function, Some(value), &[]),
+                (None, None) if self.machine.at(code.module).is_broken(name) => Err(Stop::Broken),
                 (None, None) => Err(self.no_field(code, &value, name, name_span)),
             };
         }
@@ -134,7 +135,11 @@ impl Cx<'_> {
                 self.advise(&fault, (code, id), &blame, &mut diagnostic);
                 let of_value = matches!(fault, crate::base::fault::Fault::Value(_));
                 let diagnostic = self.by_place((code, call_name(code, id)), (diagnostic, of_value), (builtin, before.as_ref(), args));
+                let few = diagnostic.code.0 == "E402";
                 self.sink.push(diagnostic);
+                if few {
+                    self.type_out(code, id, builtin, args, self.sink.len() - 1);
+                }
                 Err(Stop::Failed)
             }
             Err(other) => Err(other),

@@ -301,7 +301,7 @@ impl Cx<'_> {
                 _ => Vec::new(),
             },
             // A way to go, as `extrude` and `move` take it.
-            Value::Number(q) if q.dim == Dim::LENGTH && subject.starts_with("`by`") => {
+            Value::Number(q) if (q.dim == Dim::LENGTH || q.dim.is_none()) && subject.starts_with("`by`") => {
                 vec![format!("(0, 0, {source})"), format!("({source}, 0, 0)"), format!("(0, {source}, 0)")]
             }
             _ => Vec::new(),

@@ -103,6 +103,11 @@ impl Cx<'_> {
             let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
             return draft.ways(code.span(id), &[typed]).stop();
         }
+        if let Some((place, typed)) = self.typed_shape(code, id).filter(|_| !is_word()) {
+            let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
+            let help = if typed.contains('\n') { format!("it is made of these:\n{typed}") } else { format!("`{typed}`") };
+            return draft.help(help).put(place, typed).stop();
+        }
         if let Some(other) = instead(&text).filter(|_| !is_word()) {
             let draft = self.error(code, "E201", format!("there is no function `{text}`"), span, "no such function");
             return draft.help(format!("for example `{other}`")).stop();

@@ -56,6 +56,7 @@ pub mod std;
 pub mod symbols;
 pub mod syntax;
 pub mod table;
+mod typed_calls;
 pub mod types;
 pub mod units;
 pub mod value;

@@ -223,7 +223,11 @@ impl Failure<'_> {
         let colon = (place, ":", format!("arguments, fields and settings take a colon: `{key}: …`"));
         let equal = (place, "==", "two values are compared by `==`".to_owned());
         let loop_in = (place, " in ", "a loop says `in`: `for i in 0..5`".to_owned());
-        Some(self.repaired(report, &[colon, equal, loop_in])).filter(|r| r.help.is_some())
+        // Outside brackets it is a setting that stands without its braces.
+        let set =
+            stop.at > self.base + 2 && matches!(self.tokens.kinds[self.base], Kind::Mesh | Kind::Shell | Kind::Export | Kind::Picture);
+        let repairs = [colon, loop_in, equal];
+        Some(self.repaired(report, &repairs[..repairs.len() - usize::from(set)])).filter(|r| r.help.is_some())
     }
 
     /// `:` or `==` where the `=` of a declaration is meant.

@@ -135,13 +135,22 @@ impl Parser<'_> {
         let (mut own, mut docs) = (self.tokens.mistakes.iter().peekable(), 0);
         for mut piece in pieces {
             let end = piece.tokens.end.checked_sub(1).map_or(0, |last| self.tokens.ends[last]);
-            while own.next_if(|m| m.place().start < end).is_some() {
-                piece.broken = true;
+            let sound = self.without_signs_behind(&piece);
+            let last = self.tokens.ends[sound - 1];
+            while let Some(mistake) = own.next_if(|m| m.place().start < end) {
+                piece.broken |= mistake.place().start < last;
             }
+            piece.tokens.end = sound;
             let doc = self.doc(&mut docs, piece.tokens.start);
             self.piece(&piece, doc);
         }
         self.end()
+    }
+
+    /// Where a piece ends without the signs of other languages behind it, as `;`: they are reported, and it stands without them.
+    fn without_signs_behind(&self, piece: &Piece) -> usize {
+        let signs = self.tokens.kinds[piece.tokens.start + 1..piece.tokens.end].iter().rev().take_while(|kind| **kind == Kind::Strange);
+        piece.tokens.end - signs.count()
     }
 
     /// Reports the mistakes of scanner and splitter; one cause, one report.
@@ -265,8 +274,7 @@ impl Parser<'_> {
             let mistake = Mistake::NoKeyword { span: self.tokens.span(base), next, binds: kinds.get(1) == Some(&Kind::Equals) };
             let report = mistake.diagnose(self.source, self.file);
             let refusal = || foreign::Refusal::new((self.source, self.tokens), base..end, base, &self.fresh);
-            let meant = if kinds.get(1) == Some(&Kind::Equals) { None } else { refusal().meant() };
-            self.found.push(foreign::say(report, meant));
+            self.found.push(foreign::say(report, refusal().meant()));
         }
         let bound = match kinds {
             [Kind::Name, Kind::Equals, ..] => Some(base),

@@ -86,7 +86,12 @@ impl Splitter<'_> {
             return false;
         }
         if kind.keyword().is_none() {
-            return first && before.ends_operand() && self.strays(at, inside);
+            // A line that ends with a sign of other languages, as `;`, ends there.
+            let sign = before == Kind::Strange && self.tokens.ends[at - 1] == self.tokens.starts[at - 1] + 1;
+            // `with BuildPart() as part:` opens a block of Python.
+            let block = before == Kind::Colon && !inside && self.tokens.kinds[self.start..at].contains(&Kind::As);
+            let ends = before.ends_operand() || sign || block;
+            return first && ends && self.strays(at, inside);
         }
         if (kind == Kind::Let && before.wants_value()) || (kind == Kind::Curve && before == Kind::Modeling) {
             return false;
@@ -112,7 +117,7 @@ impl Splitter<'_> {
             return kind == Kind::Name && self.kind(at + 1) == Some(Kind::Name) && self.kind(at + 2) == Some(Kind::Equals);
         }
         // A statement of other languages, behind a declaration that is whole.
-        if kind == Kind::If || kind == Kind::For && self.equals {
+        if kind == Kind::If || kind == Kind::For && (self.equals || self.kind(at + 1) == Some(Kind::OpenRound)) {
             return true;
         }
         matches!(kind, Kind::Name | Kind::Number | Kind::Quantity | Kind::Text | Kind::TextHead | Kind::True | Kind::False | Kind::None)

@@ -3,7 +3,13 @@
 //! Each rule looks at the tokens of a declaration that the grammar refuses and gives the text that was meant; a rewriting is
 //! only offered when the grammar accepts it.
 
-use std::cell::RefCell;
+mod calls;
+mod gmsh;
+mod meshes;
+mod shapes;
+mod solids;
+
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -12,6 +18,8 @@ use super::is_declaration;
 use super::scan::Tokens;
 use super::token::Kind;
 use crate::lang::diag::Diagnostic;
+pub(in crate::lang) use calls::Call;
+pub(in crate::lang) use shapes::{Made, shape};
 
 /// A declaration that the grammar refuses, with the token at which it did.
 pub(super) struct Refusal<'a> {
@@ -59,16 +67,36 @@ impl Brackets {
 
 /// Names for what was made without one: `circle_1`, `circle_2`, none of which stands in the source.
 #[derive(Default)]
-pub(super) struct FreshNames(RefCell<BTreeMap<&'static str, (BTreeSet<u64>, u64)>>);
+pub(super) struct FreshNames {
+    numbers: RefCell<BTreeMap<&'static str, (BTreeSet<u64>, u64)>>,
+    /// What the source declares as a function, in the words of this language or another; found once.
+    functions: OnceCell<BTreeSet<String>>,
+}
 
 impl FreshNames {
     /// The next free name that begins with a word; the source is searched once for each word.
     fn next(&self, source: &str, word: &'static str) -> String {
-        let mut all = self.0.borrow_mut();
+        let mut all = self.numbers.borrow_mut();
         let (taken, last) = all.entry(word).or_insert_with(|| (numbers_behind(source, word), 0));
         *last = (*last + 1..).find(|n| !taken.contains(n)).unwrap_or(u64::MAX);
         format!("{word}_{last}")
     }
+
+    /// Whether a source makes a function of this name.
+    fn is_function(&self, source: &str, name: &str) -> bool {
+        self.functions.get_or_init(|| functions_of(source)).contains(name)
+    }
+}
+
+/// The names behind the words that declare a function.
+fn functions_of(source: &str) -> BTreeSet<String> {
+    looked(source.len());
+    let name = |line: &str| {
+        let (word, rest) = line.trim_start().split_once(' ')?;
+        let (name, _) = rest.split_once('(').filter(|_| word == "fn" || FUNCTION_WORDS.contains(&word))?;
+        Some(name.trim().to_owned())
+    };
+    source.lines().filter_map(name).collect()
 }
 
 /// The numbers `n` of all `word_n` in a text.
@@ -143,17 +171,26 @@ impl<'a> Refusal<'a> {
 impl Refusal<'_> {
     /// The loft form of what stands there.
     pub fn meant(&self) -> Option<Meant> {
-        let rules: [fn(&Self) -> Option<Meant>; 17] = [
+        let rules: [fn(&Self) -> Option<Meant>; 26] = [
             Self::head_sign,
             Self::value_word,
             Self::function_word,
             Self::printed,
+            Self::gmsh_statement,
+            Self::gmsh_call,
+            Self::gmsh_meshing,
+            Self::mesh_called,
+            Self::boolean,
+            Self::shape_statement,
+            Self::shape_value,
+            Self::block_of_python,
             Self::nameless,
             Self::python_import,
             Self::statement,
             Self::called_output,
             Self::settings_apart,
             Self::settings_elsewhere,
+            Self::equals_for_colons,
             Self::of_missing,
             Self::name_with_brackets,
             Self::bare_point,
@@ -271,7 +308,12 @@ impl Refusal<'_> {
         let mut first = body + usize::from(sign);
         first += usize::from(self.kind(first).is_some() && self.text(first, first + 1) == "return");
         let curly = self.kind(body) == Some(Kind::OpenCurly) && self.kind(self.end - 1) == Some(Kind::CloseCurly);
-        let typed = format!("{head} = {}", self.text(first, self.end - usize::from(curly)));
+        let end = self.end - usize::from(curly);
+        let last = if end > first && self.tokens.kinds[end - 1] == Kind::Strange { end - 1 } else { end };
+        let typed = match self.made(first, last) {
+            Some((made, _)) => format!("{head} = {}", made.expression()),
+            None => format!("{head} = {}", self.text(first, end)),
+        };
         let why = "a function is one expression";
         if is_declaration(&typed) {
             return Some(Meant { why, typed, at: self.whole() });
@@ -294,6 +336,10 @@ impl Refusal<'_> {
         use crate::lang::types::Ty;
         let whole = self.kind(self.base + 1) == Some(Kind::OpenRound) && self.closer(self.base + 1) == Some(self.end - 1);
         let function = self.text(self.base, self.base + 1);
+        if whole && self.fresh.is_function(self.source, function) {
+            let name = self.fresh.next(self.source, "part");
+            return self.replaced("what is made gets a name", format!("let {name} = {}", self.text(self.base, self.end)));
+        }
         let builtin = crate::lang::std::builtins().find(|b| b.name == function).filter(|_| whole)?;
         let word = match builtin.returns {
             Ty::Curve => "curve",
@@ -308,7 +354,8 @@ impl Refusal<'_> {
     /// `import math`
     fn python_import(&self) -> Option<Meant> {
         let imports = self.tokens.kinds[self.base] == Kind::Import || self.text(self.base, self.base + 1) == "from";
-        let modules = ["math", "numpy", "cadquery", "build123d", "gmsh"];
+        let modules =
+            ["math", "numpy", "cadquery", "build123d", "gmsh", "FreeCAD", "Part", "Draft", "rhinoscriptsyntax", "Rhino", "pygmsh", "solid"];
         let known = imports && self.kind(self.base + 1) == Some(Kind::Name) && modules.contains(&self.text(self.base + 1, self.base + 2));
         known.then(|| Meant { why: "functions need no import, delete this line", typed: "sin(30deg) + pi".to_owned(), at: None })
     }
@@ -366,7 +413,8 @@ impl Refusal<'_> {
         if !matches!(self.tokens.kinds[self.base], Kind::Mesh | Kind::Shell | Kind::Export | Kind::Picture) {
             return None;
         }
-        let is_setting = |t: &usize| self.tokens.kinds[*t] == Kind::Name && self.kind(*t + 1) == Some(Kind::Colon) && self.depth(*t) == 0;
+        let signed = |t: usize| matches!(self.kind(t + 1), Some(Kind::Colon | Kind::Equals));
+        let is_setting = |t: &usize| self.tokens.kinds[*t] == Kind::Name && signed(*t) && self.depth(*t) == 0;
         let first = (self.base + 2..self.end).find(is_setting)?;
         let before = |t: usize| self.kind(t.wrapping_sub(1));
         let mut head = first;
@@ -379,7 +427,11 @@ impl Refusal<'_> {
             inner = self.text(open + 1, head - 1).to_owned();
             head_text = self.text(self.base, open);
         }
-        let rest = self.text(first, self.end).trim_end_matches(['}', ' ', '\n']);
+        let rest = (first..self.end).filter(is_setting).fold(self.text(first, self.end).to_owned(), |rest, t| {
+            let (key, value) = (self.text(t, t + 1), self.text(t, t + 3));
+            rest.replacen(value, &format!("{key}: {}", self.text(t + 2, t + 3)), 1)
+        });
+        let rest = rest.trim_end_matches(['}', ' ', '\n']);
         let joined: Vec<&str> = [inner.trim(), rest].into_iter().filter(|t| !t.is_empty()).collect();
         let of = if self.tokens.kinds[self.base] == Kind::Mesh {
             "settings stand in braces behind `mesh … of …`"
