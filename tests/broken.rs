@@ -15,8 +15,10 @@
 #[path = "support/script.rs"]
 mod script;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use lofting::base::fault::Severity;
 use lofting::lang::diag::{Diagnostic, Sources};
@@ -24,8 +26,19 @@ use lofting::lang::diag_render::{render, render_all};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
-/// What a script reports when it is checked; a panic is a report as well, E999.
-fn reports(path: &Path, text: &str) -> (Vec<Diagnostic>, Sources) {
+/// What scripts report, by path and text: several tests look at the same ones.
+static REPORTED: Mutex<BTreeMap<(PathBuf, String), Arc<OnceLock<Reported>>>> = Mutex::new(BTreeMap::new());
+
+type Reported = (Vec<Diagnostic>, Sources);
+
+/// What a script reports when it is checked; a panic is a report as well, E999. Each text is checked once.
+fn reports(path: &Path, text: &str) -> Reported {
+    let all = || REPORTED.lock().expect("no test panics here");
+    let once = all().entry((path.to_owned(), text.to_owned())).or_default().clone();
+    once.get_or_init(|| reported(path, text)).clone()
+}
+
+fn reported(path: &Path, text: &str) -> Reported {
     let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
     let disk = Disk::new(Some(path), None, &[], Outputs::Counted).expect("the folder of the script exists");
     match guarded(|| script::outcome(&name, text.as_bytes(), &[], &disk)) {

@@ -190,13 +190,13 @@ pub fn sort(found: &mut [Diagnostic]) {
 }
 
 /// The source files of a run, by [`FileId`].
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
 }
 
 /// One source file.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SourceFile {
     /// As the user knows it: `hall.loft`, `parts/ribs.loft`, `<stdin>`.
     pub name: String,
