@@ -2,8 +2,8 @@
 //! answer of its own, status 0, 1 or 2. `loft` runs as a child, so that a hang, an abort or a swollen heap is seen from outside;
 //! meshes are limited to few elements, so that large ones that are sound do not take the time.
 //!
-//! `LOFT_EDITS` says how many edits (a few dozen without it), `LOFT_EDITS_SECONDS` the processor time of each, `LOFT_EDITS_LOFT` which
-//! program is run (a release build in `.ci/run`).
+//! `LOFT_EDITS` says how many edits (a few dozen without it), `LOFT_EDITS_FROM` the number of the first, `LOFT_EDITS_SECONDS` the
+//! processor time of each, `LOFT_EDITS_LOFT` which program is run (a release build in `.ci/run`).
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
@@ -165,11 +165,12 @@ fn random_edits_of_scripts_end() {
     let loft = std::env::var("LOFT_EDITS_LOFT").map_or(env!("CARGO_BIN_EXE_loft").to_owned(), |own| root.join(own).display().to_string());
     let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("edits");
     fs::create_dir_all(&kept).unwrap();
-    let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let from = number_of("LOFT_EDITS_FROM", 0) as usize;
+    let (next, found) = (AtomicUsize::new(from), Mutex::new(Vec::new()));
     let work = || {
         loop {
             let k = next.fetch_add(1, Ordering::Relaxed);
-            if k >= edits {
+            if k >= from + edits {
                 return;
             }
             let mut draw = Draw(0x10f7_0000 + k as u64);
