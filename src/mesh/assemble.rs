@@ -225,7 +225,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
             if let Some((f, defect)) = found
                 && (!closes(&layout.faces[f]) || layout.faces[f].halved == HALVED)
             {
-                return Err(verify::fault(input, (&layout.faces[f], &nodes), (&prepared[f], defect), &mesh));
+                return Err(verify::fault(input, (&*layout, &nodes, &layout.faces[f]), (&prepared[f], defect), &mesh));
             }
             if let Some(f) = found.map(|(f, _)| f).or(twisted) {
                 // Where a face closes on itself, elements from one of its sides to another may be the same ones.

@@ -1,5 +1,6 @@
 //! Steps of a seam where the way round the face from one of its sides to the other is short: with steps longer than a third of it
-//! there would be fewer than three elements all round.
+//! there would be fewer than three elements all round. Steps of a border that turns back along itself, where elements on its two
+//! sides are the same.
 
 use super::free::face::{Made, places, way_round};
 use super::layout::Face;
@@ -16,7 +17,7 @@ const LEAST: f64 = 0.25;
 /// Places of the seams of a face where steps have to be shorter.
 pub fn look(made: &Made, face: &Face) -> Vec<Narrow> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let mut found = Vec::new();
+    let mut found = turned(made, face);
     if surface.domain() == Domain::Loop || face.sides.len() != 4 {
         return found;
     }
@@ -41,6 +42,19 @@ pub fn look(made: &Made, face: &Face) -> Vec<Narrow> {
             if length > SLACK * size {
                 found.push(Narrow { stretch: used.atom, f: *f, size, must: false });
             }
+        }
+    }
+    found
+}
+
+/// Places of borders that turn back along themselves: their steps are halved again and again.
+fn turned(made: &Made, face: &Face) -> Vec<Narrow> {
+    let mut found = Vec::new();
+    for stretch in face.turns().map(|turn| turn.atom) {
+        let whole = made.layout.length(stretch);
+        let size = (0..face.halved).fold(whole.min(face.size.0), |size, _| 0.5 * size);
+        for w in made.nodes.fractions(stretch, false).windows(2).filter(|w| whole * (w[1] - w[0]) > SLACK * size) {
+            found.push(Narrow { stretch, f: 0.5 * (w[0] + w[1]), size, must: false });
         }
     }
     found

@@ -90,6 +90,11 @@ impl Face {
         self.free && self.elements == Elements::Triangles && !matches!(self.method, Method::Display | Method::Isoline)
     }
 
+    /// Stretches along which a side of its border runs there and back, as it runs there.
+    pub fn turns(&self) -> impl Iterator<Item = Use> + '_ {
+        self.sides.iter().flat_map(|side| side.uses.windows(2)).filter(|w| w[0].atom == w[1].atom).map(|w| w[0])
+    }
+
     /// Stretches round it and inside it.
     pub fn stretches(&self) -> impl Iterator<Item = usize> + '_ {
         self.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).chain(self.lines.iter().copied())

@@ -139,7 +139,8 @@ fn quad_rows(frame: &Frame, flipped: bool, quads: &mut [[u32; 4]]) {
 /// For each cell whether the diagonal from (i + 1, j) to (i, j + 1) is the better one.
 ///
 /// The better diagonal has its middle nearer to the surface; where both are as near (within `even`, model units) the one
-/// with the larger least angle; else the one from (i, j).
+/// with the larger least angle; else the one from (i, j). Where a border turns back along itself diagonals end at the turn: from the
+/// node before it, which is the one after it, they would be one edge twice.
 pub fn diagonals(grid: &Grid, frame: &Frame, surface: &Surface, nodes: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
     let (nu, nv) = grid.size();
     let mut other = vec![false; nu * nv];
@@ -153,6 +154,18 @@ pub fn diagonals(grid: &Grid, frame: &Frame, surface: &Surface, nodes: &(dyn Fn(
         }
     });
     debug_assert_eq!(other.len(), nu * nv);
+    for (side, row) in frame.sides.iter().enumerate() {
+        for before in (2..row.len()).map(|k| k - 2).filter(|k| row[*k] == row[k + 2] && row[*k] != row[k + 1]) {
+            // Cells before and after the turn, and whether that is an end of their other diagonal.
+            let (cells, others) = match side {
+                0 => ([before, before + 1], [true, false]),
+                1 => ([before, before + 1].map(|j| j * nu + nu - 1), [false, true]),
+                2 => ([before, before + 1].map(|i| (nv - 1) * nu + i), [false, true]),
+                _ => ([before, before + 1].map(|j| j * nu), [true, false]),
+            };
+            cells.into_iter().zip(others).for_each(|(cell, through)| other[cell] = through);
+        }
+    }
     other
 }
 

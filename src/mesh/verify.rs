@@ -18,7 +18,7 @@ use super::faces::{Frame, Prepared, element_ranges};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use super::plan::{Elements, Method};
-use crate::base::fault::{Fault, MeshFault};
+use crate::base::fault::{Close, Fault, MeshFault};
 use crate::base::job;
 use crate::base::par;
 use crate::base::text::real;
@@ -377,16 +377,26 @@ pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepare
     found.into_iter().enumerate().find_map(|(f, defect)| Some((f, defect?)))
 }
 
-/// E999 for a face whose elements are not what it asks for; E720 where it closes on itself and its size leaves no room.
-pub(super) fn fault(input: &Input, (face, nodes): (&Face, &Nodes), (ready, defect): (&Prepared, Defect), mesh: &Mesh) -> Fault {
+/// E999 for a face whose elements are not what it asks for; E720 where it closes on itself or its border turns back along itself, and
+/// its size leaves no room.
+pub(super) fn fault(
+    input: &Input,
+    (layout, nodes, face): (&Layout, &Nodes, &Face),
+    (ready, defect): (&Prepared, Defect),
+    mesh: &Mesh,
+) -> Fault {
     let at = defect.node().and_then(|n| mesh.nodes.get(n as usize).copied());
     let at = at.unwrap_or_else(|| super::faces::middle(input, face));
     let surface = input.model.surfaces[face.surface.index()].surface.origin();
     let method = if face.free { word(face.method) } else { "mapped" };
+    if let Some(turn) = face.turns().next() {
+        let at = layout.point(turn.atom, if turn.against { 0.0 } else { 1.0 });
+        return MeshFault::ClosesTooNear { surface, method, at, close: Close::Turn }.into();
+    }
     if face.halved > 0 {
         let is_pole = |n: u32| face.sides.iter().any(|side| side.pole.is_some_and(|pole| nodes.of_junction(pole) == n));
-        let tip = defect.node().is_some_and(is_pole);
-        return MeshFault::ClosesTooNear { surface, method, at, tip }.into();
+        let close = if defect.node().is_some_and(is_pole) { Close::Tip } else { Close::Seam };
+        return MeshFault::ClosesTooNear { surface, method, at, close }.into();
     }
     MeshFault::Unsound {
         mesh: (input.plan.origin, input.plan.name.clone()),

@@ -85,28 +85,77 @@ crate::content!(Part { track, cuts, rank, near });
 ///
 /// `anchors` are points that give their place to the junctions they hit: vertices, nodes, declared points.
 pub fn atoms(parts: &[Part], anchors: &[Station], tolerance: &Tolerance) -> Atoms {
-    let mut points = anchors.to_vec();
-    // Of each part its first point among all.
-    let mut first = Vec::with_capacity(parts.len());
-    for part in parts {
-        job::look();
-        first.push(points.len());
-        let stops = [0.0, part.track.length()].into_iter().chain(part.cuts.iter().copied());
-        points.extend(stops.map(|s| Station { point: part.track.point(s), reach: part.near }));
+    let stops = Stops::new(parts, anchors, tolerance);
+    let turns = stops.turns(parts);
+    if turns.is_empty() {
+        return joined(parts, anchors.len(), &stops, tolerance);
     }
-    let group = gather(&points, tolerance.point);
-    let index = Index::new(&points, &group);
-    let found = par::map(parts.len(), |n| stations(&parts[n], (group[first[n]], group[first[n] + 1]), &index));
-    let mut result = Atoms { junctions: places(&points, &group, anchors.len()), ..Atoms::default() };
-    result.starts = first.iter().map(|n| group[*n]).collect();
+    let mut cut = parts.to_vec();
+    for (part, s) in turns {
+        cut[part].cuts.push(s);
+        cut[part].cuts.sort_by(f64::total_cmp);
+    }
+    joined(&cut, anchors.len(), &Stops::new(&cut, anchors, tolerance), tolerance)
+}
+
+/// Where tracks are cut.
+struct Stops {
+    /// Anchors, then the ends and cuts of each track.
+    points: Vec<Station>,
+    /// The junction of each point.
+    group: Vec<usize>,
+    /// Of each track its first point among all.
+    first: Vec<usize>,
+    /// Arc lengths and junctions of each track, ends included, ascending.
+    of_track: Vec<Vec<(f64, usize)>>,
+}
+
+impl Stops {
+    fn new(parts: &[Part], anchors: &[Station], tolerance: &Tolerance) -> Self {
+        let mut points = anchors.to_vec();
+        let mut first = Vec::with_capacity(parts.len());
+        for part in parts {
+            job::look();
+            first.push(points.len());
+            let stops = [0.0, part.track.length()].into_iter().chain(part.cuts.iter().copied());
+            points.extend(stops.map(|s| Station { point: part.track.point(s), reach: part.near }));
+        }
+        let group = gather(&points, tolerance.point);
+        let index = Index::new(&points, &group);
+        let of_track = par::map(parts.len(), |n| stations(&parts[n], (group[first[n]], group[first[n] + 1]), &index));
+        Self { points, group, first, of_track }
+    }
+
+    /// Tracks with arc lengths at which they turn back along themselves: in the middle of a stretch from a junction to the same one
+    /// whose halves are the same way there and back. Cut there, the halves are one atom.
+    fn turns(&self, parts: &[Part]) -> Vec<(usize, f64)> {
+        let of_part = |n: usize| {
+            let part = &parts[n];
+            let turn = |w: &[(f64, usize)]| {
+                let middle = 0.5 * (w[0].0 + w[1].0);
+                let half = |s: (f64, f64)| Piece { track: &part.track, s };
+                let back = w[0].1 == w[1].1 && half((w[0].0, middle)).off(&half((middle, w[1].0)), true).0 <= part.near;
+                back.then_some((n, middle))
+            };
+            self.of_track[n].windows(2).filter_map(turn).collect::<Vec<_>>()
+        };
+        par::map(parts.len(), of_part).into_iter().flatten().collect()
+    }
+}
+
+/// The pieces of tracks between their stops, those that lie on each other as one; the first points are `anchors`.
+fn joined(parts: &[Part], anchors: usize, stops: &Stops, tolerance: &Tolerance) -> Atoms {
+    let group = &stops.group;
+    let mut result = Atoms { junctions: places(&stops.points, group, anchors), ..Atoms::default() };
+    result.starts = stops.first.iter().map(|n| group[*n]).collect();
     result.of_track = vec![Vec::new(); parts.len()];
-    Joiner { parts, result: &mut result, same: BTreeMap::new(), point: tolerance.point }.join(&found);
+    Joiner { parts, result: &mut result, same: BTreeMap::new(), point: tolerance.point }.join(&stops.of_track);
     let mut used = vec![false; result.junctions.len()];
     for atom in &result.atoms {
         used[atom.ends.0] = true;
         used[atom.ends.1] = true;
     }
-    result.of_anchor = group[..anchors.len()].iter().map(|g| used[*g].then_some(*g)).collect();
+    result.of_anchor = group[..anchors].iter().map(|g| used[*g].then_some(*g)).collect();
     result
 }
 

@@ -22,6 +22,17 @@ pub enum Cure {
     Near,
 }
 
+/// How a face meets itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Close {
+    /// Along a seam.
+    Seam,
+    /// At a tip, which is as narrow for elements of every size.
+    Tip,
+    /// A border turns back along itself.
+    Turn,
+}
+
 /// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshFault {
@@ -297,8 +308,8 @@ pub enum MeshFault {
         method: &'static str,
         /// Where.
         at: DVec3,
-        /// Whether that is at a tip, which is as narrow for elements of every size.
-        tip: bool,
+        /// How it closes there.
+        close: Close,
     },
     /// E720 of two faces: an element or an edge inside one is that of the other.
     FallTogether {
@@ -590,7 +601,17 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "this face")
         .help("keep the borders further apart, or divide them more finely there"),
-        F::ClosesTooNear { surface, method, at, tip } => Report::new(
+        F::ClosesTooNear { surface, method, at, close: Close::Turn } => Report::new(
+            "E720",
+            format!(
+                "a border of {} turns back along itself at {}, and elements made by `method: {method}` do not keep apart beside it",
+                say.quoted(*surface, "a face"),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "this face")
+        .help("move the points of that border so that it runs one way, or a smaller `size`"),
+        F::ClosesTooNear { surface, method, at, close } => Report::new(
             "E720",
             format!(
                 "{} closes on itself more narrowly at {} than elements made by `method: {method}` keep apart",
@@ -601,7 +622,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         .at(*surface, "this face")
         .help(match *method {
             "mapped" => "a smaller `size`",
-            _ if *tip => "`method: mapped` goes round the tip in rows",
+            _ if *close == Close::Tip => "`method: mapped` goes round the tip in rows",
             _ => "a smaller `size`, or `method: mapped`",
         }),
         F::FallTogether { surfaces: [first, second], at } => Report::new(

@@ -31,7 +31,9 @@ pub(in crate::mesh) fn way_round(surface: &Surface, from: (f64, f64), to: (f64, 
 pub(super) fn add_rings(made: &Made, face: &Face, border: &Border, (sheet, outline): (&Sheet, &mut Outline)) {
     let mut places: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     border.ids.iter().zip(0..).for_each(|(id, n)| places.entry(*id).or_default().push(n));
-    if !face.lines.is_empty() || !face.points.is_empty() || places.values().any(|places| places.len() > 2) {
+    // What turns back along itself has no way round.
+    let turns = face.turns().next().is_some();
+    if turns || !face.lines.is_empty() || !face.points.is_empty() || places.values().any(|places| places.len() > 2) {
         return;
     }
     let mut beside = vec![Vec::new(); border.ids.len()];
