@@ -9,10 +9,12 @@ use crate::base::job;
 use crate::base::math;
 use crate::base::tolerance::{SINGULAR, Tolerance};
 
-/// Samples a direction and cell.
+/// Samples a direction and cell, beside those at its ends.
 const SAMPLES: usize = 9;
+/// Samples at the ends of a cell lie this share of it inside: a border that turns back folds its corner only.
+const END: f64 = 1.0 / 1000.0;
 
-/// W606 and W607, each at its worst place, from 9×9 samples inside every cell between network lines and kinks.
+/// W606 and W607, each at its worst place, from 11×11 samples inside every cell between network lines and kinks.
 pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     if !matches!(surface.domain(), Domain::Square | Domain::Triangle) {
         return Vec::new();
@@ -35,7 +37,8 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     let scale = jets.iter().map(|j| j.du.length()).fold(0.0, f64::max) * jets.iter().map(|j| j.dv.length()).fold(0.0, f64::max);
     let mut found = Vec::new();
     let singular = |k: usize| normals[k].is_none() || jets[k].du.cross(jets[k].dv).length() < SINGULAR * scale;
-    if let Some(k) = (0..jets.len()).find(|&k| singular(k)) {
+    let end = |k: usize| [0, SAMPLES + 1].contains(&(k % (SAMPLES + 2)));
+    if let Some(k) = (0..jets.len()).find(|&k| !end(k % us.len()) && !end(k / us.len()) && singular(k)) {
         found.push(SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p }.into());
     }
     // A fold turns the normal by more than a right angle between neighbours of one smooth piece, however near they come;
@@ -93,6 +96,10 @@ fn inside(breaks: &[f64], tolerance: &Tolerance) -> Vec<f64> {
     stops
         .windows(2)
         .filter(|w| w[1] - w[0] > tolerance.parameter)
-        .flat_map(|w| (0..SAMPLES).map(|k| w[0] + (w[1] - w[0]) * (k as f64 + 0.5) / SAMPLES as f64).collect::<Vec<_>>())
+        .flat_map(|w| {
+            let inner = (0..SAMPLES).map(|k| (k as f64 + 0.5) / SAMPLES as f64);
+            let shares = std::iter::once(END).chain(inner).chain(std::iter::once(1.0 - END));
+            shares.map(|f| w[0] + (w[1] - w[0]) * f).collect::<Vec<_>>()
+        })
         .collect()
 }
