@@ -35,7 +35,8 @@ pub fn place(input: &Input, layout: &mut Layout) {
         return;
     }
     let mut known: BTreeMap<SurfaceId, Nearest> = BTreeMap::new();
-    for face in &mut layout.faces {
+    let mut faces = std::mem::take(&mut layout.faces);
+    for face in &mut faces {
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let hull = surface.hull();
         let near = |all: &[DVec3]| Box3::of(all.iter().copied()).touches(&hull, input.tolerance.point);
@@ -43,8 +44,12 @@ pub fn place(input: &Input, layout: &mut Layout) {
         let patch = &input.model.patches[face.patch.index()];
         let holds = |p: &DVec3| on(nearest, patch, *p, input.tolerance);
         let around: BTreeSet<usize> = face.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).collect();
-        let candidates = (0..lines.len()).filter(|n| !around.contains(&lines[*n]));
-        let own: Vec<usize> = candidates.filter(|n| near(&probes[*n]) && probes[*n].iter().all(holds)).map(|n| lines[n]).collect();
+        let candidates = (0..lines.len()).filter(|n| !around.contains(&lines[*n]) && near(&probes[*n]) && probes[*n].iter().all(holds));
+        let found: Vec<usize> = candidates.collect();
+        let rim = if found.is_empty() { Vec::new() } else { rim(layout, &around) };
+        // What runs along the border of the face and is none of it has no room beside it.
+        let on_rim = |p: &DVec3| rim.iter().any(|part| part.is_near(layout, *p, input.tolerance.point));
+        let own: Vec<usize> = found.into_iter().filter(|n| !probes[*n].iter().all(on_rim)).map(|n| lines[n]).collect();
         face.lines.extend(own);
         face.lines.sort_unstable();
         face.lines.dedup();
@@ -55,6 +60,26 @@ pub fn place(input: &Input, layout: &mut Layout) {
         let inside = |k: &usize| !is_end(k) && near(&[input.plan.points[*k]]) && holds(&input.plan.points[*k]);
         face.points = points.iter().copied().filter(inside).collect();
     }
+    layout.faces = faces;
+}
+
+/// A stretch of the border of a face, inside a ball.
+struct Rim {
+    stretch: usize,
+    center: DVec3,
+    radius: f64,
+}
+
+impl Rim {
+    fn is_near(&self, layout: &Layout, p: DVec3, near: f64) -> bool {
+        self.center.distance(p) <= self.radius + near && layout.distance(self.stretch, p) <= near
+    }
+}
+
+/// The stretches round a face; no point of one is farther from its middle than half its length.
+fn rim(layout: &Layout, around: &BTreeSet<usize>) -> Vec<Rim> {
+    let of = |k: &usize| Rim { stretch: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
+    around.iter().map(of).collect()
 }
 
 /// Whether a point lies on a patch.
