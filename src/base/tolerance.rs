@@ -49,6 +49,9 @@ pub const POLE_REACH: f64 = 1e-6;
 pub const POLE_STEP: f64 = 1e-3;
 /// |U_u × U_v| below this share of the largest |U_u|·|U_v| is singular.
 pub const SINGULAR: f64 = 1e-9;
+/// Places on a surface nearer than so many tolerances are taken as one where curves divide it: two curves that meet there are each
+/// within the tolerance of the place, and of the surface.
+pub const TOLD_APART: f64 = 4.0;
 /// A free end that misses a curve by at most this many tolerances gets a warning.
 pub const NEAR_MISS: f64 = 10.0;
 /// Borders of imported faces are glued over this many times the widest gap inside the borders of one face (math notes §14.2).

@@ -177,6 +177,7 @@ codes! {
     later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
     later "E718", "trim-folded", "a trimmed face folds over";
     now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements are wide";
+    now "E721", "cuts-too-near", "curves that divide a surface are too near to each other";
     now "W724", "sharp-elements", "a mesh has elements with sharp angles";
     now "W728", "empty-selection", "a selection is empty";
     now "W729", "holds-of-nothing", "a check holds of nothing";

@@ -18,11 +18,11 @@ use super::faces::{Frame, Prepared, element_ranges};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use super::plan::{Elements, Method};
-use crate::base::fault::{Close, Fault, MeshFault};
+use crate::base::fault::{Close, CutFault, Fault, MeshFault};
 use crate::base::job;
 use crate::base::par;
 use crate::base::text::real;
-use crate::base::tolerance::WHOLE_NUMBER;
+use crate::base::tolerance::{TOLD_APART, WHOLE_NUMBER};
 use crate::surface::{Domain, Surface};
 
 /// The elements of one face, and what is known of it.
@@ -398,6 +398,9 @@ pub(super) fn fault(
         let close = if defect.node().is_some_and(is_pole) { Close::Tip } else { Close::Seam };
         return MeshFault::ClosesTooNear { surface, method, at, close }.into();
     }
+    if let Some(fault) = crowded(input, (layout, nodes, face), defect) {
+        return fault;
+    }
     MeshFault::Unsound {
         mesh: (input.plan.origin, input.plan.name.clone()),
         surface,
@@ -407,6 +410,23 @@ pub(super) fn fault(
         at,
     }
     .into()
+}
+
+/// E721 where the edge of a line inside a face is in no element, since another line or border runs beside it within what is told apart.
+fn crowded(input: &Input, (layout, nodes, face): (&Layout, &Nodes, &Face), defect: Defect) -> Option<Fault> {
+    let Defect::Edge([a, b], ..) = defect else { return None };
+    let is_edge = |w: &[u32]| w == [a, b] || w == [b, a];
+    let place = |line: &usize| {
+        let k = nodes.of_stretch(layout, *line, false).windows(2).position(is_edge)?;
+        let at = nodes.fractions(*line, false);
+        Some((*line, layout.point(*line, 0.5 * (at[k] + at[k + 1]))))
+    };
+    let (line, at) = face.lines.iter().find_map(place)?;
+    let near = TOLD_APART * input.tolerance.point;
+    let others = face.stretches().filter(|other| *other != line).map(|other| layout.distance(other, at));
+    let apart = others.min_by(f64::total_cmp).filter(|apart| *apart <= near)?;
+    let surface = input.model.surfaces[face.surface.index()].surface.origin();
+    Some(CutFault::CutsTooNear { surface, cuts: [surface; 2], at, apart, tolerance: input.tolerance.point }.into())
 }
 
 /// The word of a method that makes faces freely.

@@ -11,16 +11,22 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Domain, Surface};
 use super::faces::{Edge, Half, followers, loops};
+use super::pull::Course;
 use super::strands::Piece;
 use super::trim::shifts;
 use crate::base::fault::{CutFault, Fault, Result};
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{TOLD_APART, Tolerance};
+use crate::network::Chain;
 
 /// The loops of a face, each half edge with the turns by which it is moved in (u, v).
 pub(super) type Face = Vec<Vec<(Half, DVec2)>>;
 
 /// Ends of twins are no farther from each other than this, in (u, v) after whole turns.
 const NEAR: f64 = 0.1;
+
+/// Places along a piece at which others are looked for beside it, and how many times as far from its ends.
+const LOOKS: usize = 16;
+const BESIDE: f64 = 4.0;
 
 /// The cells between pieces.
 pub(super) struct Cells<'a> {
@@ -38,16 +44,20 @@ pub(super) struct Cells<'a> {
     twins: BTreeMap<usize, (usize, DVec2)>,
     /// Smallest step in (u, v) that counts.
     step: f64,
+    /// The model's tolerance.
+    point: f64,
 }
 
 impl<'a> Cells<'a> {
-    /// Fails where the pieces bound no cells that make up the surface, which is a bug.
+    /// Fails where the pieces bound no cells that make up the surface: E721 where they are too near to each other for that, else it is
+    /// a bug.
     pub fn new(base: &'a Surface, pieces: &'a [Piece], edges: &[Edge], tolerance: &Tolerance) -> Result<Self> {
         let next = followers(edges);
         let rows = loops(&next);
         let (areas, cells) = (Vec::new(), Vec::new());
         let step = tolerance.parameter;
-        let mut made = Self { base, pieces, next, rows, areas, cells, left: BTreeMap::new(), twins: BTreeMap::new(), step };
+        let mut made =
+            Self { base, pieces, next, rows, areas, cells, left: BTreeMap::new(), twins: BTreeMap::new(), step, point: tolerance.point };
         made.areas = made.rows.iter().map(|row| made.area(row)).collect();
         made.bound(edges)?;
         made.pair(tolerance)?;
@@ -59,7 +69,7 @@ impl<'a> Cells<'a> {
         let beyond = |h: &Half| h.1 && self.pieces[h.0].rim;
         let outside: Vec<bool> = self.rows.iter().map(|row| row.iter().any(beyond)).collect();
         if let Some(r) = (0..self.rows.len()).find(|r| outside[*r] && !self.rows[*r].iter().all(beyond)) {
-            return Err(self.fault("a part runs over the border", self.rows[r][0]));
+            return Err(self.crowded(&self.rows[r]).unwrap_or_else(|| self.fault("a part runs over the border", self.rows[r][0])));
         }
         let outer: Vec<usize> = (0..self.rows.len()).filter(|r| !outside[*r] && self.areas[*r] > self.step * self.step).collect();
         let mut cells: BTreeMap<usize, Vec<usize>> = outer.iter().map(|r| (*r, vec![*r])).collect();
@@ -71,7 +81,9 @@ impl<'a> Cells<'a> {
             match around.min_by(|a, b| self.areas[**a].total_cmp(&self.areas[**b])) {
                 Some(o) => cells.entry(*o).or_default().push(r),
                 None if self.base.domain() == Domain::Unbounded => {}
-                None => return Err(self.fault("a loop lies in no part", self.rows[r][0])),
+                None => {
+                    return Err(self.crowded(&self.rows[r]).unwrap_or_else(|| self.fault("a loop lies in no part", self.rows[r][0])));
+                }
             }
         }
         self.cells = cells.into_values().collect();
@@ -83,7 +95,7 @@ impl<'a> Cells<'a> {
 
     /// Finds the twins of seams.
     fn pair(&mut self, tolerance: &Tolerance) -> Result<()> {
-        let (reach, (closed_u, closed_v)) = (4.0 * tolerance.point, self.base.closed());
+        let (reach, (closed_u, closed_v)) = (TOLD_APART * tolerance.point, self.base.closed());
         let seams: Vec<usize> = (0..self.pieces.len()).filter(|k| self.pieces[*k].seam).collect();
         let turn = |x: f64, closed: bool| if closed { x.round() } else { 0.0 };
         let twin = |a: &Piece, k: usize| -> Option<(f64, usize, DVec2)> {
@@ -110,6 +122,46 @@ impl<'a> Cells<'a> {
     fn fault(&self, what: &'static str, half: Half) -> Fault {
         let at: DVec3 = self.pieces[half.0].p.1;
         CutFault::NotDivided { surface: self.base.origin(), what, at }.into()
+    }
+
+    /// E721 where a piece of a loop that bounds no cell is as short as vertices are taken as one, or runs that near beside another piece.
+    fn crowded(&self, row: &[Half]) -> Option<Fault> {
+        let near = TOLD_APART * self.point;
+        let chain = |k: usize| self.pieces[k].own_chain();
+        let fault = |k: usize, other: usize, at: DVec3, apart: f64| {
+            let cut = |k: usize| chain(k).map_or(self.base.origin(), Chain::origin);
+            CutFault::CutsTooNear { surface: self.base.origin(), cuts: [cut(k), cut(other)], at, apart, tolerance: self.point }
+        };
+        let length = |k: &usize| {
+            let (a, middle, b) = self.pieces[*k].p;
+            a.distance(middle) + middle.distance(b)
+        };
+        let at_corner = |k: &usize| {
+            let corner = |p: DVec3| row.iter().map(|h| self.pieces[h.0].p).any(|own| own.0.distance(p).min(own.2.distance(p)) <= near);
+            corner(self.pieces[*k].p.0) || corner(self.pieces[*k].p.2)
+        };
+        let mut short = (0..self.pieces.len()).filter(|k| chain(*k).is_some() && length(k) <= near && at_corner(k));
+        if let Some(k) = short.next() {
+            return Some(fault(k, k, self.pieces[k].p.1, length(&k)).into());
+        }
+        let mut least: Option<(f64, CutFault)> = None;
+        for k in row.iter().map(|h| h.0) {
+            let Some(own) = chain(k) else { continue };
+            let piece = &self.pieces[k];
+            let Course::Pull(pull) = &piece.course else { continue };
+            let places = (1..LOOKS).map(|n| pull.fraction(n as f64 / LOOKS as f64)).map(|f| (own.point(f), pull.guess(f)));
+            // Where pieces part they are near to each other in any case.
+            for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > BESIDE * near) {
+                let passes = |course: &Course| course.places().windows(2).any(|w| Course::Line(w[0].into(), w[1].into()).touches(uv, NEAR));
+                for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].course)) {
+                    let apart = chain(other).map_or(f64::INFINITY, |chain| chain.closest(at).2);
+                    if apart <= near && least.as_ref().is_none_or(|least| apart < least.0) {
+                        least = Some((apart, fault(k, other, at, apart)));
+                    }
+                }
+            }
+        }
+        least.map(|least| least.1.into())
     }
 
     fn area(&self, row: &[Half]) -> f64 {

@@ -13,8 +13,9 @@ use super::pull::{Course, is_pole};
 use super::strands::{Piece, Strand, pieces, strands};
 use super::trim::{Walk, assembled};
 use crate::base::fault::{CutFault, Result};
+use crate::base::job;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::base::tolerance::{NUDGE, TOLD_APART, Tolerance};
 use crate::network::Chain;
 
 /// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
@@ -100,18 +101,7 @@ type Places = Vec<(DVec2, DVec3)>;
 
 /// Vertices found by place, edges with their directions.
 fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Places) {
-    let mut places: Places = Vec::new();
-    let mut vertex = |uv: DVec2, p: DVec3| {
-        let same = |(other, q): &(DVec2, DVec3)| {
-            let near = if is_pole(base, uv) { NEAR.0 } else { NEAR.1 };
-            q.distance(p) <= 4.0 * tolerance.point && (*other - uv).abs().max_element() <= near
-        };
-        places.iter().position(same).unwrap_or_else(|| {
-            places.push((uv, p));
-            places.len() - 1
-        })
-    };
-    let ends: Vec<(usize, usize)> = all.iter().map(|piece| (vertex(piece.uv.0, piece.p.0), vertex(piece.uv.1, piece.p.2))).collect();
+    let (ends, places) = vertices(base, all, tolerance);
     // Curves that touch leave a vertex in one direction: at one distance from it they have parted, at one share of each perhaps not.
     let length = |piece: &Piece| match (&piece.course, piece.own_chain()) {
         (Course::Pull(pull), Some(chain)) => chain.length() * (pull.fraction(1.0) - pull.fraction(0.0)).abs(),
@@ -146,6 +136,43 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
     (edges, places)
 }
 
+/// The vertices at the ends of pieces, and their places: ends that are near to each other are one vertex, the nearest ones first,
+/// but never the two ends of a piece that are apart.
+fn vertices(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<(usize, usize)>, Places) {
+    let ends: Places = all.iter().flat_map(|piece| [(piece.uv.0, piece.p.0), (piece.uv.1, piece.p.2)]).collect();
+    let apart: Vec<bool> = all.iter().map(|piece| piece.p.0.distance(piece.p.2) > APART * tolerance.point).collect();
+    let near: Vec<f64> = ends.iter().map(|(uv, _)| if is_pole(base, *uv) { NEAR.0 } else { NEAR.1 }).collect();
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (b, (uv, p)) in job::looking(ends.iter().enumerate()) {
+        for (a, (st, q)) in ends[..b].iter().enumerate() {
+            let off = p.distance(*q);
+            if off <= TOLD_APART * tolerance.point && (*uv - *st).abs().max_element() <= near[b] {
+                pairs.push((off, a, b));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut group: Vec<usize> = (0..ends.len()).collect();
+    let mut members: Vec<Vec<usize>> = (0..ends.len()).map(|k| vec![k]).collect();
+    for (_, a, b) in pairs {
+        let (a, b) = (group[a].min(group[b]), group[a].max(group[b]));
+        // Ends 2 k and 2 k + 1 are those of piece k.
+        if a == b || members[b].iter().any(|end| apart[end / 2] && group[end ^ 1] == a) {
+            continue;
+        }
+        let moved = std::mem::take(&mut members[b]);
+        moved.iter().for_each(|end| group[*end] = a);
+        members[a].extend(moved);
+    }
+    let firsts: Vec<usize> = (0..ends.len()).filter(|k| group[*k] == *k).collect();
+    let vertex = |end: usize| firsts.partition_point(|first| *first < group[end]);
+    let of_pieces = (0..all.len()).map(|k| (vertex(2 * k), vertex(2 * k + 1))).collect();
+    (of_pieces, firsts.iter().map(|k| ends[*k]).collect())
+}
+
+/// Ends of one piece farther from each other than so many tolerances are two vertices.
+const APART: f64 = 2.0;
+
 /// Which vertices are one point of the surface, across its seams and at its poles: the first of them for each.
 fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
     let (closed_u, closed_v) = base.closed();
@@ -154,7 +181,7 @@ fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
     let one = |a: usize, b: usize| {
         let ((uv, p), (st, q)) = (places[a], places[b]);
         let turned = off(uv.x - st.x, closed_u).max(off(uv.y - st.y, closed_v)) <= NEAR.1;
-        p.distance(q) <= 4.0 * tolerance.point && (turned || poles[a] && poles[b])
+        p.distance(q) <= TOLD_APART * tolerance.point && (turned || poles[a] && poles[b])
     };
     (0..places.len()).map(|k| (0..k).find(|j| one(*j, k)).unwrap_or(k)).collect()
 }

@@ -71,6 +71,19 @@ pub enum CutFault {
         /// Where.
         at: DVec3,
     },
+    /// E721 `cuts-too-near`: what divides a surface comes so near to itself that parts between are not told apart.
+    CutsTooNear {
+        /// The surface.
+        surface: Origin,
+        /// The curves that do; the surface stands for its borders and for what is not known.
+        cuts: [Origin; 2],
+        /// Where.
+        at: DVec3,
+        /// How far they are apart.
+        apart: f64,
+        /// The model's tolerance.
+        tolerance: f64,
+    },
     /// E660 `keep-off`: the point that says which part to keep is not on the surface, or on a cut.
     KeepOff {
         /// The surface.
@@ -130,6 +143,20 @@ impl Describe for CutFault {
                 Report::new("E999", format!("a bug in loft: {name} is not divided right, for {what} at {}", say.point(*at)))
                     .at(*surface, "this surface")
                     .help("please report it with this script; curves moved by a little may do meanwhile")
+            }
+            Self::CutsTooNear { surface, cuts: [one, other], at, apart, tolerance } => {
+                let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
+                let message = format!("curves that divide {name} are only {} apart at {at}: no part fits between", say.length(*apart));
+                let mut report = Report::new("E721", message).at(*surface, "this surface");
+                if one != surface {
+                    report = report.at(*one, "this curve");
+                }
+                if other != one && other != surface {
+                    report = report.at(*other, "and this one");
+                }
+                report
+                    .help("move one of them away or onto the other, or give a smaller `tolerance`")
+                    .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
             }
             Self::CutOpen { cutter, surface, ends, outside } => {
                 let places = say.points(ends);
