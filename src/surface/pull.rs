@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::core::{Jet2, Surface};
+use super::core::{Domain, Jet2, Side, Surface};
 use super::foot::{Footing, step};
 use super::quick::Quick;
 use crate::base::tolerance::{EPSILON, NUDGE, POLE_STEP, SINGULAR};
@@ -239,12 +239,26 @@ impl Pull {
     }
 }
 
-/// Whether the surface stands still at a place in one direction.
+/// Whether the surface stands still at a place in one direction, or the place lies on a side that is a point within the tolerance.
 pub(super) fn is_pole(surface: &Surface, uv: DVec2) -> bool {
     let uv = surface.hold(uv);
     let jet = surface.jet(uv.x, uv.y);
     let (du, dv) = (jet.du.length(), jet.dv.length());
-    du.min(dv) <= SINGULAR * du.max(dv)
+    du.min(dv) <= SINGULAR * du.max(dv) || on_pole_side(surface, uv)
+}
+
+/// Whether a place lies on a border that is one point.
+fn on_pole_side(surface: &Surface, uv: DVec2) -> bool {
+    let parts = surface.parts();
+    let is_pole = |k: usize| parts.borders.get(k).is_some_and(|border| matches!(border.side, Side::Pole(_)));
+    match &parts.trim {
+        Some(trim) => trim.courses.iter().enumerate().any(|(k, course)| is_pole(k) && course.touches(uv, NUDGE)),
+        None if parts.domain == Domain::Square => {
+            let off = [uv.y, 1.0 - uv.x, 1.0 - uv.y, uv.x];
+            off.iter().enumerate().any(|(k, off)| is_pole(k) && off.abs() <= NUDGE)
+        }
+        None => false,
+    }
 }
 
 /// Goes on to a fraction, in smaller steps where the way bends or the foot leaps.
