@@ -48,7 +48,11 @@ pub struct Input<'a> {
 /// The surface through all sections and guides; u runs along the main guide, v along the sections. With notes and warnings.
 ///
 /// One section on one guide is exact. There must be at least one section and one guide. Fails with E631–E637 and E640.
+/// E401 for one that is no longer than the tolerance.
 pub fn sweep(input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    if let Some(short) = input.guides.iter().chain(input.sections).find(|chain| chain.length() <= tolerance.point) {
+        return Err(CurveFault::ZeroLength { of: short.origin(), length: short.length(), tolerance: tolerance.point }.into());
+    }
     if let ([section], [guide]) = (input.sections, input.guides)
         && let Some(done) = single(section, guide, input, tolerance)?
     {

@@ -17,7 +17,11 @@ impl Marks {
     /// Breaks of any section are breaks of all, at the same share of the run between two guides.
     pub fn new(sections: &[Section], order: &[usize], closed: bool, tolerance: &Tolerance) -> Result<Self> {
         let near = |s: &Section| tolerance.point / s.chain.length();
-        let ends = |s: &Section| (s.anchors[order[0]] > near(s), s.anchors[order[order.len() - 1]] < 1.0 - near(s));
+        let ends = |s: &Section| {
+            let head = s.anchors[order[0]] > near(s);
+            // A section no longer than two tolerances begins on its only guide.
+            (head, s.anchors[order[order.len() - 1]] < 1.0 - near(s) || order.len() == 1 && !head)
+        };
         let (head, tail) = ends(&sections[0]);
         if sections.iter().any(|s| ends(s) != (head, tail)) {
             let found = "some that end on the outer guide and some that go on beyond it".to_owned();

@@ -153,11 +153,15 @@ fn directions(guides: &mut [Guide], sections: &mut [Section], law: Law, closed: 
     Ok(())
 }
 
+/// Stations farther from each other than this share of the main guide are two.
+const QUARTER: f64 = 0.25;
+
 /// Fractions of the main guide for all stations: sections, breaks of all guides, ends, and more where it turns.
 fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, closed: bool, tolerance: &Tolerance) -> Vec<f64> {
     let divided = Divided { guides, sections };
     let mut ws: Vec<f64> = sections.iter().map(|s| s.on_guides[0]).collect();
-    let near = NUDGE.max(tolerance.point / main.chain.length());
+    // A guide is longer than the tolerance; of one that is hardly so one end is a station, whatever its section.
+    let near = NUDGE.max(tolerance.point / main.chain.length()).min(QUARTER);
     let mut offer = |w: f64| {
         let taken = ws.iter().any(|x| (x - w).abs() <= near);
         if !taken && (0.0..=1.0).contains(&w) && !(closed && 1.0 - w <= near) {
