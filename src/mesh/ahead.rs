@@ -7,6 +7,7 @@ use super::faces;
 use super::free::face::{self as free_face, Made};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
+use super::pace::Pace;
 use super::plan::Elements;
 use super::relations::Relations;
 use super::rows;
@@ -29,6 +30,23 @@ pub fn refuse_steps(input: &Input, layout: &Layout, sizing: &Sizing) -> Result<(
         Some(k) => Err(too_many_steps(input, of_stretch(input, layout, sizing, k))),
         None => Ok(()),
     }
+}
+
+/// E217 where the bends of faces alone ask for more steps along borders than a mesh may have, before those steps are carried on
+/// to neighbours: `paces` and the size of each stretch. A free face has an element at each step of its border, but few where
+/// it is sparing.
+pub fn refuse_bends(input: &Input, layout: &Layout, paces: &[Pace], size: &[f64]) -> Result<()> {
+    let plan = input.plan;
+    let Some(limit) = plan.chord_error.or(plan.angle_error) else { return Ok(()) };
+    let near = input.tolerance.point;
+    let wish = |k: usize| paces[k].wish((layout.length(k) - near).max(0.0), size[k], u32::MAX);
+    let bent = |k: &usize| paces[*k].least() < size[*k];
+    if (0..paces.len()).any(|k| bent(&k) && wish(k) > MESH_STEPS) {
+        return Err(too_many_steps(input, limit.1));
+    }
+    let free = layout.faces.iter().filter(|face| face.free && !face.method.is_sparing());
+    let steps: u64 = free.flat_map(|face| face.sides.iter().flat_map(|s| s.stretches())).filter(bent).map(|k| u64::from(wish(k))).sum();
+    if steps > plan.most_elements { Err(faces::too_many(plan, limit.1, Some(steps))) } else { Ok(()) }
 }
 
 fn too_many_steps(input: &Input, of: Origin) -> Fault {

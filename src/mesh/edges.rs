@@ -85,7 +85,9 @@ pub fn least_steps(layout: &Layout, stretch: usize, divided: &dyn Fn(u32) -> Vec
         let Some(step) = line.worst(&divided(n), &worst)? else { break };
         worst.push(step.at);
         // Deviation falls with the square of the step, turns with the step, once steps are shorter than bends.
-        let guess = f64::from(n) * step.load.steps().min(TWICE);
+        // Where a bend is sharper than any step they fall more slowly: many steps are doubled, and the least is sought between.
+        let more = if n > ONE_BY_ONE { TWICE } else { step.load.steps().min(TWICE) };
+        let guess = f64::from(n) * more;
         (low, n) = (n, (guess.min(f64::from(cap)) as u32).max(n + 1));
     }
     if n > ONE_BY_ONE {
@@ -131,27 +133,42 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The least count above `low`, which does not do, up to `high`, which does, as if all between did from one on.
-    fn between(&self, divided: &dyn Fn(u32) -> Vec<f64>, (mut low, mut high): (u32, u32), worst: &mut Vec<f64>) -> Result<u32> {
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            match self.broken(&divided(middle), worst)? {
-                Some(at) => {
-                    worst.push(at);
-                    low = middle;
+    /// The least count above `low`, which does not do, up to `high`, which does, as if all between did from one on: the least
+    /// that does where others were broken, looked at whole.
+    fn between(&self, divided: &dyn Fn(u32) -> Vec<f64>, (mut low, high): (u32, u32), worst: &mut Vec<f64>) -> Result<u32> {
+        loop {
+            let mut least = high;
+            while least - low > 1 {
+                let middle = low + (least - low) / 2;
+                if self.broken_at(&divided(middle), worst)?.is_some() { low = middle } else { least = middle }
+            }
+            if least == high {
+                return Ok(high);
+            }
+            match self.worst(&divided(least), worst)? {
+                Some(step) => {
+                    worst.push(step.at);
+                    low = least;
                 }
-                None => high = middle,
+                None => return Ok(least),
             }
         }
-        Ok(high)
+    }
+
+    /// The first of some places whose step breaks a limit, the last of them looked at first.
+    fn broken_at(&self, fractions: &[f64], places: &[f64]) -> Result<Option<f64>> {
+        for place in places.iter().rev() {
+            if self.load(fractions, Self::at(fractions, *place))?.is_some() {
+                return Ok(Some(*place));
+            }
+        }
+        Ok(None)
     }
 
     /// The place of a step that breaks a limit, looked for first where others did.
     fn broken(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<f64>> {
-        for place in worst.iter().rev() {
-            if self.load(fractions, Self::at(fractions, *place))?.is_some() {
-                return Ok(Some(*place));
-            }
+        if let Some(place) = self.broken_at(fractions, worst)? {
+            return Ok(Some(place));
         }
         for k in 0..fractions.len() - 1 {
             if self.load(fractions, k)?.is_some() {

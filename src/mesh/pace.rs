@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
 
+use super::ahead;
 use super::build::Input;
 use super::counts::steps;
 use super::edges::Limits;
@@ -17,6 +18,7 @@ use super::narrow::Narrow;
 use super::plan::Method;
 use super::sources::{Body, STEEP, Source, Sources};
 use super::wanted::Wanted;
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::base::{math, par};
@@ -180,11 +182,12 @@ pub struct Ask<'a> {
 
 /// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
 /// Stretches of mapped faces follow the bends of free ones beside them and nothing else: their rows are even. The second
-/// list has the paces that those would have to follow, were they not.
-pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> (Vec<Option<Pace>>, Vec<Option<Pace>>) {
+/// list has the paces that those would have to follow, were they not. E217 where bends alone ask for too much.
+pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Result<(Vec<Option<Pace>>, Vec<Option<Pace>>)> {
     let n = layout.pieces.atoms.len();
     let mut paces: Vec<Pace> = ask.size.iter().map(|s| Pace::even(*s)).collect();
     bends(input, layout, ask, &mut paces);
+    ahead::refuse_bends(input, layout, &paces, ask.size)?;
     let bent = paces.clone();
     let mut even = vec![false; n];
     layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|k| even[k] = true);
@@ -211,7 +214,7 @@ pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> (Vec<Option<Pace>>, V
             Pace { why, ..pace.clone() }
         })
     });
-    (paces, strained)
+    Ok((paces, strained))
 }
 
 /// Lowers paces to what the bends of free faces ask for.

@@ -166,10 +166,12 @@ impl Sizing {
         let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
         let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
         let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow, rows: &rows };
-        (sizing.paces, sizing.strained) = pace::along(input, layout, &ask);
+        (sizing.paces, sizing.strained) = pace::along(input, layout, &ask)?;
         drop(rows);
         sizing.mark_refined(input, layout, &sizes);
         let sparing = sparing_borders(input, layout, &limits);
+        // No element has more than four steps of borders.
+        let most = STEPS.min(u32::try_from(input.plan.most_elements).unwrap_or(STEPS).saturating_mul(4).saturating_add(1));
         let least = par::try_map(n, |k| {
             let bias = bias_of(k);
             let divided = |count: u32| sizing.paces[k].as_ref().map_or_else(|| steps(count, bias), |pace| pace.steps(count));
@@ -177,11 +179,11 @@ impl Sizing {
             let atom = &layout.pieces.atoms[k];
             let key = |_: &Known| {
                 let track = &layout.parts[atom.track].track;
-                Digester::new("steps").with(&(track, atom.s, (bias, &limits))).finish()
+                Digester::new("steps").with(&(track, atom.s, (bias, &limits, u64::from(most)))).finish()
             };
             // Without a limit there is nothing to find out, and a failure is found out again; a pace is not in the key.
             let known = known.filter(|_| (limits.chord.is_some() || limits.angle.is_some()) && sizing.paces[k].is_none());
-            recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, STEPS)).map(|least| least.max(shape[k]))
+            recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, most)).map(|least| least.max(shape[k]))
         })?;
         for k in 0..n {
             let (count, size, bias) = (count_of(k), size_of(k), bias_of(k));

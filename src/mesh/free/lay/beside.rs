@@ -16,6 +16,9 @@ use crate::mesh::free::web::Web;
 /// Longest side of a triangle beside a border over the longest side of a cell: its diagonal, and a little.
 const STRETCH: f64 = 1.5;
 
+/// Share of the chord error up to which cells are cut beside what nothing bounds.
+const FINE: f64 = 0.25;
+
 /// Share of the longest side of a triangle without area by which the surface may be off it.
 const ROUND: f64 = 0.25;
 
@@ -64,12 +67,22 @@ impl Work<'_> {
             if self.cells.all()[leaf as usize].class == Class::Exterior {
                 continue;
             }
+            if !load.worst().is_finite() && self.is_hopeless(leaf) {
+                return Vec::new();
+            }
             let bounds = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
             if let Some(axis) = self.towards(leaf, bounds) {
                 bad.entry(leaf).or_insert((axis, 2));
             }
         }
         bad.into_iter().collect()
+    }
+
+    /// Whether smaller cells help no more where nothing bounds the surface: a cell reaches no farther than a part of the chord error
+    /// already, and the steps of a border beside it, which are given, stand on both sides of a fold.
+    fn is_hopeless(&mut self, leaf: u32) -> bool {
+        let (low, high) = (self.cells.all()[leaf as usize].low, self.cells.all()[leaf as usize].high);
+        self.ask.limits.chord.is_some_and(|limit| self.lengths(low, high).max_element() <= FINE * limit)
     }
 
     /// Whether the corners of a triangle lie on a straight line, within the tolerance.

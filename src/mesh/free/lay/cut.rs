@@ -131,7 +131,7 @@ impl Work<'_> {
     }
 
     /// Lengths of a box along u and v.
-    fn lengths(&mut self, low: DVec2, high: DVec2) -> DVec2 {
+    pub(super) fn lengths(&mut self, low: DVec2, high: DVec2) -> DVec2 {
         let share = |k: usize| k as f64 / PIECES as f64;
         let mut longest = DVec2::ZERO;
         for axis in 0..2 {
