@@ -179,6 +179,7 @@ codes! {
     now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements are wide";
     now "E721", "cuts-too-near", "curves that divide a surface are too near to each other";
     now "W724", "sharp-elements", "a mesh has elements with sharp angles";
+    now "W725", "too-small-for-mesh", "something is too small for a mesh";
     now "W728", "empty-selection", "a selection is empty";
     now "W729", "holds-of-nothing", "a check holds of nothing";
     now "E801", "cannot-read", "a file cannot be read";

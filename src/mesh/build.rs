@@ -121,6 +121,7 @@ impl Outline {
         if let Some((first, others)) = parts.split_first_mut() {
             others.iter().for_each(|part| first.sizing.join(&part.sizing));
             remarks = first.sizing.remarks();
+            remarks.extend(first.layout.lost.iter().chain(others.iter().flat_map(|part| &part.layout.lost)).copied().map(Remark::Lost));
             // Faces that were asked not to share nodes touch as they were asked to.
             if input.plan.conforming {
                 let touches = contacts::look(input, &first.layout, &first.nodes, &first.mesh);

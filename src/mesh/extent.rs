@@ -2,7 +2,8 @@
 //!
 //! Area and first moments of the elements in (u, v) are those of the polygon through the border nodes, which is known from the
 //! loops of the surface alone: a hole that is lost or stands elsewhere, an element that is missing or there twice changes one
-//! of them. What the places of nodes on a loop may be off by is bounded by how the loop bends between the places that are known of it.
+//! of them. Beside a pole, and where two places of one node are joined by an edge, part of the plane is a point or a line in space and
+//! has no element; it is found from the edges that elements leave free there. What the places of nodes on a loop may be off by is bounded by how the loop bends between the places that are known of it.
 //! With every node on the surface at its place the area in space then differs from the surface's by chords alone.
 
 use glam::DVec2;

@@ -140,10 +140,10 @@ impl Teller<'_> {
 
     fn layout(&self, layout: &Layout, to: &mut Digester) {
         // Which edges its tracks are is told by the faces.
-        let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets } = layout;
+        let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets, lost } = layout;
         faces.len().tell(to);
         faces.iter().for_each(|face| self.face(face, to));
-        (parts, pieces, (curves, points, (creases, meets))).tell(to);
+        (parts, pieces, (curves, points, (creases, meets, lost))).tell(to);
         of_link.len().tell(to);
         for (link, uses) in of_link {
             let network = self.input.network;

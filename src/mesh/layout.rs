@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::build::Input;
+use super::lost::{self, Lost};
 use super::plan::{Elements, Method, Target};
 use super::uneven::Uneven;
 use crate::model::atoms::{Atoms, Part, Use, atoms};
@@ -122,6 +123,8 @@ pub struct Layout {
     pub meets: Vec<usize>,
     /// Stretches of kink lines inside trimmed faces, with the place of the face.
     pub creases: Vec<(usize, Vec<usize>)>,
+    /// What is not in the mesh because it became a point or a line.
+    pub lost: Vec<Lost>,
 }
 
 impl Layout {
@@ -178,11 +181,12 @@ impl Layout {
         let stretches = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.atom).collect();
         let mut creases: Vec<(usize, Vec<usize>)> = of_face.iter().enumerate().map(|(k, n)| (*n, stretches(creased + k))).collect();
         // Patches that are slivers have no face.
-        let mut face_of: Vec<Option<usize>> = Vec::with_capacity(patches.len());
+        let (mut face_of, mut slivers): (Vec<Option<usize>>, Vec<PatchId>) = (Vec::with_capacity(patches.len()), Vec::new());
         for (patch, flipped) in patches {
             let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
             if input.model.is_sliver(*patch, (&layout.edges, &layout.pieces), reach(input, std::iter::once(*patch))) {
                 face_of.push(None);
+                slivers.push(*patch);
                 continue;
             }
             face_of.push(Some(layout.faces.len()));
@@ -198,6 +202,7 @@ impl Layout {
             };
             layout.curves = input.plan.curves.iter().enumerate().map(along).collect();
         }
+        layout.lost = lost::look(input, &layout, &slivers);
         layout
     }
 

@@ -30,6 +30,7 @@ mod key;
 mod layout;
 mod limits;
 mod lines;
+pub mod lost;
 pub mod mapped;
 mod measured;
 mod moved;

@@ -113,6 +113,7 @@ impl Put for Remark {
             Self::Unused { rule, why } => (0u8, (rule, why)).put(to),
             Self::Overridden { key, earlier, later } => (1u8, (key, (earlier, later))).put(to),
             Self::Touch(Touch { kind, surfaces, names, length, at }) => (2u8, (kind.word(), (*surfaces, (names, (*length, *at))))).put(to),
+            Self::Lost(lost) => (4u8, lost).put(to),
             Self::Sharp { angle, at, surface, faces, cure } => (3u8, ((angle, at), (surface, (faces, cure)))).put(to),
         }
     }
@@ -135,6 +136,7 @@ impl Plain for Remark {
                 faces: Plain::take(from)?,
                 cure: Plain::take(from)?,
             },
+            4 => Self::Lost(Plain::take(from)?),
             _ => return None,
         })
     }

@@ -12,6 +12,7 @@ use super::explain::Why;
 use super::faces::Prepared;
 use super::free::face::SPACING;
 use super::layout::{Face, Layout};
+use super::lost::Lost;
 use super::narrow::Narrow;
 use super::pace::{self, Ask, Pace};
 use super::plan::{Elements, Plan, Rule, Target};
@@ -516,6 +517,8 @@ pub enum Remark {
     },
     /// W667: two faces touch without sharing nodes.
     Touch(Touch),
+    /// W725: something that became a point or a line.
+    Lost(Lost),
     /// W724: sharp angles away from sharp corners.
     Sharp {
         /// The least, radians.
@@ -584,6 +587,7 @@ impl Remark {
                 let imprint = plan.imprint.is_some();
                 SurfaceFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
             }
+            Self::Lost(lost) => lost.fault(input),
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {
                 let key = KEYS.into_iter().find(|k| k == key).unwrap_or("a setting");

@@ -33,6 +33,22 @@ pub enum Close {
     Turn,
 }
 
+/// A part of a model that is too small for its mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LostPart {
+    /// A hole of a surface.
+    Hole {
+        /// Its curve.
+        hole: Origin,
+        /// The surface.
+        surface: Origin,
+    },
+    /// A curve.
+    Curve(Origin),
+    /// A surface with a face that is as good as a line.
+    Face(Origin),
+}
+
 /// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshFault {
@@ -176,6 +192,21 @@ pub enum MeshFault {
         earlier: Origin,
         /// The clause that holds.
         later: Origin,
+    },
+    /// W725: something of the model that became a point or a line of the mesh.
+    Lost {
+        /// The mesh.
+        of: Origin,
+        /// Its name.
+        name: String,
+        /// What is not there.
+        what: LostPart,
+        /// Its length, of a hole that round it, model units.
+        length: f64,
+        /// Where it is.
+        at: DVec3,
+        /// How many others there are.
+        more: usize,
     },
     /// W724: elements with sharp angles, away from sharp corners of their face.
     Sharp {
@@ -462,6 +493,7 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .note(format!("{place} away from sharp corners{more}"))
                 .help(help)
         }
+        F::Lost { of, name, what, length, at, more } => lost(say, (*of, name), *what, (*length, *at, *more)),
         F::BelowFloor { size, floor } => {
             Report::new("E707", format!("the size {} is below `min_size`, {}", say.length(size.0), say.length(floor.0)))
                 .at(size.1, "smaller than the floor")
@@ -667,9 +699,33 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::CountBelowLinks { .. }
         | F::RuleOverridden { .. }
         | F::Sharp { .. }
+        | F::Lost { .. }
         | F::BelowFloor { .. }
         | F::FloorKeeps { .. }
         | F::GapTooWide { .. }
         | F::NotReached { .. } => Report::new("E999", "a fault that another table has words for"),
     }
+}
+
+/// The report of a part that is too small for its mesh: its length, place, and how many others there are.
+fn lost(say: &dyn Say, (of, mesh): (Origin, &str), what: LostPart, (length, at, more): (f64, DVec3, usize)) -> Report {
+    let (part, as_what, left) = match what {
+        LostPart::Hole { hole, surface } => {
+            let of = say.quoted(surface, "its surface");
+            let hole = say.quoted(hole, "a hole");
+            (format!("{hole}, a hole of {of} only {} round,", say.length(length)), "point", "no hole there")
+        }
+        LostPart::Curve(curve) => {
+            (format!("{}, only {} long,", say.quoted(curve, "a curve"), say.length(length)), "point", "no line there")
+        }
+        LostPart::Face(surface) => (format!("a face of {}", say.quoted(surface, "a surface")), "line", "no element there"),
+    };
+    let report = Report::new("W725", format!("{part} became a {as_what} of `{mesh}` at {}", say.point(at)));
+    let report = match what {
+        LostPart::Hole { hole, surface } => report.at(hole, "is filled in the mesh").at(surface, "has it as a hole"),
+        LostPart::Curve(curve) => report.at(curve, "is no longer than what is one point"),
+        LostPart::Face(surface) => report.at(surface, "is no wider than what is one point"),
+    };
+    let report = if more > 0 { report.note(format!("so did {more} other{}", if more == 1 { "" } else { "s" })) } else { report };
+    report.at(of, format!("has {left}")).help("a smaller `tolerance`, or `snap` of its shell, or a model without it")
 }

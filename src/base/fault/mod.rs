@@ -29,7 +29,7 @@ pub use cut::CutFault;
 pub use edit::Edit;
 pub use files::{FileFault, Malformed};
 pub use loops::{LoopFault, LoopRole};
-pub use mesh::{Close, Cure, MeshFault};
+pub use mesh::{Close, Cure, LostPart, MeshFault};
 pub use nets::NetFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;
