@@ -206,8 +206,9 @@ impl Refusal<'_> {
         (self.base..self.end).contains(&at).then(|| self.tokens.kinds[at])
     }
 
-    /// The text from a token to before another.
+    /// The text from a token to before another, as far as the declaration goes.
     fn text(&self, from: usize, to: usize) -> &str {
+        let to = to.min(self.end);
         if from >= to {
             return "";
         }

@@ -93,7 +93,7 @@ impl Refusal<'_> {
         }
         let (last, before) = calls.split_last()?;
         let word = stem(&last.name);
-        let made = before.iter().rev().try_fold(shape(last)?, |made, call| around(made, call))?;
+        let made = before.iter().rev().try_fold(shape(last)?, around)?;
         // `circle(center: A, radius: 1m)` is ours already.
         let own = before.is_empty() && self.tokens.kinds[self.base].keyword().is_some() && is_declaration(self.text(self.base, self.end));
         (!own).then_some((made, word))
