@@ -62,6 +62,8 @@ pub struct Cells<'a> {
     cuts: [BTreeSet<Sorted>; 2],
     /// Values of u and of v that have to be cut.
     kinks: [Vec<f64>; 2],
+    /// Leaves that no border crosses.
+    whole: usize,
 }
 
 /// A number in its order.
@@ -110,7 +112,7 @@ impl<'a> Cells<'a> {
             borders.iter().flat_map(|b| values.iter().map(|x| (Sorted(*b), Sorted(x.1)))).collect()
         });
         let cuts = [0, 1].map(|axis| values[axis].iter().map(|x| Sorted(x.1)).collect());
-        let mut cells = Self { segments, loops: tree, cells: Vec::new(), near, values, ends, cuts, kinks };
+        let mut cells = Self { segments, loops: tree, cells: Vec::new(), near, values, ends, cuts, kinks, whole: 0 };
         let root = cells.cell((low, high), all, Why::Size);
         cells.cells.push(root);
         cells
@@ -212,7 +214,15 @@ impl<'a> Cells<'a> {
         let children = [self.cell((low, middle_high), segments.clone(), why), self.cell((middle_low, high), segments, why)];
         let first = self.cells.len() as u32;
         (self.cells[k as usize].child, self.cells[k as usize].cut) = (first, (axis, at));
+        let is_whole = |cell: &Cell| usize::from(cell.class == Class::Interior);
+        self.whole += children.iter().map(is_whole).sum::<usize>();
+        self.whole -= is_whole(&self.cells[k as usize]).min(self.whole);
         self.cells.extend(children);
+    }
+
+    /// Leaves that no border crosses; each becomes two triangles or more.
+    pub fn n_whole(&self) -> usize {
+        self.whole
     }
 
     /// The leaf at a place; on a cut the one before or after it, by direction.

@@ -38,7 +38,7 @@ impl Work<'_> {
     pub(super) fn settle(&mut self, mut open: Vec<u32>) -> Tried<()> {
         while let Some(k) = open.pop() {
             job::look();
-            if self.cells.all().len() > 8 * self.ask.most {
+            if self.cells.n_whole() > self.ask.most || self.cells.all().len() > 8 * self.ask.most {
                 return Err(Failure::Trouble(Trouble::Full));
             }
             if self.cells.all()[k as usize].class == Class::Exterior {
