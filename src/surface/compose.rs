@@ -86,14 +86,18 @@ fn over_net(net: &NurbsSurface, pieces: Vec<Bezier>) -> Option<Vec<Nurbs>> {
 /// A piece cut where u (or v) is a knot.
 fn cut(piece: Bezier, knot: f64, along_u: bool) -> Vec<Bezier> {
     let off = |b: &DVec4| if along_u { b.x - knot * b.w } else { b.y - knot * b.w };
-    let (mut cuts, mut open) = (Vec::new(), vec![(piece.clone(), 0)]);
+    let (mut cuts, mut open): (Vec<(f64, f64)>, _) = (Vec::new(), vec![(piece.clone(), 0)]);
     while let Some((part, halved)) = open.pop() {
         let (low, high) = part.poles.iter().map(off).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         if low > EPSILON || high < -EPSILON || (low >= -EPSILON && high <= EPSILON && halved == 0) {
             continue;
         }
         if halved == HALVINGS || high - low <= EPSILON {
-            cuts.push(0.5 * (part.t0 + part.t1));
+            // Neighbours that are both on the knot are one place: a curve that crosses it slowly is on it for a while.
+            match cuts.last_mut() {
+                Some(last) if part.t0 <= last.1 => last.1 = part.t1,
+                _ => cuts.push((part.t0, part.t1)),
+            }
             continue;
         }
         let (left, right) = part.halves();
@@ -102,7 +106,7 @@ fn cut(piece: Bezier, knot: f64, along_u: bool) -> Vec<Bezier> {
     let room = EPSILON * (piece.t1 - piece.t0).max(piece.t1.abs());
     let mut found = Vec::new();
     let mut rest = Nurbs::bezier(piece.t0, piece.t1, piece.poles.clone());
-    for at in cuts {
+    for at in cuts.iter().map(|c| 0.5 * (c.0 + c.1)) {
         let (a, b) = rest.domain();
         if at - a > room && b - at > room {
             found.extend(rest.part(a, at).beziers());
