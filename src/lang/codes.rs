@@ -161,6 +161,8 @@ codes! {
     now "E666", "imprint-overlap", "faces that are to be joined cover each other";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
     now "E672", "set-in-part", "a set would hold a part of a curve";
+    now "E673", "blend-too-large", "a ball is too large for the edge that it rounds";
+    now "E674", "blend-no-edge", "two surfaces have no edge that can be rounded";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";

@@ -68,6 +68,7 @@ pub enum SurfaceKind {
     Skin,
     Along,
     Sweep,
+    Blend,
 }
 
 impl SurfaceKind {
@@ -90,6 +91,7 @@ impl SurfaceKind {
             Self::Skin => "skin",
             Self::Along => "along",
             Self::Sweep => "sweep",
+            Self::Blend => "blend",
         }
     }
 }

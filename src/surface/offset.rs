@@ -59,7 +59,7 @@ pub fn offset(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tole
 }
 
 /// The normal of a surface that is a plane, trimmed or not, up to rounding.
-fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
+pub(super) fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     const ALONG: usize = 9;
     if surface.kind() == SurfaceKind::Plane || surface.is_flat() {
         // Away from the borders, where a triangle has its poles.
@@ -164,7 +164,7 @@ pub(super) fn beside(surface: &Surface, (u, v): ((f64, Lean), (f64, Lean)), dist
 }
 
 /// ∂u and ∂v of the unit normal; none where it is singular.
-fn slopes(jet: &Jet2) -> Option<(DVec3, DVec3)> {
+pub(super) fn slopes(jet: &Jet2) -> Option<(DVec3, DVec3)> {
     let normal = unit_normal(jet)?;
     let length = jet.du.cross(jet.dv).length();
     let across = |w: DVec3| (w - normal * normal.dot(w)) / length;

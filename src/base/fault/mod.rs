@@ -6,6 +6,7 @@
 //! Warnings and notes are faults as well: the letter of their code tells, and they travel in a `Vec<Fault>` beside
 //! the value.
 
+mod blends;
 mod curves;
 mod cut;
 mod edit;
@@ -24,6 +25,7 @@ use std::mem::discriminant;
 
 use glam::DVec3;
 
+pub use blends::{BlendFault, NoBlend};
 pub use curves::{CurveFault, KnotFault};
 pub use cut::CutFault;
 pub use edit::Edit;
@@ -61,6 +63,8 @@ pub enum Fault {
     Sweep(Box<SweepFault>),
     /// Family 6: nets of profiles and guides.
     Net(Box<NetFault>),
+    /// Family 6: roundings between surfaces.
+    Blend(Box<BlendFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -222,6 +226,7 @@ impl Describe for Fault {
             Self::Cut(f) => f.describe(say),
             Self::Sweep(f) => f.describe(say),
             Self::Net(f) => f.describe(say),
+            Self::Blend(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -249,6 +254,7 @@ impl Fault {
             (Self::Cut(a), Self::Cut(b)) => same(&**a, &**b),
             (Self::Sweep(a), Self::Sweep(b)) => same(&**a, &**b),
             (Self::Net(a), Self::Net(b)) => same(&**a, &**b),
+            (Self::Blend(a), Self::Blend(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -282,6 +288,7 @@ from_family!(
     Cut(CutFault),
     Sweep(SweepFault),
     Net(NetFault),
+    Blend(BlendFault),
     Mesh(MeshFault),
     File(FileFault)
 );

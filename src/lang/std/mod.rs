@@ -7,6 +7,7 @@ use super::cx::{Cx, Stop};
 use super::types::Ty;
 use super::value::Value;
 
+mod blends;
 mod choosing;
 mod curves;
 mod data;
@@ -106,6 +107,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     nets::BUILTINS,
     transforms::BUILTINS,
     topology::BUILTINS,
+    blends::BUILTINS,
     walls::BUILTINS,
     imprint::BUILTINS,
     joins::BUILTINS,

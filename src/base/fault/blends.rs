@@ -1,0 +1,139 @@
+//! Family 6: roundings between two surfaces.
+
+use glam::DVec3;
+
+use super::{Describe, Report, Say};
+use crate::base::origin::Origin;
+
+/// Why two surfaces have no edge that a ball can roll along. Points are in model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoBlend {
+    /// They meet in no curve.
+    Apart {
+        /// Where they touch, if they do.
+        touch: Option<DVec3>,
+    },
+    /// They meet in several curves.
+    Several {
+        /// The middle of each.
+        middles: Vec<DVec3>,
+    },
+    /// The curve has a corner.
+    Corner {
+        /// Where.
+        at: DVec3,
+    },
+    /// They are tangent to each other.
+    Tangent {
+        /// Where.
+        at: DVec3,
+    },
+    /// The curve, or the rounding, ends inside a surface.
+    EndsInside {
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        at: DVec3,
+    },
+    /// The rounding runs over a border.
+    Leaves {
+        /// The surface.
+        surface: Origin,
+        /// Where.
+        at: DVec3,
+    },
+    /// No radius fits.
+    NoRadius {
+        /// Where it fails.
+        at: DVec3,
+    },
+}
+
+/// What can go wrong with a rounding. Lengths and points are in model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BlendFault {
+    /// E673: the ball is too large.
+    TooLarge {
+        /// The rounding.
+        blend: Origin,
+        /// One surface.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// The radius asked for.
+        radius: f64,
+        /// The largest one that fits.
+        largest: f64,
+        /// Beside which place of the edge it fails.
+        at: DVec3,
+    },
+    /// E674: no edge to roll along.
+    NoEdge {
+        /// One surface.
+        a: Origin,
+        /// The other one.
+        b: Origin,
+        /// What is missing.
+        why: NoBlend,
+    },
+}
+
+impl Describe for BlendFault {
+    fn describe(&self, say: &dyn Say) -> Report {
+        match self {
+            Self::TooLarge { blend, a, b, radius, largest, at } => {
+                let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
+                let message = format!(
+                    "a ball with a radius of {} does not fit between {x} and {y} beside {}; the largest radius is {}",
+                    say.length(*radius),
+                    say.point(*at),
+                    say.length(floored(*largest))
+                );
+                Report::new("E673", message)
+                    .at(*blend, "too large here")
+                    .help("take a smaller `radius:`, or surfaces that run on farther from the edge")
+            }
+            Self::NoEdge { a, b, why } => no_edge((*a, *b), why, say).at(*a, "this surface").at(*b, "and this one"),
+        }
+    }
+}
+
+/// Three digits of a length, rounded down: what is told fits.
+fn floored(length: f64) -> f64 {
+    const DIGITS: f64 = 1e2;
+    let unit = crate::base::math::pow(10.0, crate::base::math::log10(length).floor()) / DIGITS;
+    (length / unit).floor() * unit
+}
+
+fn no_edge((a, b): (Origin, Origin), why: &NoBlend, say: &dyn Say) -> Report {
+    let (x, y) = (say.quoted(a, "one surface"), say.quoted(b, "the other"));
+    let report = |message: String| Report::new("E674", message);
+    match why {
+        NoBlend::Apart { touch: Some(at) } => report(format!("{x} and {y} meet in no edge: they touch at {}", say.point(*at))),
+        NoBlend::Apart { touch: None } => {
+            report(format!("{x} and {y} meet in no edge")).help("draw them so that they meet: `meet(a, b)` is the list of the curves")
+        }
+        NoBlend::Several { middles } => {
+            let places = say.points(middles).join(", ");
+            report(format!("{x} and {y} meet in {} edges, near {places}: a rounding is for one", middles.len()))
+                .help("cut one of them first, `trim(s, by: …, keep: …)`, so that one edge is left")
+        }
+        NoBlend::Corner { at } => report(format!("the edge of {x} and {y} has a corner at {}", say.point(*at)))
+            .help("round the corner of the curve first, or divide the surfaces there and blend them one by one"),
+        NoBlend::Tangent { at } => {
+            report(format!("{x} and {y} run into each other smoothly at {}: there is no edge to round", say.point(*at)))
+        }
+        NoBlend::EndsInside { surface, at } => {
+            let name = say.quoted(*surface, "a surface");
+            report(format!("the rounding of {x} and {y} ends inside {name} at {}: it cuts nothing off there", say.point(*at)))
+                .help(format!("let {name} end where the edge does, at right angles to it, or close the edge"))
+        }
+        NoBlend::Leaves { surface, at } => {
+            let name = say.quoted(*surface, "a surface");
+            report(format!("the rounding of {x} and {y} runs over the border of {name} at {}", say.point(*at)))
+                .help(format!("take a smaller `radius:`, or blend before {name} gets that border"))
+        }
+        NoBlend::NoRadius { at } => report(format!("no ball touches both {x} and {y} beside {}", say.point(*at)))
+            .help("`-s` turns the side of a surface on which it rolls"),
+    }
+}

@@ -1,0 +1,41 @@
+//! Roundings between surfaces.
+
+use super::surfaces::finished;
+use crate::base::fault::{Say, ValueFault};
+use crate::builtins;
+use crate::lang::types::Length;
+use crate::surface::{Surface, rolling};
+
+builtins! {
+    /// Two surfaces with a rounding in the place of the edge in which they meet.
+    ///
+    /// A list of three: the first surface cut back, the rounding, the second one cut back. The rounding is what a ball leaves that
+    /// rolls along the edge and touches both; it is smooth to both. u runs along the edge, v from the first surface to the second;
+    /// its normal is on the side of the first one's. Where a surface runs on beyond the edge the ball
+    /// is on the side of the other one's normal (`-s` turns it), and what lies behind the edge is cut off too. Between planes, and round an axis, it is a part of a
+    /// cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open edge ends on borders of both surfaces. A radius
+    /// that does not fit is E673, which tells the largest one.
+    /// ```loft
+    /// curve foot = line((0, 0, 0), (2m, 0, 0))
+    /// surface floor = plane(foot, polyline([(2m, 0, 0), (2m, 1m, 0), (0, 1m, 0), (0, 0, 0)]))
+    /// surface wall = extrude(foot, by: (0, 0, 1m))
+    /// let parts = blend(wall, floor, radius: 200mm)
+    /// check parts[1].area == pi / 2 * 200mm * 2m within 1e-9%
+    /// shell corner of parts
+    /// ```
+    fn blend(
+        /// One surface.
+        a: Surface,
+        /// The other one.
+        b: Surface,
+        /// Radius of the ball, above 0.
+        radius: Length,
+    ) -> Vec<Surface> = |cx, a, b, radius| {
+        if radius.0 <= 0.0 {
+            return Err(ValueFault::OutsideRange { argument: "radius", found: cx.length(radius.0), range: "above 0".to_owned() }.into());
+        }
+        let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
+        let parts = rolling(&a, &b, radius.0, origin, &tolerance)?;
+        parts.into_iter().map(|part| finished(cx, part, &[])).collect()
+    };
+}

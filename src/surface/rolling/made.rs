@@ -1,0 +1,224 @@
+//! The surface through the arcs of a rolling ball.
+
+use glam::{DVec3, DVec4};
+
+use super::ball::{Ball, Guess};
+use super::station::Station;
+use crate::base::fault::{CurveFault, Result};
+use crate::base::job;
+use crate::base::math;
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::build::{arc_center, arc_through};
+use crate::geometry::curve::Shape as CurveShape;
+use crate::network::Chain;
+use crate::surface::core::{Jet2, Parts, Surface, SurfaceKind};
+use crate::surface::extrude::extrude;
+use crate::surface::iso::IsoLine;
+use crate::surface::nurbs::NurbsSurface;
+use crate::surface::rail::Lean;
+use crate::surface::revolve::{Axis, revolve};
+
+/// Share of the tolerance within which a net keeps to the ball.
+const SHARE: f64 = 0.25;
+/// Share of it within which a roll is straight or round.
+const EXACT: f64 = 1.0 / 64.0;
+/// Stations at the most.
+const MOST: usize = 4096;
+
+/// The surface and the curves in which it touches both sides.
+pub(super) struct Roll {
+    pub surface: Surface,
+    pub contacts: [Chain; 2],
+}
+
+/// The surface through the balls at some stations, and at more of them where it needs more.
+pub(super) fn rolled(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Roll> {
+    let stations = turned(ball, stations);
+    let (tolerance, at) = (&ball.tolerance, stations[0].center);
+    let surface = match straight(&stations, origin, tolerance)? {
+        Some(surface) => surface,
+        None => match round(&stations, ball.closed, origin, tolerance)? {
+            Some(surface) => surface,
+            None => net(&refined(ball, radius, stations, origin)?, radius).surface(SurfaceKind::Blend, origin, tolerance),
+        },
+    };
+    let surface = Surface::new(Parts { kind: SurfaceKind::Blend, ..surface.parts().clone() });
+    let contact = |v: f64| -> Result<Chain> {
+        let lost = || CurveFault::NotConverged { of: origin, what: "the border of the rounding".to_owned(), at };
+        Ok(Chain::of_curve(&surface.iso(IsoLine::V(v), origin, tolerance)?.ok_or_else(lost)?))
+    };
+    let contacts = [contact(0.0)?, contact(1.0)?];
+    Ok(Roll { surface, contacts })
+}
+
+/// The stations in the order in which the surface's normal is on the side of the first one's.
+fn turned(ball: &Ball, mut stations: Vec<Station>) -> Vec<Station> {
+    let s = &stations[stations.len() / 2];
+    let normal = (s.center - s.feet[0]) * ball.faces[0].side;
+    if s.way.cross(-ball.away(s, 0)).dot(normal) < 0.0 {
+        stations.reverse();
+        stations.iter_mut().for_each(Station::turn);
+    }
+    stations
+}
+
+/// The arc of a station, from the first surface to the second.
+fn arc(station: &Station, origin: Origin) -> Result<Chain> {
+    let (a, b) = (station.feet[0] - station.center, station.feet[1] - station.center);
+    let curve = arc_center(station.center, station.feet[0], math::angle_between(a, b), a.cross(b), origin)?;
+    Ok(Chain::of_curve(&curve))
+}
+
+/// The extrusion of one arc, where all others are the same one moved along a line.
+fn straight(stations: &[Station], origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+    let (first, last) = (&stations[0], &stations[stations.len() - 1]);
+    let by = last.center - first.center;
+    let Some(way) = math::unit(by, tolerance.point) else { return Ok(None) };
+    let near = |p: DVec3, q: DVec3| p.distance(q) <= EXACT * tolerance.point;
+    let same = |s: &Station| {
+        let moved = s.center - first.center;
+        near(way * moved.dot(way), moved) && (0..2).all(|k| near(s.feet[k], first.feet[k] + moved))
+    };
+    if !stations.iter().all(same) {
+        return Ok(None);
+    }
+    extrude(&arc(first, origin)?, by, origin, tolerance).map(Some)
+}
+
+/// The revolution of one arc, where all others are the same one turned about an axis.
+fn round(stations: &[Station], closed: bool, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+    let n = stations.len() - 1;
+    let (a, b, c) = (stations[0].center, stations[n / 3].center, stations[2 * n / 3].center);
+    let Ok(circle) = arc_through(a, c, b, origin) else { return Ok(None) };
+    let CurveShape::Arc(circle) = circle.shape() else { return Ok(None) };
+    let Some(direction) = math::unit(circle.u.cross(circle.v), 0.0) else { return Ok(None) };
+    let axis = Axis { about: circle.center, direction };
+    // Height over the axis and distance from it: the same at every station.
+    let profile = |p: DVec3| {
+        let d = p - axis.about;
+        (d.dot(direction), d.reject_from_normalized(direction).length())
+    };
+    let near = |p: DVec3, q: DVec3| {
+        let (x, y) = (profile(p), profile(q));
+        (x.0 - y.0).abs().max((x.1 - y.1).abs()) <= EXACT * tolerance.point
+    };
+    let same = |s: &Station| near(s.center, a) && (0..2).all(|k| near(s.feet[k], stations[0].feet[k]));
+    // The arc stands in a plane through the axis.
+    let upright = stations[0].way.dot(direction).abs() * stations[0].center.distance(axis.about) <= EXACT * tolerance.point;
+    if !upright || !stations.iter().all(same) {
+        return Ok(None);
+    }
+    let out = |s: &Station| (s.center - axis.about).reject_from_normalized(direction);
+    let step = |w: &[Station]| {
+        let angle = math::angle_between(out(&w[0]), out(&w[1]));
+        angle.copysign(out(&w[0]).cross(out(&w[1])).dot(direction))
+    };
+    let whole: f64 = stations.windows(2).map(step).sum();
+    let angle = if closed { std::f64::consts::TAU.copysign(whole) } else { whole };
+    revolve(&arc(&stations[0], origin)?, &axis, angle, origin, tolerance).map(Some)
+}
+
+/// More stations where the net through those that are there leaves the ball.
+fn refined(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Vec<Station>> {
+    let lost = |at: DVec3| CurveFault::NotConverged { of: origin, what: "the way of the ball".to_owned(), at };
+    let mut done = vec![stations[0]];
+    let mut open: Vec<Station> = stations[1..].iter().rev().copied().collect();
+    while let Some(next) = open.pop() {
+        job::look();
+        let last = done[done.len() - 1];
+        match off(ball, radius, &last, &next).ok_or_else(|| lost(last.center))? {
+            None => done.push(next),
+            Some(_) if done.len() + open.len() > MOST || last.center.distance(next.center) <= ball.tolerance.point => {
+                return Err(lost(next.center).into());
+            }
+            Some(middle) => open.extend([next, middle]),
+        }
+    }
+    Ok(done)
+}
+
+/// The ball in the middle between two stations, where the net between them is off at some place; outer none where there is no ball.
+fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Station>> {
+    const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+    let piece = net(&[*a, *b], radius);
+    let allowed = SHARE * ball.tolerance.point;
+    let lean = (Lean::After, Lean::After);
+    let mut middle = None;
+    let mut near = true;
+    for u in PLACES {
+        let jets = PLACES.map(|v| piece.jet(u, v, lean));
+        let ends = [piece.jet(u, 0.0, lean), piece.jet(u, 1.0, lean)];
+        let plane = (between(a, b, u), (ends[0].du + ends[1].du).normalize_or_zero());
+        let uv = [0, 1].map(|k: usize| a.uv[k].lerp(ball.faces[k].turned_to(b.uv[k], a.uv[k]), u));
+        let found = ball.station(radius, plane, &Guess { uv, points: ends.map(|e| e.p) })?;
+        let on_ball = |jet: &Jet2| (jet.p.distance(found.center) - radius).abs() <= allowed;
+        near &= jets.iter().all(on_ball) && (0..2).all(|k| ends[k].p.distance(found.feet[k]) <= allowed);
+        if u == 0.5 {
+            middle = Some(found);
+        }
+    }
+    Some(if near { None } else { middle })
+}
+
+/// The centre between two stations, cubic.
+fn between(a: &Station, b: &Station, u: f64) -> DVec3 {
+    let h = way_between(a, b);
+    let (p, q) = (a.center + a.way * (h / 3.0), b.center - b.way * (h / 3.0));
+    let w = 1.0 - u;
+    a.center * (w * w * w) + p * (3.0 * w * w * u) + q * (3.0 * w * u * u) + b.center * (u * u * u)
+}
+
+/// About the length of the centre's way from one station to the next: of the circle that touches both directions.
+fn way_between(a: &Station, b: &Station) -> f64 {
+    let chord = a.center.distance(b.center);
+    let half = 0.5 * math::angle_between(a.way, b.way);
+    if half > 0.0 { chord * half / math::sin(half) } else { chord }
+}
+
+/// The three homogeneous poles of a station's arc and their derivatives by the length of the centre's way.
+fn poles(s: &Station, radius: f64) -> [(DVec4, DVec4); 3] {
+    let middle = s.feet[0] + s.feet[1] - s.center * 2.0;
+    let rate = s.rates[0] + s.rates[1] - s.way * 2.0;
+    let length = middle.length();
+    let weight = length / (2.0 * radius);
+    let stretch = middle.dot(rate) / length;
+    let weight_rate = stretch / (2.0 * radius);
+    let apex = s.center * weight + middle * (radius / length);
+    let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (stretch / length)) * (radius / length);
+    let foot = |k: usize| (s.feet[k].extend(1.0), s.rates[k].extend(0.0));
+    [foot(0), (apex.extend(weight), apex_rate.extend(weight_rate)), foot(1)]
+}
+
+/// The net through some stations: arcs along v, cubics with continuous derivatives along u.
+fn net(stations: &[Station], radius: f64) -> NurbsSurface {
+    let steps: Vec<f64> = stations.windows(2).map(|w| way_between(&w[0], &w[1])).collect();
+    let total: f64 = steps.iter().sum();
+    let rows: Vec<_> = stations.iter().map(|s| poles(s, radius)).collect();
+    let n = stations.len();
+    let mut all = Vec::with_capacity(6 * n);
+    for k in 0..3 {
+        for (i, row) in rows.iter().enumerate() {
+            let (p, d) = row[k];
+            if i == 0 {
+                all.push(p);
+            } else {
+                all.push(p - d * (steps[i - 1] / 3.0));
+            }
+            if i + 1 == n {
+                all.push(p);
+            } else {
+                all.push(p + d * (steps[i] / 3.0));
+            }
+        }
+    }
+    let mut knots = vec![0.0; 4];
+    let mut way = 0.0;
+    for step in &steps[..n - 2] {
+        way += step;
+        knots.extend([way / total; 2]);
+    }
+    knots.extend([1.0; 4]);
+    let across = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    NurbsSurface { degree: (3, 2), knots: (knots, across), poles: all, counts: (2 * n, 3) }
+}

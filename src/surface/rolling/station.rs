@@ -1,0 +1,91 @@
+//! One place of a ball that touches two surfaces.
+
+use glam::{DVec2, DVec3};
+
+use super::ball::Face;
+use crate::base::solve;
+use crate::surface::core::unit_normal;
+use crate::surface::foot::step;
+use crate::surface::offset::slopes;
+
+/// Where a ball touches.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Station {
+    /// Its centre.
+    pub center: DVec3,
+    /// Places on both surfaces.
+    pub uv: [DVec2; 2],
+    /// The points there.
+    pub feet: [DVec3; 2],
+    /// Unit direction in which the centre travels.
+    pub way: DVec3,
+    /// Derivatives of the points by the length of the centre's way.
+    pub rates: [DVec3; 2],
+}
+
+impl Station {
+    /// Looks the other way.
+    pub fn turn(&mut self) {
+        (self.way, self.rates) = (-self.way, self.rates.map(|r| -r));
+    }
+}
+
+/// Half a ball's condition: the centre at a distance from a surface, with its derivatives.
+struct Raised {
+    p: DVec3,
+    normal: DVec3,
+    du: DVec3,
+    dv: DVec3,
+    center: DVec3,
+    cu: DVec3,
+    cv: DVec3,
+}
+
+fn raised(face: &Face, uv: DVec2, radius: f64) -> Option<Raised> {
+    let jet = face.jet(uv);
+    let normal = unit_normal(&jet)?;
+    let (nu, nv) = slopes(&jet)?;
+    let d = face.side * radius;
+    Some(Raised { p: jet.p, normal, du: jet.du, dv: jet.dv, center: jet.p + normal * d, cu: jet.du + nu * d, cv: jet.dv + nv * d })
+}
+
+/// The ball whose centre lies in a plane, from guesses of the places where it touches; none where Newton's method finds none.
+pub(super) fn station(faces: &[Face; 2], radius: f64, plane: (DVec3, DVec3), guess: [DVec2; 2], rounding: f64) -> Option<Station> {
+    const STEPS: usize = 24;
+    /// What is left over after the last step, in roundings.
+    const LEFT: f64 = 256.0;
+    let mut uv = [faces[0].hold(guess[0]), faces[1].hold(guess[1])];
+    let mut best: Option<(f64, [DVec2; 2])> = None;
+    for _ in 0..STEPS {
+        let (x, y) = (raised(&faces[0], uv[0], radius)?, raised(&faces[1], uv[1], radius)?);
+        let apart = x.center - y.center;
+        let off = (x.center - plane.0).dot(plane.1);
+        let miss = apart.length().max(off.abs());
+        match best {
+            // No longer nearer: rounding, or no such ball.
+            Some((least, _)) if least <= LEFT * rounding && miss >= 0.5 * least => break,
+            Some((least, _)) if miss >= least => {}
+            _ => best = Some((miss, uv)),
+        }
+        let mut rows = [0.0; 16];
+        for (k, (columns, sign)) in [((x.cu, x.cv), 1.0), ((y.cu, y.cv), -1.0)].into_iter().enumerate() {
+            for (j, column) in [columns.0, columns.1].into_iter().enumerate() {
+                for (i, value) in column.to_array().into_iter().enumerate() {
+                    rows[4 * i + 2 * k + j] = sign * value;
+                }
+            }
+        }
+        (rows[12], rows[13]) = (x.cu.dot(plane.1), x.cv.dot(plane.1));
+        let mut right = [-apart.x, -apart.y, -apart.z, -off];
+        if !solve::dense(&mut rows, &mut right) || right.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        uv = [faces[0].hold(uv[0] + DVec2::new(right[0], right[1])), faces[1].hold(uv[1] + DVec2::new(right[2], right[3]))];
+    }
+    let (_, uv) = best.filter(|(miss, _)| *miss <= LEFT * rounding)?;
+    let (x, y) = (raised(&faces[0], uv[0], radius)?, raised(&faces[1], uv[1], radius)?);
+    let across = x.normal.cross(y.normal).try_normalize()?;
+    let way = if across.dot(plane.1) < 0.0 { -across } else { across };
+    let rate = |r: &Raised| step(r.cu, r.cv, way).map(|s| r.du * s.x + r.dv * s.y);
+    Some(Station { center: 0.5 * (x.center + y.center), uv, feet: [x.p, y.p], way, rates: [rate(&x)?, rate(&y)?] })
+}
