@@ -16,9 +16,8 @@ builtins! {
     /// cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open edge ends on borders of both surfaces. A radius
     /// that does not fit is E673, which tells the largest one.
     /// ```loft
-    /// curve foot = line((0, 0, 0), (2m, 0, 0))
-    /// surface floor = plane(foot, polyline([(2m, 0, 0), (2m, 1m, 0), (0, 1m, 0), (0, 0, 0)]))
-    /// surface wall = extrude(foot, by: (0, 0, 1m))
+    /// surface floor = plane(polyline([(0, 0, 0), (2m, 0, 0), (2m, 1m, 0), (0, 1m, 0)], closed: true))
+    /// surface wall = extrude(line((0, 0, 0), (2m, 0, 0)), by: (0, 0, 1m))
     /// let parts = blend(wall, floor, radius: 200mm)
     /// check parts[1].area == pi / 2 * 200mm * 2m within 1e-9%
     /// shell corner of parts

@@ -17,6 +17,7 @@ use made::rolled;
 
 use super::core::Surface;
 use super::meet::with_surfaces;
+use super::plane;
 use crate::base::fault::{BlendFault, NoBlend, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -40,7 +41,9 @@ pub fn rolling(a: &Surface, b: &Surface, radius: f64, origin: Origin, tolerance:
 
 /// The one curve in which two surfaces meet; it may have no corners.
 fn edge(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
-    let common = with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), origin, tolerance)?;
+    // Planes without a map: that of a plane face may have poles on the edge.
+    let of = |s: &Surface| plane::unmapped(s, tolerance);
+    let common = with_surfaces(&[of(a)?], &[of(b)?], origin, tolerance)?;
     let none = |why: NoBlend| BlendFault::NoEdge { a: a.origin(), b: b.origin(), why };
     let edge = match common.curves.as_slice() {
         [] => return Err(none(NoBlend::Apart { touch: common.touches.first().copied() }).into()),
