@@ -26,8 +26,11 @@ use lofting::lang::diag_render::{render, render_all};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
+/// A script and its text.
+type Key = (PathBuf, String);
+
 /// What scripts report, by path and text: several tests look at the same ones.
-static REPORTED: Mutex<BTreeMap<(PathBuf, String), Arc<OnceLock<Reported>>>> = Mutex::new(BTreeMap::new());
+static REPORTED: Mutex<BTreeMap<Key, Arc<OnceLock<Reported>>>> = Mutex::new(BTreeMap::new());
 
 type Reported = (Vec<Diagnostic>, Sources);
 

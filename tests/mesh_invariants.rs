@@ -238,7 +238,7 @@ fn caps_that_are_broken_are_seen() {
             let mut less = whole.elements.clone();
             let one = less.remove(k);
             assert!(!look(&less, &whole.uv), "quads: {quads}, without {k}");
-            let twice = [whole.elements.as_slice(), &[one.clone()]].concat();
+            let twice = [whole.elements.as_slice(), std::slice::from_ref(&one)].concat();
             assert!(!look(&twice, &whole.uv), "quads: {quads}, {k} twice");
             // The cell with the next one, in which nothing is left of the row.
             less.retain(|e| e.iter().filter(|n| one.contains(n)).count() < 2);

@@ -123,7 +123,8 @@ impl Put for Lost {
 impl Plain for Lost {
     const LEAST: usize = 1;
     fn take(from: &mut Bytes) -> Option<Self> {
-        let ((kind, (a, b)), (length, (at, more))): ((u8, (usize, usize)), (f64, (DVec3, usize))) = Plain::take(from)?;
+        let (kind, (a, b)): (u8, (usize, usize)) = Plain::take(from)?;
+        let (length, (at, more)): (f64, (DVec3, usize)) = Plain::take(from)?;
         let what = match kind {
             0 => What::Hole(a, b),
             1 => What::Curve(a),

@@ -164,6 +164,9 @@ impl Pace {
     }
 }
 
+/// Of each stretch where its steps vary.
+pub type Paces = Vec<Option<Pace>>;
+
 /// What is known of the stretches before their paces.
 pub struct Ask<'a> {
     /// Lengths wanted at places.
@@ -183,7 +186,7 @@ pub struct Ask<'a> {
 /// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
 /// Stretches of mapped faces follow the bends of free ones beside them and nothing else: their rows are even. The second
 /// list has the paces that those would have to follow, were they not. E217 where bends alone ask for too much.
-pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Result<(Vec<Option<Pace>>, Vec<Option<Pace>>)> {
+pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Result<(Paces, Paces)> {
     let n = layout.pieces.atoms.len();
     let mut paces: Vec<Pace> = ask.size.iter().map(|s| Pace::even(*s)).collect();
     bends(input, layout, ask, &mut paces);
