@@ -58,7 +58,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("mesh", 22_500),
     ("io", 8_500),
     ("draw", 3_000),
-    ("lang", 26_800),
+    ("lang", 27_500),
     ("session", 11_300),
     ("cli", 4_900),
 ];
