@@ -81,6 +81,12 @@ fn capped(sheet: &Sheet, xy: [DVec2; 3], load: Load, limits: &Limits) -> Load {
     if reach.is_finite() { Load { chord: load.chord.min(reach / limit), ..load } } else { load }
 }
 
+/// Whether a triangle lies upside down at one of its corners.
+pub fn is_overturned(sheet: &Sheet, web: &Web, corners: [u32; 3]) -> bool {
+    let c = corners.map(|n| n as usize);
+    lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])) < 0.0
+}
+
 /// Cosine of the largest angle that a triangle may stand at to its surface.
 const UPRIGHT: f64 = 0.5;
 
