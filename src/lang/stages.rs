@@ -154,7 +154,8 @@ pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<S
     Ok(found)
 }
 
-/// Makes a stage at most once; a fault is reported once and what depends on it is skipped.
+/// Makes a stage at most once; a fault is reported once and what depends on it is skipped. Its work is not charged to what asks for
+/// it first: a call that runs out of its budget would leave it half made.
 fn once<T: Clone>(
     cx: &mut Cx,
     slot: impl for<'a> Fn(&'a mut Cx<'_>) -> Option<&'a mut Stage<T>>,
@@ -170,7 +171,7 @@ fn once<T: Clone>(
     // What a stage says is its own, whichever declaration asked first.
     let sink = std::mem::take(&mut cx.sink);
     let job = cx.job;
-    let made = job.watch(|| make(cx)).unwrap_or_else(|fault| Err(fault.into()));
+    let made = job.watch(|| work::uncharged(|| make(cx))).unwrap_or_else(|fault| Err(fault.into()));
     let said = std::mem::replace(&mut cx.sink, sink);
     cx.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     let (stage, result) = match made {
