@@ -17,6 +17,7 @@ use super::outline::{Outline, cross};
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::tolerance::NUDGE;
+use crate::base::work;
 
 /// Nearest distance between two nodes, as a share of the wanted length.
 const APART: f64 = 0.7;
@@ -266,15 +267,32 @@ pub(super) fn samples(outline: &Outline, field: &dyn Field) -> Cells {
         let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
         let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
         let size = |t: f64| field.size(xa.lerp(xb, t), pa.lerp(pb, t));
-        let least = [0.0, 0.5, 1.0].map(size).into_iter().fold(f64::INFINITY, f64::min);
-        let n = (pa.distance(pb) / (least * SAMPLES)).ceil().clamp(1.0, 1e6) as usize;
-        for i in 0..=n {
-            let t = i as f64 / n as f64;
-            cells.add(pa.lerp(pb, t), xa.lerp(xb, t), size(t), k as u32);
+        // Where lengths grow along an edge, its parts have places as far apart as lengths are there.
+        let mut open = vec![(0.0, 1.0, DEEPEST)];
+        while let Some((from, to, left)) = open.pop() {
+            let middle = 0.5 * (from + to);
+            let least = [from, middle, to].map(size).into_iter().fold(f64::INFINITY, f64::min);
+            let n = ((to - from) * pa.distance(pb) / (least * SAMPLES)).ceil().clamp(1.0, 1e6) as usize;
+            if n > MOST_PLACES && left > 0 {
+                open.extend([(middle, to, left - 1), (from, middle, left - 1)]);
+                continue;
+            }
+            work::spend(PLACE_WORK * n as u64);
+            for i in 0..=n {
+                let t = from + (to - from) * i as f64 / n as f64;
+                cells.add(pa.lerp(pb, t), xa.lerp(xb, t), size(t), k as u32);
+            }
         }
     }
     cells
 }
+
+/// Places along an edge that are as far apart everywhere.
+const MOST_PLACES: usize = 4096;
+/// What a place costs, evaluations of a curve: it is kept three times.
+const PLACE_WORK: u64 = 8;
+/// Halvings of an edge.
+const DEEPEST: u32 = 20;
 
 /// Height of an equilateral triangle of side 1.
 pub(super) const TALL: f64 = 0.866_025_403_784_438_6;
