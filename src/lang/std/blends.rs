@@ -3,7 +3,7 @@
 use super::surfaces::finished;
 use crate::base::fault::{Say, ValueFault};
 use crate::builtins;
-use crate::lang::types::Length;
+use crate::lang::types::{Length, Point};
 use crate::surface::{Surface, rolling};
 
 builtins! {
@@ -11,10 +11,10 @@ builtins! {
     ///
     /// A list of three: the first surface cut back, the rounding, the second one cut back. The rounding is what a ball leaves that
     /// rolls along the edge and touches both; it is smooth to both. u runs along the edge, v from the first surface to the second;
-    /// its normal is on the side of the first one's. Where a surface runs on beyond the edge the ball
-    /// is on the side of the other one's normal (`-s` turns it), and what lies behind the edge is cut off too. Between planes, and round an axis, it is a part of a
-    /// cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open edge ends on borders of both surfaces. A radius
-    /// that does not fit is E673, which tells the largest one.
+    /// its normal is on the side of the first one's. Where a surface runs on beyond the edge, its part on the side of the point
+    /// `keep:` stays and the rest is cut off too; without `keep:` the ball is on the side of the other one's normal. Between planes,
+    /// and round an axis, it is a part of a cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open
+    /// edge ends on borders of both surfaces. A radius that does not fit is E673, which tells the largest one.
     /// ```loft
     /// surface floor = plane(polyline([(0, 0, 0), (2m, 0, 0), (2m, 1m, 0), (0, 1m, 0)], closed: true))
     /// surface wall = extrude(line((0, 0, 0), (2m, 0, 0)), by: (0, 0, 1m))
@@ -29,12 +29,14 @@ builtins! {
         b: Surface,
         /// Radius of the ball, above 0.
         radius: Length,
-    ) -> Vec<Surface> = |cx, a, b, radius| {
+        /// A point on the side of the edge that stays, where a surface runs on beyond it.
+        keep: Option<Point>,
+    ) -> Vec<Surface> = |cx, a, b, radius, keep| {
         if radius.0 <= 0.0 {
             return Err(ValueFault::OutsideRange { argument: "radius", found: cx.length(radius.0), range: "above 0".to_owned() }.into());
         }
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
-        let parts = rolling(&a, &b, radius.0, origin, &tolerance)?;
+        let parts = rolling([&a, &b], radius.0, keep.map(|p| p.0), origin, &tolerance)?;
         parts.into_iter().map(|part| finished(cx, part, &[])).collect()
     };
 }

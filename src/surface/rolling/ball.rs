@@ -152,13 +152,13 @@ pub(super) struct Ball {
 }
 
 impl Ball {
-    pub fn new(surfaces: [&Surface; 2], edge: Chain, tolerance: &Tolerance) -> Result<Self> {
+    pub fn new(surfaces: [&Surface; 2], edge: Chain, keep: Option<DVec3>, tolerance: &Tolerance) -> Result<Self> {
         let faces = [Face::new(surfaces[0], tolerance)?, Face::new(surfaces[1], tolerance)?];
         let origins = surfaces.map(Surface::origin);
         let closed = edge.is_closed(tolerance);
         let mut ball = Self { faces, edge, closed, origins, tolerance: *tolerance, starts: Vec::new() };
         ball.starts = (0..=STARTS).map(|k| ball.start(k as f64 / STARTS as f64)).collect::<Result<_>>()?;
-        ball.choose_sides()?;
+        ball.choose_sides(keep);
         if !closed {
             ball.ends_on_borders()?;
         }
@@ -181,17 +181,21 @@ impl Ball {
         Ok(Start { at: jet.p, along, uv, out: normals.map(|n| n.cross(along).normalize_or_zero()) })
     }
 
-    /// Turns the directions away from the edge to where the ball is, and finds its side of each surface.
-    fn choose_sides(&mut self) -> Result<()> {
+    /// Turns the directions away from the edge to where the ball is, and finds its side of each surface: where a surface runs on
+    /// beyond the edge that of `keep`.
+    fn choose_sides(&mut self, keep: Option<DVec3>) {
         let middle = &self.starts[STARTS / 2];
         let step = PROBE * self.edge.length();
         let normals = [0, 1].map(|k: usize| unit_normal(&self.faces[k].jet(middle.uv[k])).unwrap_or_default());
+        let near = |p: DVec3| self.starts.iter().min_by(|s, t| s.at.distance(p).total_cmp(&t.at.distance(p)));
+        let kept = keep.and_then(|p| near(p).map(|start| (start, p - start.at)));
         let turn = |k: usize| {
             let out = middle.out[k];
             let runs = [out, -out].map(|d| self.faces[k].runs_on(middle.at, d, step));
-            match runs {
-                [true, false] => 1.0,
-                [false, true] => -1.0,
+            match (runs, kept) {
+                ([true, false], _) => 1.0,
+                ([false, true], _) => -1.0,
+                (_, Some((start, to))) => to.dot(start.out[k]).signum(),
                 // The ball is on the side of the other one's normal.
                 _ => out.dot(normals[1 - k]).signum(),
             }
@@ -206,7 +210,6 @@ impl Ball {
                 *out *= turn;
             }
         }
-        Ok(())
     }
 
     /// An open edge ends on a border of both surfaces.

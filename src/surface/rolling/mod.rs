@@ -13,6 +13,7 @@ mod station;
 use ball::Ball;
 use cut::cut_back;
 use ends::ended;
+use glam::DVec3;
 use made::rolled;
 
 use super::core::Surface;
@@ -26,13 +27,14 @@ use crate::network::Chain;
 /// The rounding of the edge in which two surfaces meet: the first one cut back to it, the rounding, the second one cut back.
 ///
 /// The rounding has u along the edge and v from the first surface to the second; its normal is on the side of the first one's.
-/// Where a surface runs on beyond the edge the ball is on the side of the other one's normal. Radius in model units, above 0.
+/// Where a surface runs on beyond the edge, the part on the side of the point `keep` stays; without one the ball is on the side of the
+/// other one's normal. Radius in model units, above 0.
 ///
 /// Fails with E673 where the radius is too large, E674 where there is no one smooth edge or it ends inside a surface, E657 where
 /// the surfaces run along each other.
-pub fn rolling(a: &Surface, b: &Surface, radius: f64, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     let edge = edge(a, b, origin, tolerance)?;
-    let ball = Ball::new([a, b], edge, tolerance)?;
+    let ball = Ball::new([a, b], edge, keep, tolerance)?;
     let stations = largest::stations(&ball, radius, origin)?;
     let roll = ended(&ball, rolled(&ball, radius, stations, origin)?, origin)?;
     let side = |k: usize| cut_back(&ball, k, &roll.contacts[k], origin);
