@@ -222,6 +222,9 @@ impl Front<'_> {
                 return;
             }
         }
+        if new.p.distance(p) > FAR * length {
+            return;
+        }
         let off = new.p.distance_squared(p + way * length);
         if off > ALIKE * ALIKE * there * there && self.near_node(new.p, there) {
             return;
@@ -298,6 +301,10 @@ const DEEPEST: u32 = 20;
 pub(super) const TALL: f64 = 0.866_025_403_784_438_6;
 /// Share of the length by which a step may be off before it is made again.
 const BENT: f64 = 0.01;
+
+/// Length of a step over the wanted one from which its direction says nothing: where the map stands still, as at a corner in which
+/// control points coincide, a step goes anywhere.
+const FAR: f64 = 2.0;
 
 /// Cosine between edges that run straight on.
 pub(super) const STRAIGHT: f64 = 1.0 - NUDGE;

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Front, STRAIGHT};
+use super::{FAR, Front, STRAIGHT};
 use crate::base::math;
 
 /// Nearest distance between two nodes of crystals, as a share of the wanted length: one in the middle of a square would have
@@ -152,7 +152,8 @@ impl Front<'_> {
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
             let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
-            if !near && !taken {
+            let far = new.p.distance(spot.p) > FAR * arm.length();
+            if !near && !taken && !far {
                 let ahead = if ahead == DVec3::ZERO { arm.reject_from_normalized(new.normal()).normalize_or_zero() } else { ahead };
                 self.take(to, new.p, size, ahead);
                 self.arms.push(arm.normalize_or_zero());

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{CLEAR, Front, SIGHT, STRAIGHT, apart};
+use super::{CLEAR, FAR, Front, SIGHT, STRAIGHT, apart};
 use crate::base::math;
 use crate::mesh::free::outline::cross;
 
@@ -34,6 +34,9 @@ impl Front<'_> {
             let to = self.soil.ground.clamp(middle + step);
             let new = self.soil.ground.spot(to);
             let size = self.soil.field.size(to, new.p);
+            if new.p.distance(spot.p) > FAR * tall {
+                continue;
+            }
             if self.near_node(new.p, size) || self.near_others(to, new.p, size, [a, b]) {
                 continue;
             }
@@ -69,7 +72,8 @@ impl Front<'_> {
             let new = self.soil.ground.spot(to);
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
-            if !near && along != DVec3::ZERO && !self.near_node(new.p, size) {
+            let far = new.p.distance(pa) > FAR * size;
+            if !near && !far && along != DVec3::ZERO && !self.near_node(new.p, size) {
                 self.take(to, new.p, size, along);
                 self.open.clear();
             }
