@@ -222,7 +222,7 @@ impl Front<'_> {
                 return;
             }
         }
-        if new.p.distance(p) > FAR * length {
+        if new.p.distance(p) > FAR * length || self.is_on_edge(to) {
             return;
         }
         let off = new.p.distance_squared(p + way * length);
@@ -234,6 +234,11 @@ impl Front<'_> {
         if along != DVec3::ZERO {
             self.take(to, new.p, there, along);
         }
+    }
+
+    /// Whether a place is on the box of the border in the chart, where only nodes of the border are: a step was held there.
+    fn is_on_edge(&self, xy: DVec2) -> bool {
+        !(xy.cmpgt(self.within.0).all() && xy.cmplt(self.within.1).all())
     }
 
     fn near_node(&self, p: DVec3, size: f64) -> bool {

@@ -152,7 +152,7 @@ impl Front<'_> {
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
             let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
-            let far = new.p.distance(spot.p) > FAR * arm.length();
+            let far = new.p.distance(spot.p) > FAR * arm.length() || self.is_on_edge(to);
             if !near && !taken && !far {
                 let ahead = if ahead == DVec3::ZERO { arm.reject_from_normalized(new.normal()).normalize_or_zero() } else { ahead };
                 self.take(to, new.p, size, ahead);

@@ -34,7 +34,7 @@ impl Front<'_> {
             let to = self.soil.ground.clamp(middle + step);
             let new = self.soil.ground.spot(to);
             let size = self.soil.field.size(to, new.p);
-            if new.p.distance(spot.p) > FAR * tall {
+            if new.p.distance(spot.p) > FAR * tall || self.is_on_edge(to) {
                 continue;
             }
             if self.near_node(new.p, size) || self.near_others(to, new.p, size, [a, b]) {
@@ -72,7 +72,7 @@ impl Front<'_> {
             let new = self.soil.ground.spot(to);
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
-            let far = new.p.distance(pa) > FAR * size;
+            let far = new.p.distance(pa) > FAR * size || self.is_on_edge(to);
             if !near && !far && along != DVec3::ZERO && !self.near_node(new.p, size) {
                 self.take(to, new.p, size, along);
                 self.open.clear();
