@@ -42,6 +42,13 @@ pub enum NoBlend {
         /// Where.
         at: DVec3,
     },
+    /// The surface runs on beyond the edge, and the point to keep is on neither side of it.
+    KeepOnEdge {
+        /// The surface.
+        surface: Origin,
+        /// The place of the edge nearest to the point.
+        at: DVec3,
+    },
     /// No radius fits.
     NoRadius {
         /// Where it fails.
@@ -132,6 +139,14 @@ fn no_edge((a, b): (Origin, Origin), why: &NoBlend, say: &dyn Say) -> Report {
             let name = say.quoted(*surface, "a surface");
             report(format!("the rounding of {x} and {y} runs over the border of {name} at {}", say.point(*at)))
                 .help(format!("take a smaller `radius:`, or blend before {name} gets that border"))
+        }
+        NoBlend::KeepOnEdge { surface, at } => {
+            let name = say.quoted(*surface, "a surface");
+            report(format!(
+                "`keep:` does not tell which side of {name} stays: seen along it the point is on the edge, at {}",
+                say.point(*at)
+            ))
+            .help(format!("{name} runs on beyond the edge: a point away from the edge in the directions of both surfaces"))
         }
         NoBlend::NoRadius { at } => report(format!("no ball touches both {x} and {y} beside {}", say.point(*at)))
             .help("`-s` turns the side of a surface on which it rolls"),

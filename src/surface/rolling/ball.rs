@@ -158,7 +158,7 @@ impl Ball {
         let closed = edge.is_closed(tolerance);
         let mut ball = Self { faces, edge, closed, origins, tolerance: *tolerance, starts: Vec::new() };
         ball.starts = (0..=STARTS).map(|k| ball.start(k as f64 / STARTS as f64)).collect::<Result<_>>()?;
-        ball.choose_sides(keep);
+        ball.choose_sides(keep)?;
         if !closed {
             ball.ends_on_borders()?;
         }
@@ -183,7 +183,7 @@ impl Ball {
 
     /// Turns the directions away from the edge to where the ball is, and finds its side of each surface: where a surface runs on
     /// beyond the edge that of `keep`.
-    fn choose_sides(&mut self, keep: Option<DVec3>) {
+    fn choose_sides(&mut self, keep: Option<DVec3>) -> Result<()> {
         let middle = &self.starts[STARTS / 2];
         let step = PROBE * self.edge.length();
         let normals = [0, 1].map(|k: usize| unit_normal(&self.faces[k].jet(middle.uv[k])).unwrap_or_default());
@@ -193,14 +193,20 @@ impl Ball {
             let out = middle.out[k];
             let runs = [out, -out].map(|d| self.faces[k].runs_on(middle.at, d, step));
             match (runs, kept) {
-                ([true, false], _) => 1.0,
-                ([false, true], _) => -1.0,
-                (_, Some((start, to))) => to.dot(start.out[k]).signum(),
+                ([true, false], _) => Ok(1.0),
+                ([false, true], _) => Ok(-1.0),
+                (_, Some((start, to))) => {
+                    let ahead = to.dot(start.out[k]);
+                    let tells = ahead.abs() > self.tolerance.point;
+                    tells
+                        .then_some(ahead.signum())
+                        .ok_or_else(|| self.fault(NoBlend::KeepOnEdge { surface: self.origins[k], at: start.at }))
+                }
                 // The ball is on the side of the other one's normal.
-                _ => out.dot(normals[1 - k]).signum(),
+                _ => Ok(out.dot(normals[1 - k]).signum()),
             }
         };
-        let turns = [turn(0), turn(1)];
+        let turns = [turn(0)?, turn(1)?];
         for k in 0..2 {
             let other = middle.out[1 - k] * turns[1 - k];
             self.faces[k].side = normals[k].dot(other).signum();
@@ -210,6 +216,7 @@ impl Ball {
                 *out *= turn;
             }
         }
+        Ok(())
     }
 
     /// An open edge ends on a border of both surfaces.
