@@ -137,6 +137,18 @@ fn scripts(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Scripts with the seed of their edits, which is that of their name: the edits of one do not change when another one comes.
+/// They come in order of their seeds, so that few edits are of scripts of all folders.
+fn seeded(root: &Path, paths: Vec<PathBuf>) -> Vec<(PathBuf, u64)> {
+    let seed = |path: &Path| {
+        let name = path.strip_prefix(root).unwrap().to_string_lossy().into_owned();
+        name.bytes().fold(0x10f7_u64, |seed, byte| Draw(seed ^ u64::from(byte)).next())
+    };
+    let mut seeds: Vec<(PathBuf, u64)> = paths.into_iter().map(|path| (path.clone(), seed(&path))).collect();
+    seeds.sort_by_key(|(_, seed)| *seed);
+    seeds
+}
+
 fn number_of(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(otherwise)
 }
@@ -161,6 +173,7 @@ fn random_edits_of_scripts_end() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = Vec::new();
     ["examples", "tests/acceptance", "tests/golden"].iter().for_each(|folder| scripts(&root.join(folder), &mut paths));
+    let seeds = seeded(root, paths);
     let (edits, seconds) = (number_of("LOFT_EDITS", FEW as u64) as usize, number_of("LOFT_EDITS_SECONDS", SECONDS));
     let loft = std::env::var("LOFT_EDITS_LOFT").map_or(env!("CARGO_BIN_EXE_loft").to_owned(), |own| root.join(own).display().to_string());
     let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("edits");
@@ -173,11 +186,11 @@ fn random_edits_of_scripts_end() {
             if k >= from + edits {
                 return;
             }
-            let mut draw = Draw(0x10f7_0000 + k as u64);
-            let path = &paths[draw.below(paths.len())];
-            let text = edited(&mut draw, &fs::read_to_string(path).unwrap());
+            let (path, seed) = &seeds[k % seeds.len()];
+            let round = k / seeds.len();
+            let text = edited(&mut Draw(seed.wrapping_add(round as u64)), &fs::read_to_string(path).unwrap());
             if let Some(wrong) = wrong(&loft, path.parent().unwrap(), &text, seconds) {
-                let name = format!("{k}-{}", path.file_name().unwrap().to_string_lossy());
+                let name = format!("{k}-{round}-{}", path.file_name().unwrap().to_string_lossy());
                 fs::write(kept.join(&name), &text).unwrap();
                 found.lock().unwrap().push(format!("edit {name}: {wrong}"));
             }
