@@ -84,13 +84,9 @@ fn apart((before, turned): &(Chain, bool), section: (&Chain, f64, bool)) -> f64 
 ///
 /// Corners go to corners: where both have equally many, only these are tried.
 fn nearest_start(before: &(Chain, bool), section: &Chain, tolerance: &Tolerance) -> Result<(Chain, bool)> {
-    let corners = |chain: &Chain| {
-        let mut all = vec![0.0];
-        all.extend(chain.kinks(tolerance).into_iter().filter(|f| *f > 0.0 && *f < 1.0));
-        all
-    };
+    let corners = |chain: &Chain| chain.kinks(tolerance).into_iter().filter(|f| *f < 1.0).collect::<Vec<_>>();
     let (own, other) = (corners(section), corners(&before.0));
-    let kinked = own.len() == other.len() && own.len() > 1;
+    let kinked = own.len() == other.len() && !own.is_empty();
     let starts = if kinked { own } else { (0..STARTS).map(|k| k as f64 / STARTS as f64).collect() };
     let off = |start: f64, turned: bool| apart(before, (section, start.rem_euclid(1.0), turned));
     let mut best = (f64::INFINITY, 0.0, false);
