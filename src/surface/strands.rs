@@ -298,15 +298,15 @@ fn at_pole(
     pieces: &mut [Piece],
     tolerance: &Tolerance,
 ) -> Vec<Piece> {
-    let p = base.point(a.x, a.y);
     let mut cuts = vec![0.0, 1.0];
     for piece in pieces {
         for last in [false, true] {
-            let (uv, q) = if last { (piece.uv.1, piece.p.2) } else { (piece.uv.0, piece.p.0) };
-            if q.distance(p) > 2.0 * tolerance.point || !is_pole(base, uv) {
+            let uv = if last { piece.uv.1 } else { piece.uv.0 };
+            // A pole may be as wide as the tolerance: where in (u, v) a piece ends tells whether it ends there.
+            let share = (uv - a).dot(b - a) / (b - a).length_squared();
+            if (uv - a.lerp(b, share)).length() > NUDGE {
                 continue;
             }
-            let share = (uv - a).dot(b - a) / (b - a).length_squared();
             if share > NUDGE && share < 1.0 - NUDGE {
                 cuts.push(share);
             } else if share.abs().min((share - 1.0).abs()) <= NUDGE {
@@ -317,9 +317,11 @@ fn at_pole(
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|b, a| *b - *a <= tolerance.parameter);
     let piece = |w: &[f64]| {
-        let uv = (a.lerp(b, w[0]), a.lerp(b, w[1]));
+        let at = |share: f64| a.lerp(b, share);
+        let p = [w[0], 0.5 * (w[0] + w[1]), w[1]].map(|share| base.point(at(share).x, at(share).y));
+        let uv = (at(w[0]), at(w[1]));
         let course = Course::Line(uv.0.into(), uv.1.into());
-        Piece { strand, border: border.clone(), course, uv, p: (p, p, p), seam: false, rim: true }
+        Piece { strand, border: border.clone(), course, uv, p: p.into(), seam: false, rim: true }
     };
     cuts.windows(2).map(piece).collect()
 }

@@ -51,8 +51,9 @@ struct Run {
     parts: usize,
 }
 
-/// Joins parts that touch in both parameters; `rects` ascend in `a`.
+/// Joins parts that touch in both parameters but for rounding; `rects` ascend in `a`.
 fn runs(rects: &[Rect]) -> Vec<Run> {
+    let beyond = |t: f64, end: f64| t > end + EXACT * EPSILON * t.abs().max(end.abs());
     let (mut open, mut done): (Vec<Run>, Vec<Run>) = (Vec::new(), Vec::new());
     for rect in rects {
         let mut joined = Run { a: rect.a, b: rect.b, parts: 1 };
@@ -60,9 +61,9 @@ fn runs(rects: &[Rect]) -> Vec<Run> {
         while i < open.len() {
             job::look();
             let run = open[i];
-            if run.a.1 < rect.a.0 {
+            if beyond(rect.a.0, run.a.1) {
                 done.push(open.swap_remove(i));
-            } else if run.b.0 <= joined.b.1 && joined.b.0 <= run.b.1 {
+            } else if !beyond(run.b.0, joined.b.1) && !beyond(joined.b.0, run.b.1) {
                 open.swap_remove(i);
                 joined = Run {
                     a: (run.a.0.min(joined.a.0), run.a.1.max(joined.a.1)),
