@@ -9,6 +9,15 @@ use crate::base::tolerance::Tolerance;
 const MOST_PIECES: usize = 1 << 16;
 
 impl Curve {
+    /// Whether the rational B-spline form is the curve itself.
+    pub fn is_spline(&self) -> bool {
+        match self.shape() {
+            Shape::Line(..) | Shape::Arc(_) | Shape::Nurbs(_) => true,
+            Shape::Composite(c) => c.pieces.iter().all(Self::is_spline),
+            Shape::Helix(_) | Shape::Offset(_) => false,
+        }
+    }
+
     /// The rational B-spline form; exact where there is one, else within `tolerance.point`.
     pub fn to_nurbs(&self, tolerance: &Tolerance) -> Result<Nurbs> {
         match self.shape() {

@@ -55,6 +55,7 @@ mod trilateral_spread;
 mod trim;
 mod weights;
 
+pub use as_net::{NetForm, Off};
 pub use breaks::chain_breaks;
 pub use carry::{Way, carried};
 pub use closest::{Closest, Nearest, closest};

@@ -49,7 +49,7 @@ pub fn offset(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tole
     let square = match surface.domain() {
         Domain::Triangle => {
             let fine = Tolerance { point: BELOW * tolerance.point, ..*tolerance };
-            surface.to_net(&fine)?.map(|net| net.surface(SurfaceKind::Nurbs, surface.origin(), tolerance))
+            surface.to_net(&fine)?.map(|form| form.net.surface(SurfaceKind::Nurbs, surface.origin(), tolerance))
         }
         _ => None,
     };

@@ -179,7 +179,7 @@ impl Maker<'_> {
 
     fn surface(&mut self, surface: &Surface) -> Result<u32, Damage> {
         match surface.to_net(&self.scale.tolerance)? {
-            Some(net) => Ok(self.net(&net, Role::Free)),
+            Some(form) => Ok(self.net(&form.net, Role::Free)),
             None if surface.domain() == Domain::Loop => self.bordered(surface),
             None => Err(damage("IGES has no place for a plane without a border")),
         }
@@ -201,15 +201,16 @@ impl Maker<'_> {
 
     /// A surface inside loops: its net, and each loop in (u, v) and in space.
     fn bordered(&mut self, surface: &Surface) -> Result<u32, Damage> {
-        let base = match surface.ground_net(&self.scale.tolerance)? {
-            Some(net) => self.net(&net, Role::Part),
-            None => self.plane(surface)?,
+        let ground = surface.ground_net(&self.scale.tolerance)?.map(|form| Base::Net(form.net, [0.0, 1.0, 0.0, 1.0]));
+        let base = match &ground {
+            Some(Base::Net(net, _)) => self.net(net, Role::Part),
+            _ => self.plane(surface)?,
         };
         let (mut first, mut borders) = (0, Vec::new());
         for n in surface.loops() {
             let (mut in_uv, mut spaces) = (Vec::new(), Vec::new());
             for k in first..first + n {
-                let (uv, in_space) = self.border(surface, k)?;
+                let (uv, in_space) = self.border(surface, ground.as_ref(), k)?;
                 in_uv.push(uv);
                 spaces.extend(in_space.map(|c| self.curve(&c, Role::Part, true)).transpose()?);
             }
@@ -262,7 +263,7 @@ impl Maker<'_> {
     }
 
     /// One side in the (u, v) of the net and in space, in the loop's direction; no curve in space along a pole.
-    fn border(&self, surface: &Surface, k: usize) -> Result<(Curve, Option<Curve>), Damage> {
+    fn border(&self, surface: &Surface, ground: Option<&Base>, k: usize) -> Result<(Curve, Option<Curve>), Damage> {
         let tolerance = &self.scale.tolerance;
         let origin = surface.origin();
         let over_net = |(u, v): (f64, f64)| match surface.ground() {
@@ -273,8 +274,7 @@ impl Maker<'_> {
         let Side::Chain { chain, from, to } = surface.side(k) else {
             let (a, b) = surface.border_line(k).ok_or_else(lost)?;
             let line = build::line(over_net(a), over_net(b), origin)?;
-            let (net, square) = (surface.ground_net(tolerance)?, [0.0, 1.0, 0.0, 1.0]);
-            let space = net.map(|net| composed(&Base::Net(net, square), &line, tolerance, origin)).transpose()?.flatten();
+            let space = ground.map(|net| composed(net, &line, tolerance, origin)).transpose()?.flatten();
             return Ok((line, space));
         };
         let part = chain.slice(from.min(to), from.max(to), tolerance)?.to_curve()?;

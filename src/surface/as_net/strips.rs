@@ -1,90 +1,28 @@
-//! Any mapped surface as a rational B-spline: exact where it is one, else bicubic pieces within the tolerance.
+//! A mapped surface as bicubic pieces within the tolerance, where it is no sum of curves.
 //!
 //! Each piece is the bicubic Hermite patch of the surface's own derivatives at its corners, so neighbours agree; where
 //! the surface leaves a piece by more than the tolerance allows, its whole strip is halved.
 
 use glam::{DVec3, DVec4};
 
-use super::core::{Domain, Surface};
-use super::nurbs::NurbsSurface;
-use super::offset::beside;
-use super::rail::Lean;
-use super::revolve::Axis;
-use super::shape::Shape;
-use super::sweep::Path;
-use super::{Jet2, extrude, revolve};
+use super::super::Jet2;
+use super::super::core::{Domain, Surface};
+use super::super::nurbs::NurbsSurface;
+use super::super::offset::beside;
+use super::super::rail::Lean;
 use crate::base::fault::{CurveFault, Result};
 use crate::base::tolerance::{EPSILON, Tolerance};
-use crate::network::Chain;
 
 /// Strips in one direction at most.
 const MOST_STRIPS: usize = 1 << 10;
 /// Places inside a strip at which the pieces are compared with the surface.
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
-impl Surface {
-    /// The rational B-spline form; for sweeps exact as far as their profile is one, else within `tolerance.point`.
-    ///
-    /// A triangle becomes a net with one row in its last corner. `None` for planes without a map; fails with E413 where
-    /// too many pieces would be needed.
-    pub fn to_net(&self, tolerance: &Tolerance) -> Result<Option<NurbsSurface>> {
-        let parts = self.parts();
-        if matches!(parts.domain, Domain::Loop | Domain::Unbounded) {
-            return Ok(None);
-        }
-        let net = match &parts.shape {
-            Shape::Nurbs(net) => net.clone(),
-            Shape::Sweep(sweep) => match sweep.profile().chain() {
-                Some(profile) => swept(profile, sweep.path(), tolerance)?,
-                None => return Fit::new(self, tolerance).run().map(Some),
-            },
-            _ => return Fit::new(self, tolerance).run().map(Some),
-        };
-        Ok(Some(if parts.flipped { flipped(net) } else { net }))
-    }
-}
-
-impl Surface {
-    /// The surface below a trimmed one as a rational B-spline in the same (u, v), within `tolerance.point`; `None` for a plane.
-    ///
-    /// Over a triangle (u, v) is the net's (u / (1 − v), v). Fails like [`Surface::to_net`].
-    pub fn ground_net(&self, tolerance: &Tolerance) -> Result<Option<NurbsSurface>> {
-        let whole = self.untrimmed();
-        match &whole.parts().shape {
-            Shape::Plane(_) => Ok(None),
-            Shape::Nurbs(net) => Ok(Some(if whole.parts().flipped { flipped(net.clone()) } else { net.clone() })),
-            _ => Fit::new(&whole, tolerance).run().map(Some),
-        }
-    }
-}
-
-impl Surface {
-    /// A net within `tolerance.point` of the points at a distance along the normals of a smooth surface over a square.
-    pub(super) fn offset_net(&self, distance: f64, tolerance: &Tolerance) -> Result<NurbsSurface> {
-        Fit { beside: distance, ..Fit::new(self, tolerance) }.run()
-    }
-}
-
-fn swept(profile: &Chain, path: Path, tolerance: &Tolerance) -> Result<NurbsSurface> {
-    let profile = profile.to_curve()?.to_nurbs(tolerance)?;
-    Ok(match path {
-        Path::Straight { by } => extrude::net(&profile, by),
-        Path::Turn { about, axis, angle } => revolve::net(&profile, &Axis { about, direction: axis }, angle),
-    })
-}
-
-/// v backwards.
-fn flipped(net: NurbsSurface) -> NurbsSurface {
-    let poles = net.poles.chunks_exact(net.counts.0).rev().flatten().copied().collect();
-    let knots = (net.knots.0.clone(), net.knots.1.iter().rev().map(|k| 1.0 - k).collect());
-    NurbsSurface { poles, knots, ..net }
-}
-
 /// A parameter of the square, from one side.
 type At = (f64, Lean);
 
 /// Bicubic pieces in the making.
-struct Fit<'s> {
+pub struct Fit<'s> {
     surface: &'s Surface,
     tolerance: &'s Tolerance,
     us: Vec<f64>,
@@ -94,7 +32,8 @@ struct Fit<'s> {
 }
 
 impl<'s> Fit<'s> {
-    fn new(surface: &'s Surface, tolerance: &'s Tolerance) -> Self {
+    /// Pieces of a surface over a square or a triangle.
+    pub fn new(surface: &'s Surface, tolerance: &'s Tolerance) -> Self {
         let (us, vs) = surface.breaks();
         let stops = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
         // A triangle is read over the square: its rows all run over 0…1.
@@ -121,7 +60,13 @@ impl<'s> Fit<'s> {
         .collect()
     }
 
-    fn run(mut self) -> Result<NurbsSurface> {
+    /// Of the points at a distance along the normals instead.
+    pub fn beside(self, beside: f64) -> Self {
+        Self { beside, ..self }
+    }
+
+    /// The net; E413 where too many pieces would be needed.
+    pub fn run(mut self) -> Result<NurbsSurface> {
         loop {
             let net = self.net();
             let (split_u, split_v) = self.off(&net);
