@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::sheet::{Line, Patch, solved};
-use crate::base::tolerance::{EPSILON, SINGULAR};
+use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
 use crate::surface::core::Jet2;
 use crate::surface::foot::{self, Footing};
 
@@ -29,6 +29,8 @@ pub(super) struct Pair<'a> {
 
 /// Share of the tolerance within which a place is on both.
 const EXACT: f64 = 1.0 / 1024.0;
+/// Two points are one when they are no farther apart than so many roundings.
+const ROUNDINGS: f64 = 16.0;
 /// Newton steps.
 const STEPS: usize = 24;
 /// Longest Newton step, as a share of the domain.
@@ -51,6 +53,7 @@ impl Pair<'_> {
     /// The common place near two others: on a plane through a point with a normal, or the nearest one.
     pub fn correct(&self, a: DVec2, b: DVec2, plane: Option<(DVec3, DVec3)>) -> Option<Spot> {
         let (mut a, mut b) = (a, b);
+        let mut held = false;
         for _ in 0..STEPS {
             let (s, t) = self.jets(a, b);
             let (p, n) = plane.unwrap_or_else(|| {
@@ -64,7 +67,9 @@ impl Pair<'_> {
             }
             let leap = step.abs().max_element() / LEAP;
             let step = if leap > 1.0 { step / leap } else { step };
-            let (next_a, next_b) = (self.a.hold(a + DVec2::new(step.x, step.y)), self.b.hold(b + DVec2::new(step.z, step.w)));
+            let (free_a, free_b) = (a + DVec2::new(step.x, step.y), b + DVec2::new(step.z, step.w));
+            let (next_a, next_b) = (self.a.hold(free_a), self.b.hold(free_b));
+            held = (next_a - free_a).abs().max_element().max((next_b - free_b).abs().max_element()) > NUDGE * NUDGE;
             let moved = (next_a - a).abs().max_element().max((next_b - b).abs().max_element());
             (a, b) = (next_a, next_b);
             if moved <= EPSILON {
@@ -72,9 +77,18 @@ impl Pair<'_> {
             }
         }
         let found = self.spot(a, b)?;
+        // Within the tolerance of a place beyond a border is on neither line: one goes on beyond, the other not.
+        if held && !self.exact(&found) {
+            return None;
+        }
         // Held back at a border it may be on both and yet not where it was to be.
         let there = plane.is_none_or(|(p, n)| (found.p - p).dot(n).abs() <= self.point);
         there.then_some(found)
+    }
+
+    /// Whether the two points of a place are one but for rounding.
+    fn exact(&self, spot: &Spot) -> bool {
+        self.a.jet(spot.a).p.distance(self.b.jet(spot.b).p) <= ROUNDINGS * EPSILON * spot.p.abs().max_element()
     }
 
     /// The place where the common line leaves one patch over a border: `first` says which patch the line belongs to.
