@@ -163,6 +163,7 @@ codes! {
     now "E672", "set-in-part", "a set would hold a part of a curve";
     now "E673", "blend-too-large", "a ball is too large for the edge that it rounds";
     now "E674", "blend-no-edge", "two surfaces have no edge that can be rounded";
+    now "N677", "near-its-curves", "a surface keeps to its curves within a stated distance";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";

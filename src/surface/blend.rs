@@ -204,11 +204,8 @@ impl Blend {
     /// Interior network lines and kinks.
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         let inner = |axis: &Axis, rails: &[Rail]| {
-            let kinks = rails.iter().filter_map(|rail| match rail {
-                Rail::Chain { kinks, .. } => Some(kinks.iter().map(|k| k.0)),
-                _ => None,
-            });
-            tidy(axis.nodes.iter().copied().chain(kinks.flatten()).collect(), EPSILON)
+            let kinks = rails.iter().flat_map(Rail::kinks).map(|k| k.0);
+            tidy(axis.nodes.iter().copied().chain(kinks).collect(), EPSILON)
         };
         (inner(&self.u, &self.along_u), inner(&self.v, &self.along_v))
     }
@@ -217,16 +214,8 @@ impl Blend {
     ///
     /// |U| is at most Λ_u max|F| + Λ_v max|G| + Λ_u Λ_v max|P| about any centre, Λ the sums of absolute blending values.
     pub fn hull(&self) -> Box3 {
-        let chains = self.along_u.iter().chain(&self.along_v).filter_map(Rail::chain);
-        let mut box3 = Box3::of(self.nodes());
-        for rail in &self.along_u {
-            if let Rail::Point(p) = rail {
-                box3 = box3.with(*p);
-            }
-        }
-        for run in chains.flat_map(|chain| chain.runs()) {
-            box3 = box3.union(run.curve.bbox());
-        }
+        let rails = self.along_u.iter().chain(&self.along_v);
+        let box3 = rails.fold(Box3::of(self.nodes()), |all, rail| all.union(rail.hull()));
         let (a, b) = (self.u.lebesgue(), self.v.lebesgue());
         let reach = if self.along_v.is_empty() { b } else { a + b + a * b };
         let (center, half) = (box3.center(), (box3.max - box3.min) * (0.5 * reach));

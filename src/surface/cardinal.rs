@@ -16,6 +16,57 @@ pub fn slopes(nodes: &[f64], periodic: bool) -> Vec<Vec<f64>> {
     if periodic { around(&steps) } else { open(&steps) }
 }
 
+/// What a spline does at one of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Its first two pieces are one cubic ("not a knot").
+    Plain,
+    /// It does not bend.
+    Natural,
+    /// It has a given slope.
+    Slope,
+}
+
+/// [`slopes`] of an open spline with other ends: two columns more, for given slopes at the first and at the last node.
+pub fn ended(nodes: &[f64], ends: (End, End)) -> Vec<Vec<f64>> {
+    let steps: Vec<f64> = nodes.windows(2).map(|w| w[1] - w[0]).collect();
+    let n = nodes.len();
+    let mut rows = Rows::wide(n, n + 2);
+    for k in 1..n - 1 {
+        rows.smooth(k, (k - 1, k, k + 1), (steps[k - 1], steps[k]));
+    }
+    for (last, end) in [(false, ends.0), (true, ends.1)] {
+        let node = |k: usize| if last { n - 1 - k } else { k };
+        let sign = if last { -1.0 } else { 1.0 };
+        let first = if last { steps[n - 2] } else { steps[0] };
+        let (mid, next) = match end {
+            End::Slope => {
+                rows.right[node(0)][n + usize::from(last)] = 1.0;
+                (1.0, 0.0)
+            }
+            // Of two nodes a plain end makes the cubic a parabola.
+            End::Plain if n == 2 => {
+                add_secant(&mut rows.right[node(0)], (node(0), node(1)), sign * 2.0 / first);
+                (1.0, 1.0)
+            }
+            End::Plain => {
+                let second = if last { steps[n - 3] } else { steps[1] };
+                let sum = first + second;
+                add_secant(&mut rows.right[node(0)], (node(0), node(1)), sign * (first + 2.0 * sum) * second / sum / first);
+                add_secant(&mut rows.right[node(0)], (node(1), node(2)), sign * first * first / sum / second);
+                (second, sum)
+            }
+            End::Natural => {
+                add_secant(&mut rows.right[node(0)], (node(0), node(1)), sign * 3.0 / first);
+                (2.0, 1.0)
+            }
+        };
+        rows.mid[node(0)] = mid;
+        (if last { &mut rows.low } else { &mut rows.high })[node(0)] = next;
+    }
+    rows.solved()
+}
+
 /// The row of a difference quotient over one cell, times a factor.
 fn add_secant(row: &mut [f64], (from, to): (usize, usize), by: f64) {
     row[from] -= by;
@@ -31,10 +82,7 @@ fn open(steps: &[f64]) -> Vec<Vec<f64>> {
     let parabola = n == 3;
     let mut rows = Rows::new(n);
     for k in 1..n - 1 {
-        let (a, b) = (steps[k - 1], steps[k]);
-        (rows.low[k], rows.mid[k], rows.high[k]) = (b, 2.0 * (a + b), a);
-        add_secant(&mut rows.right[k], (k - 1, k), 3.0 * b / a);
-        add_secant(&mut rows.right[k], (k, k + 1), 3.0 * a / b);
+        rows.smooth(k, (k - 1, k, k + 1), (steps[k - 1], steps[k]));
     }
     for last in [false, true] {
         // Cells and nodes counted from this end; a difference quotient has the same sign from either end.
@@ -61,10 +109,7 @@ fn around(steps: &[f64]) -> Vec<Vec<f64>> {
     let mut rows = Rows::new(n);
     for k in 0..n {
         let (before, after) = ((k + n - 1) % n, (k + 1) % n);
-        let (a, b) = (steps[before], steps[k]);
-        (rows.low[k], rows.mid[k], rows.high[k]) = (b, 2.0 * (a + b), a);
-        add_secant(&mut rows.right[k], (before, k), 3.0 * b / a);
-        add_secant(&mut rows.right[k], (k, after), 3.0 * a / b);
+        rows.smooth(k, (before, k, after), (steps[before], steps[k]));
     }
     let mut slopes = if n <= 2 {
         // Both neighbours are one node: the slopes are equal.
@@ -90,7 +135,18 @@ struct Rows {
 
 impl Rows {
     fn new(n: usize) -> Self {
-        Self { low: vec![0.0; n], mid: vec![0.0; n], high: vec![0.0; n], right: vec![vec![0.0; n]; n] }
+        Self::wide(n, n)
+    }
+
+    fn wide(n: usize, width: usize) -> Self {
+        Self { low: vec![0.0; n], mid: vec![0.0; n], high: vec![0.0; n], right: vec![vec![0.0; width]; n] }
+    }
+
+    /// Row `k`: the bends of the pieces before and after a node are equal.
+    fn smooth(&mut self, k: usize, (before, at, after): (usize, usize, usize), (a, b): (f64, f64)) {
+        (self.low[k], self.mid[k], self.high[k]) = (b, 2.0 * (a + b), a);
+        add_secant(&mut self.right[k], (before, at), 3.0 * b / a);
+        add_secant(&mut self.right[k], (at, after), 3.0 * a / b);
     }
 
     /// Elimination without exchange: each pivot stays above the sum of what is left in its row.
@@ -155,6 +211,29 @@ mod tests {
                 assert!((found - slope(x[k])).abs() < 1e-12, "{n} {k}: {found} {}", slope(x[k]));
                 assert!(row.iter().sum::<f64>().abs() < 1e-11);
             }
+        }
+    }
+
+    #[test]
+    fn ends_are_as_they_are_said() {
+        let nodes = [0.0, 0.15, 0.4, 0.55, 1.0];
+        let cubic = |x: f64| (math::powi(x - 0.3, 3) + x, 3.0 * (x - 0.3) * (x - 0.3) + 1.0);
+        for n in 2..=nodes.len() {
+            let x = &nodes[..n];
+            let given = |rows: &[Vec<f64>], k: usize| {
+                let values = x.iter().map(|x| cubic(*x).0).chain([cubic(x[0]).1, cubic(x[n - 1]).1]);
+                rows[k].iter().zip(values).map(|(d, y)| d * y).sum::<f64>()
+            };
+            let both = ended(x, (End::Slope, End::Slope));
+            (0..n).for_each(|k| assert!((given(&both, k) - cubic(x[k]).1).abs() < 1e-12, "{n} {k}"));
+            if n > 2 {
+                let one = ended(x, (End::Slope, End::Plain));
+                (0..n).for_each(|k| assert!((given(&one, k) - cubic(x[k]).1).abs() < 1e-12, "{n} {k}"));
+            }
+            // Without a bend at its start the first piece ends with the slope (3 secants − its first slope) / 2.
+            let natural = ended(x, (End::Natural, End::Slope));
+            let secant = (cubic(x[1]).0 - cubic(x[0]).0) / (x[1] - x[0]);
+            assert!((2.0 * given(&natural, 0) + given(&natural, 1) - 3.0 * secant).abs() < 1e-12, "{n}");
         }
     }
 

@@ -293,7 +293,12 @@ impl Surface {
     /// found; empty for surfaces that no curves were sorted for.
     pub fn families(&self) -> (Vec<Option<&Chain>>, Vec<Option<&Chain>>) {
         match &self.0.parts.shape {
-            Shape::Blend(blend) => (blend.along_u().iter().map(Rail::chain).collect(), blend.along_v().iter().map(Rail::chain).collect()),
+            Shape::Blend(blend) => {
+                fn given(rails: &[Rail]) -> Vec<Option<&Chain>> {
+                    rails.iter().filter(|rail| !matches!(rail, Rail::Mixed(_))).map(Rail::chain).collect()
+                }
+                (given(blend.along_u()), given(blend.along_v()))
+            }
             Shape::Trilateral(sides) => sides.families(),
             _ => (Vec::new(), Vec::new()),
         }

@@ -90,6 +90,9 @@ pub fn blended(of: Shares, derivative: usize, order: usize, mixed: &dyn Fn(&[f64
 impl Rail {
     /// Its bounds over `x0 < x1`.
     pub fn line(&self, x0: f64, x1: f64) -> Line {
+        if let Self::Mixed(sum) = self {
+            return sum.line(x0, x1);
+        }
         let half = 0.5 * (x1 - x0);
         let mid = self.jet(0.5 * (x0 + x1), Lean::After);
         let Self::Chain { chain, map, .. } = self else {

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
+use super::mixed::Mixed;
 use super::reparam::Map;
+use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::{Jet, Motion};
@@ -38,6 +40,8 @@ pub enum Rail {
     },
     /// A degenerate curve.
     Point(DVec3),
+    /// A fixed sum of others.
+    Mixed(Box<Mixed>),
     /// A line of a formula at a constant u or v, with the formula's own parameter: points only.
     #[cfg(test)]
     Formula {
@@ -55,6 +59,7 @@ impl Content for Rail {
         match self {
             Self::Chain { chain, map, kinks } => (0u8, (chain, map, kinks)).tell(to),
             Self::Point(p) => (1u8, *p).tell(to),
+            Self::Mixed(sum) => (3u8, sum.as_ref()).tell(to),
             #[cfg(test)]
             Self::Formula { at, along_u, .. } => (2u8, (*at, *along_u)).tell(to),
         }
@@ -71,6 +76,7 @@ impl Rail {
     pub fn jet(&self, x: f64, lean: Lean) -> Jet {
         match self {
             Self::Point(p) => Jet { p: *p, ..Jet::default() },
+            Self::Mixed(sum) => sum.jet(x, lean),
             #[cfg(test)]
             Self::Formula { .. } => Jet { p: self.point(x), ..Jet::default() },
             Self::Chain { chain, map, kinks } => {
@@ -90,6 +96,7 @@ impl Rail {
     pub fn point(&self, x: f64) -> DVec3 {
         match self {
             Self::Point(p) => *p,
+            Self::Mixed(sum) => sum.jet(x, Lean::After).p,
             Self::Chain { chain, map, .. } => chain.point(map.value(x)),
             #[cfg(test)]
             Self::Formula { f, at, along_u } => {
@@ -104,6 +111,9 @@ impl Rail {
 
     /// Points at many parameters in ascending or descending order.
     pub fn points(&self, xs: &[f64]) -> Vec<DVec3> {
+        if let Self::Mixed(sum) = self {
+            return sum.points(xs);
+        }
         let Self::Chain { chain, map, .. } = self else { return xs.iter().map(|&x| self.point(x)).collect() };
         let mut fractions: Vec<f64> = xs.iter().map(|&x| map.value(x)).collect();
         let mut points = vec![DVec3::ZERO; xs.len()];
@@ -122,11 +132,12 @@ impl Rail {
     pub fn length(&self) -> f64 {
         match self {
             Self::Chain { chain, .. } => chain.length(),
+            Self::Mixed(sum) => sum.length(),
             _ => 0.0,
         }
     }
 
-    /// The chain, unless this is a pole.
+    /// The chain; none of a pole or a sum.
     pub fn chain(&self) -> Option<&Chain> {
         match self {
             Self::Chain { chain, .. } => Some(chain),
@@ -136,6 +147,9 @@ impl Rail {
 
     /// Surface parameters of the chain's kinks with their fractions, ends left out.
     pub fn kink_lines(&self, tolerance: &Tolerance) -> Vec<(f64, f64)> {
+        if let Self::Mixed(sum) = self {
+            return sum.kink_lines(tolerance);
+        }
         let Self::Chain { chain, map, .. } = self else { return Vec::new() };
         let end = 1.0 - tolerance.parameter;
         chain.kinks(tolerance).iter().map(|&f| (map.inverse(f), f)).filter(|(x, _)| *x > tolerance.parameter && *x < end).collect()
@@ -143,13 +157,38 @@ impl Rail {
 
     /// Tells the rail which kink lines of the surface its own kinks became.
     pub fn set_kinks(&mut self, lines: Vec<(f64, f64)>) {
-        if let Self::Chain { kinks, .. } = self {
-            *kinks = lines;
+        match self {
+            Self::Chain { kinks, .. } => *kinks = lines,
+            Self::Mixed(sum) => sum.set_kinks(&lines),
+            _ => {}
+        }
+    }
+
+    /// Kink lines of the surface that are its own, with the fractions of the kinks.
+    pub fn kinks(&self) -> Vec<(f64, f64)> {
+        match self {
+            Self::Chain { kinks, .. } => kinks.clone(),
+            Self::Mixed(sum) => sum.kinks(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A box that holds it.
+    pub fn hull(&self) -> Box3 {
+        match self {
+            Self::Chain { chain, .. } => chain.runs().iter().fold(Box3::EMPTY, |all, run| all.union(run.curve.bbox())),
+            Self::Point(p) => Box3::of([*p]),
+            Self::Mixed(sum) => sum.hull(),
+            #[cfg(test)]
+            Self::Formula { .. } => Box3::EMPTY,
         }
     }
 
     /// Surface parameters where this rail is less than smooth: joints, knots, nodes of the map.
     pub fn breaks(&self, out: &mut Vec<f64>) {
+        if let Self::Mixed(sum) = self {
+            sum.breaks(out);
+        }
         if let Self::Chain { chain, map, kinks } = self {
             out.extend_from_slice(map.breaks());
             out.extend(kinks.iter().map(|k| k.0));
@@ -161,6 +200,7 @@ impl Rail {
     pub fn moved(&self, motion: &Motion) -> Self {
         match self {
             Self::Point(p) => Self::Point(motion.point(*p)),
+            Self::Mixed(sum) => Self::Mixed(Box::new(sum.moved(motion))),
             Self::Chain { chain, map, kinks } => Self::Chain { chain: chain.moved(motion), map: map.clone(), kinks: kinks.clone() },
             #[cfg(test)]
             Self::Formula { .. } => self.clone(),

@@ -138,7 +138,6 @@ impl Axis {
         if self.rule.is_spline() { 2 } else { self.active() }
     }
 
-    #[cfg(test)]
     /// The blending value of the curve at node `i`, all terms counted.
     pub fn whole(&self, weights: &Weights, i: usize) -> [f64; 3] {
         let mut sum = [0.0; 3];

@@ -39,6 +39,36 @@ pub enum NetFault {
         /// Where they meet.
         at: DVec3,
     },
+    /// N677: the curves of a net miss each other within what is allowed.
+    Gap {
+        /// The surface.
+        surface: Origin,
+        /// The curve along u of the pair that is farthest apart.
+        profile: Origin,
+        /// The curve along v.
+        guide: Origin,
+        /// How far apart they are.
+        gap: f64,
+        /// Between the two.
+        at: DVec3,
+        /// How many pairs miss each other by more than the model's tolerance.
+        pairs: usize,
+    },
+    /// N677: a skin keeps to its sections within what is allowed.
+    Smoothed {
+        /// The surface.
+        surface: Origin,
+        /// The section that it leaves most.
+        section: Origin,
+        /// By how much.
+        off: f64,
+        /// Where, on the section.
+        at: DVec3,
+        /// Spans across.
+        spans: usize,
+        /// Spans of the skin through all sections.
+        given: usize,
+    },
     /// E643: a curve meets the other family in an order of its own.
     Order {
         /// The curve.
@@ -91,6 +121,38 @@ impl Describe for NetFault {
                 "guides may end in one pole and share nothing else"
             } else {
                 "profiles share no point; curves that end in one pole are guides"
+            }),
+            Self::Gap { surface, profile, guide, gap, at, pairs } => Report::new(
+                "N677",
+                format!(
+                    "{} and {} miss each other by {} at {}; {} lies between them",
+                    say.quoted(*profile, "a profile"),
+                    say.quoted(*guide, "a guide"),
+                    say.length(*gap),
+                    say.point(*at),
+                    say.quoted(*surface, "the surface")
+                ),
+            )
+            .at(*profile, "this profile")
+            .at(*guide, "misses this guide")
+            .note(match pairs {
+                1 => "all others meet".to_owned(),
+                n => format!("{n} pairs of the net miss each other, this one most"),
+            }),
+            Self::Smoothed { surface, section, off, at, spans, given } => Report::new(
+                "N677",
+                format!(
+                    "{} leaves {} by {} at {}, and no section by more",
+                    say.quoted(*surface, "the surface"),
+                    say.quoted(*section, "a section"),
+                    say.length(*off),
+                    say.point(*at)
+                ),
+            )
+            .at(*section, "left most")
+            .note(match spans {
+                1 => format!("one span across; {given} would go through all sections"),
+                n => format!("{n} spans across; {given} would go through all sections"),
             }),
             Self::Order { curve, guide, a, b, first, second } => Report::new(
                 "E643",

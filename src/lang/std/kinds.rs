@@ -12,10 +12,10 @@ use crate::surface::Surface;
 
 /// Declares an enum whose variants are types of the language.
 macro_rules! one_of {
-    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident($($inner:ty),+) = $ty:expr, $pattern:pat => $out:expr;)+ }) => {
+    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident($($inner:ty),*) = $ty:expr, $pattern:pat => $out:expr;)+ }) => {
         $(#[$doc])*
         #[derive(Clone, Debug)]
-        pub enum $name { $($(#[$vdoc])* $variant($($inner),+)),+ }
+        pub enum $name { $($(#[$vdoc])* $variant($($inner),*)),+ }
         impl FromValue for $name {
             const TY: Ty = Ty::OneOf(&[$($ty),+]);
             fn from_value(value: Value) -> Option<Self> {
@@ -189,6 +189,26 @@ impl Faces {
     pub fn snap(&self) -> Option<f64> {
         let of = |value: &Value| if let Value::Shell(s) = value { s.snap.map(|snap| snap.0) } else { None };
         self.0.iter().filter_map(of).reduce(f64::max)
+    }
+}
+
+one_of! {
+    /// A section of a skin.
+    SectionKind {
+        /// A curve.
+        Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
+        /// A point, where it begins or ends.
+        Point(DVec3) = Ty::Point, Value::Vector(p, _) | Value::Node(p) => Self::Point(p);
+    }
+}
+
+one_of! {
+    /// How a skin leaves its first section or arrives at its last one.
+    EndKind {
+        /// The word `natural`.
+        Natural() = Ty::Choice(&["natural"]), Value::Word(_) => Self::Natural();
+        /// A direction.
+        Direction(DVec3) = Ty::Direction, Value::Vector(d, _) => Self::Direction(d);
     }
 }
 

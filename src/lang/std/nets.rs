@@ -1,15 +1,17 @@
 //! Constructors of surfaces through nets of profiles and guides, and through sections.
 
-use crate::base::fault::ValueFault;
+use crate::base::fault::{Say, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
 use crate::lang::cx::Stop;
+use crate::lang::std::curves::unit;
+use crate::lang::std::kinds::{EndKind, SectionKind};
 use crate::lang::std::surfaces::finished;
 use crate::lang::types::Length;
 use crate::network::Chain;
 use crate::network::net;
 use crate::surface::coons::{self, Grid, Method, Settings};
-use crate::surface::skin::{self, Across};
+use crate::surface::skin::{self, Across, Leaving, Section};
 use crate::surface::{Reparam, Surface};
 
 /// The model's tolerance, with another distance at which curves meet.
@@ -61,42 +63,106 @@ builtins! {
         let (flow, nodes) = net::of_net(&chains, count, &near)?;
         let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
         let settings = Settings { method: Method::Gordon, reparam: Reparam::Smooth, origin: cx.origin() };
-        let (surface, notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
+        let (surface, mut notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
+        notes.extend(surface.gap_note(&tolerance));
         finished(cx, surface, &notes)
     };
 
     /// Smooth surface through sections, one after the other.
     ///
     /// It contains every section. They come in order, each in any direction: each is read as it runs nearest to the one before, a
-    /// closed one from the start that twists least, corner to corner. All are open or all closed. u runs along the sections.
+    /// closed one from the start that twists least, corner to corner. All are open or all closed; the first and the last one may be
+    /// a point, where the surface has a pole. u runs along the sections. `start:` and `end:` say how it leaves the first one and
+    /// arrives at the last one: in a direction, or `natural`, without a bend. At a point a direction makes it round: flat across
+    /// that direction. `smooth:` allows to leave inner sections by as much for fewer spans, and tells by how much it does (N677).
     /// ```loft
     /// let sections = [for i in 0..4: circle(center: (0, 0, i * 1m), radius: 1m + 300mm * sin(i * 60deg))]
     /// surface vase = skin(sections)
+    /// surface egg = skin([(0, 0, -1m), sections, (0, 0, 4m)], start: (0, 0, 1), end: (0, 0, 1))
     /// ```
     fn skin(
-        /// Two or more curves in order; three or more where they close.
-        sections: Vec<Chain>,
+        /// Two or more curves in order; three or more where they close. The first and the last may be points.
+        sections: Vec<SectionKind>,
         /// How the surface runs between them: `cubic` or `linear`, which has a kink along each inner section.
         across: AcrossWord = "cubic",
         /// Whether the last section is joined to the first one.
         closed: bool = "false",
-    ) -> Surface = |cx, sections, across, closed| {
+        /// Its direction at the first section, or `natural`.
+        start: Option<EndKind>,
+        /// Its direction at the last section, or `natural`.
+        end: Option<EndKind>,
+        /// How far inner sections may be left for fewer spans.
+        smooth: Option<Length>,
+    ) -> Surface = |cx, sections, across, closed, start, end, smooth| {
         let tolerance = cx.tolerance()?;
-        let least = if closed { 3 } else { 2 };
-        if sections.len() < least {
-            let (found, range) = (format!("{} sections", sections.len()), format!("at least {least}"));
-            return Err(ValueFault::OutsideRange { argument: "sections", found, range }.into());
+        for (argument, said) in [("start", start.is_some()), ("end", end.is_some()), ("smooth", smooth.is_some())] {
+            if said && matches!(across, AcrossWord::Linear) {
+                return exclusive("splines, or `across: linear`", vec![argument, "across"]);
+            }
+            if said && closed && argument != "smooth" {
+                return exclusive("ends, or `closed: true`", vec![argument, "closed"]);
+            }
         }
-        let rings = sections.iter().filter(|c| c.is_closed(&tolerance)).count();
-        if rings != 0 && rings != sections.len() {
-            let (found, range) = (format!("{rings} closed of {} sections", sections.len()), "all open or all closed".to_owned());
-            return Err(ValueFault::OutsideRange { argument: "sections", found, range }.into());
-        }
+        let sections: Vec<Section> = sections.into_iter().map(|s| match s {
+            SectionKind::Curve(chain) => Section::Curve(chain),
+            SectionKind::Point(p) => Section::Point(p),
+        }).collect();
+        said_well(&sections, closed, &tolerance)?;
+        let smooth = match smooth {
+            Some(Length(by)) if by <= 0.0 || !by.is_finite() => {
+                let (found, range) = (cx.length(by), "above 0".to_owned());
+                return Err(ValueFault::OutsideRange { argument: "smooth", found, range }.into());
+            }
+            other => other.map(|by| by.0),
+        };
         let across = match across {
             AcrossWord::Cubic => Across::Cubic,
             AcrossWord::Linear => Across::Linear,
         };
-        let (surface, notes) = skin::skin(&sections, across, closed, cx.origin(), &tolerance)?;
+        let ends = (leaving(start, "start")?, leaving(end, "end")?);
+        let settings = skin::Settings { across, closed, ends, smooth, origin: cx.origin() };
+        let (surface, notes) = skin::skin(&sections, &settings, &tolerance)?;
         finished(cx, surface, &notes)
     };
+}
+
+fn exclusive<T>(what: &'static str, arguments: Vec<&'static str>) -> Result<T, Stop> {
+    Err(ValueFault::Exclusive { function: "skin", what, arguments, example: SKIN }.into())
+}
+
+const SKIN: &str = "skin([a, b, c], start: (0, 0, 1), end: natural), or skin([a, b, c], closed: true)";
+
+/// How a skin leaves a section.
+fn leaving(said: Option<EndKind>, argument: &'static str) -> Result<Leaving, Stop> {
+    match said {
+        None => Ok(Leaving::Plain),
+        Some(EndKind::Natural()) => Ok(Leaving::Natural),
+        Some(EndKind::Direction(d)) => Ok(Leaving::Along(unit(d, argument)?)),
+    }
+}
+
+/// E304 unless there are enough sections, all open or all closed, and points only where they may be.
+fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> Result<(), Stop> {
+    let wrong = |found: String, range: &str| -> Result<(), Stop> {
+        Err(ValueFault::OutsideRange { argument: "sections", found, range: range.to_owned() }.into())
+    };
+    let least = if closed { 3 } else { 2 };
+    if sections.len() < least {
+        return wrong(format!("{} sections", sections.len()), &format!("at least {least}"));
+    }
+    let is_point = |s: &Section| matches!(s, Section::Point(_));
+    let last = sections.len() - 1;
+    if let Some(k) = (0..=last).find(|k| is_point(&sections[*k]) && (closed || (*k != 0 && *k != last))) {
+        let may = if closed { "curves only where it is closed" } else { "points at the first and the last place only" };
+        return wrong(format!("a point at place {k}"), may);
+    }
+    if sections.iter().all(is_point) {
+        return wrong("points only".to_owned(), "a curve between them");
+    }
+    let curves = || sections.iter().filter_map(|s| if let Section::Curve(c) = s { Some(c) } else { None });
+    let (rings, all) = (curves().filter(|c| c.is_closed(tolerance)).count(), curves().count());
+    if rings != 0 && rings != all {
+        return wrong(format!("{rings} closed of {all} curves"), "all open or all closed");
+    }
+    Ok(())
 }

@@ -142,7 +142,7 @@ builtins! {
 crate::fields! {
     /// Curves across a surface that it is made through, in the order of u.
     ///
-    /// Sections of a sweep, curves along v of a net.
+    /// Sections of a sweep or a skin, curves along v of a net.
     fn stations(
         /// The surface.
         s: Surface,

@@ -1,19 +1,22 @@
 //! What a net's surface says of itself: its stations, and how smooth it is across them.
 
-use super::super::core::Surface;
+use super::super::core::{Surface, SurfaceKind};
 use super::super::rail::{Lean, Rail};
 use super::super::shape::Shape;
 use crate::base::math;
 use crate::network::Chain;
 
 impl Surface {
-    /// The curves along v that it is made through, by ascending u, each once; none where it is not made through curves.
+    /// The curves along v that it is made through, by ascending u, or the sections of a skin, by ascending v, each once; none where
+    /// it is not made through curves.
     pub fn stations(&self) -> Vec<Chain> {
-        let mut found: Vec<Chain> = match &self.parts().shape {
-            Shape::Blend(blend) => blend.along_v().iter().filter_map(Rail::chain).cloned().collect(),
-            _ => Vec::new(),
+        let of = |rails: &[Rail]| -> Vec<Chain> { rails.iter().filter_map(Rail::chain).cloned().collect() };
+        let (mut found, closed) = match &self.parts().shape {
+            Shape::Blend(blend) if blend.along_v().is_empty() && self.kind() == SurfaceKind::Skin => (of(blend.along_u()), self.closed().1),
+            Shape::Blend(blend) => (of(blend.along_v()), self.closed().0),
+            _ => (Vec::new(), false),
         };
-        if self.closed().0 && found.len() > 1 {
+        if closed && found.len() > 1 {
             found.pop();
         }
         found
@@ -24,10 +27,7 @@ impl Surface {
     pub fn patch_angle(&self) -> f64 {
         const PLACES: usize = 48;
         let Shape::Blend(blend) = &self.parts().shape else { return 0.0 };
-        let own_kinks = |rails: &[Rail]| -> Vec<f64> {
-            let each = rails.iter().filter_map(|rail| if let Rail::Chain { kinks, .. } = rail { Some(kinks) } else { None });
-            each.flatten().map(|k| k.0).collect()
-        };
+        let own_kinks = |rails: &[Rail]| -> Vec<f64> { rails.iter().flat_map(Rail::kinks).map(|k| k.0).collect() };
         let inner = |nodes: &[f64], kinks: Vec<f64>| -> Vec<f64> {
             let smooth = |x: &f64| !kinks.iter().any(|k| (k - x).abs() <= crate::base::tolerance::NUDGE);
             nodes[1..nodes.len() - 1].iter().copied().filter(smooth).collect()
