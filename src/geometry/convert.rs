@@ -9,26 +9,28 @@ use crate::base::tolerance::Tolerance;
 const MOST_PIECES: usize = 1 << 16;
 
 impl Curve {
-    /// Whether the rational B-spline form is the curve itself.
-    pub fn is_spline(&self) -> bool {
+    /// The rational B-spline that is the curve itself, if there is one.
+    pub fn exact_nurbs(&self) -> Option<Nurbs> {
         match self.shape() {
-            Shape::Line(..) | Shape::Arc(_) | Shape::Nurbs(_) => true,
-            Shape::Composite(c) => c.pieces.iter().all(Self::is_spline),
-            Shape::Helix(_) | Shape::Offset(_) => false,
+            Shape::Line(a, b) => Some(Nurbs::line(*a, *b)),
+            Shape::Arc(arc) => Some(arc.to_nurbs()),
+            Shape::Nurbs(c) => Some(c.as_ref().clone()),
+            Shape::Composite(c) => {
+                c.pieces.iter().map(Self::exact_nurbs).collect::<Option<Vec<Nurbs>>>().map(|pieces| Nurbs::joined(&pieces))
+            }
+            Shape::Helix(_) | Shape::Offset(_) => None,
         }
     }
 
     /// The rational B-spline form; exact where there is one, else within `tolerance.point`.
     pub fn to_nurbs(&self, tolerance: &Tolerance) -> Result<Nurbs> {
-        match self.shape() {
-            Shape::Line(a, b) => Ok(Nurbs::line(*a, *b)),
-            Shape::Arc(arc) => Ok(arc.to_nurbs()),
-            Shape::Nurbs(c) => Ok(c.as_ref().clone()),
-            Shape::Composite(c) => {
+        match (self.exact_nurbs(), self.shape()) {
+            (Some(exact), _) => Ok(exact),
+            (None, Shape::Composite(c)) => {
                 let pieces: Result<Vec<Nurbs>> = c.pieces.iter().map(|p| p.to_nurbs(tolerance)).collect();
                 Ok(Nurbs::joined(&pieces?))
             }
-            Shape::Helix(_) | Shape::Offset(_) => self.hermite(tolerance),
+            (None, _) => self.hermite(tolerance),
         }
     }
 

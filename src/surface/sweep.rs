@@ -118,6 +118,11 @@ impl Sweep {
         }
     }
 
+    /// Where a point of the profile, with its derivatives, is carried.
+    pub fn jet_of(&self, g: &Jet, u: f64) -> Jet2 {
+        self.carried(g, u)
+    }
+
     /// Point and derivatives, from the given side in v where they jump.
     pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
         self.carried(&self.profile.jet(v, lean.1), u)

@@ -17,12 +17,10 @@ use super::super::rail::{Lean, Rail};
 use super::super::weights::{Axis, Rule};
 use super::family::{Course, Family, Fitted};
 use super::splines::{Breaks, Hermite};
-use super::{NetForm, Off};
+use super::{DEGREES, NetForm, Off};
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Jet;
 
-/// Degrees that are tried; of the second one are knots that no curve asks for.
-const DEGREES: [usize; 2] = [3, 5];
 /// Parts of a cell over which blending functions are bounded.
 const PARTS: usize = 16;
 

@@ -21,7 +21,11 @@ const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 /// Share of what is allowed that samples may be off: the rest is room for the bound.
 const SAMPLED: f64 = 0.8;
 /// Rounds that place breaks anew.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 12;
+/// Rounds that go all the way to what errors ask for; later ones only
+/// so far, as errors jump where breaks pass places at which derivatives do.
+const HASTY: usize = 4;
+const DAMPED: f64 = 0.6;
 /// A span is parted into so many at most by one round; at least a quarter of one stays.
 const PARTS: f64 = 4.0;
 /// Share of spans that each round adds: errors of neighbours are never quite equal.
@@ -171,7 +175,7 @@ impl Spreading<'_, '_> {
             } else if fits || best.is_some() {
                 break;
             }
-            let root = 1.0 / (breaks.degree + 1) as f64;
+            let root = if round < HASTY { 1.0 } else { DAMPED } / (breaks.degree + 1) as f64;
             let parts: Vec<f64> = off.iter().map(|off| math::pow(off / allowed, root).clamp(1.0 / PARTS, PARTS)).collect();
             breaks = self.spread(&breaks, &parts, 1.0 + ROOM * round as f64);
             if breaks.spans() > MOST_SPANS {

@@ -1,6 +1,7 @@
 //! Any mapped surface as a B-spline: exact where it is one, else within the tolerance, with a bound of what it is off.
 
 mod blended;
+mod carried;
 mod family;
 mod splines;
 mod strips;
@@ -13,9 +14,10 @@ use super::sweep::Path;
 use super::{extrude, revolve};
 use crate::base::fault::{CurveFault, Result};
 use crate::base::tolerance::Tolerance;
-use crate::network::Chain;
 use strips::Fit;
 
+/// Degrees that are tried.
+const DEGREES: [usize; 2] = [3, 5];
 /// Share of the tolerance that a net may be off: what is compared with it has a share of its own.
 const SHARE: f64 = 0.9;
 
@@ -59,13 +61,10 @@ impl Surface {
         if matches!(parts.domain, Domain::Loop | Domain::Unbounded) {
             return Ok(None);
         }
-        if let Shape::Sweep(sweep) = &parts.shape
-            && let Some(profile) = sweep.profile().chain()
-        {
-            let form = swept(profile, sweep.path(), tolerance)?;
-            return Ok(Some(self.turned(form)));
+        if let Some(net) = exact(&parts.shape) {
+            return Ok(Some(self.turned(NetForm { net, off: Off::Exact })));
         }
-        self.mapped(tolerance).map(Some)
+        self.mapped(tolerance, false).map(Some)
     }
 
     /// The surface below a trimmed one as a rational B-spline in the same (u, v), within `tolerance.point`; `None` for a plane.
@@ -73,7 +72,7 @@ impl Surface {
     /// Over a triangle (u, v) is the net's (u / (1 − v), v). Fails like [`Surface::to_net`].
     pub fn ground_net(&self, tolerance: &Tolerance) -> Result<Option<NetForm>> {
         let whole = self.untrimmed();
-        if matches!(whole.parts().shape, Shape::Plane(_)) { Ok(None) } else { whole.mapped(tolerance).map(Some) }
+        if matches!(whole.parts().shape, Shape::Plane(_)) { Ok(None) } else { whole.mapped(tolerance, true).map(Some) }
     }
 
     /// A net within `tolerance.point` of the points at a distance along the normals of a smooth surface over a square.
@@ -81,12 +80,13 @@ impl Surface {
         Fit::new(self, tolerance).beside(distance).run()
     }
 
-    /// In the same (u, v).
-    fn mapped(&self, tolerance: &Tolerance) -> Result<NetForm> {
+    /// Within the tolerance, in the same (u, v) where it has to be.
+    fn mapped(&self, tolerance: &Tolerance, same_uv: bool) -> Result<NetForm> {
         let within = SHARE * tolerance.point;
         let made = match &self.parts().shape {
             Shape::Nurbs(net) => Some(Ok(NetForm { net: net.clone(), off: Off::Exact })),
             Shape::Blend(blend) => blended::blended(blend, within),
+            Shape::Framed(_) | Shape::Sweep(_) => carried::carried(self, within, same_uv),
             _ => None,
         };
         match made {
@@ -105,15 +105,22 @@ impl Surface {
     }
 }
 
-fn swept(profile: &Chain, path: Path, tolerance: &Tolerance) -> Result<NetForm> {
-    let curve = profile.to_curve()?;
-    let off = if curve.is_spline() { Off::Exact } else { Off::Sampled(SHARE * tolerance.point) };
-    let profile = curve.to_nurbs(tolerance)?;
-    let net = match path {
-        Path::Straight { by } => extrude::net(&profile, by),
-        Path::Turn { about, axis, angle } => revolve::net(&profile, &Axis { about, direction: axis }, angle),
-    };
-    Ok(NetForm { net, off })
+/// The net of a profile that is carried straight, about an axis, or without a turn, where its own B-spline form is exact.
+fn exact(shape: &Shape) -> Option<NurbsSurface> {
+    match shape {
+        Shape::Sweep(sweep) => {
+            let profile = carried::exact(sweep.profile())?;
+            Some(match sweep.path() {
+                Path::Straight { by } => extrude::net(&profile, by),
+                Path::Turn { about, axis, angle } => revolve::net(&profile, &Axis { about, direction: axis }, angle),
+            })
+        }
+        Shape::Framed(framed) => {
+            let (path, foot) = framed.translation()?;
+            Some(carried::translated(&carried::exact(path)?, &carried::exact(framed.profile())?, foot))
+        }
+        _ => None,
+    }
 }
 
 /// v backwards.

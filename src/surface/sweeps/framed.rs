@@ -58,6 +58,28 @@ impl Framed {
         self.carried(&self.path.jet(u, lean.0), &self.turn.at(u, lean.0), &self.profile.jet(v, lean.1))
     }
 
+    /// Where a point of the profile, with its derivatives, is carried.
+    pub fn jet_of(&self, g: &Jet, u: f64, lean: Lean) -> Jet2 {
+        self.carried(&self.path.jet(u, lean), &self.turn.at(u, lean), g)
+    }
+
+    /// What is known between two values of u, one strip for each formula.
+    pub fn between(&self, u0: f64, u1: f64) -> Vec<FramedStrip> {
+        let inner = self.turn.stops().iter().copied().filter(|x| *x > u0 + EPSILON && *x < u1 - EPSILON);
+        let stops: Vec<f64> = std::iter::once(u0).chain(inner).chain(std::iter::once(u1)).collect();
+        stops.windows(2).map(|w| self.strip((w[0], w[1]))).collect()
+    }
+
+    /// The path of a profile that does not turn, and where on it the profile was given.
+    pub fn translation(&self) -> Option<(&Rail, DVec3)> {
+        self.turn.is_identity().then_some((&self.path, self.foot))
+    }
+
+    /// How much longer a vector may become on its way, at most.
+    pub fn stretch(&self) -> f64 {
+        self.turn.reach()
+    }
+
     /// Points of the tensor grid, u fastest: path and frame are evaluated once per column, the profile once per row.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
         let (profile, path) = (self.profile.points(vs), self.path.points(us));

@@ -120,6 +120,13 @@ impl Matrices {
         })
     }
 
+    /// Whether it is the identity everywhere.
+    pub fn is_identity(&self) -> bool {
+        self.pieces
+            .iter()
+            .all(|piece| piece.iter().enumerate().all(|(k, m)| largest(*m - if k == 0 { DMat3::IDENTITY } else { DMat3::ZERO }) == 0.0))
+    }
+
     /// Largest stretch of a vector, at most: the largest sum of squares of all entries.
     pub fn reach(&self) -> f64 {
         let norm = |m: &DMat3| (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt();
