@@ -99,6 +99,10 @@ impl Rail {
             return Line::new(half, mid, None, Ranges::default());
         };
         let ([value, m1, m2], jumps) = map.ranges(x0, x1);
+        // It stands still.
+        if value.low == value.high {
+            return Line::new(half, mid, None, Ranges::default());
+        }
         let spread = chain.spread(value.low.clamp(0.0, 1.0), value.high.clamp(0.0, 1.0));
         // A jump J of the slope moves values by at most J·half and slopes by J: a bend of 2J/half does as much.
         let jump = spread.jumps * m1.reach() + spread.d1.low.abs().max(spread.d1.high.abs()) * jumps;

@@ -63,16 +63,14 @@ builtins! {
         profile: Chain,
         /// The way it goes.
         path: Chain,
-        /// What it does at corners of the path; `round` is for a later version.
+        /// What it does at corners of the path: it is cut by the bisecting plane, or turned about the corner.
         corner: CornerWord = "miter",
         /// How far it turns about the path from the start to the end.
         twist: Angle = "0deg",
     ) -> Surface = |cx, profile, path, corner, twist| {
-        if matches!(corner, CornerWord::Round) {
-            return Err(ValueFault::NotInThisVersion { what: "`corner: round`".to_owned() }.into());
-        }
         let tolerance = cx.tolerance()?;
-        let (surface, notes) = carried_along(&profile, &path, &AlongSettings { twist: twist.0, origin: cx.origin() }, &tolerance)?;
+        let settings = AlongSettings { twist: twist.0, round: matches!(corner, CornerWord::Round), origin: cx.origin() };
+        let (surface, notes) = carried_along(&profile, &path, &settings, &tolerance)?;
         finished(cx, surface, &notes)
     };
 

@@ -34,10 +34,7 @@ impl Course for &Rail {
     }
 
     fn corners(&self) -> Vec<f64> {
-        match self {
-            Rail::Chain { kinks, .. } => kinks.iter().map(|kink| kink.0).collect(),
-            _ => Vec::new(),
-        }
+        self.kinks().iter().map(|kink| kink.0).collect()
     }
 
     fn breaks(&self) -> Vec<f64> {

@@ -6,12 +6,13 @@ use super::super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
 use super::super::extrude::{extrude, kinked};
 use super::super::flow_words::phrase;
 use super::super::rail::{Lean, Rail};
-use super::super::reparam::Map;
+use super::super::reparam::{Map, Reparam};
 use super::super::revolve::{Axis, revolve};
 use super::super::shape::Shape;
 use super::framed::Framed;
 use super::legs::Legs;
 use super::matrices::Matrices;
+use super::rounded::Rounded;
 use crate::base::fault::{Fault, Result, SweepFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -27,6 +28,8 @@ const SAMPLES: usize = 9;
 pub struct Settings {
     /// Turn about the path from its start to its end, radians.
     pub twist: f64,
+    /// The profile turns about corners of the path; else it is cut by their bisecting planes.
+    pub round: bool,
     /// The declaration.
     pub origin: Origin,
 }
@@ -34,9 +37,12 @@ pub struct Settings {
 /// The surface that a profile leaves that is carried along a path, staying as it stands to the path's direction.
 ///
 /// u runs along the path, v along the profile, both by arc length. At corners of the path the surface is cut by the
-/// bisecting plane. A straight path gives the extruded surface, an arc the revolved one. Returns W639 where it folds.
+/// bisecting plane, or the profile is turned about the corner, and then u goes on as far as its farthest point moves. A straight path gives the extruded surface, an arc the revolved one. Returns W639 where it folds.
 /// Fails with E636 where the path has a cusp.
 pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    if settings.round && !path.kinks(tolerance).is_empty() {
+        return rounded(profile, path, settings, tolerance);
+    }
     let plain = if settings.twist == 0.0 { simple(profile, path, settings.origin, tolerance)? } else { None };
     let surface = match plain {
         Some(surface) => {
@@ -44,7 +50,26 @@ pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tol
         }
         None => framed(profile, path, settings, tolerance)?,
     };
-    let notes = folds(&surface, path, tolerance);
+    let notes = folds(&surface, path, &Some, tolerance);
+    Ok((surface, notes))
+}
+
+/// With turns about the corners. W639 where the profile reaches over to the inner side of one.
+fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let mut legs = Legs::new(path, settings.twist, tolerance)?;
+    let cusp = || SweepFault::GuideCusp { guide: path.origin(), at: path.start(), fraction: 0.0 };
+    let turned = Rounded::new(&mut legs, profile, tolerance).ok_or_else(cusp)?;
+    let closed = legs.closes(settings.twist, tolerance);
+    let (us, fractions): (Vec<f64>, Vec<f64>) = turned.stops.iter().copied().unzip();
+    let mut way = Rail::new(path.clone(), Map::new(us, fractions, Reparam::Linear, false));
+    way.set_kinks(turned.corners.clone());
+    let corners = turned.corners.iter().map(|c| c.0).collect();
+    let frame = Frame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
+    let surface = along_way(profile, path, (way, &turned.crossings), frame, settings.origin, tolerance);
+    let mut notes = folds(&surface, path, &|u| turned.fraction(u), tolerance);
+    if let (Some((at, reach)), true) = (turned.inside, notes.is_empty()) {
+        notes.push(SweepFault::SelfIntersects { surface: settings.origin, path: path.origin(), at, reach, radius: Some(0.0) }.into());
+    }
     Ok((surface, notes))
 }
 
@@ -105,10 +130,18 @@ struct Frame {
 }
 
 fn made(profile: &Chain, path: &Chain, frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
-    let (rail, kinks) = kinked(profile, tolerance);
-    let corners = frame.corners;
     let mut way = Rail::new(path.clone(), Map::identity());
-    way.set_kinks(corners.iter().map(|f| (*f, *f)).collect());
+    way.set_kinks(frame.corners.iter().map(|f| (*f, *f)).collect());
+    along_way(profile, path, (way, &[]), frame, origin, tolerance)
+}
+
+/// `across` are fractions of the profile at which the surface is parted beside its kinks.
+fn along_way(profile: &Chain, path: &Chain, (way, across): (Rail, &[f64]), frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+    let (rail, mut kinks) = kinked(profile, tolerance);
+    let near = tolerance.point / profile.length();
+    kinks.extend(across.iter().copied().filter(|f| kinks.iter().all(|k| (k - f).abs() > near)).collect::<Vec<_>>());
+    kinks.sort_by(f64::total_cmp);
+    let corners = frame.corners;
     let closed = (frame.closed, profile.is_closed(tolerance));
     let mut generated = Vec::new();
     let ends = match (frame.cut, closed.0) {
@@ -144,7 +177,9 @@ fn made(profile: &Chain, path: &Chain, frame: Frame, origin: Origin, tolerance: 
 }
 
 /// W639 at the place where the profile moves back most against the path's direction.
-fn folds(surface: &Surface, path: &Chain, tolerance: &Tolerance) -> Vec<Fault> {
+///
+/// `fraction` gives the path's own for u; none where it stands still.
+fn folds(surface: &Surface, path: &Chain, fraction: &dyn Fn(f64) -> Option<f64>, tolerance: &Tolerance) -> Vec<Fault> {
     let inside = |breaks: Vec<f64>| -> Vec<f64> {
         let stops = [&[0.0], breaks.as_slice(), &[1.0]].concat();
         stops
@@ -159,13 +194,15 @@ fn folds(surface: &Surface, path: &Chain, tolerance: &Tolerance) -> Vec<Fault> {
     let jets = surface.jets(&lean(&us), &lean(&vs));
     let mut worst: Option<(f64, usize)> = None;
     for (k, jet) in jets.iter().enumerate() {
-        let speed = jet.du.dot(path.jet(us[k % us.len()]).d1) / (path.length() * path.length());
+        let Some(f) = fraction(us[k % us.len()]) else { continue };
+        let speed = jet.du.dot(path.jet(f).d1) / (path.length() * path.length());
         if speed < -tolerance.parameter && worst.is_none_or(|(least, _)| speed < least) {
             worst = Some((speed, k));
         }
     }
     let fault = worst.map(|(_, k)| {
-        let way = path.jet(us[k % us.len()]);
+        let u = us[k % us.len()];
+        let way = path.jet(fraction(u).unwrap_or(u));
         let bend = way.d2.length() / (path.length() * path.length());
         let radius = (bend > 0.0).then(|| 1.0 / bend);
         let reach = jets[k].p.distance(way.p);

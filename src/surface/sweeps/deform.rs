@@ -4,13 +4,19 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3, DVec4};
 
-use crate::base::fault::{Result, ValueFault};
+use crate::base::fault::{CurveFault, Result};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::curve::Shape;
 use crate::geometry::nurbs::{projected, weighted};
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
+
+/// Pieces of a smooth stretch of a section, at most.
+const MOST: usize = 1 << 10;
+/// How often the distance is doubled within which a piece is one.
+const WIDENED: usize = 32;
 
 /// A section as pieces between common breaks: homogeneous Bézier points, all of one degree.
 pub type Pieces = Vec<Vec<DVec4>>;
@@ -167,9 +173,18 @@ pub fn own_breaks(chain: &Chain, tolerance: &Tolerance) -> Result<Vec<f64>> {
     let stops = [vec![0.0], super::super::chain_breaks(chain), vec![1.0]].concat();
     let mut all = vec![0.0];
     for w in stops.windows(2) {
-        // Arcs: pieces well below a right angle.
+        // Arcs: pieces well below a right angle. Helices and offset curves: as many as each is one piece within the tolerance.
         let several = part(chain, (w[0], w[1]), tolerance)?.beziers().len();
-        let n = if several > 1 { 2 * several } else { 1 };
+        let mut n = if several > 1 { 2 * several } else { 1 };
+        let at = |k: usize, n: usize| w[0] + (w[1] - w[0]) * k as f64 / n as f64;
+        while n < MOST {
+            job::look();
+            let parts = (0..n).map(|k| part(chain, (at(k, n), at(k + 1, n)), tolerance).map(|p| p.beziers().len()));
+            if parts.collect::<Result<Vec<usize>>>()?.iter().all(|pieces| *pieces == 1) {
+                break;
+            }
+            n *= 2;
+        }
         all.extend((1..=n).map(|k| if k == n { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / n as f64 }));
     }
     Ok(all)
@@ -186,12 +201,18 @@ pub fn cut(chain: &Chain, breaks: &[f64], tolerance: &Tolerance) -> Result<Piece
     breaks
         .windows(2)
         .map(|w| {
-            let found = part(chain, (w[0], w[1]), tolerance)?;
-            let found = found.elevated(LEAST.saturating_sub(found.degree)).beziers();
-            match found.as_slice() {
-                [one] => Ok(one.poles.clone()),
-                _ => Err(ValueFault::NotInThisVersion { what: "a section of a helix or an offset curve between others".to_owned() }.into()),
+            // What was one piece may be two at other ends: then it is one within a little more.
+            let mut near = *tolerance;
+            for _ in 0..WIDENED {
+                let found = part(chain, (w[0], w[1]), &near)?;
+                let found = found.elevated(LEAST.saturating_sub(found.degree)).beziers();
+                if let [one] = found.as_slice() {
+                    return Ok(one.poles.clone());
+                }
+                near.point *= 2.0;
             }
+            let what = "a section in pieces".to_owned();
+            Err(CurveFault::NotConverged { of: chain.origin(), what, at: chain.point(w[0]) }.into())
         })
         .collect()
 }

@@ -112,7 +112,8 @@ impl<'a> Legs<'a> {
         (middle, twisted(frame(middle, normal), self.twist * f) * self.first.transpose())
     }
 
-    fn turned(&mut self, leg: usize, f: f64) -> DMat3 {
+    /// The rotation at a fraction of a run.
+    pub fn turned(&mut self, leg: usize, f: f64) -> DMat3 {
         let normal = self.legs[leg].normal(self.path, f);
         let tangent = place(self.path, f, f >= self.legs[leg].to).1;
         twisted(frame(tangent, normal), self.twist * f) * self.first.transpose()
@@ -156,13 +157,46 @@ impl<'a> Legs<'a> {
         if length - chord > EPSILON * self.path.length() {
             let found = "miter".to_owned();
             let share = 100.0 * f;
-            let range =
-                format!("another way here: the run of the path that ends in the corner at {share:.4}% of its length is not straight");
+            let range = format!("`round` here: the run of the path that ends in the corner at {share:.4}% of its length is not straight");
             return Err(ValueFault::OutsideRange { argument: "corner", found, range }.into());
         }
         let (t, n) = (if before { arriving } else { leaving }, bisector(arriving, leaving));
         let along = t / n.dot(t);
         Ok(Some(DMat3::IDENTITY - DMat3::from_cols(along * n.x, along * n.y, along * n.z)))
+    }
+
+    /// The path.
+    pub fn path(&self) -> &'a Chain {
+        self.path
+    }
+
+    /// How many smooth runs it has.
+    pub fn count(&self) -> usize {
+        self.legs.len()
+    }
+
+    /// Fractions at both ends of a run.
+    pub fn run(&self, leg: usize) -> (f64, f64) {
+        (self.legs[leg].from, self.legs[leg].to)
+    }
+
+    /// Ends of its smooth stretches, its own end the last.
+    pub fn stops(&self, leg: usize) -> Vec<f64> {
+        self.legs[leg].stops(self.path)
+    }
+
+    /// Whether a fraction is that of an inner corner.
+    pub fn is_corner(&self, f: f64) -> bool {
+        f > 0.0 && f < 1.0 && self.corner(f)
+    }
+
+    /// The corner at the end of a run: its place, and the unit tangents before and after it; none where the path ends smoothly.
+    pub fn corner_after(&self, leg: usize) -> Option<(DVec3, DVec3, DVec3)> {
+        let f = self.legs[leg].to;
+        self.corner(f).then(|| {
+            let (before, after) = sides(self.path, if f >= 1.0 { 0.0 } else { f });
+            (self.path.point(f), before, after)
+        })
     }
 
     /// Inner corners.

@@ -11,6 +11,7 @@ mod marks;
 mod matrices;
 mod measure;
 mod net;
+mod rounded;
 mod sections;
 mod single;
 mod synchronized;

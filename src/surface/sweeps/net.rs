@@ -249,7 +249,13 @@ fn on_guides(
             Law::Normal => inside.min_by(|a, b| far(*a).total_cmp(&far(*b))),
             _ => {
                 let first = inside.next();
-                if let Some(again) = inside.next() {
+                // A guide that goes on in its direction is there again a whole turn later.
+                let back = |a: f64, b: f64| {
+                    let slope = |f: f64| station.slope(guide.chain.jet(f).d1);
+                    !matches!(law, Law::Rotational(_)) || slope(a) * slope(b) < 0.0
+                };
+                let again = first.and_then(|a| inside.next().filter(|b| back(a, *b)));
+                if let Some(again) = again {
                     let at = guide.chain.point(again);
                     return Err(SweepFault::GuideDoublesBack { guide: guide.given.origin(), law: law.name(), at }.into());
                 }

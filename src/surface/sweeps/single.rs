@@ -32,7 +32,7 @@ pub fn single(section: &Chain, guide: &Chain, input: &Input, tolerance: &Toleran
     if input.law != Law::Synchronized {
         check_section(section, &main.station(0.0), input.law, (section, guide), tolerance)?;
     }
-    let settings = Settings { twist: 0.0, origin: input.origin };
+    let settings = Settings { twist: 0.0, round: false, origin: input.origin };
     let (surface, notes) = match input.law {
         Law::Normal => along(section, &path, &settings, tolerance)?,
         Law::Parallel | Law::Synchronized => moved_by(section, &path, &settings, &mut |_| DMat3::IDENTITY, tolerance)?,
