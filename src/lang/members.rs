@@ -7,7 +7,7 @@ use super::room::flat_len;
 use super::std::{self, Builtin};
 use super::units;
 use super::value::{Dim, Value};
-use crate::base::fault::Fault;
+use crate::base::fault::{Fault, Say};
 use crate::base::limits;
 use crate::mesh::Group;
 
@@ -25,6 +25,7 @@ impl Cx<'_> {
             one if is_entity(one) || is_place(one) => {
                 let mut members = self.members_of(one)?;
                 members.extend(self.sets_of(one)?);
+                members.extend(self.net_of(one));
                 let row = |(member, value): Member| {
                     let (value, unit) = self.apart(value);
                     vec![Value::text(&member), value, Value::text(&unit)]
@@ -105,6 +106,24 @@ impl Cx<'_> {
             [("nodes", g.nodes.len()), ("elements", elements)].map(|(what, n)| (format!("set {}.{what}", g.name), Value::number(n as f64)))
         };
         Ok(mesh.groups.iter().flat_map(counts).collect())
+    }
+
+    /// The curves that a surface was made through: how far it lies from each, and how much stations were scaled.
+    fn net_of(&mut self, of: &Value) -> Vec<Member> {
+        let Value::Surface(surface) = of else { return Vec::new() };
+        let (mut counts, mut rows) = ([0usize; 2], Vec::new());
+        let word = if surface.families().1.is_empty() { "section" } else { "guide" };
+        for curve in surface.net_curves() {
+            let (kind, count) = if curve.along_u { (word, &mut counts[1]) } else { ("station", &mut counts[0]) };
+            let name = if curve.given { self.name(curve.origin) } else { String::new() };
+            let title = format!("{kind} {count}{}{name}", if name.is_empty() { "" } else { " " });
+            *count += 1;
+            rows.push((format!("{title}.at"), Value::number(curve.at)));
+            rows.push((format!("{title}.segments"), Value::number(curve.segments as f64)));
+            rows.extend(curve.scale.map(|scale| (format!("{title}.scale"), Value::number(scale))));
+            rows.push((format!("{title}.residual"), Value::length(curve.residual)));
+        }
+        rows
     }
 
     fn push_member(&self, name: &str, value: Value, members: &mut Vec<Member>) {

@@ -3,12 +3,14 @@
 use glam::DVec3;
 
 use super::blend::Blend;
-use super::core::Surface;
+use super::closest::Nearest;
+use super::core::{Surface, SurfaceKind};
 use super::rail::{Lean, Rail};
 use super::shape::Shape;
 use crate::base::fault::{Fault, NetFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::network::Chain;
 
 /// Places along each curve at which it is compared with the surface.
 const PLACES: usize = 128;
@@ -47,7 +49,9 @@ pub struct NetCurve {
 
 impl Surface {
     fn blend(&self) -> Option<&Blend> {
-        if let Shape::Blend(blend) = &self.parts().shape { Some(blend) } else { None }
+        use SurfaceKind as K;
+        let of_curves = matches!(self.kind(), K::Sweep | K::Gordon | K::Skin | K::Coons | K::Transfinite);
+        if let (Shape::Blend(blend), true) = (&self.parts().shape, of_curves) { Some(blend) } else { None }
     }
 
     /// Pairs of curves that miss each other, the widest first; none where it is not made through a net.
@@ -108,7 +112,35 @@ impl Surface {
         let mut all: Vec<NetCurve> = blend.along_v().iter().zip(&u.nodes).take(n).map(|(rail, x)| row(rail, *x, false)).collect();
         scales(blend, &mut all, m, &|j| blend.along_u()[j].chain().is_some_and(|c| self.chains().iter().any(|g| g.origin() == c.origin())));
         all.extend(blend.along_u().iter().zip(&v.nodes).take(m).map(|(rail, y)| row(rail, *y, true)));
+        if self.kind() == SurfaceKind::Skin {
+            // Sections that a loose skin is not made through, beside those that it is.
+            let kept: Vec<&Chain> = blend.along_u().iter().filter_map(Rail::chain).collect();
+            let through = |chain: &Chain| kept.iter().any(|own| own.is(chain) || own.closest(chain.point(0.3)).2 <= NUDGE * chain.length());
+            let loose = blend.along_u().iter().any(|rail| matches!(rail, Rail::Mixed(_))) || kept.len() < self.chains().len();
+            let left = self.chains().iter().filter(|chain| loose && !through(chain));
+            all.extend(left.map(|chain| self.beside(chain)));
+            all.retain(|c| c.given);
+            all.sort_by(|a, b| a.at.total_cmp(&b.at));
+        }
         all
+    }
+}
+
+impl Surface {
+    /// A section that it passes at a distance, with the v of its middle.
+    fn beside(&self, chain: &Chain) -> NetCurve {
+        const LOOKS: usize = 32;
+        let nearest = Nearest::new(self);
+        let feet: Vec<_> = (0..=LOOKS).map(|k| nearest.at(chain.point(k as f64 / LOOKS as f64))).collect();
+        NetCurve {
+            origin: chain.origin(),
+            given: true,
+            along_u: true,
+            at: feet[LOOKS / 2].uv.1,
+            segments: super::chain_breaks(chain).len() + 1,
+            scale: None,
+            residual: feet.iter().map(|foot| foot.distance).fold(0.0, f64::max),
+        }
     }
 }
 

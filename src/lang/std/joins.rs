@@ -1,6 +1,6 @@
 //! How faces join along the edges they share.
 
-use super::kinds::{EdgeOf, Faces};
+use super::kinds::{EdgeOf, EdgeOrSurface, Faces};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Say, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
@@ -140,10 +140,16 @@ builtins! {
 }
 
 fields! {
-    /// How far the borders of the faces at an edge are apart at most.
+    /// How far the borders of the faces at an edge are apart at most, or the curves of a surface's net where they should meet.
     ///
-    /// `none` where only one face is; where more than two meet it is the largest of each two.
-    fn gap(of: EdgeOf) -> Option<Length> = |cx, of| Ok(along(cx, &of)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length));
+    /// `none` where only one face is at an edge; where more than two meet it is the largest of each two. `none` too of a surface that
+    /// was not made through a net.
+    fn gap(of: EdgeOrSurface) -> Option<Length> = |cx, of| {
+        Ok(match of {
+            EdgeOrSurface::Edge(edge) => along(cx, &edge)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length),
+            EdgeOrSurface::Surface(s) => s.net_gaps().first().map(|gap| Length(gap.by)),
+        })
+    };
     /// Largest angle between the normals of the faces at an edge.
     ///
     /// From 0 to 90 degrees, whatever their sides; `none` where only one face is, and where more than two meet the largest of

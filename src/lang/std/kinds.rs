@@ -295,3 +295,13 @@ in_model! {
     /// An edge of a surface model.
     EdgeOf = Edge(Arc<SharedEdge>);
 }
+
+one_of! {
+    /// What may have a gap.
+    EdgeOrSurface {
+        /// An edge of a surface model.
+        Edge(EdgeOf) = Ty::Edge, Value::Edge(home, edge) => Self::Edge(EdgeOf(home, edge));
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+    }
+}

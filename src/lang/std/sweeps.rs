@@ -2,9 +2,11 @@
 
 use super::surfaces::finished;
 use super::transforms::axis_line;
+use crate::base::fault::Say;
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::lang::types::{Angle, Axis, Point};
+use crate::lang::types::{Angle, Axis, Length, Point};
+use crate::lang::value::Value;
 use crate::network::Chain;
 use crate::surface::sweeps::{AlongSettings, Input, Law, Method, along as carried_along, sweep as swept};
 use crate::surface::{Surface, revolve};
@@ -153,4 +155,31 @@ crate::fields! {
         /// The surface.
         s: Surface,
     ) -> Angle = |_cx, s| Ok(Angle(s.patch_angle()));
+
+    /// How far it lies at most from the curves that it was made through, at their own parameters.
+    ///
+    /// None where it was not made through curves. Where curves of a net miss each other it is what a surface between them must leave.
+    fn residual(
+        /// The surface.
+        s: Surface,
+    ) -> Option<Length> = |_cx, s| Ok(s.net_curves().iter().map(|c| c.residual).reduce(f64::max).map(Length));
+
+    /// The curves that it was made through: records of `curve`, `along` and `at`, `segments`, `scale` and `residual`.
+    ///
+    /// Those along v first (stations of a sweep), by ascending u. `scale` is that of the section that was deformed to a station and
+    /// differs most from 1; none of curves that were given. A list of no records where it was not made through curves.
+    fn net(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<Value> = |cx, s| Ok(s.net_curves().into_iter().map(|c| {
+        let name = if c.given { cx.name(c.origin) } else { String::new() };
+        cx.record([
+            ("curve", Value::text(&name)),
+            ("along", Value::text(if c.along_u { "u" } else { "v" })),
+            ("at", Value::number(c.at)),
+            ("segments", Value::number(c.segments as f64)),
+            ("scale", c.scale.map_or(Value::None, Value::number)),
+            ("residual", Value::length(c.residual)),
+        ])
+    }).collect());
 }

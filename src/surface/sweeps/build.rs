@@ -16,7 +16,7 @@ use super::sections::Guide;
 use super::single::single;
 use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault, SweepFault};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{NEAREST, Tolerance};
+use crate::base::tolerance::{NEAREST, NUDGE, Tolerance};
 use crate::geometry::build::line;
 use crate::geometry::spline::{Ends, Spline, spline};
 use crate::network::Chain;
@@ -173,19 +173,24 @@ fn missing(lines: &[(usize, Rail)], net: &SweepNet, last: usize) -> Vec<usize> {
     have.sort_unstable();
     let before = have.len();
     if net.closed.1 {
-        // In the middle of the widest gap there are breaks, as a closed section has several pieces.
+        // In the middle of the widest gaps there are breaks, as a closed section has several pieces. Of equals all are taken, so that
+        // the direction of the sections says nothing.
         while have.len() < LEAST {
             let gap = |k: usize| (have[k], have.get(k + 1).copied().unwrap_or(last));
-            let widest = (0..have.len()).max_by(|&a, &b| {
-                let width = |k: usize| net.breaks[gap(k).1] - net.breaks[gap(k).0];
-                width(a).total_cmp(&width(b)).then(b.cmp(&a))
-            });
-            let Some((low, high)) = widest.map(gap) else { break };
-            let middle = 0.5 * (net.breaks[low] + net.breaks[high]);
-            let off = |k: &usize| (net.breaks[*k] - middle).abs();
-            let Some(best) = (low + 1..high).min_by(|a, b| off(a).total_cmp(&off(b))) else { break };
-            let at = have.partition_point(|&k| k < best);
-            have.insert(at, best);
+            let width = |k: usize| net.breaks[gap(k).1] - net.breaks[gap(k).0];
+            let widest = (0..have.len()).map(width).fold(0.0, f64::max);
+            let mut more = Vec::new();
+            for (low, high) in (0..have.len()).filter(|k| width(*k) >= widest - NUDGE).map(gap) {
+                let middle = 0.5 * (net.breaks[low] + net.breaks[high]);
+                let off = |k: usize| (net.breaks[k] - middle).abs();
+                let least = (low + 1..high).map(off).fold(f64::INFINITY, f64::min);
+                more.extend((low + 1..high).filter(|k| off(*k) <= least + NUDGE));
+            }
+            if more.is_empty() {
+                break;
+            }
+            have.extend(more);
+            have.sort_unstable();
         }
     } else {
         have.extend([0, last].into_iter().filter(|k| !lines.iter().any(|l| l.0 == *k)));
