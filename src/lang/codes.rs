@@ -178,7 +178,7 @@ codes! {
     now "E715", "element-inverted", "an element is turned inside out";
     now "E716", "quadtree-too-deep", "a quadtree grows too deep";
     later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
-    later "E718", "trim-folded", "a trimmed face folds over";
+    now "E718", "face-folded", "a face folds over";
     now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements are wide";
     now "E721", "cuts-too-near", "curves that divide a surface are too near to each other";
     now "W724", "sharp-elements", "a mesh has elements with sharp angles";

@@ -398,7 +398,8 @@ pub(super) fn fault(
         let close = if defect.node().is_some_and(is_pole) { Close::Tip } else { Close::Seam };
         return MeshFault::ClosesTooNear { surface, method, at, close }.into();
     }
-    if let Some(fault) = crowded(input, (layout, nodes, face), defect) {
+    let parted = crowded(input, (layout, nodes, face), defect);
+    if let Some(fault) = parted.or_else(|| short(input, (layout, nodes, face), mesh)).or_else(|| folded(input, face, method)) {
         return fault;
     }
     MeshFault::Unsound {
@@ -410,6 +411,25 @@ pub(super) fn fault(
         at,
     }
     .into()
+}
+
+/// E718 where the surface folds over or has no normal somewhere inside.
+fn folded(input: &Input, face: &Face, method: &'static str) -> Option<Fault> {
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    let (at, turn) = surface.fold(input.tolerance)?;
+    Some(MeshFault::Folded { surface: surface.origin(), method, at, turn }.into())
+}
+
+/// E721 where borders and lines of a face part each other within what is told apart.
+fn short(input: &Input, (layout, nodes, face): (&Layout, &Nodes, &Face), mesh: &Mesh) -> Option<Fault> {
+    let own = Border::new(input, layout, nodes, face);
+    let ends = |edge: &[u32; 2]| edge.map(|n| mesh.nodes[n as usize]);
+    let edges = own.edges.iter().chain(&own.lines).map(ends).filter(|[a, b]| a != b);
+    let [a, b] = edges.min_by(|[a, b], [c, d]| a.distance(*b).total_cmp(&c.distance(*d)))?;
+    let apart = a.distance(b);
+    let surface = input.model.surfaces[face.surface.index()].surface.origin();
+    let fault = CutFault::CutsTooNear { surface, cuts: [surface; 2], at: a, apart, tolerance: input.tolerance.point };
+    (apart <= TOLD_APART * input.tolerance.point).then(|| fault.into())
 }
 
 /// E721 where the edge of a line inside a face is in no element, since another line or border runs beside it within what is told apart.

@@ -70,6 +70,22 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     found
 }
 
+impl Surface {
+    /// Where it folds over, with the turn of its normal there, or else where it has none, as [`review`] finds them.
+    pub fn fold(&self, tolerance: &Tolerance) -> Option<(DVec3, Option<f64>)> {
+        let found = review(self, tolerance);
+        let place = |fault: &Fault| {
+            let Fault::Surface(fault) = fault else { return None };
+            match **fault {
+                SurfaceFault::PatchFolded { at, turn, .. } => Some((at, Some(turn))),
+                SurfaceFault::PatchSingular { at, .. } => Some((at, None)),
+                _ => None,
+            }
+        };
+        found.iter().rev().find_map(place)
+    }
+}
+
 /// Whether the normal jumps over a right angle between two places: halved towards the jump until it is found or dissolves.
 fn folds_between(surface: &Surface, mut a: (f64, f64), mut b: (f64, f64), tolerance: &Tolerance) -> bool {
     let normal = |at: (f64, f64)| unit_normal(&surface.jet(at.0, at.1));

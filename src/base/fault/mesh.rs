@@ -331,6 +331,17 @@ pub enum MeshFault {
         /// Where.
         at: DVec3,
     },
+    /// E718: a face that folds over, whose elements do not lie side by side.
+    Folded {
+        /// The surface.
+        surface: Origin,
+        /// How the face was made.
+        method: &'static str,
+        /// Where it folds.
+        at: DVec3,
+        /// By how much its normal turns there; `None` where it has none.
+        turn: Option<f64>,
+    },
     /// E720: a face that closes on itself, whose elements do not keep apart there.
     ClosesTooNear {
         /// The surface.
@@ -633,6 +644,16 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*surface, "this face")
         .help("keep the borders further apart, or divide them more finely there"),
+        F::Folded { surface, method, at, turn } => {
+            let (name, at) = (say.quoted(*surface, "a face"), say.point(*at));
+            let why = match turn {
+                Some(turn) => format!("{name} folds over at {at}, where its normal turns by {}", say.angle(*turn)),
+                None => format!("{name} has no normal at {at}"),
+            };
+            Report::new("E718", format!("{why}: elements made by `method: {method}` do not lie side by side on it"))
+                .at(*surface, "this face")
+                .help("add a curve across the fold, or divide the surface in two")
+        }
         F::ClosesTooNear { surface, method, at, close: Close::Turn } => Report::new(
             "E720",
             format!(

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::outline::area2;
+use super::outline::is_left;
 
 /// Nodes round a cell that is filled by looking at all its triangulations.
 pub const MOST: usize = 12;
@@ -58,7 +58,7 @@ pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f
             let k = i + reach;
             for j in i + 1..k {
                 let (Some(a), Some(b)) = (best[i * n + j], best[j * n + k]) else { continue };
-                if area2(at[i], at[j], at[k]) <= 0.0 {
+                if !is_left(at[i], at[j], at[k]) {
                     continue;
                 }
                 let error = load([i, j, k]);

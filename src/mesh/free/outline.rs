@@ -2,6 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::base::tolerance::PARALLEL;
+
 /// A border: nodes that are given and edges that must be there.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
@@ -50,6 +52,17 @@ impl Outline {
 /// Twice the signed area of a triangle in the chart.
 pub fn area2(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
+}
+
+/// Whether three places of the chart lie on one line but for rounding.
+pub fn in_line(a: DVec2, b: DVec2, c: DVec2) -> bool {
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    area2(a, b, c).abs() <= PARALLEL * longest
+}
+
+/// Whether a triangle of the chart is counter-clockwise by more than rounding.
+pub fn is_left(a: DVec2, b: DVec2, c: DVec2) -> bool {
+    area2(a, b, c) > 0.0 && !in_line(a, b, c)
 }
 
 /// Whether two segments of the chart cross or touch.

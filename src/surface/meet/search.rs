@@ -28,6 +28,8 @@ const EXACT: f64 = 1.0 / 1024.0;
 const MOST_TOUCHES: usize = 2_000;
 /// Cells smaller than this many tolerances are not halved to find a place between their corners.
 const SMALLEST: f64 = 16.0;
+/// Share of the smaller patch below which, however large the tolerance is.
+const SHARE: f64 = 1.0 / 64.0;
 
 /// What two patches have in common.
 #[derive(Debug, Default)]
@@ -94,7 +96,7 @@ impl Search<'_> {
             return self.touch(i, j);
         }
         let (x, y) = (self.a.cell(i), self.b.cell(j));
-        if x.reach().max(y.reach()) <= SMALLEST * self.point {
+        if x.reach().max(y.reach()) <= (SMALLEST * self.point).min(SHARE * self.size) {
             return Ok(());
         }
         let first = x.reach() >= y.reach();

@@ -3,7 +3,7 @@
 use super::Web;
 use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::mesh::free::outline::area2;
+use crate::mesh::free::outline::{in_line, is_left};
 use crate::mesh::free::shape::quality;
 
 /// Whether a new side, and the triangles on both sides of it, may be.
@@ -43,13 +43,14 @@ impl Web {
         self.at[d as usize] = t;
     }
 
-    /// Flips triangles whose corners lie on a straight line of the surface across their longest side, where the chart allows it.
+    /// Flips triangles whose corners lie on a straight line of the surface, or of the chart, across their longest side, where the chart
+    /// allows it.
     pub fn lift_flat(&mut self) {
         const PASSES: usize = 8;
         for _ in 0..PASSES {
             let mut any = false;
             for t in 0..self.tri.len() as u32 {
-                any |= self.alive(t) && self.quality(t) < PARALLEL && self.lift(t);
+                any |= self.alive(t) && (self.quality(t) < PARALLEL || self.is_in_line(t)) && self.lift(t);
             }
             if !any {
                 return;
@@ -57,10 +58,20 @@ impl Web {
         }
     }
 
+    fn is_in_line(&self, t: u32) -> bool {
+        let [a, b, c] = self.tri[t as usize].map(|n| self.xy[n as usize]);
+        in_line(a, b, c)
+    }
+
     fn lift(&mut self, t: u32) -> bool {
         let c = self.tri[t as usize];
-        let p = |n: u32| self.p[n as usize];
-        let length = |k: &usize| p(c[(k + 1) % 3]).distance_squared(p(c[(k + 2) % 3]));
+        let (p, xy) = (|n: u32| self.p[n as usize], |n: u32| self.xy[n as usize]);
+        // The border of a chart may be straight where that of the surface is not.
+        let in_chart = self.quality(t) >= PARALLEL;
+        let length = |k: &usize| {
+            let (b, d) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+            if in_chart { xy(b).distance_squared(xy(d)) } else { p(b).distance_squared(p(d)) }
+        };
         let Some(k) = (0..3).max_by(|i, j| length(i).total_cmp(&length(j))) else { return false };
         let other = self.across[t as usize][k];
         if other == NO_TRIANGLE || self.locked[t as usize] >> k & 1 == 1 {
@@ -68,10 +79,9 @@ impl Web {
         }
         let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
         let tip = self.tri[other as usize][self.side_to(other, t)];
-        let xy = |n: u32| self.xy[n as usize];
-        let convex = area2(xy(a), xy(b), xy(tip)) > 0.0 && area2(xy(a), xy(tip), xy(d)) > 0.0;
+        let convex = is_left(xy(a), xy(b), xy(tip)) && is_left(xy(a), xy(tip), xy(d));
         let worst = |x: [u32; 3], y: [u32; 3]| quality(p(x[0]), p(x[1]), p(x[2])).min(quality(p(y[0]), p(y[1]), p(y[2])));
-        if !convex || worst([a, b, tip], [a, tip, d]) <= worst(c, [tip, d, b]) {
+        if !convex || !in_chart && worst([a, b, tip], [a, tip, d]) <= worst(c, [tip, d, b]) {
             return false;
         }
         self.flip(t, k);
@@ -123,7 +133,7 @@ impl Web {
         let (a, b, d, tip) = self.round_side(t, k);
         let (p, xy) = (|n: u32| self.p[n as usize], |n: u32| self.xy[n as usize]);
         let longest = [(a, b), (b, d), (d, a), (b, tip), (tip, d)].map(|(x, y)| p(x).distance(p(y))).into_iter().fold(0.0, f64::max);
-        let convex = area2(xy(a), xy(b), xy(tip)) > 0.0 && area2(xy(a), xy(tip), xy(d)) > 0.0;
+        let convex = is_left(xy(a), xy(b), xy(tip)) && is_left(xy(a), xy(tip), xy(d));
         let of = |x: [u32; 3]| quality(p(x[0]), p(x[1]), p(x[2]));
         let (now, then) = (of([a, b, d]).min(of([tip, d, b])), of([a, b, tip]).min(of([a, tip, d])));
         (convex && p(a).distance(p(tip)) <= longest && then > now).then_some(then / now.max(f64::MIN_POSITIVE))
