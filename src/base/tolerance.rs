@@ -82,6 +82,12 @@ pub const BOX: f64 = 1e-6;
 pub const VAST: f64 = 1e120;
 /// No place of an edge is nearer to a point by more than this share of the distance than the one that is told.
 pub const NEAREST_PLACE: f64 = 1e-3;
+/// A place outside of a triangle by this share of it, or less, is read from it.
+pub const BESIDE_TRIANGLE: f64 = 1e-9;
+/// Damping of the second derivatives of a nearest quadratic, as a share of the sum of all squares.
+pub const DAMPED_BENDS: f64 = 1e-4;
+/// Damping of its first ones.
+pub const DAMPED_SLOPES: f64 = 1e-12;
 /// Nearest points are the nearest ones to this share of their distance.
 pub const NEAREST: f64 = 1e-9;
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+use glam::{DVec2, DVec3};
+use spade::{ConstrainedDelaunayTriangulation, DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::bbox::Box3;
 use super::math::any_normal;
@@ -83,6 +83,23 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<[usize; 3]>, PolygonFault> {
         }
     }
     Ok(inner(&triangulation, &passes))
+}
+
+/// Delaunay triangles of points of a plane, counter-clockwise, as indices into `points`; all of their convex hull.
+///
+/// No two points are one, and coordinates are about 1. None where there is no triangle.
+pub fn delaunay(points: &[DVec2]) -> Vec<[usize; 3]> {
+    let corner = |(index, p): (usize, &DVec2)| Corner { at: spade::mitigate_underflow(Point2::new(p.x, p.y)), index };
+    let Ok(made) = DelaunayTriangulation::<Corner>::bulk_load_stable(points.iter().enumerate().map(corner).collect()) else {
+        return Vec::new();
+    };
+    let mut found: Vec<[usize; 3]> = made.inner_faces().map(|face| face.vertices().map(|vertex| vertex.data().index)).collect();
+    for t in &mut found {
+        let first = (0..3).min_by_key(|k| t[*k]).unwrap_or(0);
+        t.rotate_left(first);
+    }
+    found.sort_unstable();
+    found
 }
 
 /// Faces that an odd number of border passes separates from the outside.

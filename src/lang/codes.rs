@@ -72,6 +72,7 @@ codes! {
     now "W222", "tolerance-of-module", "a module's own tolerance decides nothing";
     now "W223", "snap-moves-far", "`snap` moves an end by more than a hundredth of its curve";
     now "W224", "group-not-meshed", "no mesh that is written holds anything of a group";
+    now "W225", "points-merged", "scattered points are given twice";
     now "E230", "not-in-this-version", "a word of a later version";
     now "E301", "argument-missing", "an argument is missing";
     now "E302", "too-many-arguments", "too many arguments";
@@ -158,11 +159,14 @@ codes! {
     now "E662", "hole-in-hole", "a hole lies inside another one";
     now "E663", "curve-given-twice", "one curve is given twice where each is wanted once";
     now "W664", "offset-folds", "an offset folds over";
+    now "E665", "points-on-one-line", "points that should span a surface lie on one line";
     now "E666", "imprint-overlap", "faces that are to be joined cover each other";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
+    now "W668", "points-steep", "scattered points rise very steeply";
     now "E672", "set-in-part", "a set would hold a part of a curve";
     now "E673", "blend-too-large", "a ball is too large for the edge that it rounds";
     now "E674", "blend-no-edge", "two surfaces have no edge that can be rounded";
+    now "E675", "points-over-points", "scattered points lie over one another";
     now "N677", "near-its-curves", "a surface keeps to its curves within a stated distance";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";

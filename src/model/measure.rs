@@ -7,6 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use super::measure_quadrature::{Rectangle, WHOLE, flat_integral, integral};
+use super::measure_triangles::triangles_integral;
 use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
 use crate::base::par;
@@ -156,6 +157,7 @@ pub(super) fn over<const N: usize>(
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
         (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, &at),
+        (_, SurfaceKind::Scatter) => triangles_integral(surface, &surface.triangles(), accuracy, &at),
         _ if surface.is_flat() => flat_integral(surface, accuracy, &at),
         (Domain::Loop, _) => trimmed_integral(surface, accuracy, &at),
         _ => integral(surface, WHOLE, accuracy, &at),

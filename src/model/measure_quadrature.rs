@@ -17,7 +17,7 @@ const MOST_CELLS: usize = 1 << 17;
 const BATCH: usize = 1 << 15;
 
 /// Sums of N functions.
-type Sums<const N: usize> = [f64; N];
+pub type Sums<const N: usize> = [f64; N];
 
 /// A rectangle of the unit square.
 #[derive(Clone, Copy)]

@@ -14,6 +14,7 @@ pub mod loops;
 pub mod measure;
 mod measure_quadrature;
 mod measure_strips;
+mod measure_triangles;
 mod measure_trimmed;
 pub mod moments;
 mod nearest;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::quick::Ready;
 use super::rail::Lean;
@@ -69,6 +69,7 @@ pub enum SurfaceKind {
     Along,
     Sweep,
     Blend,
+    Scatter,
 }
 
 impl SurfaceKind {
@@ -92,6 +93,7 @@ impl SurfaceKind {
             Self::Along => "along",
             Self::Sweep => "sweep",
             Self::Blend => "blend",
+            Self::Scatter => "scatter",
         }
     }
 }
@@ -455,6 +457,13 @@ impl Surface {
             (true, Domain::Triangle) => (vs, us),
             (true, _) => (us, turned(&vs)),
         }
+    }
+
+    /// The triangles of (u, v) over which the surface is analytic, all of a whole surface through scattered points; empty for others.
+    pub fn triangles(&self) -> Vec<[DVec2; 3]> {
+        let Shape::Scatter(field) = &self.0.parts.shape else { return Vec::new() };
+        let turn = |c: DVec2| if self.0.parts.flipped { DVec2::new(c.x, 1.0 - c.y) } else { c };
+        field.pieces().iter().map(|piece| piece.corners.map(turn)).collect()
     }
 
     /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.

@@ -8,6 +8,7 @@ use super::breaks::tidy;
 use super::nurbs::NurbsSurface;
 use super::plane::Frame;
 use super::rail::Lean;
+use super::scatter::Field;
 use super::sweep::Sweep;
 use super::sweeps::Framed;
 use super::trilateral::Trilateral;
@@ -33,6 +34,8 @@ pub enum Shape {
     Nurbs(NurbsSurface),
     /// A profile carried with a frame.
     Framed(Framed),
+    /// A height over triangles.
+    Scatter(Field),
 }
 
 impl Content for Shape {
@@ -44,6 +47,7 @@ impl Content for Shape {
             Self::Plane(frame) => (3u8, frame).tell(to),
             Self::Nurbs(net) => (4u8, net).tell(to),
             Self::Framed(framed) => (5u8, framed).tell(to),
+            Self::Scatter(field) => (6u8, field).tell(to),
         }
     }
 }
@@ -59,6 +63,7 @@ impl Shape {
             Self::Plane(s) => s.jet(u, v),
             Self::Nurbs(s) => s.jet(u, v, lean),
             Self::Framed(s) => s.jet(u, v, lean),
+            Self::Scatter(s) => s.jet(u, v),
         }
     }
 
@@ -103,6 +108,7 @@ impl Shape {
             Self::Plane(_) => (Vec::new(), Vec::new()),
             Self::Nurbs(s) => s.breaks(),
             Self::Framed(s) => s.breaks(),
+            Self::Scatter(s) => s.lines(),
             Self::Trilateral(s) => {
                 let (mut us, mut vs) = (Vec::new(), Vec::new());
                 s.sides()[0].breaks(&mut us);
@@ -119,6 +125,7 @@ impl Shape {
             Self::Sweep(s) => s.cells(),
             Self::Nurbs(s) => s.breaks(),
             Self::Framed(s) => s.cells(),
+            Self::Scatter(s) => s.lines(),
             Self::Trilateral(_) | Self::Plane(_) => (Vec::new(), Vec::new()),
         }
     }
@@ -132,6 +139,7 @@ impl Shape {
             Self::Plane(s) => s.hull(),
             Self::Nurbs(s) => s.hull(),
             Self::Framed(s) => s.hull(),
+            Self::Scatter(s) => s.hull(),
         }
     }
 
@@ -144,6 +152,7 @@ impl Shape {
             Self::Plane(s) => Self::Plane(s.moved(motion)),
             Self::Nurbs(s) => Self::Nurbs(s.moved(motion)),
             Self::Framed(s) => Self::Framed(s.moved(motion)),
+            Self::Scatter(s) => Self::Scatter(s.moved(motion)),
         }
     }
 }

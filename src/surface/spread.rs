@@ -220,6 +220,7 @@ impl Shape {
             (Self::Sweep(s), _, Known::Profile(line)) => s.spread(middle.0, half, line),
             (Self::Framed(s), Known::Framed(strip), Known::Profile(line)) => s.spread(strip, half, line),
             (Self::Nurbs(s), Known::Net(a), Known::Net(b)) => s.spread(a, b, middle, half),
+            (Self::Scatter(s), ..) => s.spread(u.ends, v.ends),
             (Self::Trilateral(s), ..) => s.spread(u.ends, v.ends),
             (Self::Plane(s), ..) => Spread::new(s.jet(middle.0, middle.1), half, [Ranges::default(); 3], None),
             _ => Spread::new(self.jet(middle.0, middle.1, (Lean::After, Lean::After)), half, [Ranges::ANY; 3], None),

@@ -16,6 +16,7 @@ mod mesh;
 mod nets;
 mod network;
 mod no_flow;
+mod scatter;
 mod surface;
 mod sweep;
 mod values;
@@ -35,6 +36,7 @@ pub use mesh::{Close, Cure, LostPart, MeshFault};
 pub use nets::NetFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;
+pub use scatter::ScatterFault;
 pub use surface::{SurfaceFault, Touching};
 pub use sweep::SweepFault;
 pub use values::{LengthRange, ValueFault};
@@ -65,6 +67,8 @@ pub enum Fault {
     Net(Box<NetFault>),
     /// Family 6: roundings between surfaces.
     Blend(Box<BlendFault>),
+    /// Family 6: surfaces through scattered points.
+    Scatter(Box<ScatterFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -227,6 +231,7 @@ impl Describe for Fault {
             Self::Sweep(f) => f.describe(say),
             Self::Net(f) => f.describe(say),
             Self::Blend(f) => f.describe(say),
+            Self::Scatter(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -255,6 +260,7 @@ impl Fault {
             (Self::Sweep(a), Self::Sweep(b)) => same(&**a, &**b),
             (Self::Net(a), Self::Net(b)) => same(&**a, &**b),
             (Self::Blend(a), Self::Blend(b)) => same(&**a, &**b),
+            (Self::Scatter(a), Self::Scatter(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -289,6 +295,7 @@ from_family!(
     Sweep(SweepFault),
     Net(NetFault),
     Blend(BlendFault),
+    Scatter(ScatterFault),
     Mesh(MeshFault),
     File(FileFault)
 );

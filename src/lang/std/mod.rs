@@ -23,6 +23,7 @@ mod nets;
 mod network;
 mod numbers;
 mod roundings;
+mod scatters;
 mod surfaces;
 mod sweeps;
 mod text;
@@ -108,6 +109,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     transforms::BUILTINS,
     topology::BUILTINS,
     blends::BUILTINS,
+    scatters::BUILTINS,
     walls::BUILTINS,
     imprint::BUILTINS,
     joins::BUILTINS,

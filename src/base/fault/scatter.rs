@@ -1,0 +1,94 @@
+//! Family 6: surfaces through scattered points.
+
+use glam::DVec3;
+
+use super::{Describe, Report, Say, Subject};
+use crate::base::origin::Origin;
+
+/// What can go wrong with scattered points, or deserves a word. Lengths and points are in model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScatterFault {
+    /// W225: points that are other ones.
+    Merged {
+        /// The surface.
+        surface: Origin,
+        /// How many were left out.
+        count: usize,
+        /// The first of them.
+        at: DVec3,
+        /// How near two points are one.
+        tolerance: f64,
+    },
+    /// E665: points that span no surface.
+    OneLine {
+        /// The surface.
+        surface: Origin,
+        /// How many points.
+        count: usize,
+        /// One end of the line.
+        from: DVec3,
+        /// The other one.
+        to: DVec3,
+    },
+    /// E675: two points at one place of the plane.
+    Over {
+        /// The surface.
+        surface: Origin,
+        /// One.
+        a: DVec3,
+        /// The other one.
+        b: DVec3,
+        /// How near places are one.
+        tolerance: f64,
+    },
+    /// W668: a side of a triangle that is very steep.
+    Steep {
+        /// The surface.
+        surface: Origin,
+        /// One end.
+        a: DVec3,
+        /// The other one.
+        b: DVec3,
+        /// Rise over run.
+        steep: f64,
+    },
+}
+
+impl Describe for ScatterFault {
+    fn describe(&self, say: &dyn Say) -> Report {
+        let label = |report: Report, text: &str| report.label(Subject::Argument("points"), text);
+        match self {
+            Self::Merged { surface, count, at, tolerance } => {
+                let (points, are) = if *count == 1 { ("point", "is") } else { ("points", "are") };
+                let message = format!(
+                    "{count} {points} of {} {are} left out: within {} of another one, first at {}",
+                    say.quoted(*surface, "this surface"),
+                    say.length(*tolerance),
+                    say.point(*at)
+                );
+                label(Report::new("W225", message), "some are given twice")
+            }
+            Self::OneLine { surface, count, from, to } => {
+                let ((a, b), which) = (say.pair(*from, *to), say.quoted(*surface, "this surface"));
+                let message =
+                    format!("the {count} points of {which} span no surface: seen along its direction all lie on the line from {a} to {b}");
+                label(Report::new("E665", message), "all on one line").help("add points beside that line, or choose another `along:`")
+            }
+            Self::Over { surface, a, b, tolerance } => {
+                let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
+                let message = format!(
+                    "two points of {which} lie over one another: {a} and {b} are at one place of its plane, within {}",
+                    say.length(*tolerance)
+                );
+                label(Report::new("E675", message), "a height has one value at a place")
+                    .help("choose `along:` so that each place is met once; divide a closed cloud into parts that have such a direction")
+            }
+            Self::Steep { surface, a, b, steep } => {
+                let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
+                let message = format!("{which} rises {steep:.0} times as far as it runs from {a} to {b}");
+                label(Report::new("W668", message), "very steep")
+                    .help("points of two sheets are no surface over one plane: leave one sheet out, or choose another `along:`")
+            }
+        }
+    }
+}

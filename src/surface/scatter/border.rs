@@ -1,0 +1,152 @@
+//! The border of a triangulation: what rounding left along the hull is peeled off, sides on one line are one, and the surface gets its loop.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::field::Field;
+use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::geometry::curve::Shape as CurveShape;
+use crate::geometry::{Curve, Kind, Nurbs};
+use crate::network::Chain;
+use crate::surface::core::{Border, Domain, Parts, Side as Edge, Surface, SurfaceKind};
+use crate::surface::pull::{Course, Pull};
+use crate::surface::shape::Shape;
+use crate::surface::trim::{Walk, assembled};
+
+/// A side of the border: its two points, and the piece that lies along it.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    /// Its first point, counter-clockwise.
+    pub from: usize,
+    /// Its last point.
+    pub to: usize,
+    /// The piece of the field that has it as its first side.
+    pub piece: usize,
+}
+
+/// The triangles without those along the border that are no higher than `least` over their side there (points that are on the
+/// hull but for rounding), and the sides of the border counter-clockwise, beginning with the first point.
+pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[usize; 3]>, Vec<Side>) {
+    let height = |t: &[usize; 3], k: usize| {
+        let (a, b, c) = (flat[t[k]], flat[t[(k + 1) % 3]], flat[t[(k + 2) % 3]]);
+        (b - a).perp_dot(c - a) / a.distance(b)
+    };
+    let mut left = triangles;
+    loop {
+        let sides = outer(&left);
+        let on_border: Vec<usize> = sides.keys().map(|side| side.0).collect();
+        let thin = |(&(from, _), &t): (&(usize, usize), &usize)| {
+            let k = left[t].iter().position(|p| *p == from)?;
+            let apex = left[t][(k + 2) % 3];
+            (height(&left[t], k) <= least && on_border.binary_search(&apex).is_err()).then_some(t)
+        };
+        // One at a time: what was inside may be on the border then.
+        let Some(gone) = sides.iter().find_map(thin) else { break };
+        left.remove(gone);
+    }
+    let mut next: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for ((from, to), t) in outer(&left) {
+        let k = left[t].iter().position(|p| *p == from).unwrap_or(0);
+        next.insert(from, (to, 3 * t + k));
+    }
+    let mut sides = Vec::with_capacity(next.len());
+    let Some(&first) = next.keys().next() else { return (left, sides) };
+    let mut from = first;
+    while let Some((to, piece)) = next.remove(&from) {
+        sides.push(Side { from, to, piece });
+        from = to;
+    }
+    (left, sides)
+}
+
+/// Sides that one triangle has alone, as it turns, with that triangle.
+fn outer(triangles: &[[usize; 3]]) -> BTreeMap<(usize, usize), usize> {
+    let mut found = BTreeMap::new();
+    for (n, t) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            if found.remove(&(b, a)).is_none() {
+                found.insert((a, b), n);
+            }
+        }
+    }
+    found
+}
+
+/// The sides in runs along one line each, beginning at a corner.
+pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Side>> {
+    let n = sides.len();
+    let corner = |k: usize| {
+        let (before, after) = (&sides[(k + n - 1) % n], &sides[k]);
+        let (a, b, c) = (flat[before.from], flat[after.from], flat[after.to]);
+        let off = (c - a).perp_dot(b - a).abs() / a.distance(c);
+        off > tolerance.point
+    };
+    let start = (0..n).find(|k| corner(*k)).unwrap_or(0);
+    let mut found: Vec<Vec<Side>> = Vec::new();
+    for k in (0..n).map(|k| (start + k) % n) {
+        match found.last_mut() {
+            Some(run) if !corner(k) => run.push(sides[k]),
+            _ => found.push(vec![sides[k]]),
+        }
+    }
+    found
+}
+
+/// The surface of a field inside its border. Where that is the whole square it has four sides and no loop.
+pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+    let curves: Vec<Curve> = runs.iter().map(|run| curve(&field, run, origin)).collect();
+    let corner = |run: &Vec<Side>| field.pieces()[run[0].piece].corners[0];
+    let corners: Vec<DVec2> = runs.iter().map(corner).collect();
+    let square = corners.len() == 4 && corners.iter().all(|c| c.distance(c.round()) <= NUDGE * NUDGE);
+    let triangles = field.pieces().len() / 3;
+    let base = Surface::new(Parts {
+        origin,
+        kind: SurfaceKind::Scatter,
+        flow: format!("{points} points, {triangles} triangles"),
+        domain: Domain::Square,
+        closed: (false, false),
+        borders: (0..4).map(|_| Border::straight(Edge::Free)).collect(),
+        kinks: (Vec::new(), Vec::new()),
+        shape: Shape::Scatter(field),
+        chains: Vec::new(),
+        generated: Vec::new(),
+        trim: None,
+        flipped: false,
+    });
+    if square {
+        return Ok(base);
+    }
+    let mut walk = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    for (curve, start) in curves.iter().zip(corners) {
+        let chain = Chain::of_curve(curve);
+        let pull = Pull::follow(&base, (&chain, 0.0, 1.0), start, tolerance.point).map_err(|off| {
+            let (off, at) = (off.distance, off.at);
+            Fault::from(SurfaceFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
+        })?;
+        walk.borders.push(Border::chain(chain.clone(), false));
+        walk.courses.push(Course::Pull(Arc::new(pull)));
+        walk.chains.push(chain);
+    }
+    let made = assembled(&base, vec![walk], origin)?;
+    Ok(Surface::new(Parts { kind: SurfaceKind::Scatter, ..made.parts().clone() }))
+}
+
+/// The curve of the surface over a run of sides: the cubics of the pieces along it.
+fn curve(field: &Field, run: &[Side], origin: Origin) -> Curve {
+    let mut t = 0.0;
+    let cubic = |side: &Side| {
+        let piece = &field.pieces()[side.piece];
+        let (a, b) = (piece.corners[0], piece.corners[1]);
+        let poles: Vec<DVec3> = (0..4).zip(piece.side_heights()).map(|(k, h)| field.lifted(a.lerp(b, f64::from(k) / 3.0), h)).collect();
+        let from = t;
+        t += poles[0].distance(poles[3]);
+        Nurbs::bezier(from, t, poles.iter().map(|p| p.extend(1.0)).collect())
+    };
+    let cubics: Vec<Nurbs> = run.iter().map(cubic).collect();
+    Curve::new(CurveShape::Nurbs(Arc::new(Nurbs::joined(&cubics))), Kind::Iso, origin)
+}

@@ -1,0 +1,169 @@
+//! Surfaces through scattered points: what they meet, how smooth they are, and what changes nothing.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use glam::{DVec2, DVec3};
+use lofting::base::origin::Origin;
+use lofting::base::tolerance::Tolerance;
+use lofting::geometry::Motion;
+use lofting::surface::{Surface, scatter};
+
+/// Numbers of 0…1, the same every time.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn cloud(&mut self, n: usize, height: impl Fn(f64, f64) -> f64) -> Vec<DVec3> {
+        (0..n)
+            .map(|_| {
+                let (x, y) = (self.next() * 3.0 - 1.0, self.next() * 2.0);
+                DVec3::new(x, y, height(x, y))
+            })
+            .collect()
+    }
+}
+
+fn made(points: &[DVec3], along: Option<DVec3>) -> Surface {
+    scatter(points, along, Origin::NONE, &Tolerance::new(1e-7, 3.0)).unwrap().0
+}
+
+/// (u, v) of a place of the xy-plane in a surface made along z.
+fn place(points: &[DVec3]) -> impl Fn(DVec3) -> DVec2 {
+    let (low, high) = points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    move |p| ((p - low) / (high - low)).truncate()
+}
+
+#[test]
+fn a_thousand_clouds_are_met_in_any_order_and_are_smooth() {
+    let mut numbers = Numbers(0x5ca7_7e2d);
+    for case in 0..1000 {
+        let n = 3 + case % 40;
+        let (a, b, c) = (numbers.next() * 4.0, numbers.next() * 4.0, numbers.next());
+        let points = numbers.cloud(n, |x, y| c * (a * x).sin() * (b * y).cos() + 0.3 * x);
+        let surface = made(&points, Some(DVec3::Z));
+        let uv = place(&points);
+        for p in &points {
+            let at = uv(*p);
+            let off = surface.point(at.x, at.y).distance(*p);
+            assert!(off <= 3e-12, "case {case}: {off:e} at {p}, {at}, {}", surface.flow());
+        }
+        let mut turned = points.clone();
+        turned.rotate_left(n / 3);
+        turned.swap(0, n / 2);
+        let again = made(&turned, Some(DVec3::Z));
+        let mut jump = 0.0_f64;
+        for [p, q, r] in surface.triangles() {
+            let center = (p + q + r) / 3.0;
+            assert_eq!(surface.jet(center.x, center.y), again.jet(center.x, center.y), "case {case}");
+            for (p, q) in [(p, q), (q, r), (r, p)] {
+                for share in [0.2, 0.5, 0.9] {
+                    // Steps too small for second derivatives to be seen.
+                    let (at, aside) = (p.lerp(q, share), (q - p).perp().normalize() * 1e-13);
+                    let (x, y) = (surface.jet(at.x + aside.x, at.y + aside.y), surface.jet(at.x - aside.x, at.y - aside.y));
+                    let bent = [x, y].map(|j| j.duu.abs().max(j.duv.abs()).max(j.dvv.abs()).max_element());
+                    let bend = bent[0].max(bent[1]).max(1.0);
+                    jump = jump.max((x.du - y.du).abs().max((x.dv - y.dv).abs()).max_element() / bend);
+                }
+            }
+        }
+        assert!(jump < 1e-9, "case {case}: the slope jumps by {jump:e}");
+    }
+}
+
+#[test]
+fn planes_and_quadratics_come_back() {
+    let mut numbers = Numbers(0x91a2_e001);
+    for case in 0..200 {
+        let n = 3 + case % 60;
+        let flat = |x: f64, y: f64| 0.4 * x - 1.1 * y + 0.2;
+        let points = numbers.cloud(n, flat);
+        let (surface, uv) = (made(&points, Some(DVec3::Z)), place(&points));
+        let back = |at: DVec2, of: &dyn Fn(f64, f64) -> f64| {
+            let p = surface.point(at.x, at.y);
+            (p.z - of(p.x, p.y)).abs()
+        };
+        for [p, q, r] in surface.triangles() {
+            let at = (p + q + r) / 3.0;
+            assert!(back(at, &flat) <= 3e-13, "case {case}: {:e}", back(at, &flat));
+        }
+        assert!(surface.point(uv(points[0]).x, uv(points[0]).y).distance(points[0]) < 1e-13);
+        let bowl = |x: f64, y: f64| 0.7 * x * x - 0.3 * x * y + 0.5 * y * y + x - 0.1;
+        let points = numbers.cloud(25 + n, bowl);
+        let surface = made(&points, Some(DVec3::Z));
+        for [p, q, r] in surface.triangles() {
+            let at = (p + q + r) / 3.0;
+            let p = surface.point(at.x, at.y);
+            assert!((p.z - bowl(p.x, p.y)).abs() <= 1e-8, "case {case}: {:e}", p.z - bowl(p.x, p.y));
+        }
+    }
+}
+
+#[test]
+fn motions_and_scales_go_with_the_points() {
+    let mut numbers = Numbers(0x77_1dea);
+    for case in 0..60 {
+        let points = numbers.cloud(5 + case, |x, y| 0.4 * (2.0 * x).sin() * y + 0.2 * y * y);
+        let axis = DVec3::new(numbers.next() - 0.5, numbers.next() - 0.5, numbers.next() - 0.5).normalize();
+        let motion = Motion::rotation(DVec3::new(1.0, 2.0, 3.0), axis, 6.0 * numbers.next());
+        let moved: Vec<DVec3> = points.iter().map(|p| motion.point(*p)).collect();
+        let (a, b) = (made(&points, None).moved(&motion), made(&moved, None));
+        // Both are heights along one direction, over which u and v of the second are linear.
+        let along = a.jet(0.4, 0.6).duu.normalize();
+        let flat = |p: DVec3| p.reject_from_normalized(along);
+        let [o, x, y] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| flat(b.point(u, v)));
+        for k in 0..100 {
+            let (u, v) = (numbers.next(), numbers.next());
+            if a.keeps(u, v) {
+                let (p, ex, ey) = (a.point(u, v), x - o, y - o);
+                let arm = flat(p) - o;
+                let off = b.point(arm.dot(ex) / ex.length_squared(), arm.dot(ey) / ey.length_squared()).distance(p);
+                assert!(off <= 1e-10, "case {case}, {k}: {off:e}");
+            }
+        }
+        for scale in [1e-3, 1e3] {
+            let larger: Vec<DVec3> = points.iter().map(|p| *p * scale).collect();
+            let c = scatter(&larger, None, Origin::NONE, &Tolerance::new(1e-7 * scale, 3.0 * scale)).unwrap().0;
+            let first = made(&points, None);
+            for (u, v) in [(0.5, 0.5), (0.3, 0.6), (0.45, 0.2)] {
+                assert!(c.point(u, v).distance(first.point(u, v) * scale) <= 1e-12 * scale, "case {case}");
+            }
+        }
+    }
+}
+
+/// Bounds over rectangles hold what is inside, over the border too.
+#[test]
+fn bounds_hold() {
+    let mut numbers = Numbers(0xb0_11d5);
+    for case in 0..200 {
+        let points = numbers.cloud(4 + case % 30, |x, y| 0.5 * (3.0 * x).sin() * (2.0 * y).cos());
+        let surface = made(&points, Some(DVec3::Z));
+        for _ in 0..10 {
+            let size = [0.02, 0.2, 0.9][case % 3];
+            let (u, v) = (numbers.next() * (1.0 - size), numbers.next() * (1.0 - size));
+            let bounds = surface.spread((u, u + size), (v, v + size));
+            for _ in 0..20 {
+                let (x, y) = (u + size * numbers.next(), v + size * numbers.next());
+                let jet = surface.jet(x, y);
+                let room = DVec3::splat(1e-9);
+                for (what, value, range) in [
+                    ("p", jet.p, bounds.p),
+                    ("du", jet.du, bounds.du),
+                    ("dv", jet.dv, bounds.dv),
+                    ("duu", jet.duu, bounds.duu),
+                    ("duv", jet.duv, bounds.duv),
+                    ("dvv", jet.dvv, bounds.dvv),
+                ] {
+                    let room = room * (1.0 + value.abs().max_element());
+                    let holds = value.cmpge(range.low - room).all() && value.cmple(range.high + room).all();
+                    assert!(holds, "case {case}: {what} {value} at {x} {y} is not within {range:?}");
+                }
+            }
+        }
+    }
+}
