@@ -3,8 +3,8 @@
 use super::kinds::SurfaceOrShell;
 use crate::base::fault::{Say, ValueFault};
 use crate::lang::types::Length;
-use crate::model::thicken::thicken;
 use crate::surface::Surface;
+use crate::surface::walls::thicken;
 use crate::{builtins, choices};
 
 choices! {
@@ -22,10 +22,9 @@ choices! {
 builtins! {
     /// Faces of the wall that a face becomes by a thickness.
     ///
-    /// Its two sides, then the rims between their borders. The sides are offsets of the face, see `offset`; the rims are ruled along
-    /// its free borders, so that the faces close: a shell
-    /// of them has a volume and points outwards. One face at a time: a plane, trimmed or
-    /// not, an extrusion across the plane of its profile, or a revolution.
+    /// Its two sides, then the rims between their borders. The sides are offsets of the face, see `offset`; the rims stand along its
+    /// normals on its free borders, those of holes too, so that the faces close: a shell of them has a volume and points outwards.
+    /// One face of any kind at a time. The wall encloses the face's area times the thickness, but for what its curvature adds.
     /// ```loft
     /// surface tube = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 3m))
     /// shell pipe of thicken(tube, 100mm)
