@@ -149,7 +149,7 @@ pub(super) fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
 }
 
 /// A profile with the unit normal of its plane.
-struct Profile {
+pub(super) struct Profile {
     curve: Curve,
     normal: DVec3,
     /// 1 where the normals of the surface are to the left of the profile, else −1.
@@ -157,7 +157,7 @@ struct Profile {
 }
 
 /// The profile of a sweep that lies in a plane which holds the normals; none for other surfaces.
-fn swept_by(surface: &Surface) -> Result<Option<(Profile, Path)>> {
+pub(super) fn swept_by(surface: &Surface) -> Result<Option<(Profile, Path)>> {
     let Shape::Sweep(sweep) = &surface.parts().shape else { return Ok(None) };
     let Some(chain) = sweep.profile().chain() else { return Ok(None) };
     let curve = chain.to_curve()?;
@@ -178,18 +178,62 @@ fn swept_by(surface: &Surface) -> Result<Option<(Profile, Path)>> {
     Ok((side.abs() >= 1.0 - NUDGE).then(|| (Profile { curve, normal, side: side.signum() }, sweep.path())))
 }
 
+/// The parts of a face between its creases: of an untrimmed sweep those of its profile; E670 for others with creases.
+pub(super) fn parts_of(surface: &Surface, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    let below = whole(surface, tolerance);
+    let (us, vs) = below.kinks();
+    if us.is_empty() && vs.is_empty() || level(surface, tolerance).is_some() {
+        return Ok(vec![surface.clone()]);
+    }
+    let parts = surface.parts();
+    let (Shape::Sweep(sweep), None) = (&parts.shape, &parts.trim) else {
+        rough(&below, surface.origin(), origin, tolerance)?;
+        return Ok(vec![surface.clone()]);
+    };
+    let Some(chain) = sweep.profile().chain() else { return Ok(vec![surface.clone()]) };
+    let mut stops = chain.kinks(tolerance);
+    let round = chain.is_closed(tolerance) && stops.first() == Some(&0.0);
+    stops.retain(|f| *f > 0.0 && *f < 1.0);
+    let ends: Vec<(f64, f64)> = if chain.is_closed(tolerance) && !round {
+        (0..stops.len()).map(|k| (stops[k], stops[(k + 1) % stops.len()])).collect()
+    } else {
+        let stops = [vec![0.0], stops, vec![1.0]].concat();
+        stops.windows(2).map(|w| (w[0], w[1])).collect()
+    };
+    let part = |(from, to): (f64, f64)| -> Result<Surface> {
+        let piece = chain.slice(from, to, tolerance)?;
+        let made = match sweep.path() {
+            Path::Straight { by } => extrude(&piece, by, surface.origin(), tolerance)?,
+            Path::Turn { about, axis, angle } => revolve(&piece, &Axis { about, direction: axis }, angle, surface.origin(), tolerance)?,
+        };
+        Ok(if parts.flipped { made.flipped() } else { made })
+    };
+    ends.into_iter().map(part).collect()
+}
+
 /// The offset of a sweep whose profile lies in a plane that holds its normals; none for other surfaces.
 fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
     let Some((profile, path)) = swept_by(surface)? else { return Ok(None) };
-    let moved = Chain::of_curve(&build::offset(&profile.curve, distance * profile.side, profile.normal, origin)?);
+    let moved = moved_profile((&profile, path), distance, origin, tolerance)?;
     let made = match path {
         Path::Straight { by } => extrude(&moved, by, origin, tolerance)?,
-        Path::Turn { about, axis, angle } => {
-            let axis = Axis { about, direction: axis };
-            revolve(&beside_axis((&profile.curve, &moved), &axis, distance, tolerance)?, &axis, angle, origin, tolerance)?
-        }
+        Path::Turn { about, axis, angle } => revolve(&moved, &Axis { about, direction: axis }, angle, origin, tolerance)?,
     };
     Ok(Some(if surface.parts().flipped { made.flipped() } else { made }))
+}
+
+/// The profile of the offset of a sweep.
+pub(super) fn moved_profile((profile, path): (&Profile, Path), distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
+    let moved = if distance == 0.0 {
+        profile.curve.clone()
+    } else {
+        build::offset(&profile.curve, distance * profile.side, profile.normal, origin)?
+    };
+    let moved = Chain::of_curve(&moved);
+    match path {
+        Path::Straight { .. } => Ok(moved),
+        Path::Turn { about, axis, .. } => beside_axis((&profile.curve, &moved), &Axis { about, direction: axis }, distance, tolerance),
+    }
 }
 
 /// Unit normal of the plane in which the profile's normals would lie.
@@ -208,7 +252,7 @@ fn plane_of(profile: &Curve, path: Path, size: f64) -> Option<DVec3> {
 }
 
 /// Where the offset turns back over itself: some radius of curvature on its side is below the distance.
-fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault> {
+pub(super) fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault> {
     let (us, vs) = base.breaks();
     let places = |inner: &[f64]| {
         let stops = [&[0.0], inner, &[1.0]].concat();

@@ -41,7 +41,7 @@ pub use scatter::ScatterFault;
 pub use surface::{SurfaceFault, Touching};
 pub use sweep::SweepFault;
 pub use values::{LengthRange, ValueFault};
-pub use walls::WallFault;
+pub use walls::{WallEdge, WallFault};
 
 use super::origin::Origin;
 

@@ -31,6 +31,8 @@ pub struct Hem {
     surface: Surface,
     side: Side,
     course: Course,
+    /// The part of the course that it is; of a closed one it may run on beyond 1.
+    part: (f64, f64),
 }
 
 /// What is known at a place of a border; derivatives by the parameter along it.
@@ -75,7 +77,12 @@ pub(in crate::surface) fn whole(surface: &Surface, tolerance: &Tolerance) -> Sur
 /// The borders of all loops of a face, loop by loop; `None` for poles and for seams, across which the face goes on.
 pub fn hems(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec<Option<Hem>>> {
     let below = whole(surface, tolerance);
-    let hem = |border: &Border, course: &Course| Hem { surface: below.clone(), side: border.side.clone(), course: course.clone() };
+    let hem = |border: &Border, course: &Course| Hem {
+        surface: below.clone(),
+        side: border.side.clone(),
+        course: course.clone(),
+        part: (0.0, 1.0),
+    };
     let closed = surface.closed();
     let seam = |walk: &Walk, k: usize| {
         let own = &walk.courses[k];
@@ -115,7 +122,10 @@ impl Hem {
             }
             _ => Vec::new(),
         };
-        let mut stops: Vec<f64> = inner.into_iter().filter(|t| *t > NUDGE && *t < 1.0 - NUDGE).chain([0.0, 1.0]).collect();
+        let (from, to) = self.part;
+        // Of a closed border the start is a stop, too, and all comes once more.
+        let twice = inner.into_iter().chain([0.0]).flat_map(|t| [t, t + 1.0]).map(|t| (t - from) / (to - from));
+        let mut stops: Vec<f64> = twice.filter(|t| *t > NUDGE && *t < 1.0 - NUDGE).chain([0.0, 1.0]).collect();
         stops.sort_by(f64::total_cmp);
         stops.dedup_by(|b, a| *b - *a <= NUDGE);
         stops
@@ -144,8 +154,31 @@ impl Hem {
         Some((self.surface.normal(uv.x, uv.y) - normal) / h)
     }
 
+    /// The part between two parameters; beyond 1 of a closed border.
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let (a, b) = self.part;
+        Self { part: (a + (b - a) * from, a + (b - a) * to), ..self.clone() }
+    }
+
+    /// Parameters inside at which it has a corner.
+    pub fn corners(&self, tolerance: &Tolerance) -> Vec<f64> {
+        let way = |t: f64, before: bool| self.jet(t, before).map_or(DVec3::ZERO, |jet| jet.d1);
+        let mut stops = self.stops();
+        stops.retain(|t| *t > 0.0 && *t < 1.0 && tolerance.is_kink(way(*t, true), way(*t, false)));
+        stops
+    }
+
     /// Place, point, derivative of the point and of the place.
     fn place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
+        let (from, to) = self.part;
+        let whole = from + (to - from) * t;
+        let beyond = whole > 1.0 || whole == 1.0 && !before && to > 1.0;
+        let (uv, p, d1, way) = self.whole_place(if beyond { whole - 1.0 } else { whole }, before)?;
+        Some((uv, p, d1 * (to - from), way * (to - from)))
+    }
+
+    /// The same by the parameter of the whole border.
+    fn whole_place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
         match (&self.course, &self.side) {
             (Course::Line(a, b), _) => {
                 let (a, b) = (DVec2::from(*a), DVec2::from(*b));

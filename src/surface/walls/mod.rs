@@ -1,17 +1,23 @@
-//! `thicken`: a face moved to both sides or to one, and what joins the borders of the two.
+//! `thicken`: faces moved to both sides or to one, and what joins the borders of the two.
 
 mod border;
 mod carried;
+mod joint;
+mod longer;
+mod shell;
 
 pub(super) use border::whole;
 use border::{Hem, curve, hems};
 pub(super) use carried::trimmed;
 use carried::with_loops;
 
+use joint::{Bend, Sheet};
+use shell::layer;
+
 use super::core::{Domain, Side, Surface, SurfaceKind};
 use super::iso::between;
 use super::nurbs::NurbsSurface;
-use super::offset::{is_exact, offset};
+use super::offset::{is_exact, offset, parts_of};
 use super::plane;
 use super::ruled::ruled;
 use super::trim::natural;
@@ -90,16 +96,20 @@ fn ruled_rims((inner, outer): (&Surface, &Surface), origin: Origin, tolerance: &
     let mut rims = Vec::new();
     for k in 0..inner.n_sides() {
         let (Some(low), Some(high)) = (named(inner, k, tolerance)?, named(outer, k, tolerance)?) else { continue };
-        let bent = !low.kinks(tolerance).is_empty() || !high.kinks(tolerance).is_empty();
-        if bent && let Some(flat) = flat_rim(&low, &high, origin, tolerance)? {
-            rims.push(flat);
-            continue;
-        }
-        let (rim, more) = ruled(&low, &high, origin, tolerance)?;
-        notes.extend(more);
-        rims.push(rim);
+        rims.push(strip(&low, &high, origin, tolerance, notes)?);
     }
     Ok(rims)
+}
+
+/// The face between two curves.
+fn strip(low: &Chain, high: &Chain, origin: Origin, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Result<Surface> {
+    let bent = !low.kinks(tolerance).is_empty() || !high.kinks(tolerance).is_empty();
+    if bent && let Some(flat) = flat_rim(low, high, origin, tolerance)? {
+        return Ok(flat);
+    }
+    let (rim, more) = ruled(low, high, origin, tolerance)?;
+    notes.extend(more);
+    Ok(rim)
 }
 
 /// The plane face between two curves with corners, which need not be at the same shares of them; none where they lie in no plane.
@@ -130,4 +140,49 @@ fn named(surface: &Surface, k: usize, tolerance: &Tolerance) -> Result<Option<Ch
         Side::Chain { chain, from, to } => between(&chain, from, to, tolerance).map(Some),
         Side::Pole(_) | Side::Seam | Side::Free => Ok(None),
     }
+}
+
+/// The faces of the wall of several faces that share edges: both sides, then rims along the free borders.
+///
+/// Faces that go on smoothly into each other share the moved edge; at sharp edges they are made longer or cut back to where the moved
+/// ones meet. The sides are those of the first face, of flipped faces where `turned` says so of them and whether they close. Fails as
+/// [`offset`] does, and with E671 where moved faces do not meet.
+pub fn thicken_all(
+    faces: &[Surface],
+    (below, above): (f64, f64),
+    turned: &dyn Fn(&[Surface], bool) -> bool,
+    origin: Origin,
+    tolerance: &Tolerance,
+) -> Result<(Vec<Surface>, Vec<Fault>)> {
+    let mut sheet = Sheet::new(faces, origin, tolerance)?;
+    let closed = sheet.joints.iter().all(|joint| joint.bend != Bend::Free);
+    if turned(&sheet.faces, closed) {
+        let other: Vec<Surface> = sheet.faces.iter().map(Surface::flipped).collect();
+        sheet = Sheet::new(&other, origin, tolerance)?;
+    }
+    let (inner, outer) = (layer(&sheet, below, origin, tolerance)?, layer(&sheet, above, origin, tolerance)?);
+    let mut notes = [inner.notes, outer.notes].concat();
+    let mut all = outer.faces;
+    all.extend(inner.faces.iter().map(Surface::flipped));
+    for (k, joint) in sheet.joints.iter().enumerate().filter(|(_, joint)| joint.bend == Bend::Free) {
+        let at = joint.uses[0];
+        let hem = &sheet.hems[at.face][at.hem];
+        let own = rim(hem, (below, above), origin, tolerance)?;
+        let ends = |a: &Chain, b: &Chain| tolerance.same_point(a.start(), b.start()) && tolerance.same_point(a.end(), b.end());
+        if ends(&own.low, &inner.edges[k]) && ends(&own.high, &outer.edges[k]) {
+            all.push(own.face);
+            continue;
+        }
+        all.push(strip(&inner.edges[k], &outer.edges[k], origin, tolerance, &mut notes)?);
+    }
+    Ok((all, notes))
+}
+
+/// Faces without creases that make up some faces: extrusions and revolutions are divided at the corners of their profiles.
+pub fn without_creases(faces: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    let mut all = Vec::new();
+    for face in faces {
+        all.extend(parts_of(face, origin, tolerance)?);
+    }
+    Ok(all)
 }
