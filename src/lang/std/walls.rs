@@ -35,10 +35,10 @@ builtins! {
     /// let faces = len(thicken(tube, 100mm, side: front)) // => 4
     /// shell cup of tube, plane(circle(center: (0, 0, 0), radius: 1m))
     /// shell beaker of thicken(cup, 100mm)
-    /// check beaker.volume == pi * (1.05m ^ 2 * 3.05m - 0.95m ^ 2 * 2.95m) within 1e-4%
+    /// check beaker.volume == pi * (1.05 ^ 2 * 3.05 - 0.95 ^ 2 * 2.95) * 1m3 within 1e-4%
     /// ```
     fn thicken(
-        /// A surface, or a shell of one face.
+        /// A surface or a shell.
         of: SurfaceOrShell,
         /// How thick the wall is, above 0.
         thickness: Length,
