@@ -12,7 +12,7 @@ use lofting::geometry::build::{arc_center, circle, line};
 use lofting::geometry::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
 use lofting::surface::revolve::Axis;
-use lofting::surface::skin::{Across, skin};
+use lofting::surface::skin::{Across, Leaving, Section, Settings, skin};
 use lofting::surface::sweeps::{AlongSettings, Input, Law, Method, along, sweep};
 use lofting::surface::{NetForm, Off, Surface, extrude, revolve};
 use networks::{NETWORKS, as_given};
@@ -59,7 +59,12 @@ fn a_skin_of_a_hundred_sections_has_few_points_along_them() {
     };
     let sections: Vec<Chain> = (0..100).map(|j| through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>())).collect();
     let tolerance = Tolerance::new(1e-7 * 42.0, 42.0);
-    let (surface, _) = skin(&sections, Across::Cubic, false, Origin::NONE, &tolerance).unwrap();
+    let (surface, _) = skin(
+        &sections.iter().cloned().map(Section::Curve).collect::<Vec<_>>(),
+        &Settings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE },
+        &tolerance,
+    )
+    .unwrap();
     let form = surface.to_net(&tolerance).unwrap().unwrap();
     let Off::Bounded(bound) = form.off else { panic!("{:?}", form.off) };
     let found = off(&surface, &form, 42.0);
@@ -133,7 +138,7 @@ fn profiles_on_bent_paths_keep_what_their_files_say() {
     for point in [1e-4, 1e-7] {
         let tolerance = Tolerance::new(point * size, size);
         for (profile, twist) in [(&ring, 0.0), (&wave, 0.0), (&wave, 2.0)] {
-            let settings = AlongSettings { twist, origin: Origin::NONE };
+            let settings = AlongSettings { twist, round: false, origin: Origin::NONE };
             let (surface, _) = along(profile, &path, &settings, &tolerance).unwrap_or_else(|fault| panic!("{fault}"));
             for form in [surface.to_net(&tolerance), surface.ground_net(&tolerance)] {
                 let form = form.unwrap().unwrap();

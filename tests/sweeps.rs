@@ -118,10 +118,6 @@ fn motions_and_scales_move_the_surface() {
         let surface = made(&sections, &guides, law).moved(&motion);
         let moved = |list: &[Chain]| list.iter().map(|c| c.moved(&motion)).collect::<Vec<_>>();
         let again = made(&moved(&sections), &moved(&guides), law);
-        eprintln!("{seed} {law:?} {}", apart(&surface, &again));
-        if 1 < 2 {
-            continue;
-        }
         assert!(apart(&surface, &again) < 1e-9 * 3.0 * SIZE, "{seed}: {}", apart(&surface, &again));
     }
 }
@@ -132,7 +128,7 @@ fn one_section_on_a_line_is_extruded_and_on_an_arc_revolved() {
     let by = DVec3::new(0.0, 120.0, 0.0);
     let way = Chain::of_curve(&line(section.start(), section.start() + by, Origin::NONE).expect("a line"));
     let wanted = extrude(&section, by, Origin::NONE, &tolerance()).expect("a surface");
-    let settings = AlongSettings { twist: 0.0, origin: Origin::NONE };
+    let settings = AlongSettings { twist: 0.0, round: false, origin: Origin::NONE };
     let carried = along(&section, &way, &settings, &tolerance()).expect("a surface").0;
     for found in
         [&carried, &made(from_ref(&section), from_ref(&way), Law::Parallel), &made(from_ref(&section), from_ref(&way), Law::Normal)]
