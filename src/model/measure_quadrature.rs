@@ -34,14 +34,9 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 
 /// The integral of N functions of the jet over a rectangle of the unit square of a surface, with estimated errors.
 ///
-/// A cell is done when two orders differ by no more than `accuracy` of the integrals of their sizes (the second functions), shared
+/// A cell is done when two orders differ by no more than `accuracy` of the integrals of absolute values, shared
 /// out by the cells of the first division; errors are sums of these differences (of the lower order: on the safe side).
-pub fn integral<const N: usize>(
-    surface: &Surface,
-    within: Rectangle,
-    accuracy: f64,
-    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
-) -> (Sums<N>, Sums<N>) {
+pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let (us, vs) = surface.breaks();
     // A triangle's lines do not follow the square.
@@ -55,9 +50,8 @@ pub fn integral<const N: usize>(
     let share = accuracy / open.len() as f64;
     let first = products(surface, (&us, &vs), &rules[0], f);
     let second = products(surface, (&us, &vs), &rules[1], f);
-    let sizes = products(surface, (&us, &vs), &rules[0], sized);
-    let scale = sizes.iter().fold([0.0; N], |sum, size| std::array::from_fn(|i| sum[i] + size[i]));
-    let mut known: Vec<Option<[Sums<N>; 2]>> = first.into_iter().zip(second).map(|(a, b)| Some([a, b])).collect();
+    let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
+    let mut known: Vec<Option<[Sums<N>; 2]>> = first.into_iter().zip(second).map(|(a, b)| Some([a.0, b.0])).collect();
     // Where the first division has many cells each of them may still be halved.
     let most = MOST_CELLS.max(2 * open.len());
     // The last cell is taken first: turn the list round so that sums run in one order.
@@ -68,7 +62,7 @@ pub fn integral<const N: usize>(
         job::look();
         seen += 1;
         let known_of = |k: usize| start.as_ref().and_then(|values| values.get(k)).copied();
-        let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f));
+        let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f).0);
         let mut value = by_rule(0);
         let mut apart = [f64::INFINITY; N];
         for k in 1..rules.len() {
@@ -107,7 +101,7 @@ fn products<const N: usize>(
     (us, vs): (&[f64], &[f64]),
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
-) -> Vec<Sums<N>> {
+) -> Vec<(Sums<N>, Sums<N>)> {
     let order = rule.len();
     let on = |stops: &[f64]| -> Vec<f64> {
         stops.windows(2).flat_map(|w| rule.iter().map(move |(x, _)| 0.5 * (w[0] + w[1]) + 0.5 * (w[1] - w[0]) * x)).collect()
@@ -130,29 +124,30 @@ fn products<const N: usize>(
     found
 }
 
-/// One rule on one cell.
-fn product<const N: usize>(surface: &Surface, cell: &Cell, rule: &[(f64, f64)], f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
+/// One rule on one cell: the integrals and those of the absolute values.
+fn product<const N: usize>(surface: &Surface, cell: &Cell, rule: &[(f64, f64)], f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let on = |(a, b): (f64, f64)| rule.iter().map(|(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x).collect::<Vec<f64>>();
     let jets = surface.square_jets(&on(cell.x), &on(cell.y));
     let area = 0.25 * (cell.x.1 - cell.x.0) * (cell.y.1 - cell.y.0);
     weighed(jets.iter(), area, rule, f)
 }
 
-/// The integrals from the jets of a rule.
+/// The integrals and those of the absolute values from the jets of a rule.
 fn weighed<'a, const N: usize>(
     jets: impl Iterator<Item = &'a Jet2>,
     area: f64,
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
-) -> Sums<N> {
-    let mut sum = [0.0; N];
+) -> (Sums<N>, Sums<N>) {
+    let (mut sum, mut size) = ([0.0; N], [0.0; N]);
     for (k, jet) in jets.enumerate() {
         let weight = area * rule[k % rule.len()].1 * rule[k / rule.len()].1;
         for (i, value) in f(jet).into_iter().enumerate() {
             sum[i] += weight * value;
+            size[i] += weight * value.abs();
         }
     }
-    sum
+    (sum, size)
 }
 
 /// The boundary of a flat surface in walking order, each chain with the fractions it is run between.
@@ -171,11 +166,7 @@ fn boundary(surface: &Surface) -> Vec<(Chain, f64, f64)> {
 /// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
 ///
 /// `f` gets jets with unit derivatives in the plane, their cross product the surface's normal.
-pub fn flat_integral<const N: usize>(
-    surface: &Surface,
-    accuracy: f64,
-    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
-) -> (Sums<N>, Sums<N>) {
+pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let walk = boundary(surface);
     let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
     let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
@@ -206,7 +197,7 @@ pub fn flat_integral<const N: usize>(
     let ev = normal.cross(eu);
     let inner = gauss_legendre(ORDERS[0]);
     // ∬ f da db = ∮ F db with F = ∫ f da from the origin's line.
-    let along = |p: DVec3, f: &dyn Fn(&Jet2) -> Sums<N>| {
+    let along = |p: DVec3| {
         let (a, foot) = ((p - origin).dot(eu), p - eu * (p - origin).dot(eu));
         inner.iter().fold([0.0; N], |sum, (x, w)| {
             let jet = Jet2 { p: foot + eu * (0.5 * a * (1.0 + x)), du: eu, dv: ev, ..Jet2::default() };
@@ -214,16 +205,20 @@ pub fn flat_integral<const N: usize>(
             std::array::from_fn(|i| sum[i] + 0.5 * a * w * value[i])
         })
     };
-    // The value along a run, or its size.
-    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64), size: bool| {
-        rule.iter().fold([0.0; N], |sum, (x, w)| {
+    // Value and sum of absolute values.
+    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64)| {
+        rule.iter().fold(([0.0; N], [0.0; N]), |(mut sum, mut size), (x, w)| {
             let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
-            let (value, step) = (if size { along(jet.p, sized) } else { along(jet.p, f) }, 0.5 * (b - a) * w * jet.d1.dot(ev));
-            std::array::from_fn(|i| sum[i] + if size { (step * value[i]).abs() } else { step * value[i] })
+            let (value, step) = (along(jet.p), 0.5 * (b - a) * w * jet.d1.dot(ev));
+            for i in 0..N {
+                sum[i] += step * value[i];
+                size[i] += (step * value[i]).abs();
+            }
+            (sum, size)
         })
     };
-    let scale = runs.iter().fold([0.0; N], |scale: Sums<N>, run| {
-        let size = round(&rules[0], *run, true);
+    let scale = runs.iter().fold([0.0; N], |scale, run| {
+        let size = round(&rules[0], *run).1;
         std::array::from_fn(|i| scale[i] + size[i])
     });
     let share = accuracy / runs.len() as f64;
@@ -231,7 +226,7 @@ pub fn flat_integral<const N: usize>(
     let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
         job::look();
-        let (rough, value) = (round(&rules[0], run, false), round(&rules[1], run, false));
+        let (rough, value) = (round(&rules[0], run).0, round(&rules[1], run).0);
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
         if depth == DEEPEST || small(&apart, &scale, share) {
             for i in 0..N {

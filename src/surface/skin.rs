@@ -22,8 +22,8 @@ pub use super::skin_ends::Leaving;
 const COMPARED: usize = 32;
 /// Starts tried along a closed section before the best one is made better.
 const STARTS: usize = 64;
-/// Steps of golden sections to the best start.
-const STEPS: usize = 40;
+/// Halvings to the best start.
+const STEPS: usize = 48;
 /// How often a fit is made closer because of what its ends add.
 const CLOSER: usize = 8;
 
@@ -179,6 +179,17 @@ fn apart((before, turned): (&Chain, bool), section: (&Chain, f64, bool)) -> f64 
     (0..=COMPARED).map(|k| read((before, 0.0, turned), at(k)).distance_squared(read(section, at(k)))).sum()
 }
 
+/// How that sum grows with the turn of the second one, halved.
+fn slope((before, back): (&Chain, bool), (chain, turn, turned): (&Chain, f64, bool)) -> f64 {
+    let one = |k: usize| {
+        let x = k as f64 / COMPARED as f64;
+        let f = (if turned { 1.0 - x } else { x }) + turn;
+        let jet = chain.jet(if f > 1.0 { f - 1.0 } else { f });
+        (jet.p - read((before, 0.0, back), x)).dot(jet.d1)
+    };
+    (0..=COMPARED).map(one).sum()
+}
+
 /// A closed section from the start, and in the direction, that twists least against the one before.
 ///
 /// Corners go to corners: where both have equally many, only these are tried.
@@ -197,11 +208,12 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     }
     let mut start = best.1;
     if !kinked && start != 0.0 {
-        let golden = 0.5 * (5f64.sqrt() - 1.0);
+        // Where the sum no longer falls: halving keeps all digits, the sum itself only half of them.
+        let falls = |start: f64| slope(before, (section, start.rem_euclid(1.0), best.2)) < 0.0;
         let (mut low, mut high) = (start - 1.0 / STARTS as f64, start + 1.0 / STARTS as f64);
         for _ in 0..STEPS {
-            let (c, d) = (high - golden * (high - low), low + golden * (high - low));
-            if off(c, best.2) < off(d, best.2) { high = d } else { low = c }
+            let middle = 0.5 * (low + high);
+            if falls(middle) { low = middle } else { high = middle }
         }
         start = (0.5 * (low + high)).rem_euclid(1.0);
     }

@@ -20,7 +20,6 @@ mod scatter;
 mod surface;
 mod sweep;
 mod values;
-mod walls;
 
 use std::fmt;
 use std::mem::discriminant;
@@ -41,7 +40,6 @@ pub use scatter::ScatterFault;
 pub use surface::{SurfaceFault, Touching};
 pub use sweep::SweepFault;
 pub use values::{LengthRange, ValueFault};
-pub use walls::{WallEdge, WallFault};
 
 use super::origin::Origin;
 
@@ -71,8 +69,6 @@ pub enum Fault {
     Blend(Box<BlendFault>),
     /// Family 6: surfaces through scattered points.
     Scatter(Box<ScatterFault>),
-    /// Family 6: offsets and walls.
-    Wall(Box<WallFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -236,7 +232,6 @@ impl Describe for Fault {
             Self::Net(f) => f.describe(say),
             Self::Blend(f) => f.describe(say),
             Self::Scatter(f) => f.describe(say),
-            Self::Wall(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -266,7 +261,6 @@ impl Fault {
             (Self::Net(a), Self::Net(b)) => same(&**a, &**b),
             (Self::Blend(a), Self::Blend(b)) => same(&**a, &**b),
             (Self::Scatter(a), Self::Scatter(b)) => same(&**a, &**b),
-            (Self::Wall(a), Self::Wall(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -302,7 +296,6 @@ from_family!(
     Net(NetFault),
     Blend(BlendFault),
     Scatter(ScatterFault),
-    Wall(WallFault),
     Mesh(MeshFault),
     File(FileFault)
 );

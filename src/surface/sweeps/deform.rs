@@ -7,9 +7,10 @@ use glam::{DMat3, DVec3, DVec4};
 use crate::base::fault::{CurveFault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::base::tolerance::{EPSILON, NEAREST, Tolerance};
 use crate::geometry::curve::Shape;
 use crate::geometry::nurbs::{projected, weighted};
+use crate::geometry::nurbs_edit::Bezier;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 
@@ -174,12 +175,12 @@ pub fn own_breaks(chain: &Chain, tolerance: &Tolerance) -> Result<Vec<f64>> {
     let mut all = vec![0.0];
     for w in stops.windows(2) {
         // Arcs: pieces well below a right angle. Helices and offset curves: as many as each is one piece within the tolerance.
-        let several = part(chain, (w[0], w[1]), tolerance)?.beziers().len();
+        let several = whole_pieces(&part(chain, (w[0], w[1]), tolerance)?).len();
         let mut n = if several > 1 { 2 * several } else { 1 };
         let at = |k: usize, n: usize| w[0] + (w[1] - w[0]) * k as f64 / n as f64;
         while n < MOST {
             job::look();
-            let parts = (0..n).map(|k| part(chain, (at(k, n), at(k + 1, n)), tolerance).map(|p| p.beziers().len()));
+            let parts = (0..n).map(|k| part(chain, (at(k, n), at(k + 1, n)), tolerance).map(|p| whole_pieces(&p).len()));
             if parts.collect::<Result<Vec<usize>>>()?.iter().all(|pieces| *pieces == 1) {
                 break;
             }
@@ -188,6 +189,17 @@ pub fn own_breaks(chain: &Chain, tolerance: &Tolerance) -> Result<Vec<f64>> {
         all.extend((1..=n).map(|k| if k == n { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / n as f64 }));
     }
     Ok(all)
+}
+
+/// The Bézier pieces of a part, but for slivers that rounding leaves where it is cut beside a knot.
+fn whole_pieces(part: &Nurbs) -> Vec<Bezier> {
+    let mut all = part.beziers();
+    let reach = |piece: &Bezier| piece.poles.windows(2).map(|w| projected(w[0]).distance(projected(w[1]))).sum::<f64>();
+    let lengths: Vec<f64> = all.iter().map(reach).collect();
+    let longest = lengths.iter().copied().fold(0.0, f64::max);
+    let mut kept = lengths.iter().map(|length| *length > NEAREST * longest);
+    all.retain(|_| kept.next().unwrap_or(true));
+    all
 }
 
 fn part(chain: &Chain, (f0, f1): (f64, f64), tolerance: &Tolerance) -> Result<Nurbs> {
@@ -205,7 +217,7 @@ pub fn cut(chain: &Chain, breaks: &[f64], tolerance: &Tolerance) -> Result<Piece
             let mut near = *tolerance;
             for _ in 0..WIDENED {
                 let found = part(chain, (w[0], w[1]), &near)?;
-                let found = found.elevated(LEAST.saturating_sub(found.degree)).beziers();
+                let found = whole_pieces(&found.elevated(LEAST.saturating_sub(found.degree)));
                 if let [one] = found.as_slice() {
                     return Ok(one.poles.clone());
                 }

@@ -156,6 +156,10 @@ fn directions(guides: &mut [Guide], sections: &mut [Section], law: Law, closed: 
 /// Stations farther from each other than this share of the main guide are two.
 const QUARTER: f64 = 0.25;
 
+/// Smooth knots of guides are one station where they are no farther from each other than this share of the main guide: splines
+/// through stations that lie together are sensitive to rounding.
+const TOGETHER: f64 = 1.0 / 64.0;
+
 /// Fractions of the main guide for all stations: sections, breaks of all guides, ends, and more where it turns.
 fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, closed: bool, tolerance: &Tolerance) -> Vec<f64> {
     let divided = Divided { guides, sections };
@@ -173,10 +177,20 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
         offer(1.0);
     }
     guides[0].breaks(tolerance).into_iter().for_each(&mut offer);
+    // Other guides need a station at their corners only; knots of theirs that lie together share one, in the middle.
+    let mut knots: Vec<f64> = Vec::new();
     for (j, guide) in guides.iter().enumerate().skip(1) {
+        let corners = guide.chain.kinks(tolerance);
         for f in guide.breaks(tolerance) {
             let w = if law == Law::Synchronized { divided.on_main(j, f) } else { main.carried(guide.chain.point(f)).unwrap_or(-1.0) };
-            offer(w);
+            if corners.iter().any(|c| (c - f).abs() <= NUDGE) { offer(w) } else { knots.push(w) }
+        }
+    }
+    knots.sort_by(f64::total_cmp);
+    for cluster in knots.chunk_by(|a, b| b - a <= TOGETHER) {
+        let middle = 0.5 * (cluster[0] + cluster[cluster.len() - 1]);
+        if ws.iter().all(|w| (w - middle).abs() > TOGETHER) && (TOGETHER..=1.0 - TOGETHER).contains(&middle) {
+            ws.push(middle);
         }
     }
     ws.sort_by(f64::total_cmp);
