@@ -185,6 +185,7 @@ codes! {
     now "E718", "face-folded", "a face folds over";
     now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements are wide";
     now "E721", "cuts-too-near", "curves that divide a surface are too near to each other";
+    now "E722", "no-row", "surfaces that are to be one do not follow one another";
     now "W724", "sharp-elements", "a mesh has elements with sharp angles";
     now "W725", "too-small-for-mesh", "something is too small for a mesh";
     now "W728", "empty-selection", "a selection is empty";

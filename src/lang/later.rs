@@ -10,7 +10,7 @@ use super::syntax::ast::{Arg, Expr, ExprId, Keyword, Span};
 use super::syntax::foreign::{PRINTS, range};
 use super::value::{ModuleId, Value};
 
-const FUNCTIONS: &[&str] = &["hermite", "join", "hydrostatics"];
+const FUNCTIONS: &[&str] = &["hermite", "hydrostatics"];
 
 const ENDINGS: &[&str] = &["stp", "step"];
 

@@ -70,6 +70,7 @@ pub enum SurfaceKind {
     Sweep,
     Blend,
     Scatter,
+    Join,
 }
 
 impl SurfaceKind {
@@ -94,6 +95,7 @@ impl SurfaceKind {
             Self::Sweep => "sweep",
             Self::Blend => "blend",
             Self::Scatter => "scatter",
+            Self::Join => "join",
         }
     }
 }

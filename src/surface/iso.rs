@@ -91,7 +91,7 @@ impl Surface {
                     _ => None,
                 },
             },
-            Shape::Trilateral(_) | Shape::Plane(_) | Shape::Framed(_) | Shape::Scatter(_) => None,
+            Shape::Trilateral(_) | Shape::Plane(_) | Shape::Framed(_) | Shape::Scatter(_) | Shape::Joined(_) => None,
         };
         let Some(curve) = found else { return super::iso_fit::fitted(self, at, origin, tolerance).map(Some) };
         let length = curve.length();

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::Jet2;
 use super::blend::Blend;
 use super::breaks::tidy;
+use super::joined::Joined;
 use super::nurbs::NurbsSurface;
 use super::plane::Frame;
 use super::rail::Lean;
@@ -36,6 +37,8 @@ pub enum Shape {
     Framed(Framed),
     /// A height over triangles.
     Scatter(Field),
+    /// Others one after another.
+    Joined(Joined),
 }
 
 impl Content for Shape {
@@ -48,6 +51,7 @@ impl Content for Shape {
             Self::Nurbs(net) => (4u8, net).tell(to),
             Self::Framed(framed) => (5u8, framed).tell(to),
             Self::Scatter(field) => (6u8, field).tell(to),
+            Self::Joined(joined) => (7u8, joined).tell(to),
         }
     }
 }
@@ -64,6 +68,7 @@ impl Shape {
             Self::Nurbs(s) => s.jet(u, v, lean),
             Self::Framed(s) => s.jet(u, v, lean),
             Self::Scatter(s) => s.jet(u, v),
+            Self::Joined(s) => s.jet(u, v, lean),
         }
     }
 
@@ -109,6 +114,7 @@ impl Shape {
             Self::Nurbs(s) => s.breaks(),
             Self::Framed(s) => s.breaks(),
             Self::Scatter(s) => s.lines(),
+            Self::Joined(s) => s.lines(super::Surface::breaks),
             Self::Trilateral(s) => {
                 let (mut us, mut vs) = (Vec::new(), Vec::new());
                 s.sides()[0].breaks(&mut us);
@@ -126,6 +132,7 @@ impl Shape {
             Self::Nurbs(s) => s.breaks(),
             Self::Framed(s) => s.cells(),
             Self::Scatter(s) => s.lines(),
+            Self::Joined(s) => s.lines(super::Surface::cells),
             Self::Trilateral(_) | Self::Plane(_) => (Vec::new(), Vec::new()),
         }
     }
@@ -140,6 +147,7 @@ impl Shape {
             Self::Nurbs(s) => s.hull(),
             Self::Framed(s) => s.hull(),
             Self::Scatter(s) => s.hull(),
+            Self::Joined(s) => s.hull(),
         }
     }
 
@@ -153,6 +161,7 @@ impl Shape {
             Self::Nurbs(s) => Self::Nurbs(s.moved(motion)),
             Self::Framed(s) => Self::Framed(s.moved(motion)),
             Self::Scatter(s) => Self::Scatter(s.moved(motion)),
+            Self::Joined(s) => Self::Joined(s.moved(motion)),
         }
     }
 }

@@ -194,6 +194,7 @@ impl Shape {
         let (lines, jumps) = match self {
             Self::Blend(s) => (s.rule_changes(along_u), false),
             Self::Nurbs(s) => s.knot_lines(along_u),
+            Self::Joined(s) => s.changes(along_u),
             Self::Framed(s) if along_u => s.changes(x0, x1),
             _ => (Vec::new(), false),
         };
@@ -220,6 +221,7 @@ impl Shape {
             (Self::Sweep(s), _, Known::Profile(line)) => s.spread(middle.0, half, line),
             (Self::Framed(s), Known::Framed(strip), Known::Profile(line)) => s.spread(strip, half, line),
             (Self::Nurbs(s), Known::Net(a), Known::Net(b)) => s.spread(a, b, middle, half),
+            (Self::Joined(s), ..) => s.spread(u.ends, v.ends),
             (Self::Scatter(s), ..) => s.spread(u.ends, v.ends),
             (Self::Trilateral(s), ..) => s.spread(u.ends, v.ends),
             (Self::Plane(s), ..) => Spread::new(s.jet(middle.0, middle.1), half, [Ranges::default(); 3], None),

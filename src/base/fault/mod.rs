@@ -11,6 +11,7 @@ mod curves;
 mod cut;
 mod edit;
 mod files;
+mod join;
 mod loops;
 mod mesh;
 mod nets;
@@ -31,6 +32,7 @@ pub use curves::{CurveFault, KnotFault};
 pub use cut::CutFault;
 pub use edit::Edit;
 pub use files::{FileFault, Malformed};
+pub use join::JoinFault;
 pub use loops::{LoopFault, LoopRole};
 pub use mesh::{Close, Cure, LostPart, MeshFault};
 pub use nets::NetFault;
@@ -69,6 +71,8 @@ pub enum Fault {
     Blend(Box<BlendFault>),
     /// Family 6: surfaces through scattered points.
     Scatter(Box<ScatterFault>),
+    /// Family 7: surfaces that make no one surface.
+    Join(Box<JoinFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -232,6 +236,7 @@ impl Describe for Fault {
             Self::Net(f) => f.describe(say),
             Self::Blend(f) => f.describe(say),
             Self::Scatter(f) => f.describe(say),
+            Self::Join(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -261,6 +266,7 @@ impl Fault {
             (Self::Net(a), Self::Net(b)) => same(&**a, &**b),
             (Self::Blend(a), Self::Blend(b)) => same(&**a, &**b),
             (Self::Scatter(a), Self::Scatter(b)) => same(&**a, &**b),
+            (Self::Join(a), Self::Join(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -296,6 +302,7 @@ from_family!(
     Net(NetFault),
     Blend(BlendFault),
     Scatter(ScatterFault),
+    Join(JoinFault),
     Mesh(MeshFault),
     File(FileFault)
 );

@@ -23,6 +23,7 @@ mod nets;
 mod network;
 mod numbers;
 mod roundings;
+mod rows;
 mod scatters;
 mod surfaces;
 mod sweeps;
@@ -109,6 +110,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     transforms::BUILTINS,
     topology::BUILTINS,
     blends::BUILTINS,
+    rows::BUILTINS,
     scatters::BUILTINS,
     walls::BUILTINS,
     imprint::BUILTINS,

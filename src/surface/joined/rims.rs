@@ -1,0 +1,110 @@
+//! The borders of surfaces with four sides, and which of them are one.
+
+use glam::DVec3;
+
+use super::shape::{Piece, Turn, foot};
+use crate::base::job;
+use crate::base::tolerance::Tolerance;
+use crate::surface::core::{Side, Surface};
+use crate::surface::rail::Lean;
+
+/// Steps along a border.
+const STEPS: usize = 32;
+
+/// A side of a surface, sampled.
+pub struct Rim {
+    /// v = 0, u = 1, v = 1, u = 0.
+    side: usize,
+    points: Vec<DVec3>,
+    piece: Piece,
+}
+
+/// Two sides that are one curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// Surface and side of both.
+    pub ends: [(usize, usize); 2],
+    /// They run against each other.
+    pub reversed: bool,
+}
+
+impl Link {
+    /// The side of a surface that it joins.
+    pub fn side(&self, n: usize) -> usize {
+        if self.ends[0].0 == n { self.ends[0].1 } else { self.ends[1].1 }
+    }
+
+    /// The other surface and its side.
+    pub fn other(&self, n: usize) -> (usize, usize) {
+        if self.ends[0].0 == n { self.ends[1] } else { self.ends[0] }
+    }
+
+    /// The end that is not this one.
+    pub fn from(&self, end: (usize, usize)) -> (usize, usize) {
+        if self.ends[0] == end { self.ends[1] } else { self.ends[0] }
+    }
+}
+
+/// How a surface lies whose side is entered at x = 0 (`ahead`) or at x = 1, its own direction turned or not.
+pub fn turn(side: usize, ahead: bool, back_y: bool) -> Turn {
+    Turn { swap: side.is_multiple_of(2), back_x: matches!(side, 1 | 2) == ahead, back_y }
+}
+
+impl Rim {
+    /// The sides of a surface that are curves.
+    pub fn all(surface: &Surface) -> Vec<Self> {
+        job::look();
+        let curve = |side: &usize| !matches!(surface.side(*side), Side::Pole(_));
+        (0..4).filter(curve).map(|side| Self::of(surface, side)).collect()
+    }
+
+    fn of(surface: &Surface, side: usize) -> Self {
+        let piece = Piece::new(surface.clone(), turn(side, true, false), 0);
+        let at = |n: usize| piece.jet(0.0, n as f64 / STEPS as f64, (Lean::After, Lean::After)).p;
+        Self { side, points: (0..=STEPS).map(at).collect(), piece }
+    }
+
+    /// How far it is from another one at the most, and where on it.
+    pub fn apart(&self, other: &Self) -> (f64, DVec3) {
+        let far = |p: DVec3| {
+            let near = |n: &usize| other.points[*n].distance_squared(p);
+            let start = (0..=STEPS).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap_or(0);
+            let w = foot(&other.piece, start as f64 / STEPS as f64, p);
+            other.piece.jet(0.0, w, (Lean::After, Lean::After)).p.distance(p)
+        };
+        let each = self.points.iter().map(|p| (far(*p), *p));
+        each.fold((0.0, self.points[0]), |most, next| if next.0 > most.0 { next } else { most })
+    }
+
+    /// Whether both are one curve, and if so whether they run against each other.
+    fn same(&self, other: &Self, tolerance: &Tolerance) -> Option<bool> {
+        let ends = |rim: &Self| (rim.points[0], rim.points[STEPS]);
+        let ((a, b), (c, d)) = (ends(self), ends(other));
+        let one = |p: DVec3, q: DVec3| tolerance.same_point(p, q);
+        let reversed = match (one(a, c) && one(b, d), one(a, d) && one(b, c)) {
+            (false, false) => return None,
+            // Closed: a quarter of the way tells.
+            (true, true) => {
+                let (p, q) = (self.points[STEPS / 4], [other.points[STEPS / 4], other.points[STEPS - STEPS / 4]]);
+                p.distance(q[1]) < p.distance(q[0])
+            }
+            (_, reversed) => reversed,
+        };
+        (self.apart(other).0 <= tolerance.point && other.apart(self).0 <= tolerance.point).then_some(reversed)
+    }
+}
+
+/// All pairs of sides of different surfaces that are one.
+pub fn links(all: &[Surface], rims: &[Vec<Rim>], tolerance: &Tolerance) -> Vec<Link> {
+    let mut found = Vec::new();
+    for a in 0..all.len() {
+        for b in a + 1..all.len() {
+            for (x, y) in rims[a].iter().flat_map(|x| rims[b].iter().map(move |y| (x, y))) {
+                if let Some(reversed) = x.same(y, tolerance) {
+                    found.push(Link { ends: [(a, x.side), (b, y.side)], reversed });
+                }
+            }
+        }
+    }
+    found
+}
