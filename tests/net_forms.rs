@@ -57,14 +57,11 @@ fn a_skin_of_a_hundred_sections_has_few_points_along_them() {
         let x = x + 0.02 * math::sin(7.0 * y + 3.0 * k as f64);
         DVec3::new(10.0 * x, 40.0 * y, (1.5 + y) * math::sin(2.5 * x + y) + 0.4 * math::sin(5.0 * x - 3.0 * y))
     };
-    let sections: Vec<Chain> = (0..100).map(|j| through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>())).collect();
+    let sections: Vec<Section> = (0..100).map(|j| Section::Curve(through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>()))).collect();
     let tolerance = Tolerance::new(1e-7 * 42.0, 42.0);
-    let (surface, _) = skin(
-        &sections.iter().cloned().map(Section::Curve).collect::<Vec<_>>(),
-        &Settings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE },
-        &tolerance,
-    )
-    .unwrap();
+    let settings =
+        Settings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE };
+    let (surface, _) = skin(&sections, &settings, &tolerance).unwrap();
     let form = surface.to_net(&tolerance).unwrap().unwrap();
     let Off::Bounded(bound) = form.off else { panic!("{:?}", form.off) };
     let found = off(&surface, &form, 42.0);

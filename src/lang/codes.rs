@@ -167,6 +167,7 @@ codes! {
     now "E673", "blend-too-large", "a ball is too large for the edge that it rounds";
     now "E674", "blend-no-edge", "two surfaces have no edge that can be rounded";
     now "E675", "points-over-points", "scattered points lie over one another";
+    now "E676", "no-net", "a surface has no B-spline form of its own";
     now "N677", "near-its-curves", "a surface keeps to its curves within a stated distance";
     now "W701", "rule-decides-nothing", "a rule decides nothing";
     now "E702", "counts-differ", "counts differ on opposite sides";

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
+use crate::base::tolerance::{EPSILON, NUDGE};
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Side, Surface};
 
@@ -13,6 +14,8 @@ const ORDERS: [usize; 4] = [4, 7, 11, 16];
 const DEEPEST: u32 = 12;
 /// Cells examined in all.
 const MOST_CELLS: usize = 1 << 17;
+/// Cells that a rule looks at, at most, for each one that needs it.
+const SPARSE: usize = 4;
 /// Points evaluated at once in the first division: what a row and a column share is then evaluated once.
 const BATCH: usize = 1 << 15;
 
@@ -38,20 +41,19 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 /// out by the cells of the first division; errors are sums of these differences (of the lower order: on the safe side).
 pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
-    let (us, vs) = surface.breaks();
+    let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
     // A triangle's lines do not follow the square.
-    let (us, vs) = if surface.domain() == Domain::Triangle { (Vec::new(), vs) } else { (us, vs) };
-    let stops = |inner: Vec<f64>, (low, high): (f64, f64)| -> Vec<f64> {
-        std::iter::once(low).chain(inner.into_iter().filter(|x| *x > low && *x < high)).chain(std::iter::once(high)).collect()
-    };
-    let (us, vs) = (stops(us, within.0), stops(vs, within.1));
-    let mut open: Vec<Cell> =
-        vs.windows(2).flat_map(|y| us.windows(2).map(move |x| Cell { x: (x[0], x[1]), y: (y[0], y[1]), depth: 0 })).collect();
+    let us = if surface.domain() == Domain::Triangle { Vec::new() } else { us };
+    let (us, vs) = (spans(apart(us, &kinks.0), within.0), spans(apart(vs, &kinks.1), within.1));
+    let mut open: Vec<Cell> = vs.iter().flat_map(|y| us.iter().map(|x| Cell { x: *x, y: *y, depth: 0 })).collect();
     let share = accuracy / open.len() as f64;
     let first = products(surface, (&us, &vs), &rules[0], f);
     let second = products(surface, (&us, &vs), &rules[1], f);
     let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
-    let mut known: Vec<Option<[Sums<N>; 2]>> = first.into_iter().zip(second).map(|(a, b)| Some([a.0, b.0])).collect();
+    let mut known: Vec<Vec<Sums<N>>> = first.into_iter().zip(second).map(|(a, b)| vec![a.0, b.0]).collect();
+    for rule in &rules[2..] {
+        sharpen(surface, (&us, &vs), rule, f, &mut known, &|values| small(&differences(values), &scale, share));
+    }
     // Where the first division has many cells each of them may still be halved.
     let most = MOST_CELLS.max(2 * open.len());
     // The last cell is taken first: turn the list round so that sums run in one order.
@@ -61,7 +63,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     while let (Some(cell), Some(start)) = (open.pop(), known.pop()) {
         job::look();
         seen += 1;
-        let known_of = |k: usize| start.as_ref().and_then(|values| values.get(k)).copied();
+        let known_of = |k: usize| start.get(k).copied();
         let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f).0);
         let mut value = by_rule(0);
         let mut apart = [f64::INFINITY; N];
@@ -85,7 +87,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
             [((cell.x.0, x), (cell.y.0, y)), ((x, cell.x.1), (cell.y.0, y)), ((cell.x.0, x), (y, cell.y.1)), ((x, cell.x.1), (y, cell.y.1))]
         {
             open.push(Cell { x: low, y: high, depth: cell.depth + 1 });
-            known.push(None);
+            known.push(Vec::new());
         }
     }
     (sum, error)
@@ -95,27 +97,83 @@ fn small<const N: usize>(apart: &Sums<N>, scale: &Sums<N>, share: f64) -> bool {
     apart.iter().zip(scale).all(|(a, s)| *a <= share * s)
 }
 
-/// [`product`] on each cell between stops in x and y, x fastest.
+/// Breaks far enough apart to tell one from the next; kinks stay where they are.
+///
+/// Beside a break that is no kink derivatives of the integrand jump at most: what is cut there moves the integral by the square of the
+/// distance.
+fn apart(breaks: Vec<f64>, kinks: &[f64]) -> Vec<f64> {
+    let is_kink = |x: f64| kinks.iter().any(|k| (k - x).abs() <= EPSILON);
+    let mut out: Vec<f64> = Vec::with_capacity(breaks.len());
+    for x in breaks {
+        match out.last_mut() {
+            Some(last) if x - *last <= NUDGE && is_kink(x) && !is_kink(*last) => *last = x,
+            Some(last) if x - *last <= NUDGE && !is_kink(x) => {}
+            _ => out.push(x),
+        }
+    }
+    out
+}
+
+/// The intervals between two ends and the stops inside.
+fn spans(inner: Vec<f64>, (low, high): (f64, f64)) -> Vec<(f64, f64)> {
+    let inner = inner.into_iter().filter(|x| *x > low && *x < high);
+    let stops: Vec<f64> = std::iter::once(low).chain(inner).chain(std::iter::once(high)).collect();
+    stops.windows(2).map(|w| (w[0], w[1])).collect()
+}
+
+/// What the last two rules differ by.
+fn differences<const N: usize>(values: &[Sums<N>]) -> Sums<N> {
+    let [.., a, b] = values else { return [f64::INFINITY; N] };
+    std::array::from_fn(|i| (b[i] - a[i]).abs())
+}
+
+/// Adds the values of one more rule to the cells of the first division that are not done, where these fill most of the rows and
+/// columns that they are in: curves are then evaluated once for all of them.
+fn sharpen<const N: usize>(
+    surface: &Surface,
+    (us, vs): (&[(f64, f64)], &[(f64, f64)]),
+    rule: &[(f64, f64)],
+    f: &impl Fn(&Jet2) -> Sums<N>,
+    known: &mut [Vec<Sums<N>>],
+    done: &dyn Fn(&[Sums<N>]) -> bool,
+) {
+    let open: Vec<bool> = known.iter().map(|values| !done(values)).collect();
+    let rows: Vec<usize> = (0..vs.len()).filter(|j| open[j * us.len()..(j + 1) * us.len()].contains(&true)).collect();
+    let columns: Vec<usize> = (0..us.len()).filter(|i| rows.iter().any(|j| open[j * us.len() + i])).collect();
+    let count = open.iter().filter(|open| **open).count();
+    if count < 2 || rows.len() * columns.len() > SPARSE * count {
+        return;
+    }
+    let pick = |all: &[(f64, f64)], of: &[usize]| of.iter().map(|k| all[*k]).collect::<Vec<_>>();
+    let values = products(surface, (&pick(us, &columns), &pick(vs, &rows)), rule, f);
+    for (n, (value, _)) in values.into_iter().enumerate() {
+        let cell = rows[n / columns.len()] * us.len() + columns[n % columns.len()];
+        if open[cell] {
+            known[cell].push(value);
+        }
+    }
+}
+
+/// [`product`] on each cell of intervals in x and y, x fastest.
 fn products<const N: usize>(
     surface: &Surface,
-    (us, vs): (&[f64], &[f64]),
+    (us, vs): (&[(f64, f64)], &[(f64, f64)]),
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
 ) -> Vec<(Sums<N>, Sums<N>)> {
     let order = rule.len();
-    let on = |stops: &[f64]| -> Vec<f64> {
-        stops.windows(2).flat_map(|w| rule.iter().map(move |(x, _)| 0.5 * (w[0] + w[1]) + 0.5 * (w[1] - w[0]) * x)).collect()
+    let on = |spans: &[(f64, f64)]| -> Vec<f64> {
+        spans.iter().flat_map(|(a, b)| rule.iter().map(move |(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x)).collect()
     };
     let columns = on(us);
     let rows = (BATCH / (columns.len() * order).max(1)).clamp(1, vs.len());
-    let mut found = Vec::with_capacity((us.len() - 1) * (vs.len() - 1));
-    for first in (0..vs.len() - 1).step_by(rows) {
+    let mut found = Vec::with_capacity(us.len() * vs.len());
+    for band in vs.chunks(rows) {
         job::look();
-        let band = &vs[first..(first + rows + 1).min(vs.len())];
         let jets = surface.square_jets(&columns, &on(band));
-        for (j, y) in band.windows(2).enumerate() {
-            for (i, x) in us.windows(2).enumerate() {
-                let area = 0.25 * (x[1] - x[0]) * (y[1] - y[0]);
+        for (j, y) in band.iter().enumerate() {
+            for (i, x) in us.iter().enumerate() {
+                let area = 0.25 * (x.1 - x.0) * (y.1 - y.0);
                 let at = |k: usize| &jets[(j * order + k / order) * columns.len() + i * order + k % order];
                 found.push(weighed((0..order * order).map(at), area, rule, f));
             }

@@ -318,6 +318,13 @@ pub enum SurfaceFault {
         /// Where.
         at: DVec3,
     },
+    /// E676 `no-net`: a surface that is no single B-spline net.
+    NoNet {
+        /// The surface.
+        surface: Origin,
+        /// It is a trimmed one, else a plane without sides.
+        trimmed: bool,
+    },
     /// W664 `offset-folds`: an offset turns back over itself.
     OffsetFolds {
         /// The offset.
@@ -510,6 +517,15 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*surface, "the kinks of opposite borders split it here")
         .help("move the kinks to the same share of the length on both borders"),
+        F::NoNet { surface, trimmed } => {
+            let (why, help) = match trimmed {
+                true => ("is trimmed", "take `nurbs` of the surface that it was cut from, and trim that"),
+                false => ("is a plane without four sides", "bound it by four curves: `plane(a, b, c, d)`, or by `coons`"),
+            };
+            Report::new("E676", format!("{} has no B-spline form: it {why}", say.quoted(*surface, "the surface")))
+                .at(*surface, why)
+                .help(help)
+        }
         F::AxisNotStraight { axis, off, at } => Report::new(
             "E621",
             format!("the axis {} is not straight: {} off at {}", say.quoted(*axis, "of the rotation"), say.length(*off), say.point(*at)),
@@ -753,6 +769,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::SweepDegenerate { .. }
         | F::GridUneven { .. }
         | F::OffsetFolds { .. }
+        | F::NoNet { .. }
         | F::PlaneNotFlat { .. } => Report::new("E999", "a fault that another table has words for"),
     }
 }

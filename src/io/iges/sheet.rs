@@ -129,9 +129,16 @@ pub struct Sheet {
     entities: Vec<Entity>,
     /// Names in the file with those in the model.
     names: BTreeMap<String, String>,
+    /// Lines for people at the start of the file.
+    remarks: Vec<String>,
 }
 
 impl Sheet {
+    /// Adds a line for people, of plain characters, at most 72 of them.
+    pub fn remark(&mut self, line: String) {
+        self.remarks.push(line);
+    }
+
     /// Adds an entity; gives the pointer to it.
     pub fn add(&mut self, kind: u32, form: i32, role: Role, values: Values) -> u32 {
         self.entities.push(Entity { kind, form, role, transform: 0, color: 0, values, properties: Vec::new() });
@@ -192,6 +199,9 @@ impl Sheet {
     pub fn write(&self, global: &[String], out: &mut dyn Write) -> io::Result<()> {
         let mut lines = Lines { out, letter: 'S', n: 0 };
         lines.put("Written by loft")?;
+        for remark in &self.remarks {
+            lines.put(remark)?;
+        }
         let starts = lines.n;
         lines.section('G');
         for line in wrapped(global, CONTENT) {

@@ -31,7 +31,7 @@ use crate::geometry::nurbs::projected;
 use crate::geometry::{Curve, Kind, Nurbs, build};
 use crate::io::deck::Loss;
 use crate::network::Chain;
-use crate::surface::{Domain, NurbsSurface, Side, Surface};
+use crate::surface::{Domain, NetForm, NurbsSurface, Off, Side, Surface};
 
 /// One thing to write.
 #[derive(Clone, Debug)]
@@ -72,7 +72,7 @@ const UNITS: &[(&str, i64, &str)] =
 
 /// Makes the file of things; fails for a thing that the format or the tolerance cannot hold, with its name.
 pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
-    let mut maker = Maker { sheet: Sheet::default(), scale };
+    let mut maker = Maker { sheet: Sheet::default(), scale, off: 0.0, sampled: false };
     maker.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
     let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
     for thing in things {
@@ -97,6 +97,14 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
     for (name, members) in groups {
         let d = maker.sheet.add(402, 7, Role::Free, Values::new().int(members.len() as u32).ints(members));
         maker.sheet.name(d, name);
+    }
+    if maker.off > 0.0 {
+        let how = if maker.sampled { ", as sampled" } else { "" };
+        maker.sheet.remark(format!(
+            "Surfaces that are no B-splines are off by at most {:.2e} {}{how}",
+            maker.off / scale.model,
+            scale.unit
+        ));
     }
     Ok(maker.sheet)
 }
@@ -132,6 +140,9 @@ pub fn write(sheet: &Sheet, name: &str, scale: &Scale, out: &mut dyn Write) -> i
 struct Maker<'s> {
     sheet: Sheet,
     scale: &'s Scale,
+    /// How far nets are from their surfaces at most, model units, and whether all that is known of one are samples.
+    off: f64,
+    sampled: bool,
 }
 
 impl Maker<'_> {
@@ -179,10 +190,16 @@ impl Maker<'_> {
 
     fn surface(&mut self, surface: &Surface) -> Result<u32, Damage> {
         match surface.to_net(&self.scale.tolerance)? {
-            Some(form) => Ok(self.net(&form.net, Role::Free)),
+            Some(form) => Ok(self.form(&form, Role::Free)),
             None if surface.domain() == Domain::Loop => self.bordered(surface),
             None => Err(damage("IGES has no place for a plane without a border")),
         }
+    }
+
+    fn form(&mut self, form: &NetForm, role: Role) -> u32 {
+        self.off = self.off.max(form.off.distance());
+        self.sampled |= matches!(form.off, Off::Sampled(_));
+        self.net(&form.net, role)
     }
 
     fn net(&mut self, net: &NurbsSurface, role: Role) -> u32 {
@@ -201,11 +218,12 @@ impl Maker<'_> {
 
     /// A surface inside loops: its net, and each loop in (u, v) and in space.
     fn bordered(&mut self, surface: &Surface) -> Result<u32, Damage> {
-        let ground = surface.ground_net(&self.scale.tolerance)?.map(|form| Base::Net(form.net, [0.0, 1.0, 0.0, 1.0]));
+        let ground = surface.ground_net(&self.scale.tolerance)?;
         let base = match &ground {
-            Some(Base::Net(net, _)) => self.net(net, Role::Part),
-            _ => self.plane(surface)?,
+            Some(form) => self.form(form, Role::Part),
+            None => self.plane(surface)?,
         };
+        let ground = ground.map(|form| Base::Net(form.net, [0.0, 1.0, 0.0, 1.0]));
         let (mut first, mut borders) = (0, Vec::new());
         for n in surface.loops() {
             let (mut in_uv, mut spaces) = (Vec::new(), Vec::new());

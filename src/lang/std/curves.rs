@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::kinds::PointsOrSurface;
 use super::surfaces::finished;
 use crate::base::fault::{Fault, ValueFault};
 use crate::base::math;
@@ -337,21 +338,58 @@ builtins! {
         Ok(whole(build::bspline(&places(list), degree, knots.as_deref(), closed, cx.origin())?))
     };
 
-    /// Rational B-spline of control points, weights and knots.
+    /// Rational B-spline of control points, weights and knots; or a surface as one.
     ///
+    /// A surface that is a B-spline stays what it is, and so do extrusions, revolutions and parallel sweeps of such curves. Nets,
+    /// skins and other sweeps become splines of degree 3 or 5 that are nowhere farther from the surface than `tolerance:`, with few
+    /// control points; `s.net_size` and `s.net_degree` are those of the result. IGES files hold the same.
     /// ```loft
     /// curve quarter = nurbs([(1m, 0), (1m, 1m), (0, 1m)], weights: [1, sqrt(0.5), 1], knots: [0, 0, 0, 1, 1, 1], degree: 2)
+    /// surface vase = skin([for i in 0..4: circle(center: (0, 0, i * 1m), radius: 1m + 300mm * sin(i * 60deg))])
+    /// surface light = nurbs(vase, tolerance: 0.1mm)
+    /// check light.area == vase.area within 0.1%
     /// ```
     fn nurbs(
-        /// Control points.
-        points: Vec<Point>,
-        /// A weight for each point, above 0.
-        weights: Vec<f64>,
-        /// Knots, not decreasing, one more than points and degree together.
-        knots: Vec<f64>,
-        /// Degree.
-        degree: usize = "3",
-    ) -> Chain = |cx, list, weights, knots, degree| Ok(whole(build::nurbs(&places(list), &weights, &knots, degree, cx.origin())?));
+        /// Control points of a curve, or a surface.
+        points: PointsOrSurface,
+        /// A weight for each point of a curve, above 0.
+        weights: Option<Vec<f64>>,
+        /// Knots of a curve, not decreasing, one more than points and degree together.
+        knots: Option<Vec<f64>>,
+        /// Degree of a curve; 3 when left out.
+        degree: Option<usize>,
+        /// How far the result may be from a surface; the model's tolerance when left out.
+        tolerance: Option<Length>,
+    ) -> Value = |cx, of, weights, knots, degree, tolerance| {
+        const EXAMPLE: &str = "nurbs([(1m, 0), (1m, 1m), (0, 1m)], weights: [1, 0.7, 1], knots: [0, 0, 0, 1, 1, 1], degree: 2)";
+        let origin = cx.origin();
+        let exclusive = |argument| {
+            let (what, example) = ("weights, knots and a degree with points, a tolerance with a surface", "nurbs(hull, tolerance: 0.01mm)");
+            Err(ValueFault::Exclusive { function: "nurbs", what, arguments: vec!["points", argument], example }.into())
+        };
+        match (of, weights, knots) {
+            (PointsOrSurface::Points(_), ..) if tolerance.is_some() => exclusive("tolerance"),
+            (PointsOrSurface::Surface(_), Some(_), _) => exclusive("weights"),
+            (PointsOrSurface::Surface(_), _, Some(_)) => exclusive("knots"),
+            (PointsOrSurface::Surface(_), ..) if degree.is_some() => exclusive("degree"),
+            (PointsOrSurface::Points(list), Some(weights), Some(knots)) => {
+                Ok(Value::Curve(whole(build::nurbs(&places(list), &weights, &knots, degree.unwrap_or(3), origin)?)))
+            }
+            (PointsOrSurface::Points(_), weights, _) => {
+                let what = if weights.is_none() { "a weight for each point: `weights:`" } else { "its knots: `knots:`" };
+                Err(ValueFault::Missing { function: "nurbs", what, example: EXAMPLE }.into())
+            }
+            (PointsOrSurface::Surface(surface), ..) => {
+                let model = cx.tolerance()?;
+                let near = Tolerance { point: tolerance.map_or(model.point, |t| t.0), ..model };
+                if near.point <= 0.0 {
+                    let (found, range) = (near.point.to_string(), "above 0".to_owned());
+                    return Err(ValueFault::OutsideRange { argument: "tolerance", found, range }.into());
+                }
+                Ok(Value::Surface(finished(cx, surface.as_net(origin, &near)?, &[])?))
+            }
+        }
+    };
 
     /// Helix about an axis.
     ///

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::lang::types::{FromValue, IntoValue, Ty};
+use crate::lang::types::{FromValue, IntoValue, Point, Ty};
 use crate::lang::value::{Home, MeshValue, ModuleId, Plane, ShellValue, Value};
 use crate::model::{PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};
@@ -30,6 +30,16 @@ one_of! {
     CurveOrSurface {
         /// A curve.
         Curve(Chain) = Ty::Curve, Value::Curve(c) => Self::Curve(c);
+        /// A surface.
+        Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
+    }
+}
+
+one_of! {
+    /// Control points, or a surface that has or gets some.
+    PointsOrSurface {
+        /// Control points.
+        Points(Vec<Point>) = Ty::List(&Ty::Point), Value::List(items) => Self::Points(FromValue::from_value(Value::List(items))?);
         /// A surface.
         Surface(Surface) = Ty::Surface, Value::Surface(s) => Self::Surface(s);
     }

@@ -148,6 +148,20 @@ crate::fields! {
         s: Surface,
     ) -> Vec<Chain> = |_cx, s| Ok(s.stations());
 
+    /// Counts of control points of a B-spline surface along u and v.
+    ///
+    /// Empty for other surfaces; `nurbs(s)` makes one of any.
+    fn net_size(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<usize> = |_cx, s| Ok(s.net_size().map_or_else(Vec::new, |[_, counts]| vec![counts.0, counts.1]));
+
+    /// Degrees of a B-spline surface along u and v; empty for others.
+    fn net_degree(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<usize> = |_cx, s| Ok(s.net_size().map_or_else(Vec::new, |[degree, _]| vec![degree.0, degree.1]));
+
     /// The largest angle between the normals on both sides of the curves of its net.
     ///
     /// Corners of the curves are left out.

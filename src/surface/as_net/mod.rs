@@ -6,13 +6,14 @@ mod family;
 mod splines;
 mod strips;
 
-use super::core::{Domain, Surface};
+use super::core::{Domain, Surface, SurfaceKind};
 use super::nurbs::NurbsSurface;
 use super::revolve::Axis;
 use super::shape::Shape;
 use super::sweep::Path;
 use super::{extrude, revolve};
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::{CurveFault, Result, SurfaceFault};
+use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use strips::Fit;
 
@@ -65,6 +66,25 @@ impl Surface {
             return Ok(Some(self.turned(NetForm { net, off: Off::Exact })));
         }
         self.mapped(tolerance, false).map(Some)
+    }
+
+    /// The surface that its B-spline form is, within `tolerance.point`.
+    ///
+    /// Fails with E676 for a surface without one net, a plane without a map or a trimmed one, and like [`Surface::to_net`].
+    pub fn as_net(&self, origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+        let trimmed = self.parts().trim.is_some();
+        match self.to_net(tolerance)? {
+            Some(form) if !trimmed => Ok(form.net.surface(SurfaceKind::Nurbs, origin, tolerance)),
+            _ => Err(SurfaceFault::NoNet { surface: self.origin(), trimmed }.into()),
+        }
+    }
+
+    /// Degrees along u and v and counts of control points of a surface that is a B-spline.
+    pub fn net_size(&self) -> Option<[(usize, usize); 2]> {
+        match &self.parts().shape {
+            Shape::Nurbs(net) => Some([net.degree, net.counts]),
+            _ => None,
+        }
     }
 
     /// The surface below a trimmed one as a rational B-spline in the same (u, v), within `tolerance.point`; `None` for a plane.
