@@ -10,10 +10,12 @@
 use glam::DVec3;
 
 use super::bbox::Box3;
-use super::job;
+use super::{job, work};
 
 /// Children of a node.
 const FAN: usize = 8;
+/// Work of a pair that is found, in evaluations of a curve.
+const PAIR: u64 = 4;
 /// Bits of each coordinate in the sorting key.
 const KEY_BITS: u32 = 21;
 
@@ -84,6 +86,7 @@ impl BoxTree {
             }
             if level == 0 {
                 if a != b {
+                    work::spend(PAIR);
                     let (a, b) = (self.items[a], self.items[b]);
                     pairs.push((a.min(b), a.max(b)));
                 }

@@ -39,8 +39,10 @@ limits! {
     pub const WORK_OF_AN_ELEMENT: u64 = 500;
     /// Work of the network or of the surface model, in evaluations of curves and surfaces, beside that of its parts.
     pub const STAGE_WORK: u64 = 50_000_000;
-    /// The same for each curve or surface.
-    pub const WORK_OF_A_PART: u64 = 200_000;
+    /// The same for each curve of the network.
+    pub const WORK_OF_A_CURVE: u64 = 5_000;
+    /// The same for each surface of the model.
+    pub const WORK_OF_A_SURFACE: u64 = 200_000;
     /// Work of one output or picture, in evaluations of curves and surfaces.
     pub const FILE_WORK: u64 = 100_000_000;
     /// Work of one call, in evaluations of curves and surfaces.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::base::fault::{CurveEnd, Fault, Say, ValueFault};
 use crate::base::job::Job;
-use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_PART};
+use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::geometry::Curve;
@@ -177,7 +177,7 @@ impl Pipeline for Stages<'_> {
         });
         let (parts, job) = (inputs.len(), cx.job);
         let made = || Network::build_after(before.as_deref(), inputs, (&points, &tolerance), job, &mut said);
-        let network = Arc::new(within_work("the network", parts, made)?);
+        let network = Arc::new(within_work("the network", WORK_OF_A_CURVE.saturating_mul(parts as u64), made)?);
         say_all(cx, &said);
         if let (Some(mut kept), Some(inputs)) = (self.kept(), again) {
             kept.networks.insert(module, KeptNetwork { inputs, points, tolerance, network: network.clone(), said });
@@ -199,7 +199,7 @@ impl Pipeline for Stages<'_> {
         let _phase = cx.job.phase("surfaces");
         let (parts, job) = (surfaces.len(), cx.job);
         let made = || Model::build(surfaces, &network, &tolerance, job);
-        let model = Arc::new(within_work("the surface model", parts, made)?);
+        let model = Arc::new(within_work("the surface model", WORK_OF_A_SURFACE.saturating_mul(parts as u64), made)?);
         if let Some(mut kept) = self.kept() {
             kept.models.insert(module, KeptModel { tolerance, network, model: model.clone() });
         }
@@ -224,10 +224,9 @@ impl Pipeline for Stages<'_> {
     }
 }
 
-/// Makes something of so many curves or surfaces; E217 where that takes too much work.
-fn within_work<T>(what: &'static str, parts: usize, make: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
-    let limit = STAGE_WORK.saturating_add(WORK_OF_A_PART.saturating_mul(parts as u64));
-    Budget::new(limit).within(make).unwrap_or_else(|Exceeded| Err(ValueFault::StageWork { what }.into()))
+/// Makes something of parts that may take so much work together; E217 where it takes more.
+fn within_work<T>(what: &'static str, of_parts: u64, make: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    Budget::new(STAGE_WORK.saturating_add(of_parts)).within(make).unwrap_or_else(|Exceeded| Err(ValueFault::StageWork { what }.into()))
 }
 
 /// A mesh with what is said about it.

@@ -9,18 +9,22 @@ use crate::base::job;
 use crate::base::math;
 use crate::base::tolerance::{SINGULAR, Tolerance};
 
-/// Samples a direction and cell, beside those at its ends.
-const SAMPLES: usize = 9;
+/// Samples a direction and cell, beside those at its ends: at most and at least, and how many there may be in all.
+const SAMPLES: (usize, usize) = (9, 1);
+const MOST: usize = 1 << 20;
 /// Samples at the ends of a cell lie this share of it inside: a border that turns back folds its corner only.
 const END: f64 = 1.0 / 1000.0;
 
-/// W606 and W607, each at its worst place, from 11×11 samples inside every cell between network lines and kinks.
+/// W606 and W607, each at its worst place, from 11×11 samples inside every cell between network lines and kinks, fewer where
+/// there are thousands of cells.
 pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     if !matches!(surface.domain(), Domain::Square | Domain::Triangle) {
         return Vec::new();
     }
     let (us, vs) = surface.cells();
-    let (us, vs) = (inside(&us, tolerance), inside(&vs, tolerance));
+    let cells = (us.len() + 1).saturating_mul(vs.len() + 1);
+    let samples = (SAMPLES.1..=SAMPLES.0).rev().find(|n| cells.saturating_mul((n + 2) * (n + 2)) <= MOST).unwrap_or(SAMPLES.1);
+    let (us, vs) = (inside(&us, samples, tolerance), inside(&vs, samples, tolerance));
     let triangle = surface.domain() == Domain::Triangle;
     let jets: Vec<Jet2> = if triangle {
         // The square (x, y) ↦ (x (1 − y), y) covers the triangle and its inside stays inside.
@@ -37,7 +41,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     let scale = jets.iter().map(|j| j.du.length()).fold(0.0, f64::max) * jets.iter().map(|j| j.dv.length()).fold(0.0, f64::max);
     let mut found = Vec::new();
     let singular = |k: usize| normals[k].is_none() || jets[k].du.cross(jets[k].dv).length() < SINGULAR * scale;
-    let end = |k: usize| [0, SAMPLES + 1].contains(&(k % (SAMPLES + 2)));
+    let end = |k: usize| [0, samples + 1].contains(&(k % (samples + 2)));
     if let Some(k) = (0..jets.len()).find(|&k| !end(k % us.len()) && !end(k / us.len()) && singular(k)) {
         found.push(SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p }.into());
     }
@@ -105,7 +109,7 @@ fn folds_between(surface: &Surface, mut a: (f64, f64), mut b: (f64, f64), tolera
 }
 
 /// Sample parameters inside every cell, cells narrower than a point of the parameter left out.
-fn inside(breaks: &[f64], tolerance: &Tolerance) -> Vec<f64> {
+fn inside(breaks: &[f64], samples: usize, tolerance: &Tolerance) -> Vec<f64> {
     let mut stops = vec![0.0];
     stops.extend_from_slice(breaks);
     stops.push(1.0);
@@ -113,7 +117,7 @@ fn inside(breaks: &[f64], tolerance: &Tolerance) -> Vec<f64> {
         .windows(2)
         .filter(|w| w[1] - w[0] > tolerance.parameter)
         .flat_map(|w| {
-            let inner = (0..SAMPLES).map(|k| (k as f64 + 0.5) / SAMPLES as f64);
+            let inner = (0..samples).map(|k| (k as f64 + 0.5) / samples as f64);
             let shares = std::iter::once(END).chain(inner).chain(std::iter::once(1.0 - END));
             shares.map(|f| w[0] + (w[1] - w[0]) * f).collect::<Vec<_>>()
         })

@@ -14,7 +14,11 @@ use glam::DVec3;
 use super::curve::Curve;
 use crate::base::fault::{CurveFault, Result};
 use crate::base::tolerance::Tolerance;
+use crate::base::work;
 use search::{Search, Side};
+
+/// Pairs of parts that are looked at in the time of an evaluation of a curve.
+const PER_EVALUATION: u64 = 2;
 
 /// One meeting of two curves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +80,7 @@ pub fn self_intersect(curve: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> 
 }
 
 fn finish(mut search: Search, tolerance: &Tolerance) -> Result<Vec<Hit>> {
+    work::spend(search.looked_at as u64 / PER_EVALUATION);
     if let Some(at) = search.exhausted {
         let what = "where two curves meet".to_owned();
         return Err(CurveFault::NotConverged { of: search.a.curve.origin(), what, at }.into());

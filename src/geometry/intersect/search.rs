@@ -72,7 +72,7 @@ pub(super) struct Search<'a> {
     pub(super) near: Vec<Rect>,
     /// Where the search stopped, if it did.
     pub(super) exhausted: Option<DVec3>,
-    looked_at: usize,
+    pub(super) looked_at: usize,
 }
 
 impl<'a> Search<'a> {
