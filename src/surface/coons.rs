@@ -312,7 +312,8 @@ pub(super) fn set_kinks(blend: &mut Blend, origin: Origin, tolerance: &Tolerance
     let creases = [blend.axes().0.creases().to_vec(), blend.axes().1.creases().to_vec()];
     let (along_u, along_v) = blend.rails_mut();
     for (direction, (rails, lines)) in [along_u, along_v].into_iter().zip(&mut lines).enumerate() {
-        let longest = rails.iter().map(Rail::length).fold(0.0, f64::max);
+        // Where no curve runs along them lines are told apart by their parameters alone.
+        let longest = if rails.is_empty() { f64::INFINITY } else { rails.iter().map(Rail::length).fold(0.0, f64::max) };
         let mut own: Vec<Vec<(f64, f64)>> = rails.iter().map(|rail| rail.kink_lines(tolerance)).collect();
         own.push(creases[direction].iter().map(|&x| (x, 0.0)).collect());
         let (found, own) = merge_kinks(&own, tolerance, |a, b| (b - a) * longest);
