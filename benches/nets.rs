@@ -1,4 +1,4 @@
-//! Sweeps and nets: built, evaluated, measured and made B-splines; the same cases as `benches/peers/nets.py`.
+//! Sweeps and nets: built, evaluated, measured and made B-splines.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 #[path = "../tests/support/networks.rs"]

@@ -14,6 +14,8 @@ const ORDERS: [usize; 4] = [4, 7, 11, 16];
 const DEEPEST: u32 = 12;
 /// Cells examined in all.
 const MOST_CELLS: usize = 1 << 17;
+/// Cells of a first division above which their errors may be as large as they are.
+const MANY: usize = 1 << 13;
 /// Cells that a rule looks at, at most, for each one that needs it.
 const SPARSE: usize = 4;
 /// Points evaluated at once in the first division: what a row and a column share is then evaluated once.
@@ -38,7 +40,7 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 /// The integral of N functions of the jet over a rectangle of the unit square of a surface, with estimated errors.
 ///
 /// A cell is done when two orders differ by no more than `accuracy` of the integrals of absolute values, shared
-/// out by the cells of the first division; errors are sums of these differences (of the lower order: on the safe side).
+/// out by the cells of the first division, once more by their size where these are many; errors are sums of these differences (of the lower order: on the safe side).
 pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
@@ -50,17 +52,21 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     let first = products(surface, (&us, &vs), &rules[0], f);
     let second = products(surface, (&us, &vs), &rules[1], f);
     let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
+    // Of many cells the large ones hold nearly everything: they get a share as large.
+    let own = if open.len() > MANY { accuracy } else { 0.0 };
+    let mut allowed: Vec<Sums<N>> = first.iter().map(|(_, size)| std::array::from_fn(|i| share * scale[i] + own * size[i])).collect();
     let mut known: Vec<Vec<Sums<N>>> = first.into_iter().zip(second).map(|(a, b)| vec![a.0, b.0]).collect();
     for rule in &rules[2..] {
-        sharpen(surface, (&us, &vs), rule, f, &mut known, &|values| small(&differences(values), &scale, share));
+        sharpen(surface, (&us, &vs), rule, f, &mut known, &allowed);
     }
     // Where the first division has many cells each of them may still be halved.
     let most = MOST_CELLS.max(2 * open.len());
     // The last cell is taken first: turn the list round so that sums run in one order.
     open.reverse();
     known.reverse();
+    allowed.reverse();
     let (mut sum, mut error, mut seen) = ([0.0; N], [0.0; N], 0);
-    while let (Some(cell), Some(start)) = (open.pop(), known.pop()) {
+    while let (Some(cell), Some(start), Some(limit)) = (open.pop(), known.pop(), allowed.pop()) {
         job::look();
         seen += 1;
         let known_of = |k: usize| start.get(k).copied();
@@ -71,11 +77,11 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
             let next = by_rule(k);
             apart = std::array::from_fn(|i| (next[i] - value[i]).abs());
             value = next;
-            if small(&apart, &scale, share) {
+            if small(&apart, &limit) {
                 break;
             }
         }
-        if small(&apart, &scale, share) || cell.depth >= DEEPEST || seen + open.len() >= most {
+        if small(&apart, &limit) || cell.depth >= DEEPEST || seen + open.len() >= most {
             for i in 0..N {
                 sum[i] += value[i];
                 error[i] += apart[i];
@@ -88,13 +94,14 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
         {
             open.push(Cell { x: low, y: high, depth: cell.depth + 1 });
             known.push(Vec::new());
+            allowed.push(std::array::from_fn(|i| share * scale[i] + 0.25 * (limit[i] - share * scale[i])));
         }
     }
     (sum, error)
 }
 
-fn small<const N: usize>(apart: &Sums<N>, scale: &Sums<N>, share: f64) -> bool {
-    apart.iter().zip(scale).all(|(a, s)| *a <= share * s)
+fn small<const N: usize>(apart: &Sums<N>, limit: &Sums<N>) -> bool {
+    apart.iter().zip(limit).all(|(a, limit)| a <= limit)
 }
 
 /// Breaks far enough apart to tell one from the next; kinks stay where they are.
@@ -135,9 +142,9 @@ fn sharpen<const N: usize>(
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
     known: &mut [Vec<Sums<N>>],
-    done: &dyn Fn(&[Sums<N>]) -> bool,
+    allowed: &[Sums<N>],
 ) {
-    let open: Vec<bool> = known.iter().map(|values| !done(values)).collect();
+    let open: Vec<bool> = known.iter().zip(allowed).map(|(values, limit)| !small(&differences(values), limit)).collect();
     let rows: Vec<usize> = (0..vs.len()).filter(|j| open[j * us.len()..(j + 1) * us.len()].contains(&true)).collect();
     let columns: Vec<usize> = (0..us.len()).filter(|i| rows.iter().any(|j| open[j * us.len() + i])).collect();
     let count = open.iter().filter(|open| **open).count();
@@ -286,7 +293,7 @@ pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl 
         job::look();
         let (rough, value) = (round(&rules[0], run).0, round(&rules[1], run).0);
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
-        if depth == DEEPEST || small(&apart, &scale, share) {
+        if depth == DEEPEST || small(&apart, &scale.map(|s| share * s)) {
             for i in 0..N {
                 sum[i] += value[i];
                 error[i] += apart[i];
