@@ -167,3 +167,28 @@ fn bounds_hold() {
         }
     }
 }
+
+/// Second derivatives jump across the sides of triangles: a net of few pieces keeps them only where they hardly do.
+#[test]
+fn nets_of_quadratics_are_made_and_of_rough_points_refused() {
+    let mut numbers = Numbers(0x0_6e75);
+    let tolerance = Tolerance::new(1e-6, 3.0);
+    let net = |points: &[DVec3]| {
+        let whole = scatter(points, Some(DVec3::Z), Origin::NONE, &tolerance).unwrap().0;
+        whole.ground_net(&tolerance).map(|form| form.unwrap().net)
+    };
+    let bowl = |x: f64, y: f64| 0.2 * x * x - 0.1 * x * y;
+    // A grid: beyond the hull of other points the slope jumps, which asks for strips too.
+    let points: Vec<DVec3> =
+        (0..42).map(|k| (f64::from(k % 7) * 0.5, f64::from(k / 7) * 0.4)).map(|(x, y)| DVec3::new(x, y, bowl(x, y))).collect();
+    let made = net(&points).unwrap();
+    for p in &points {
+        let at = place(&points)(*p);
+        let mut out = [DVec3::ZERO];
+        made.grid(&[at.x], &[at.y], &mut out);
+        assert!(out[0].distance(*p) <= 1e-6, "{p}");
+    }
+    let fault = net(&numbers.cloud(60, |x, y| 0.3 * (7.0 * x).sin() * (6.0 * y).cos())).unwrap_err();
+    assert_eq!(fault.code().0, "E413");
+    assert!(fault.to_string().contains("strips of pieces each way"), "{fault}");
+}

@@ -17,6 +17,8 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use strips::Fit;
 
+/// Strips each way of a net for scattered points at most.
+const MOST_STRIPS: f64 = 128.0;
 /// Degrees that are tried.
 const DEGREES: [usize; 2] = [3, 5];
 /// Share of the tolerance that a net may be off: what is compared with it has a share of its own.
@@ -97,6 +99,7 @@ impl Surface {
 
     /// A net within `tolerance.point` of the points at a distance along the normals of a smooth surface over a square.
     pub(super) fn offset_net(&self, distance: f64, tolerance: &Tolerance) -> Result<NurbsSurface> {
+        self.few_strips(tolerance)?;
         Fit::new(self, tolerance).beside(distance).run()
     }
 
@@ -115,8 +118,22 @@ impl Surface {
                 let what = "the spline form of a surface".to_owned();
                 Err(CurveFault::NotConverged { of: self.origin(), what, at: self.point(u, v) }.into())
             }
-            None => Ok(NetForm { net: Fit::new(self, tolerance).run()?, off: Off::Sampled(within) }),
+            None => {
+                self.few_strips(tolerance)?;
+                Ok(NetForm { net: Fit::new(self, tolerance).run()?, off: Off::Sampled(within) })
+            }
         }
+    }
+
+    /// E413 where the sides of triangles would ask for more strips of a net than can be afforded.
+    fn few_strips(&self, tolerance: &Tolerance) -> Result<()> {
+        let Shape::Scatter(field) = &self.parts().shape else { return Ok(()) };
+        let (strips, at) = field.strips(tolerance.point);
+        if strips <= MOST_STRIPS {
+            return Ok(());
+        }
+        let what = format!("the spline form of scattered points, about {strips:.0} strips of pieces each way,");
+        Err(CurveFault::NotConverged { of: self.origin(), what, at }.into())
     }
 
     /// From the shape's (u, v) to the surface's.

@@ -3,6 +3,7 @@
 //! Beyond the border the height goes on straight, in the direction of its gradient at the nearest place of the border: what
 //! looks for feet may step over it.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -297,6 +298,43 @@ impl Field {
         let cells = ((self.pieces.len() as f64).sqrt().ceil() as usize).clamp(1, MOST);
         let inner: Vec<f64> = (1..cells).map(|k| k as f64 / cells as f64).collect();
         (inner.clone(), inner)
+    }
+
+    /// About how many strips of bicubic pieces each way keep `within`, and the point that asks for most of them: second derivatives
+    /// jump across the sides of triangles, which strips cross.
+    pub fn strips(&self, within: f64) -> (f64, DVec3) {
+        /// A cubic over a step h is off by this share of a jump of the second derivative times h².
+        const OFF: f64 = 1.0 / 64.0;
+        let mut around: BTreeMap<[u64; 2], (DVec2, [Range; 3])> = BTreeMap::new();
+        for piece in self.pieces.iter() {
+            for corner in &piece.corners[..2] {
+                let own = piece.height(*corner).d2.map(Range::at);
+                let known = around.entry([corner.x.to_bits(), corner.y.to_bits()]).or_insert((*corner, own));
+                known.1 = [0, 1, 2].map(|k| known.1[k].union(own[k]));
+            }
+        }
+        let jump = |ranges: &[Range; 3]| ranges.iter().map(|r| r.high - r.low).fold(0.0, f64::max) * self.normal.length();
+        let worst = around.values().max_by(|a, b| jump(&a.1).total_cmp(&jump(&b.1)));
+        let inside = worst.map_or((0.0, self.frame.origin), |(at, ranges)| ((OFF * jump(ranges) / within).sqrt(), self.jet(at.x, at.y).p));
+        let outside = self.rims.iter().map(|rim| self.creases(rim, within));
+        outside.fold(inside, |most, next| if next.0 > most.0 { next } else { most })
+    }
+
+    /// The same beyond a side of the border, where the slope jumps across the lines from its ends outwards.
+    fn creases(&self, rim: &Rim, within: f64) -> (f64, DVec3) {
+        /// A cubic over a step h is off by this share of a jump of the slope times h.
+        const OFF: f64 = 1.0 / 8.0;
+        let (t, n) = (rim.along, -rim.along.perp());
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|p| p * self.size);
+        let far = corners.iter().map(|p| (*p - rim.ends[0]).dot(n)).fold(0.0, f64::max);
+        let piece = &self.pieces[rim.piece];
+        let turn = |c: usize| {
+            let [xx, xy, yy] = self.bends(piece.height(piece.corners[c]).d2);
+            (t.x * (xx * n.x + xy * n.y) + t.y * (xy * n.x + yy * n.y)).abs()
+        };
+        let jump = turn(0).max(turn(1)) * far * self.normal.length();
+        let at = piece.corners[0];
+        (OFF * jump * self.size.max_element() / within, self.jet(at.x, at.y).p)
     }
 
     /// A box that holds the surface.
