@@ -157,15 +157,12 @@ fn scales(blend: &Blend, stations: &mut [NetCurve], guides: usize, is_guide: &dy
         points.iter().map(|p| p.distance(middle)).sum::<f64>() / n
     };
     let given: Vec<usize> = (0..stations.len()).filter(|i| stations[*i].given).collect();
-    for i in 0..stations.len() {
-        if stations[i].given {
-            continue;
-        }
+    for (i, station) in stations.iter_mut().enumerate().filter(|(_, s)| !s.given) {
         let before = given.iter().rev().find(|k| **k < i);
         let after = given.iter().find(|k| **k > i);
         let scale = |k: &usize| if anchors.len() == 1 || spread(*k) == 0.0 { 1.0 } else { spread(i) / spread(*k) };
         let off = |x: f64| if x > 1.0 { x } else { 1.0 / x };
         let both = before.into_iter().chain(after).map(scale);
-        stations[i].scale = both.max_by(|a, b| off(*a).total_cmp(&off(*b)));
+        station.scale = both.max_by(|a, b| off(*a).total_cmp(&off(*b)));
     }
 }
