@@ -24,6 +24,9 @@ const BATCH: usize = 1 << 15;
 /// Sums of N functions.
 pub type Sums<const N: usize> = [f64; N];
 
+/// Low and high of one parameter.
+type Span = (f64, f64);
+
 /// A rectangle of the unit square.
 #[derive(Clone, Copy)]
 struct Cell {
@@ -46,7 +49,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
     // A triangle's lines do not follow the square.
     let us = if surface.domain() == Domain::Triangle { Vec::new() } else { us };
-    let (us, vs) = (spans(apart(us, &kinks.0), within.0), spans(apart(vs, &kinks.1), within.1));
+    let (us, vs) = (spans(apart(us, kinks.0), within.0), spans(apart(vs, kinks.1), within.1));
     let mut open: Vec<Cell> = vs.iter().flat_map(|y| us.iter().map(|x| Cell { x: *x, y: *y, depth: 0 })).collect();
     let share = accuracy / open.len() as f64;
     let first = products(surface, (&us, &vs), &rules[0], f);
@@ -138,7 +141,7 @@ fn differences<const N: usize>(values: &[Sums<N>]) -> Sums<N> {
 /// columns that they are in: curves are then evaluated once for all of them.
 fn sharpen<const N: usize>(
     surface: &Surface,
-    (us, vs): (&[(f64, f64)], &[(f64, f64)]),
+    (us, vs): (&[Span], &[Span]),
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
     known: &mut [Vec<Sums<N>>],
@@ -164,7 +167,7 @@ fn sharpen<const N: usize>(
 /// [`product`] on each cell of intervals in x and y, x fastest.
 fn products<const N: usize>(
     surface: &Surface,
-    (us, vs): (&[(f64, f64)], &[(f64, f64)]),
+    (us, vs): (&[Span], &[Span]),
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
 ) -> Vec<(Sums<N>, Sums<N>)> {

@@ -195,13 +195,13 @@ impl Spreading<'_, '_> {
             let whole: f64 = parts[first..last].iter().sum();
             let n = (whole * room).ceil().max(1.0);
             let (mut sum, mut next) = (0.0, 1.0);
-            for k in first..last {
-                while next < n && next * whole / n <= sum + parts[k] {
-                    let share = (next * whole / n - sum) / parts[k];
-                    out.put(breaks.at[k] + share * (breaks.at[k + 1] - breaks.at[k]), usize::MAX, 0.0);
+            for (parts, span) in parts[first..last].iter().zip(breaks.at[first..].windows(2)) {
+                while next < n && next * whole / n <= sum + parts {
+                    let share = (next * whole / n - sum) / parts;
+                    out.put(span[0] + share * (span[1] - span[0]), usize::MAX, 0.0);
                     next += 1.0;
                 }
-                sum += parts[k];
+                sum += parts;
             }
         }
         out
