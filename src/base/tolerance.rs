@@ -41,6 +41,8 @@ pub const NUDGE: f64 = 1e-6;
 pub const NEWTON_STEP: f64 = 1e-8;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
+/// What is integrated counts as at least this share of what it could be with the same lengths: below that it is rounding.
+pub const LEAST_SIZE: f64 = 1e-4;
 /// Relative error of a volume of which only the sign is wanted, where the body is not thin.
 pub const SIGN_ACCURACY: f64 = 1e-3;
 /// Below this barycentric distance from a corner a quotient 0/0 is replaced by its expansion.

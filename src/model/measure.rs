@@ -12,7 +12,7 @@ use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
 use crate::base::par;
 use crate::base::quadrature::integrate;
-use crate::base::tolerance::{MEASURE_ACCURACY, SIGN_ACCURACY};
+use crate::base::tolerance::{LEAST_SIZE, MEASURE_ACCURACY, SIGN_ACCURACY};
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, chain_breaks};
 
@@ -59,7 +59,8 @@ pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {
     if part == WHOLE || surface.domain() != Domain::Square {
         return area(surface);
     }
-    integral(surface, part, MEASURE_ACCURACY, &|jet| [jet.du.cross(jet.dv).length()]).0[0]
+    let size = |jet: &Jet2| [jet.du.cross(jet.dv).length()];
+    integral(surface, part, MEASURE_ACCURACY, (&size, &size)).0[0]
 }
 
 /// Centre of the length of a curve.
@@ -154,14 +155,28 @@ pub(super) fn over<const N: usize>(
     f: &impl Fn(&Jet2, DVec3) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
     let at = |jet: &Jet2| f(jet, jet.p - about);
+    // Of a face in a plane of the coordinates some terms are nothing but rounding: a share of what they would be if the normal and
+    // the way there had all components alike counts as their size.
+    let sized = |jet: &Jet2| -> [f64; N] {
+        let (value, most) = (at(jet), at_all(jet, jet.p - about, f));
+        std::array::from_fn(|i| value[i].abs() + LEAST_SIZE * most[i].abs())
+    };
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
-        (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, &at),
+        (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, (&at, &sized)),
         (_, SurfaceKind::Scatter) => triangles_integral(surface, &surface.triangles(), accuracy, &at),
-        _ if surface.is_flat() => flat_integral(surface, accuracy, &at),
-        (Domain::Loop, _) => trimmed_integral(surface, accuracy, &at),
-        _ => integral(surface, WHOLE, accuracy, &at),
+        _ if surface.is_flat() => flat_integral(surface, accuracy, (&at, &sized)),
+        (Domain::Loop, _) => trimmed_integral(surface, accuracy, (&at, &sized)),
+        _ => integral(surface, WHOLE, accuracy, (&at, &sized)),
     }
+}
+
+/// What f gives where the normal and the arm are as long as they are, along one diagonal.
+fn at_all<const N: usize>(jet: &Jet2, arm: DVec3, f: &impl Fn(&Jet2, DVec3) -> [f64; N]) -> [f64; N] {
+    let diagonal = DVec3::ONE.normalize();
+    let eu = DVec3::new(1.0, -1.0, 0.0).normalize();
+    let root = jet.du.cross(jet.dv).length().sqrt();
+    f(&Jet2 { du: eu * root, dv: diagonal.cross(eu) * root, ..*jet }, diagonal * arm.length())
 }
 
 fn total(parts: &[([f64; 10], [f64; 10])]) -> ([f64; 10], [f64; 10]) {

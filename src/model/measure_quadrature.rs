@@ -42,9 +42,15 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 
 /// The integral of N functions of the jet over a rectangle of the unit square of a surface, with estimated errors.
 ///
-/// A cell is done when two orders differ by no more than `accuracy` of the integrals of absolute values, shared
-/// out by the cells of the first division, once more by their size where these are many; errors are sums of these differences (of the lower order: on the safe side).
-pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+/// A cell is done when two orders differ by no more than `accuracy` of the integrals of their sizes (the second functions), shared
+/// out by the cells of the first division, once more by their size where these are many; errors are sums of these differences (of the
+/// lower order: on the safe side).
+pub fn integral<const N: usize>(
+    surface: &Surface,
+    within: Rectangle,
+    accuracy: f64,
+    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
+) -> (Sums<N>, Sums<N>) {
     let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
     // A triangle's lines do not follow the square.
@@ -54,11 +60,12 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
     let share = accuracy / open.len() as f64;
     let first = products(surface, (&us, &vs), &rules[0], f);
     let second = products(surface, (&us, &vs), &rules[1], f);
-    let scale = first.iter().fold([0.0; N], |sum, (_, size)| std::array::from_fn(|i| sum[i] + size[i]));
+    let sizes = products(surface, (&us, &vs), &rules[0], sized);
+    let scale = sizes.iter().fold([0.0; N], |sum, size| std::array::from_fn(|i| sum[i] + size[i]));
     // Of many cells the large ones hold nearly everything: they get a share as large.
     let own = if open.len() > MANY { accuracy } else { 0.0 };
-    let mut allowed: Vec<Sums<N>> = first.iter().map(|(_, size)| std::array::from_fn(|i| share * scale[i] + own * size[i])).collect();
-    let mut known: Vec<Vec<Sums<N>>> = first.into_iter().zip(second).map(|(a, b)| vec![a.0, b.0]).collect();
+    let mut allowed: Vec<Sums<N>> = sizes.iter().map(|size| std::array::from_fn(|i| share * scale[i] + own * size[i])).collect();
+    let mut known: Vec<Vec<Sums<N>>> = first.into_iter().zip(second).map(|(a, b)| vec![a, b]).collect();
     for rule in &rules[2..] {
         sharpen(surface, (&us, &vs), rule, f, &mut known, &allowed);
     }
@@ -73,7 +80,7 @@ pub fn integral<const N: usize>(surface: &Surface, within: Rectangle, accuracy: 
         job::look();
         seen += 1;
         let known_of = |k: usize| start.get(k).copied();
-        let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f).0);
+        let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f));
         let mut value = by_rule(0);
         let mut apart = [f64::INFINITY; N];
         for k in 1..rules.len() {
@@ -156,7 +163,7 @@ fn sharpen<const N: usize>(
     }
     let pick = |all: &[(f64, f64)], of: &[usize]| of.iter().map(|k| all[*k]).collect::<Vec<_>>();
     let values = products(surface, (&pick(us, &columns), &pick(vs, &rows)), rule, f);
-    for (n, (value, _)) in values.into_iter().enumerate() {
+    for (n, value) in values.into_iter().enumerate() {
         let cell = rows[n / columns.len()] * us.len() + columns[n % columns.len()];
         if open[cell] {
             known[cell].push(value);
@@ -170,7 +177,7 @@ fn products<const N: usize>(
     (us, vs): (&[Span], &[Span]),
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
-) -> Vec<(Sums<N>, Sums<N>)> {
+) -> Vec<Sums<N>> {
     let order = rule.len();
     let on = |spans: &[(f64, f64)]| -> Vec<f64> {
         spans.iter().flat_map(|(a, b)| rule.iter().map(move |(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x)).collect()
@@ -192,30 +199,29 @@ fn products<const N: usize>(
     found
 }
 
-/// One rule on one cell: the integrals and those of the absolute values.
-fn product<const N: usize>(surface: &Surface, cell: &Cell, rule: &[(f64, f64)], f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+/// One rule on one cell.
+fn product<const N: usize>(surface: &Surface, cell: &Cell, rule: &[(f64, f64)], f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
     let on = |(a, b): (f64, f64)| rule.iter().map(|(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x).collect::<Vec<f64>>();
     let jets = surface.square_jets(&on(cell.x), &on(cell.y));
     let area = 0.25 * (cell.x.1 - cell.x.0) * (cell.y.1 - cell.y.0);
     weighed(jets.iter(), area, rule, f)
 }
 
-/// The integrals and those of the absolute values from the jets of a rule.
+/// The integrals from the jets of a rule.
 fn weighed<'a, const N: usize>(
     jets: impl Iterator<Item = &'a Jet2>,
     area: f64,
     rule: &[(f64, f64)],
     f: &impl Fn(&Jet2) -> Sums<N>,
-) -> (Sums<N>, Sums<N>) {
-    let (mut sum, mut size) = ([0.0; N], [0.0; N]);
+) -> Sums<N> {
+    let mut sum = [0.0; N];
     for (k, jet) in jets.enumerate() {
         let weight = area * rule[k % rule.len()].1 * rule[k / rule.len()].1;
         for (i, value) in f(jet).into_iter().enumerate() {
             sum[i] += weight * value;
-            size[i] += weight * value.abs();
         }
     }
-    (sum, size)
+    sum
 }
 
 /// The boundary of a flat surface in walking order, each chain with the fractions it is run between.
@@ -234,7 +240,11 @@ fn boundary(surface: &Surface) -> Vec<(Chain, f64, f64)> {
 /// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
 ///
 /// `f` gets jets with unit derivatives in the plane, their cross product the surface's normal.
-pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+pub fn flat_integral<const N: usize>(
+    surface: &Surface,
+    accuracy: f64,
+    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
+) -> (Sums<N>, Sums<N>) {
     let walk = boundary(surface);
     let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
     let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
@@ -265,7 +275,7 @@ pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl 
     let ev = normal.cross(eu);
     let inner = gauss_legendre(ORDERS[0]);
     // ∬ f da db = ∮ F db with F = ∫ f da from the origin's line.
-    let along = |p: DVec3| {
+    let along = |p: DVec3, f: &dyn Fn(&Jet2) -> Sums<N>| {
         let (a, foot) = ((p - origin).dot(eu), p - eu * (p - origin).dot(eu));
         inner.iter().fold([0.0; N], |sum, (x, w)| {
             let jet = Jet2 { p: foot + eu * (0.5 * a * (1.0 + x)), du: eu, dv: ev, ..Jet2::default() };
@@ -273,20 +283,16 @@ pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl 
             std::array::from_fn(|i| sum[i] + 0.5 * a * w * value[i])
         })
     };
-    // Value and sum of absolute values.
-    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64)| {
-        rule.iter().fold(([0.0; N], [0.0; N]), |(mut sum, mut size), (x, w)| {
+    // The value along a run, or its size.
+    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64), size: bool| {
+        rule.iter().fold([0.0; N], |sum, (x, w)| {
             let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
-            let (value, step) = (along(jet.p), 0.5 * (b - a) * w * jet.d1.dot(ev));
-            for i in 0..N {
-                sum[i] += step * value[i];
-                size[i] += (step * value[i]).abs();
-            }
-            (sum, size)
+            let (value, step) = (if size { along(jet.p, sized) } else { along(jet.p, f) }, 0.5 * (b - a) * w * jet.d1.dot(ev));
+            std::array::from_fn(|i| sum[i] + if size { (step * value[i]).abs() } else { step * value[i] })
         })
     };
-    let scale = runs.iter().fold([0.0; N], |scale, run| {
-        let size = round(&rules[0], *run).1;
+    let scale = runs.iter().fold([0.0; N], |scale: Sums<N>, run| {
+        let size = round(&rules[0], *run, true);
         std::array::from_fn(|i| scale[i] + size[i])
     });
     let share = accuracy / runs.len() as f64;
@@ -294,7 +300,7 @@ pub fn flat_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl 
     let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
         job::look();
-        let (rough, value) = (round(&rules[0], run).0, round(&rules[1], run).0);
+        let (rough, value) = (round(&rules[0], run, false), round(&rules[1], run, false));
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
         if depth == DEEPEST || small(&apart, &scale.map(|s| share * s)) {
             for i in 0..N {

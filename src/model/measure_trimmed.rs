@@ -47,12 +47,16 @@ fn parts(breaks: &[f64], low: f64, high: f64) -> bool {
     breaks.partition_point(|b| *b <= low) < breaks.partition_point(|b| *b < high)
 }
 
-/// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sum of
-/// absolute values.
+/// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sums of
+/// their sizes, the second functions.
 ///
 /// ∬ f du dv = ∮ F dv with F = ∫ f du from the middle of each loop (round a closed loop any start serves), cut where the
 /// surface is less than analytic.
-pub fn trimmed_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &impl Fn(&Jet2) -> Sums<N>) -> (Sums<N>, Sums<N>) {
+pub fn trimmed_integral<const N: usize>(
+    surface: &Surface,
+    accuracy: f64,
+    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
+) -> (Sums<N>, Sums<N>) {
     let middle = |outline: &Vec<DVec2>| {
         let (low, high) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
         0.5 * (low + high)
@@ -105,7 +109,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &im
         }
         sum
     };
-    let run = |run: &Run, rule: &[(f64, f64)], sized: bool| -> Met<N> {
+    let run = |run: &Run, rule: &[(f64, f64)], wanted: bool| -> Met<N> {
         let (mut sum, mut size) = ([0.0; N], [0.0; N]);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (x, w) in rule {
@@ -121,8 +125,8 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &im
                 sum[i] += half * w * dv * value;
             }
             // Round a closed surface what is added up may come to nothing: its size is that of what is added.
-            for x in SIZED.iter().filter(|_| sized) {
-                let value = f(&jet(base + (at.x - base) * x, at.y));
+            for x in SIZED.iter().filter(|_| wanted) {
+                let value = sized(&jet(base + (at.x - base) * x, at.y));
                 (0..N).for_each(|i| size[i] += (half * w * dv * (at.x - base) * value[i]).abs() / SIZED.len() as f64);
             }
         }
@@ -139,7 +143,7 @@ pub fn trimmed_integral<const N: usize>(surface: &Surface, accuracy: f64, f: &im
         let alone = |breaks: &[f64], low: f64, high: f64| breaks.is_empty() || low >= 0.0 && high <= 1.0 && !parts(breaks, low, high);
         alone(&breaks_u, low.x, high.x) && alone(&breaks_v, low.y, high.y)
     };
-    let rough = |r: &Run, sized: bool| run(r, &rules[0][0], sized);
+    let rough = |r: &Run, wanted: bool| run(r, &rules[0][0], wanted);
     let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(open.len()));
     for met in open.iter().map(|r| rough(r, true)) {
         (0..N).for_each(|i| scale[i] += met.size[i]);

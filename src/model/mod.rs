@@ -25,7 +25,6 @@ pub mod shared;
 pub mod shells;
 mod sides;
 pub mod stretches;
-pub mod thicken;
 pub mod topology;
 pub mod trace;
 

@@ -59,6 +59,8 @@ pub mod sweeps;
 mod trilateral;
 mod trilateral_spread;
 mod trim;
+mod turned;
+pub mod walls;
 mod weights;
 
 pub use as_net::{NetForm, Off};

@@ -1,21 +1,24 @@
 //! Surfaces at a distance from another one, along its normals.
 //!
 //! Planes, extrusions across the plane of their profile and revolutions keep their kind, with moved profiles. What is left is a
-//! bicubic net within the tolerance of S + d·n, whose first derivatives are exact at its knots.
+//! bicubic net within the tolerance of S + d·n, whose first derivatives are exact at its knots. Of a trimmed surface the surface below
+//! is moved and its loops with it.
 
 use glam::DVec3;
 
 use super::Jet2;
-use super::core::{Domain, Surface, SurfaceKind, unit_normal};
+use super::core::{Domain, Side, Surface, SurfaceKind, unit_normal};
 use super::extrude::extrude;
 use super::rail::Lean;
 use super::revolve::{Axis, revolve};
 use super::shape::Shape;
 use super::sweep::Path;
-use crate::base::fault::{Fault, Result, SurfaceFault, ValueFault};
+use super::turned::beside_axis;
+use super::walls::{trimmed, whole};
+use crate::base::fault::{Fault, Result, SurfaceFault, WallFault};
 use crate::base::math;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::base::tolerance::{NUDGE, POLE_STEP, Tolerance};
 use crate::geometry::{Curve, Motion, build, height_over};
 use crate::network::Chain;
 
@@ -26,8 +29,8 @@ const BELOW: f64 = 0.25;
 
 /// The surface at `distance` (model units, positive on the side of the normal), and W664 where it folds over.
 ///
-/// Fails with E306 where a profile turns tighter than the distance, and with E230 for trimmed surfaces that are no planes and for
-/// creased ones that are no sweeps.
+/// Fails with E306 where a profile turns tighter than the distance, and with E670 for creased surfaces that are no sweeps and for
+/// those with a tip.
 pub fn offset(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     if distance == 0.0 {
         return Ok((surface.with_origin(origin), Vec::new()));
@@ -35,17 +38,14 @@ pub fn offset(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tole
     if let Some(normal) = level(surface, tolerance) {
         return Ok((surface.moved(&Motion::translation(normal * distance)).with_origin(origin), Vec::new()));
     }
-    let later = |what: &str| Err(ValueFault::NotInThisVersion { what: format!("`offset` of {what}") }.into());
-    if surface.kind() == SurfaceKind::Trim {
-        return later("a trimmed surface that is no plane");
+    if surface.parts().trim.is_some() {
+        rough(&whole(surface, tolerance), surface.origin(), origin, tolerance)?;
+        return trimmed(surface, distance, origin, tolerance);
     }
     if let Some(exact) = swept(surface, distance, origin, tolerance)? {
         return Ok((exact, Vec::new()));
     }
-    let (us, vs) = surface.kinks();
-    if !us.is_empty() || !vs.is_empty() {
-        return later("a surface with creases");
-    }
+    rough(surface, surface.origin(), origin, tolerance)?;
     let square = match surface.domain() {
         Domain::Triangle => {
             let fine = Tolerance { point: BELOW * tolerance.point, ..*tolerance };
@@ -58,6 +58,69 @@ pub fn offset(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tole
     Ok((net.surface(SurfaceKind::Offset, origin, tolerance), folds(base, distance, origin)))
 }
 
+/// Whether the offsets of a surface have exact borders as it has: planes, and sweeps along their normals.
+pub(super) fn is_exact(surface: &Surface, tolerance: &Tolerance) -> Result<bool> {
+    let named = |k: usize| matches!(surface.side(k), Side::Chain { .. } | Side::Pole(_));
+    let flat = || level(surface, tolerance).is_some();
+    Ok((0..surface.n_sides()).all(named) && (flat() || surface.parts().trim.is_none() && swept_by(surface)?.is_some()))
+}
+
+/// E670 where the normals of a surface jump: along a crease, or round a tip.
+fn rough(below: &Surface, of: Origin, origin: Origin, tolerance: &Tolerance) -> Result<()> {
+    if let Some((at, angle)) = crease(below, tolerance) {
+        return Err(WallFault::Creased { offset: origin, surface: of, at, angle }.into());
+    }
+    match tip(below, tolerance) {
+        Some(at) if swept_by(below)?.is_none() => Err(WallFault::Tip { offset: origin, surface: of, at }.into()),
+        _ => Ok(()),
+    }
+}
+
+/// Where the normals on both sides of a line of a surface differ most, by more than the tolerance's angle.
+fn crease(surface: &Surface, tolerance: &Tolerance) -> Option<(DVec3, f64)> {
+    const ALONG: usize = 17;
+    let places = || (0..ALONG).map(|k| (k as f64 + 0.5) / ALONG as f64);
+    let (us, vs) = surface.kinks();
+    let in_u = us.iter().flat_map(|u| places().map(move |v| (*u, v, true)));
+    let in_v = vs.iter().flat_map(|v| places().map(move |u| (u, *v, false)));
+    let jump = |(u, v, across_u): (f64, f64, bool)| {
+        let lean = |side: Lean| if across_u { (side, Lean::After) } else { (Lean::After, side) };
+        let normal = |side: Lean| surface.normal_lean(u, v, lean(side));
+        (surface.point(u, v), math::angle_between(normal(Lean::Before), normal(Lean::After)))
+    };
+    let most = in_u.chain(in_v).map(jump).fold((DVec3::ZERO, 0.0), |most, next| if next.1 > most.1 { next } else { most });
+    (most.1 > tolerance.angle).then_some(most)
+}
+
+/// A pole round which the normals do not come together: the tip of a cone.
+fn tip(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
+    const AROUND: usize = 16;
+    const NEARER: f64 = 0.125;
+    if surface.domain() != Domain::Square {
+        return None;
+    }
+    let place = |k: usize, along: f64, inward: f64| match k {
+        0 => (along, inward),
+        1 => (1.0 - inward, along),
+        2 => (along, 1.0 - inward),
+        _ => (inward, along),
+    };
+    (0..4).find_map(|k| {
+        let Side::Pole(p) = surface.side(k) else { return None };
+        let ((u, v), lean) = (place(k, 0.5, 0.0), (Lean::After, Lean::After));
+        let upright = surface.normal_lean(u, v, lean);
+        let spread = |inward: f64| {
+            let normal = |i: usize| {
+                let (u, v) = place(k, (i as f64 + 0.5) / AROUND as f64, inward);
+                math::angle_between(surface.normal(u, v), upright)
+            };
+            (0..AROUND).map(normal).fold(0.0, f64::max)
+        };
+        let (far, near) = (spread(POLE_STEP), spread(NEARER * POLE_STEP));
+        (near > tolerance.angle && near > 0.5 * far).then_some(p)
+    })
+}
+
 /// The normal of a surface that is a plane, trimmed or not, up to rounding.
 pub(super) fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     const ALONG: usize = 9;
@@ -66,6 +129,14 @@ pub(super) fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
         return math::unit(surface.untrimmed().normal(0.25, 0.25), 0.0);
     }
     let ground = surface.untrimmed();
+    if ground.domain() == Domain::Triangle {
+        // Within the triangle; a plane is one in its middle already.
+        let at = |k: usize| k as f64 / (ALONG - 1) as f64;
+        let mut places = (0..ALONG).flat_map(|j| (0..ALONG - j).map(move |i| (i, j))).map(|(i, j)| ground.point(at(i), at(j)));
+        let normal = math::unit(ground.normal(0.25, 0.25), 0.0)?;
+        let foot = ground.point(0.25, 0.25);
+        return places.all(|p| (p - foot).dot(normal).abs() <= tolerance.rounding).then_some(normal);
+    }
     if ground.domain() != Domain::Square {
         return None;
     }
@@ -77,14 +148,22 @@ pub(super) fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     points.iter().all(within).then_some(normal)
 }
 
-/// The offset of a sweep whose profile lies in a plane that holds its normals; none for other surfaces.
-fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+/// A profile with the unit normal of its plane.
+pub(super) struct Profile {
+    curve: Curve,
+    normal: DVec3,
+    /// 1 where the normals of the surface are to the left of the profile, else −1.
+    side: f64,
+}
+
+/// The profile of a sweep that lies in a plane which holds the normals; none for other surfaces.
+pub(super) fn swept_by(surface: &Surface) -> Result<Option<(Profile, Path)>> {
     let Shape::Sweep(sweep) = &surface.parts().shape else { return Ok(None) };
     let Some(chain) = sweep.profile().chain() else { return Ok(None) };
-    let profile = chain.to_curve()?;
-    let size = profile.bbox().diagonal();
-    let Some(normal) = plane_of(&profile, sweep.path(), size) else { return Ok(None) };
-    if height_over(&profile, normal) > NUDGE * size {
+    let curve = chain.to_curve()?;
+    let size = curve.bbox().diagonal();
+    let Some(normal) = plane_of(&curve, sweep.path(), size) else { return Ok(None) };
+    if height_over(&curve, normal) > NUDGE * size {
         return Ok(None);
     }
     // Which side of the profile the normals are on, where they are clearest.
@@ -96,15 +175,65 @@ fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance
     const PLACES: usize = 7;
     let sides = (0..PLACES).map(|k| left((k as f64 + 0.5) / PLACES as f64));
     let side = sides.fold(0.0, |most: f64, s| if s.abs() > most.abs() { s } else { most });
-    if side.abs() < 1.0 - NUDGE {
-        return Ok(None);
+    Ok((side.abs() >= 1.0 - NUDGE).then(|| (Profile { curve, normal, side: side.signum() }, sweep.path())))
+}
+
+/// The parts of a face between its creases: of an untrimmed sweep those of its profile; E670 for others with creases.
+pub(super) fn parts_of(surface: &Surface, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    let below = whole(surface, tolerance);
+    let (us, vs) = below.kinks();
+    if us.is_empty() && vs.is_empty() || level(surface, tolerance).is_some() {
+        return Ok(vec![surface.clone()]);
     }
-    let moved = Chain::of_curve(&build::offset(&profile, distance * side.signum(), normal, origin)?);
-    let made = match sweep.path() {
+    let parts = surface.parts();
+    let (Shape::Sweep(sweep), None) = (&parts.shape, &parts.trim) else {
+        rough(&below, surface.origin(), origin, tolerance)?;
+        return Ok(vec![surface.clone()]);
+    };
+    let Some(chain) = sweep.profile().chain() else { return Ok(vec![surface.clone()]) };
+    let mut stops = chain.kinks(tolerance);
+    let round = chain.is_closed(tolerance) && stops.first() == Some(&0.0);
+    stops.retain(|f| *f > 0.0 && *f < 1.0);
+    let ends: Vec<(f64, f64)> = if chain.is_closed(tolerance) && !round {
+        (0..stops.len()).map(|k| (stops[k], stops[(k + 1) % stops.len()])).collect()
+    } else {
+        let stops = [vec![0.0], stops, vec![1.0]].concat();
+        stops.windows(2).map(|w| (w[0], w[1])).collect()
+    };
+    let part = |(from, to): (f64, f64)| -> Result<Surface> {
+        let piece = chain.slice(from, to, tolerance)?;
+        let made = match sweep.path() {
+            Path::Straight { by } => extrude(&piece, by, surface.origin(), tolerance)?,
+            Path::Turn { about, axis, angle } => revolve(&piece, &Axis { about, direction: axis }, angle, surface.origin(), tolerance)?,
+        };
+        Ok(if parts.flipped { made.flipped() } else { made })
+    };
+    ends.into_iter().map(part).collect()
+}
+
+/// The offset of a sweep whose profile lies in a plane that holds its normals; none for other surfaces.
+fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+    let Some((profile, path)) = swept_by(surface)? else { return Ok(None) };
+    let moved = moved_profile((&profile, path), distance, origin, tolerance)?;
+    let made = match path {
         Path::Straight { by } => extrude(&moved, by, origin, tolerance)?,
         Path::Turn { about, axis, angle } => revolve(&moved, &Axis { about, direction: axis }, angle, origin, tolerance)?,
     };
     Ok(Some(if surface.parts().flipped { made.flipped() } else { made }))
+}
+
+/// The profile of the offset of a sweep.
+pub(super) fn moved_profile((profile, path): (&Profile, Path), distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
+    let moved = if distance == 0.0 {
+        profile.curve.clone()
+    } else {
+        build::offset(&profile.curve, distance * profile.side, profile.normal, origin)?
+    };
+    let moved = Chain::of_curve(&moved);
+    match path {
+        Path::Straight { .. } => Ok(moved),
+        Path::Turn { about, axis, .. } => beside_axis((&profile.curve, &moved), &Axis { about, direction: axis }, distance, tolerance),
+    }
 }
 
 /// Unit normal of the plane in which the profile's normals would lie.
@@ -123,7 +252,7 @@ fn plane_of(profile: &Curve, path: Path, size: f64) -> Option<DVec3> {
 }
 
 /// Where the offset turns back over itself: some radius of curvature on its side is below the distance.
-fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault> {
+pub(super) fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault> {
     let (us, vs) = base.breaks();
     let places = |inner: &[f64]| {
         let stops = [&[0.0], inner, &[1.0]].concat();

@@ -21,6 +21,7 @@ mod scatter;
 mod surface;
 mod sweep;
 mod values;
+mod walls;
 
 use std::fmt;
 use std::mem::discriminant;
@@ -42,6 +43,7 @@ pub use scatter::ScatterFault;
 pub use surface::{SurfaceFault, Touching};
 pub use sweep::SweepFault;
 pub use values::{LengthRange, ValueFault};
+pub use walls::{WallEdge, WallFault};
 
 use super::origin::Origin;
 
@@ -73,6 +75,8 @@ pub enum Fault {
     Scatter(Box<ScatterFault>),
     /// Family 7: surfaces that make no one surface.
     Join(Box<JoinFault>),
+    /// Family 6: offsets and walls.
+    Wall(Box<WallFault>),
     /// Family 7: meshes.
     Mesh(Box<MeshFault>),
     /// Family 8: files.
@@ -237,6 +241,7 @@ impl Describe for Fault {
             Self::Blend(f) => f.describe(say),
             Self::Scatter(f) => f.describe(say),
             Self::Join(f) => f.describe(say),
+            Self::Wall(f) => f.describe(say),
             Self::Mesh(f) => f.describe(say),
             Self::File(f) => f.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
@@ -267,6 +272,7 @@ impl Fault {
             (Self::Blend(a), Self::Blend(b)) => same(&**a, &**b),
             (Self::Scatter(a), Self::Scatter(b)) => same(&**a, &**b),
             (Self::Join(a), Self::Join(b)) => same(&**a, &**b),
+            (Self::Wall(a), Self::Wall(b)) => same(&**a, &**b),
             (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
             (Self::File(a), Self::File(b)) => same(&**a, &**b),
             _ => same(self, other),
@@ -303,6 +309,7 @@ from_family!(
     Blend(BlendFault),
     Scatter(ScatterFault),
     Join(JoinFault),
+    Wall(WallFault),
     Mesh(MeshFault),
     File(FileFault)
 );

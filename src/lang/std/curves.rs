@@ -416,8 +416,9 @@ builtins! {
     ///
     /// The curve lies to the left of a plane curve seen against `normal:`, the surface along the normals. Offsets of planes, of extrusions across the plane
     /// of their profile and of revolutions are of the same kind, exactly; other surfaces become bicubic nets that keep the
-    /// distance within `tolerance:`, the model's when left out. Where a surface bends tighter than the distance its offset
-    /// folds over: W664 tells the place and the largest distance.
+    /// distance within `tolerance:`, the model's when left out. The loops of a trimmed surface go with it. Where a surface bends
+    /// tighter than the distance its offset folds over: W664 tells the place and the largest distance. A crease is E670: divide the
+    /// surface there.
     /// ```loft
     /// curve inner = line((0, 0), (4m, 0))
     /// curve outer = offset(inner, -300mm)

@@ -1,0 +1,113 @@
+//! Family 6: offsets of surfaces that are not smooth, and walls.
+
+use glam::DVec3;
+
+use super::{Describe, Report, Say};
+use crate::base::origin::Origin;
+
+/// Why the walls of two faces do not meet at their edge. Lengths in model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WallEdge {
+    /// Three faces have it.
+    Three,
+    /// It is a part of a longer border.
+    Part,
+    /// It is sharp at some places and smooth at others, or a ridge and a valley.
+    Mixed,
+    /// The moved faces meet nowhere.
+    Apart {
+        /// How far they were moved.
+        distance: f64,
+    },
+    /// The moved edges of a corner do not meet in a point.
+    Corner,
+    /// Nothing is left of an edge or a face.
+    Gone {
+        /// How far the faces were moved.
+        distance: f64,
+    },
+}
+
+/// What can go wrong with an offset or a wall. Lengths and points are in model units, angles in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WallFault {
+    /// E670: the surface has a crease.
+    Creased {
+        /// The offset.
+        offset: Origin,
+        /// The surface.
+        surface: Origin,
+        /// Where the normals jump most.
+        at: DVec3,
+        /// By how much.
+        angle: f64,
+    },
+    /// E670: the surface has a tip.
+    Tip {
+        /// The offset.
+        offset: Origin,
+        /// The surface.
+        surface: Origin,
+        /// The tip.
+        at: DVec3,
+    },
+    /// E671: the walls of two faces do not meet.
+    Edge {
+        /// The wall.
+        wall: Origin,
+        /// One face.
+        a: Origin,
+        /// The other one; the same for a border of one face.
+        b: Origin,
+        /// A place of the edge.
+        at: DVec3,
+        /// What is wrong with it.
+        why: WallEdge,
+    },
+}
+
+impl Describe for WallFault {
+    fn describe(&self, say: &dyn Say) -> Report {
+        match self {
+            Self::Creased { offset, surface, at, angle } => Report::new(
+                "E670",
+                format!("{} has a crease of {} at {}", say.quoted(*surface, "the surface"), say.angle(*angle), say.point(*at)),
+            )
+            .at(*surface, "its normals jump there")
+            .at(*offset, "has no one place beside the crease")
+            .help("divide it along the crease, `split(s, by: …)`, and move the parts one by one"),
+            Self::Tip { offset, surface, at } => {
+                Report::new("E670", format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
+                    .at(*surface, "its normals do not come together there")
+                    .at(*offset, "has no one place beside the tip")
+                    .help("cut the tip off first, `trim(s, by: …, keep: …)`")
+            }
+            Self::Edge { wall, a, b, at, why } => {
+                edge((*a, *b), *at, *why, say).at(*a, "this face").at(*b, "and this one").at(*wall, "asked for here")
+            }
+        }
+    }
+}
+
+fn edge((a, b): (Origin, Origin), at: DVec3, why: WallEdge, say: &dyn Say) -> Report {
+    let (x, y, place) = (say.quoted(a, "one face"), say.quoted(b, "another"), say.point(at));
+    let report = |message: String| Report::new("E671", message);
+    match why {
+        WallEdge::Three => report(format!("{x} and {y} share the edge at {place} with a third face: which walls meet there is not told"))
+            .help("thicken the faces on one side of the edge first, then the others"),
+        WallEdge::Part => report(format!("{x} and {y} share a part of a border at {place}, not a whole edge"))
+            .help("divide the longer border where the shorter one ends, `split(s, by: …)`"),
+        WallEdge::Mixed => report(format!("the edge of {x} and {y} is sharp at some places and smooth at others, as at {place}"))
+            .help("divide both faces there, `split(s, by: …)`"),
+        WallEdge::Apart { distance } => {
+            report(format!("{x} and {y}, each moved by {}, do not meet beside their edge at {place}", say.length(distance.abs())))
+                .help("a thinner wall, or faces at an angle farther from 180°")
+        }
+        WallEdge::Corner => report(format!("the walls at the corner {place} of {x} and {y} do not meet in one point"))
+            .help("let borders cross edges at right angles, and no more than three faces meet in a corner"),
+        WallEdge::Gone { distance } => {
+            report(format!("nothing is left of {x} beside {place} when it is moved by {}", say.length(distance.abs())))
+                .help("a thinner wall, or one on the other side, `side:`")
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Offsets of trimmed surfaces: the loops run on the offset of the surface below at the feet of the same places.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::border::{Hem, hems, whole};
+use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::network::Chain;
+use crate::surface::closest::closest;
+use crate::surface::core::{Border, Side, Surface};
+use crate::surface::offset::offset;
+use crate::surface::pull::{Course, Pull, foot};
+use crate::surface::trim::{Walk, assembled, natural};
+
+/// The offset of a trimmed surface whose surface below has no creases, with the copies of its borders, loop by loop.
+pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let walks = natural(surface, tolerance)?;
+    let each = |hem: &Option<Hem>| hem.as_ref().map(|hem| hem.copy(distance, origin, tolerance)).transpose();
+    let copies: Vec<Vec<Option<Chain>>> =
+        hems(surface, &walks, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
+    with_loops(surface, (&walks, &copies), distance, origin, tolerance)
+}
+
+/// The same with the copies of its borders at that distance given.
+pub(super) fn with_loops(
+    surface: &Surface,
+    (walks, copies): (&[Walk], &[Vec<Option<Chain>>]),
+    distance: f64,
+    origin: Origin,
+    tolerance: &Tolerance,
+) -> Result<(Surface, Vec<Fault>)> {
+    let below = whole(surface, tolerance);
+    let (ground, notes) = offset(&below, distance, origin, tolerance)?;
+    let ground = ground.untrimmed();
+    let carrier = Carrier { below: &below, ground: &ground, distance, tolerance };
+    let loops: Result<Vec<Walk>> = walks.iter().zip(copies).map(|(walk, row)| carrier.walk(walk, row)).collect();
+    Ok((assembled(&ground, loops?, origin)?, notes))
+}
+
+/// A surface and its offset.
+struct Carrier<'a> {
+    below: &'a Surface,
+    ground: &'a Surface,
+    distance: f64,
+    tolerance: &'a Tolerance,
+}
+
+impl Carrier<'_> {
+    /// The place on the offset above a place of the surface.
+    fn place(&self, uv: DVec2) -> DVec2 {
+        let p = self.below.point(uv.x, uv.y) + self.below.normal(uv.x, uv.y) * self.distance;
+        let (near, off) = foot((self.ground, None), p, uv);
+        if off <= self.tolerance.point {
+            return near;
+        }
+        // Where parameters run otherwise: the same turn as the place below.
+        let found = DVec2::from(closest(self.ground, p).uv);
+        let turns = |closed: bool, there: f64, here: f64| if closed { (there - here).round() } else { 0.0 };
+        let (closed_u, closed_v) = self.ground.closed();
+        found + DVec2::new(turns(closed_u, uv.x, found.x), turns(closed_v, uv.y, found.y))
+    }
+
+    fn walk(&self, walk: &Walk, copies: &[Option<Chain>]) -> Result<Walk> {
+        let mut made = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+        for ((border, course), copy) in walk.borders.iter().zip(&walk.courses).zip(copies) {
+            let places = course.places();
+            let (first, last) = (places[0], places[places.len() - 1]);
+            let Some(chain) = copy else {
+                let (a, b) = (self.place(first), self.place(last));
+                let side = match &border.side {
+                    Side::Pole(_) => Side::Pole(self.ground.point(a.x, a.y)),
+                    _ => Side::Seam,
+                };
+                made.borders.push(Border::straight(side));
+                made.courses.push(Course::Line(a.into(), b.into()));
+                continue;
+            };
+            let pull = Pull::follow(self.ground, (chain, 0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
+                let (of, surface) = (chain.origin(), self.ground.origin());
+                SurfaceFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
+            })?;
+            made.chains.push(chain.clone());
+            made.courses.push(Course::Pull(Arc::new(pull.into_poles(self.ground, chain))));
+            made.borders.push(Border::chain(chain.clone(), false));
+        }
+        Ok(made)
+    }
+}

@@ -1,0 +1,246 @@
+//! The edges of several faces: which borders are one, and how the faces stand to each other there.
+
+use std::collections::VecDeque;
+
+use glam::DVec3;
+
+use super::border::{Hem, hems};
+use crate::base::fault::{Result, WallEdge, WallFault};
+use crate::base::math;
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::network::Chain;
+use crate::surface::core::Surface;
+use crate::surface::trim::natural;
+use crate::surface::with_loops;
+
+/// Places along an edge at which the faces are compared.
+const PLACES: usize = 9;
+
+/// A border of a face: its number, and the one of the border among all loops of the face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Use {
+    pub face: usize,
+    pub hem: usize,
+}
+
+/// How two faces stand to each other along an edge, seen from the side of the normals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bend {
+    /// One face.
+    Free,
+    /// They go on into each other.
+    Smooth,
+    /// A ridge.
+    Ridge,
+    /// A valley.
+    Valley,
+}
+
+/// An edge with the faces that have it, in the direction of the first one's loop.
+pub(super) struct Joint {
+    pub uses: Vec<Use>,
+    pub bend: Bend,
+    pub chain: Chain,
+}
+
+/// Faces with their borders, all sides turned alike.
+pub(super) struct Sheet {
+    pub faces: Vec<Surface>,
+    /// The borders of each face.
+    pub hems: Vec<Vec<Hem>>,
+    pub joints: Vec<Joint>,
+}
+
+impl Sheet {
+    /// The edges of faces; of neighbours that are turned differently the later one is flipped.
+    ///
+    /// Fails with E671 where an edge is shared in part, by more than two faces, or where it is sharp in part.
+    pub fn new(faces: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+        // Loops that run with the face on their left.
+        let mut faces: Vec<Surface> = faces.iter().map(|face| with_loops(face, tolerance)).collect::<Result<_>>()?;
+        let first = Self::of(&faces, origin, tolerance)?;
+        let turned = first.turned();
+        if turned.iter().any(|t| *t) {
+            faces = faces.iter().zip(&turned).map(|(face, turned)| if *turned { face.flipped() } else { face.clone() }).collect();
+            return Self::of(&faces, origin, tolerance)?.bent(origin, tolerance);
+        }
+        first.bent(origin, tolerance)
+    }
+
+    fn of(faces: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+        let mut all: Vec<Vec<Hem>> = Vec::new();
+        for face in faces {
+            all.push(hems(face, &natural(face, tolerance)?, tolerance).into_iter().flatten().flatten().collect());
+        }
+        let all = parted(all, origin, tolerance)?;
+        let mut joints: Vec<Joint> = Vec::new();
+        for (face, own) in all.iter().enumerate() {
+            for (hem, border) in own.iter().enumerate() {
+                let chain = border.copy(0.0, origin, tolerance)?;
+                let found = joints.iter_mut().find(|joint| same(&joint.chain, &chain, tolerance));
+                match found {
+                    Some(joint) if joint.uses.len() > 1 => {
+                        let (a, b) = (faces[joint.uses[0].face].origin(), faces[face].origin());
+                        return Err(WallFault::Edge { wall: origin, a, b, at: chain.point(0.5), why: WallEdge::Three }.into());
+                    }
+                    Some(joint) => joint.uses.push(Use { face, hem }),
+                    None => joints.push(Joint { uses: vec![Use { face, hem }], bend: Bend::Free, chain }),
+                }
+            }
+        }
+        let free: Vec<&Joint> = joints.iter().filter(|joint| joint.uses.len() == 1).collect();
+        for (k, a) in free.iter().enumerate() {
+            let part = |b: &&&Joint| {
+                a.uses[0].face != b.uses[0].face && (lies_on(&a.chain, &b.chain, tolerance) || lies_on(&b.chain, &a.chain, tolerance))
+            };
+            if let Some(b) = free[k + 1..].iter().find(part) {
+                let (at, of) = (a.chain.point(0.5), |joint: &Joint| faces[joint.uses[0].face].origin());
+                return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why: WallEdge::Part }.into());
+            }
+        }
+        Ok(Self { faces: faces.to_vec(), hems: all, joints })
+    }
+
+    /// The faces that must be flipped so that all look to the side of the first one of each piece.
+    fn turned(&self) -> Vec<bool> {
+        let mut turned: Vec<Option<bool>> = vec![None; self.faces.len()];
+        for start in 0..self.faces.len() {
+            if turned[start].is_some() {
+                continue;
+            }
+            turned[start] = Some(false);
+            let mut open = VecDeque::from([start]);
+            while let Some(face) = open.pop_front() {
+                for joint in self.joints.iter().filter(|joint| joint.uses.len() == 2) {
+                    let (a, b) = (joint.uses[0], joint.uses[1]);
+                    let next = if a.face == face { b } else { a };
+                    if a.face != face && b.face != face || turned[next.face].is_some() {
+                        continue;
+                    }
+                    turned[next.face] = Some(turned[face].unwrap_or(false) != self.along(joint));
+                    open.push_back(next.face);
+                }
+            }
+        }
+        turned.into_iter().map(|t| t.unwrap_or(false)).collect()
+    }
+
+    /// Whether both loops run an edge in the same direction.
+    fn along(&self, joint: &Joint) -> bool {
+        let way = |at: Use, p: DVec3| {
+            let hem = &self.hems[at.face][at.hem];
+            let f = nearest(hem, p);
+            hem.jet(f, false).map_or(DVec3::ZERO, |jet| jet.d1)
+        };
+        let p = joint.chain.point(0.5);
+        way(joint.uses[0], p).dot(way(joint.uses[1], p)) > 0.0
+    }
+
+    /// The same with the bend of each edge.
+    fn bent(mut self, origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+        for k in 0..self.joints.len() {
+            let joint = &self.joints[k];
+            let [a, b] = joint.uses[..] else { continue };
+            let angles: Vec<(f64, DVec3)> = (0..PLACES)
+                .map(|i| {
+                    let f = (i as f64 + 0.5) / PLACES as f64;
+                    let jet = joint.chain.jet(f);
+                    let (n, m) = (self.normal(a, jet.p), self.normal(b, jet.p));
+                    (math::atan2(n.cross(m).dot(jet.d1.normalize_or_zero()), n.dot(m)), jet.p)
+                })
+                .collect();
+            let smooth = |angle: f64| angle.abs() <= tolerance.angle;
+            let bend = if angles.iter().all(|(angle, _)| smooth(*angle)) {
+                Bend::Smooth
+            } else if angles.iter().all(|(angle, _)| !smooth(*angle) && *angle > 0.0) {
+                Bend::Ridge
+            } else if angles.iter().all(|(angle, _)| !smooth(*angle) && *angle < 0.0) {
+                Bend::Valley
+            } else {
+                let at = angles.iter().min_by(|x, y| x.0.abs().total_cmp(&y.0.abs())).map_or(DVec3::ZERO, |least| least.1);
+                let (a, b) = (self.faces[a.face].origin(), self.faces[b.face].origin());
+                return Err(WallFault::Edge { wall: origin, a, b, at, why: WallEdge::Mixed }.into());
+            };
+            self.joints[k].bend = bend;
+        }
+        Ok(self)
+    }
+
+    /// The normal of a face at a place of its border.
+    pub fn normal(&self, at: Use, p: DVec3) -> DVec3 {
+        let hem = &self.hems[at.face][at.hem];
+        hem.jet(nearest(hem, p), false).map_or(DVec3::ZERO, |jet| jet.normal)
+    }
+}
+
+/// Borders cut at their corners and where borders of other faces end on them.
+fn parted(all: Vec<Vec<Hem>>, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Vec<Hem>>> {
+    let mut chains: Vec<Vec<Chain>> = Vec::new();
+    let mut vertices: Vec<DVec3> = Vec::new();
+    let add = |vertices: &mut Vec<DVec3>, p: DVec3| {
+        if !vertices.iter().any(|q| tolerance.same_point(*q, p)) {
+            vertices.push(p);
+        }
+    };
+    for own in &all {
+        let mut row = Vec::new();
+        for hem in own {
+            let chain = hem.copy(0.0, origin, tolerance)?;
+            let corner = || tolerance.is_kink(chain.jet_before(1.0).d1, chain.jet(0.0).d1);
+            if !chain.is_closed(tolerance) || corner() {
+                add(&mut vertices, chain.start());
+                add(&mut vertices, chain.end());
+            }
+            hem.corners(tolerance).into_iter().filter_map(|t| hem.jet(t, false)).for_each(|jet| add(&mut vertices, jet.p));
+            row.push(chain);
+        }
+        chains.push(row);
+    }
+    let parts = |hem: &Hem, chain: &Chain| -> Vec<Hem> {
+        let on = |p: &&DVec3| chain.closest(**p).2 <= 2.0 * tolerance.point;
+        let at_end = |p: DVec3, f: f64| chain.point(f).distance(p) <= 2.0 * tolerance.point;
+        let here: Vec<DVec3> = vertices.iter().filter(on).copied().collect();
+        let inner = here.iter().filter(|p| !at_end(**p, 0.0) && !at_end(**p, 1.0));
+        let mut cuts: Vec<f64> = inner.map(|p| nearest(hem, *p)).collect();
+        cuts.sort_by(f64::total_cmp);
+        let closed = chain.is_closed(tolerance);
+        let starts = here.iter().any(|p| at_end(*p, 0.0));
+        if closed && !starts {
+            let next = |k: usize| if k + 1 < cuts.len() { cuts[k + 1] } else { cuts[0] + 1.0 };
+            return if cuts.is_empty() { vec![hem.clone()] } else { (0..cuts.len()).map(|k| hem.between(cuts[k], next(k))).collect() };
+        }
+        let stops = [vec![0.0], cuts, vec![1.0]].concat();
+        stops.windows(2).map(|w| hem.between(w[0], w[1])).collect()
+    };
+    Ok(all.iter().zip(&chains).map(|(own, row)| own.iter().zip(row).flat_map(|(hem, chain)| parts(hem, chain)).collect()).collect())
+}
+
+/// The parameter of a border nearest to a point: by places, then by halving steps.
+fn nearest(hem: &Hem, p: DVec3) -> f64 {
+    const STEPS: usize = 32;
+    let off = |t: f64| hem.jet(t, false).map_or(f64::INFINITY, |jet| jet.p.distance(p));
+    let mut best = (0..=STEPS).map(|k| k as f64 / STEPS as f64).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0.0);
+    let mut step = 0.5 / STEPS as f64;
+    while step > crate::base::tolerance::NEAREST {
+        let next = [best - step, best + step].into_iter().filter(|t| (0.0..=1.0).contains(t)).min_by(|a, b| off(*a).total_cmp(&off(*b)));
+        match next {
+            Some(t) if off(t) < off(best) => best = t,
+            _ => step *= 0.5,
+        }
+    }
+    best
+}
+
+/// Whether all of a chain is on another one.
+fn lies_on(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
+    [0.21, 0.5, 0.83].iter().all(|f| b.closest(a.point(*f)).2 <= tolerance.point)
+}
+
+/// Whether two chains are one: the ends and places between them.
+fn same(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
+    let near = |p: DVec3, q: DVec3| p.distance(q) <= 2.0 * tolerance.point;
+    let ends = near(a.start(), b.start()) && near(a.end(), b.end()) || near(a.start(), b.end()) && near(a.end(), b.start());
+    let closed = a.is_closed(tolerance) && b.is_closed(tolerance);
+    (ends || closed) && lies_on(a, b, tolerance) && lies_on(b, a, tolerance)
+}

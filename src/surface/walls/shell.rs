@@ -1,0 +1,288 @@
+//! One side of the wall of several faces: each face moved, made longer, and cut where it meets its moved neighbours.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::border::whole;
+use super::joint::{Bend, Joint, Sheet, Use};
+use super::longer::longer;
+use crate::base::fault::{Fault, Result, WallEdge, WallFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::geometry::build::line;
+use crate::network::{Chain, meet};
+use crate::surface::core::Surface;
+use crate::surface::divide;
+use crate::surface::meet::with_surfaces;
+
+/// Faces run on beyond their borders by this many distances.
+const REACH: f64 = 4.0;
+/// Places in each direction at which the middle of a face is looked for.
+const PLACES: usize = 12;
+/// Sine of the angle from which two curves cross clearly.
+const CLEAR: f64 = 0.1;
+/// Tolerances within which curves pass a corner.
+const ROOM: f64 = 4.0;
+
+/// One side of the wall.
+pub(super) struct Layer {
+    /// The faces, in the order of the sheet.
+    pub faces: Vec<Surface>,
+    /// The edges, in the order of the sheet.
+    pub edges: Vec<Chain>,
+    /// Warnings.
+    pub notes: Vec<Fault>,
+}
+
+/// A side in the making.
+struct Making<'a> {
+    sheet: &'a Sheet,
+    distance: f64,
+    origin: Origin,
+    tolerance: &'a Tolerance,
+    longer: Vec<Surface>,
+}
+
+/// The faces of a sheet at a distance; E671 where those of neighbours do not meet.
+pub(super) fn layer(sheet: &Sheet, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Layer> {
+    if distance == 0.0 {
+        return Ok(Layer {
+            faces: sheet.faces.iter().map(|face| face.with_origin(origin)).collect(),
+            edges: sheet.joints.iter().map(|joint| joint.chain.clone()).collect(),
+            notes: Vec::new(),
+        });
+    }
+    let reach = REACH * distance.abs();
+    let (mut ground, mut notes) = (Vec::new(), Vec::new());
+    for face in &sheet.faces {
+        let (made, more) = longer(face, distance, reach, origin, tolerance)?;
+        ground.push(made);
+        notes.extend(more);
+    }
+    let making = Making { sheet, distance, origin, tolerance, longer: ground };
+    let whole: Result<Vec<Chain>> = sheet.joints.iter().map(|joint| making.edge(joint)).collect();
+    let edges = making.cut(&whole?)?;
+    let faces: Result<Vec<Surface>> = (0..sheet.faces.len()).map(|face| making.face(face, &edges)).collect();
+    Ok(Layer { faces: faces?, edges, notes })
+}
+
+impl Making<'_> {
+    fn fault(&self, uses: &[Use], at: DVec3, why: WallEdge) -> Fault {
+        let of = |k: usize| uses.get(k).or(uses.first()).map_or(Origin::NONE, |at| self.sheet.faces[at.face].origin());
+        WallFault::Edge { wall: self.origin, a: of(0), b: of(1), at, why }.into()
+    }
+
+    /// The curve that an edge becomes, longer than it will be where it ends in corners.
+    fn edge(&self, joint: &Joint) -> Result<Chain> {
+        let first = joint.uses[0];
+        match joint.bend {
+            Bend::Free | Bend::Smooth => {
+                let hem = &self.sheet.hems[first.face][first.hem];
+                let copy = hem.copy(self.distance, self.origin, self.tolerance)?;
+                if copy.is_closed(self.tolerance) { Ok(copy) } else { self.run_on(&copy, first.face) }
+            }
+            Bend::Ridge | Bend::Valley => {
+                let p = joint.chain.point(0.5);
+                let normals: Vec<DVec3> = joint.uses.iter().map(|at| self.sheet.normal(*at, p)).collect();
+                let expected = p + self.corner(&normals);
+                let [a, b] = [0, 1].map(|k: usize| &self.longer[joint.uses[k.min(joint.uses.len() - 1)].face]);
+                let common = with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), self.origin, self.tolerance)?;
+                let near = |chain: &Chain| chain.closest(expected).2;
+                let found = common.curves.into_iter().min_by(|x, y| near(x).total_cmp(&near(y)));
+                found
+                    .filter(|chain| near(chain) <= self.distance.abs())
+                    .ok_or_else(|| self.fault(&joint.uses, p, WallEdge::Apart { distance: self.distance }))
+            }
+        }
+    }
+
+    /// The shortest way to a place at the distance from planes with some normals.
+    fn corner(&self, normals: &[DVec3]) -> DVec3 {
+        let d = self.distance;
+        match normals {
+            [n] => *n * d,
+            [n, m] => (*n + *m) * (d / (1.0 + n.dot(*m)).max(NUDGE)),
+            [a, b, c, ..] => {
+                let rows = DMat3::from_cols(*a, *b, *c).transpose();
+                if rows.determinant().abs() > NUDGE { rows.inverse() * DVec3::splat(d) } else { self.corner(&[*a, *b]) }
+            }
+            [] => DVec3::ZERO,
+        }
+    }
+
+    /// A copy of a free border with more at its ends, straight in the parameters of the longer face.
+    fn run_on(&self, copy: &Chain, face: usize) -> Result<Chain> {
+        let ground = &self.longer[face];
+        let reach = REACH * self.distance.abs();
+        let mut parts = vec![copy.clone()];
+        for (last, end, way) in [(false, copy.start(), -copy.jet(0.0).d1), (true, copy.end(), copy.jet_before(1.0).d1)] {
+            let to = end + way.normalize_or_zero() * reach;
+            let near = super::super::closest::closest(ground, end).uv;
+            let straight = Chain::of_curve(&line(end, to, self.origin)?);
+            let level = ground.flat_uv(end).is_some();
+            let on = [0.5, 1.0].iter().all(|f| {
+                let p = straight.point(*f);
+                level || super::super::closest::closest(ground, p).distance <= 0.5 * self.tolerance.point
+            });
+            let more = if on {
+                straight
+            } else {
+                let jet = ground.jet(near.0, near.1);
+                let Some(step) = crate::surface::step(jet.du, jet.dv, way.normalize_or_zero() * reach) else { continue };
+                let from = DVec2::from(near);
+                let to = ground.hold(from + step);
+                if to.distance(from) <= NUDGE {
+                    continue;
+                }
+                let way = Chain::of_curve(&line(from.extend(0.0), to.extend(0.0), self.origin)?);
+                Chain::of_curve(&crate::surface::carried(ground, &way, crate::surface::Way::Parameters, self.origin, self.tolerance)?)
+            };
+            if last { parts.push(more) } else { parts.insert(0, more.reversed()) }
+        }
+        Chain::join(&parts, self.origin, self.tolerance)
+    }
+
+    /// The edges between their corners.
+    fn cut(&self, whole: &[Chain]) -> Result<Vec<Chain>> {
+        let joints = &self.sheet.joints;
+        let corners =
+            |joint: &Joint| if joint.chain.is_closed(self.tolerance) { Vec::new() } else { vec![joint.chain.start(), joint.chain.end()] };
+        let cut = |k: usize| -> Result<Chain> {
+            let ends: Vec<DVec3> = corners(&joints[k]).into_iter().map(|p| self.vertex(p, k, whole)).collect::<Result<_>>()?;
+            let [a, b] = ends[..] else { return Ok(whole[k].clone()) };
+            let fraction = |p: DVec3| {
+                let (f, _, off) = whole[k].closest(p);
+                let room = if joints[k].bend == Bend::Free { self.distance.abs() } else { ROOM * self.tolerance.point };
+                if off <= room { Ok(f) } else { Err(self.fault(&joints[k].uses, p, WallEdge::Corner)) }
+            };
+            let (f, g) = (fraction(a)?, fraction(b)?);
+            if whole[k].is_closed(self.tolerance) {
+                let middle = whole[k].closest(joints[k].chain.point(0.5)).0;
+                let (low, high) = (f.min(g), f.max(g));
+                let inside = middle > low && middle < high;
+                return if inside { whole[k].slice(low, high, self.tolerance) } else { whole[k].slice(high, low, self.tolerance) };
+            }
+            // The way from the first corner to the last one is that of the edge, or nothing is left of it.
+            let (way, old) = (b - a, joints[k].chain.end() - joints[k].chain.start());
+            if way.dot(old) <= 0.0 && joints[k].chain.kinks(self.tolerance).is_empty() && way.length() < old.length() + self.tolerance.point
+            {
+                return Err(self.fault(&joints[k].uses, joints[k].chain.point(0.5), WallEdge::Gone { distance: self.distance }));
+            }
+            let part = whole[k].slice(f.min(g), f.max(g), self.tolerance)?;
+            if joints[k].bend == Bend::Free {
+                self.bent(part, if f < g { (a, b) } else { (b, a) }, joints[k].uses[0].face)
+            } else {
+                Ok(part)
+            }
+        };
+        (0..joints.len()).map(cut).collect()
+    }
+
+    /// A free border that ends in some corners: where it misses them it is moved there, less and less along it, on the longer face.
+    fn bent(&self, part: Chain, (from, to): (DVec3, DVec3), face: usize) -> Result<Chain> {
+        let (first, last) = (from - part.start(), to - part.end());
+        if first.length().max(last.length()) <= self.tolerance.point {
+            return Ok(part);
+        }
+        let spline = part.to_curve()?.to_nurbs(self.tolerance)?;
+        let (a, b) = spline.domain();
+        // A linear function has the means of knots for its poles.
+        let share = |i: usize| {
+            let knots = &spline.knots[i + 1..=i + spline.degree];
+            (knots.iter().sum::<f64>() / spline.degree as f64 - a) / (b - a)
+        };
+        let pole = |(i, q): (usize, &glam::DVec4)| (q.truncate() / q.w + first.lerp(last, share(i))) * q.w;
+        let poles = spline.poles.iter().enumerate().map(|(i, q)| pole((i, q)).extend(q.w)).collect();
+        let moved = super::border::curve(crate::geometry::Nurbs::new(spline.degree, spline.knots.clone(), poles), self.origin);
+        let ground = &self.longer[face];
+        let on = crate::surface::carried(ground, &moved, crate::surface::Way::Nearest, self.origin, self.tolerance)?;
+        Ok(Chain::of_curve(&on))
+    }
+
+    /// Where the edges at a corner of the sheet meet now.
+    fn vertex(&self, p: DVec3, joint: usize, whole: &[Chain]) -> Result<DVec3> {
+        let joints = &self.sheet.joints;
+        let ends = |joint: &Joint| [joint.chain.start(), joint.chain.end()];
+        let here: Vec<usize> =
+            (0..joints.len()).filter(|k| ends(&joints[*k]).iter().any(|q| q.distance(p) <= ROOM * self.tolerance.point)).collect();
+        let mut faces: Vec<(usize, DVec3)> = Vec::new();
+        for at in here.iter().flat_map(|k| &joints[*k].uses) {
+            let normal = self.sheet.normal(*at, p);
+            let known = |x: &(usize, DVec3)| x.0 == at.face || x.1.dot(normal) > 1.0 - NUDGE;
+            if !faces.iter().any(known) {
+                faces.push((at.face, normal));
+            }
+        }
+        let normals: Vec<DVec3> = faces.iter().map(|f| f.1).collect();
+        let expected = p + self.corner(&normals);
+        // The two curves that cross most clearly; free borders can give way.
+        let way = |k: usize| whole[k].jet(whole[k].closest(expected).0).d1.normalize_or_zero();
+        let held = |k: usize| joints[k].bend != Bend::Free;
+        let pairs = here.iter().flat_map(|a| here.iter().filter(move |b| a < *b).map(move |b| (*a, *b)));
+        let clear = |(a, b): (usize, usize)| {
+            let sine = way(a).cross(way(b)).length();
+            (sine >= CLEAR && held(a) && held(b), sine)
+        };
+        let clearest = pairs.max_by(|x, y| {
+            let (x, y) = (clear(*x), clear(*y));
+            x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
+        });
+        let Some((a, b)) = clearest else { return Ok(expected) };
+        let met = meet(&whole[a], &whole[b], self.tolerance)?;
+        let hits = met.iter().map(|m| m.point).min_by(|x, y| x.distance(expected).total_cmp(&y.distance(expected)));
+        let mut at = hits.filter(|x| x.distance(expected) <= REACH * self.distance.abs());
+        if at.is_none() && !(held(a) && held(b)) {
+            // Borders that miss each other on the faces that they belong to: the corner is on the edge, nearest to where it would be.
+            let edge = here.iter().find(|k| held(**k));
+            at = edge.map(|k| whole[*k].closest(expected).1).filter(|x| x.distance(expected) <= self.distance.abs());
+        }
+        let at = at.ok_or_else(|| self.fault(&joints[joint].uses, p, WallEdge::Corner))?;
+        let passes = |k: &usize| !held(*k) || whole[*k].closest(at).2 <= ROOM * self.tolerance.point;
+        if here.iter().all(passes) { Ok(at) } else { Err(self.fault(&joints[joint].uses, p, WallEdge::Corner)) }
+    }
+
+    /// A moved face between its edges.
+    fn face(&self, face: usize, edges: &[Chain]) -> Result<Surface> {
+        let joints = &self.sheet.joints;
+        let own: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].uses.iter().any(|at| at.face == face)).collect();
+        let cutters: Vec<Chain> = own.iter().map(|k| edges[*k].clone()).collect();
+        let ground = &self.longer[face];
+        let Some(keep) = self.middle(face, &cutters) else { return Ok(ground.clone()) };
+        let kept = divide(ground, &cutters, keep, self.origin, self.tolerance)?;
+        let length: f64 = cutters.iter().map(Chain::length).sum();
+        let free = |k: usize| match kept.side(k) {
+            crate::surface::Side::Chain { chain, from, to } => chain.length() * (to - from).abs(),
+            _ => 0.0,
+        };
+        let around: f64 = (0..kept.n_sides()).filter(|k| on(&kept, *k, &cutters, self.tolerance)).map(free).sum();
+        if (around - length).abs() <= ROOM * ROOM * self.tolerance.point * (1 + own.len()) as f64 {
+            return Ok(kept);
+        }
+        let k = own.first().copied().unwrap_or_default();
+        Err(self.fault(&joints[k].uses, keep, WallEdge::Gone { distance: self.distance }))
+    }
+
+    /// A place of a moved face as far from its edges as any; none for a face without edges.
+    fn middle(&self, face: usize, cutters: &[Chain]) -> Option<DVec3> {
+        if cutters.is_empty() {
+            return None;
+        }
+        let old = &self.sheet.faces[face];
+        let below = whole(old, self.tolerance);
+        let (low, high) = old.outlines().iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
+        let (low, high) = if low.x <= high.x { (low, high) } else { (DVec2::ZERO, DVec2::ONE) };
+        let at = |k: usize| (k as f64 + 0.5) / PLACES as f64;
+        let places = (0..PLACES * PLACES).map(|k| low + (high - low) * DVec2::new(at(k % PLACES), at(k / PLACES)));
+        let inside = places.filter(|uv| old.domain() != crate::surface::Domain::Loop || old.keeps(uv.x, uv.y));
+        let points = inside.map(|uv| below.point(uv.x, uv.y) + below.normal(uv.x, uv.y) * self.distance);
+        let room = |p: &DVec3| cutters.iter().map(|c| c.closest(*p).2).fold(f64::INFINITY, f64::min);
+        let best = points.map(|p| (room(&p), p)).max_by(|x, y| x.0.total_cmp(&y.0)).map(|best| best.1)?;
+        Some(super::super::closest::closest(&self.longer[face], best).point)
+    }
+}
+
+/// Whether a border of a face is along one of some curves.
+fn on(face: &Surface, k: usize, curves: &[Chain], tolerance: &Tolerance) -> bool {
+    let crate::surface::Side::Chain { chain, from, to } = face.side(k) else { return false };
+    let p = chain.point(0.5 * (from + to));
+    curves.iter().any(|c| c.closest(p).2 <= ROOM * tolerance.point)
+}
