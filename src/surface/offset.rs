@@ -66,7 +66,10 @@ pub(super) fn is_exact(surface: &Surface, tolerance: &Tolerance) -> Result<bool>
 }
 
 /// E670 where the normals of a surface jump: along a crease, or round a tip.
-fn rough(below: &Surface, of: Origin, origin: Origin, tolerance: &Tolerance) -> Result<()> {
+pub(super) fn rough(below: &Surface, of: Origin, origin: Origin, tolerance: &Tolerance) -> Result<()> {
+    if matches!(below.parts().shape, Shape::Scatter(_)) {
+        return Err(WallFault::Pieces { offset: origin, surface: of }.into());
+    }
     if let Some((at, angle)) = crease(below, tolerance) {
         return Err(WallFault::Creased { offset: origin, surface: of, at, angle }.into());
     }

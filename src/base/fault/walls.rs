@@ -51,6 +51,13 @@ pub enum WallFault {
         /// The tip.
         at: DVec3,
     },
+    /// E670: the surface is made of pieces between which its curvature jumps.
+    Pieces {
+        /// The offset.
+        offset: Origin,
+        /// The surface.
+        surface: Origin,
+    },
     /// E671: the walls of two faces do not meet.
     Edge {
         /// The wall.
@@ -81,6 +88,13 @@ impl Describe for WallFault {
                     .at(*surface, "its normals do not come together there")
                     .at(*offset, "has no one place beside the tip")
                     .help("cut the tip off first, `trim(s, by: …, keep: …)`")
+            }
+            Self::Pieces { offset, surface } => {
+                let name = say.quoted(*surface, "the surface");
+                Report::new("E670", format!("{name} is made of triangles between which its curvature jumps: its offset has no net"))
+                    .at(*surface, "made of triangles")
+                    .at(*offset, "cannot be moved along its normals")
+                    .help("make a net of it first: `grid` through points of it in rows")
             }
             Self::Edge { wall, a, b, at, why } => {
                 edge((*a, *b), *at, *why, say).at(*a, "this face").at(*b, "and this one").at(*wall, "asked for here")

@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 use super::super::core::{Domain, Surface, SurfaceKind};
 use super::super::extrude::extrude;
 use super::super::nurbs::NurbsSurface;
-use super::super::offset::{folds, level, moved_profile, swept_by};
+use super::super::offset::{folds, level, moved_profile, rough, swept_by};
 use super::super::plane;
 use super::super::revolve::{Axis, revolve};
 use super::super::sweep::Path;
@@ -72,6 +72,7 @@ pub(super) fn longer(face: &Surface, distance: f64, reach: f64, origin: Origin, 
         };
         return Ok((if flipped { made.flipped() } else { made }, Vec::new()));
     }
+    rough(&below, face.origin(), origin, tolerance)?;
     let base = if below.domain() == Domain::Triangle {
         below.to_net(tolerance)?.map_or_else(|| below.clone(), |form| form.net.surface(SurfaceKind::Nurbs, below.origin(), tolerance))
     } else {

@@ -14,6 +14,9 @@ use carried::with_loops;
 use joint::{Bend, Sheet};
 use shell::layer;
 
+use glam::DVec3;
+
+use super::closest::closest;
 use super::core::{Domain, Side, Surface, SurfaceKind};
 use super::iso::between;
 use super::nurbs::NurbsSurface;
@@ -21,6 +24,7 @@ use super::offset::{is_exact, offset, parts_of};
 use super::plane;
 use super::ruled::ruled;
 use super::trim::natural;
+
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -96,9 +100,20 @@ fn ruled_rims((inner, outer): (&Surface, &Surface), origin: Origin, tolerance: &
     let mut rims = Vec::new();
     for k in 0..inner.n_sides() {
         let (Some(low), Some(high)) = (named(inner, k, tolerance)?, named(outer, k, tolerance)?) else { continue };
-        rims.push(strip(&low, &high, origin, tolerance, notes)?);
+        let made = strip(&low, &high, origin, tolerance, notes)?;
+        // Sides run with ascending u and v; the far ones against the loop.
+        let way = low.jet(0.5).d1 * if inner.domain() != Domain::Loop && k >= 2 { -1.0 } else { 1.0 };
+        rims.push(outwards(made, (&low, &high), way));
     }
     Ok(rims)
+}
+
+/// A strip between two curves with its normal away from the face, whose loop runs along the lower one in some direction.
+fn outwards(strip: Surface, (low, high): (&Chain, &Chain), way: DVec3) -> Surface {
+    let p = low.point(0.5);
+    let up = high.closest(p).1 - p;
+    let (u, v) = closest(&strip, p + up * 0.5).uv;
+    if strip.untrimmed().normal(u, v).dot(way.cross(up)) < 0.0 { strip.flipped() } else { strip }
 }
 
 /// The face between two curves.
@@ -173,7 +188,9 @@ pub fn thicken_all(
             all.push(own.face);
             continue;
         }
-        all.push(strip(&inner.edges[k], &outer.edges[k], origin, tolerance, &mut notes)?);
+        let made = strip(&inner.edges[k], &outer.edges[k], origin, tolerance, &mut notes)?;
+        let way = hem.jet(0.5, false).map_or(DVec3::ZERO, |jet| jet.d1);
+        all.push(outwards(made, (&inner.edges[k], &outer.edges[k]), way));
     }
     Ok((all, notes))
 }
