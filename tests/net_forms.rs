@@ -80,6 +80,9 @@ fn residual(surface: &Surface, of: &dyn Fn(DVec3) -> f64) -> f64 {
     points.into_iter().map(|p| of(p).abs()).fold(0.0, f64::max)
 }
 
+/// What is zero on a surface.
+type Zero<'a> = &'a dyn Fn(DVec3) -> f64;
+
 #[test]
 fn what_is_rational_is_written_as_it_is() {
     let tolerance = Tolerance::new(1e-6, 10.0);
@@ -87,7 +90,8 @@ fn what_is_rational_is_written_as_it_is() {
     let axis = Axis { about: DVec3::ZERO, direction: DVec3::Z };
     let turned = |profile: &Chain| revolve(profile, &axis, std::f64::consts::TAU, Origin::NONE, &tolerance).unwrap();
     let ring = chain(circle(DVec3::ZERO, 2.0, DVec3::Z, Origin::NONE).unwrap());
-    let around = |p: DVec3| (p.x * p.x + p.y * p.y).sqrt();
+    let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+    let around = |p: DVec3| length(p.x, p.y);
 
     let cylinder = extrude(&ring, DVec3::new(0.0, 0.0, 3.0), Origin::NONE, &tolerance).unwrap();
     let cone = turned(&chain(line(DVec3::new(3.0, 0.0, 0.0), DVec3::new(1.0, 0.0, 4.0), Origin::NONE).unwrap()));
@@ -111,11 +115,11 @@ fn what_is_rational_is_written_as_it_is() {
     let on_section = |p: DVec3| section.closest(p).2;
     // How far the section was carried: along an arc about (1, 0, 5) from its foot.
     let by_arc = |p: DVec3| on_section(p - DVec3::new(0.0, p.y, 5.0 - (25.0 - p.y * p.y).sqrt())) / 5.0;
-    let cases: [(&str, &Surface, &dyn Fn(DVec3) -> f64); 7] = [
+    let cases: [(&str, &Surface, Zero); 7] = [
         ("cylinder", &cylinder, &|p| (around(p) - 2.0) / 2.0),
         ("cone", &cone, &|p| (around(p) - 3.0 + 0.5 * p.z) / 3.0),
         ("sphere", &sphere, &|p| (p.length() - 2.0) / 2.0),
-        ("torus", &torus, &|p| ((around(p) - 3.0).hypot(p.z) - 1.0) / 4.0),
+        ("torus", &torus, &|p| (length(around(p) - 3.0, p.z) - 1.0) / 4.0),
         ("parallel", &parallel, &|p| on_section(p - DVec3::new(0.0, 5.0, 1.0) * (p.y / 5.0)) / 5.0),
         ("parallel along an arc", &bent, &by_arc),
         ("rotational", &rotational, &|p| on_section(DVec3::new(around(p), 0.0, p.z)) / 2.0),
