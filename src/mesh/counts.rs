@@ -51,8 +51,13 @@ pub fn steps(n: u32, bias: f64) -> Vec<f64> {
 
 /// The largest of these steps, as a fraction of the whole.
 pub fn largest_step(n: u32, bias: f64) -> f64 {
-    let at = steps(n, bias);
-    if bias >= 1.0 { at[n as usize] - at[n as usize - 1] } else { at[1] }
+    let last = f64::from(n);
+    if n < 2 || bias == 1.0 {
+        return 1.0 - (last - 1.0) / last;
+    }
+    let log = math::log(bias) / (last - 1.0);
+    let at = |i: f64| (math::exp(log * i) - 1.0) / (math::exp(log * last) - 1.0);
+    if bias >= 1.0 { 1.0 - at(last - 1.0) } else { at(1.0) }
 }
 
 /// The least number of steps none of which exceeds `size`; a quotient within 1e-9 of a whole number is that number.

@@ -10,6 +10,7 @@ use super::layout::Layout;
 use crate::base::fault::Result;
 use crate::base::math::{self, widest_angle};
 use crate::base::tolerance::{Tolerance, WHOLE_NUMBER};
+use crate::base::work;
 use crate::geometry::Curve;
 use crate::geometry::nurbs::projected;
 use crate::geometry::nurbs_edit::Bezier;
@@ -108,6 +109,9 @@ const FEW: u32 = 32;
 /// Counts up to which those from the half on are tried; of larger ones the least is found to within what one step more changes.
 const ONE_BY_ONE: u32 = 4096;
 
+/// Work of looking at one step, in evaluations of a curve.
+const OF_A_STEP: u64 = 8;
+
 /// Counts grow by no more at a time: steps longer than bends seem to ask for more than they do.
 const TWICE: f64 = 2.0;
 
@@ -202,6 +206,7 @@ impl Line<'_> {
 
     /// How far a step is over its limits; `None` where it keeps them.
     fn load(&self, fractions: &[f64], k: usize) -> Result<Option<Load>> {
+        work::spend(OF_A_STEP);
         let (limits, atom) = (self.limits, &self.layout.pieces.atoms[self.stretch]);
         let track = &self.layout.parts[atom.track].track;
         let length = atom.s.1 - atom.s.0;

@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use super::patches::{Pieces, RawEdge};
 use super::topology::{Edge, EdgeCurve, EdgeId, Model, Named, Patch, PatchId, PatchSide, SurfaceId, Vertex, VertexId};
+use crate::base::bbox::Box3;
+use crate::base::boxtree::BoxTree;
 use crate::base::job;
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
@@ -20,15 +22,18 @@ fn cluster(points: &[DVec3], tolerance: &Tolerance) -> (Vec<usize>, Vec<DVec3>) 
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| compare_points(points[a], points[b]).then(a.cmp(&b)));
     let mut parent: Vec<usize> = (0..points.len()).collect();
-    for (n, &a) in order.iter().enumerate() {
-        for &b in &order[n + 1..] {
-            if points[b].x - points[a].x > tolerance.point {
-                break;
-            }
-            if tolerance.same_point(points[a], points[b]) {
-                let (ra, rb) = (root(&mut parent, a), root(&mut parent, b));
-                parent[ra.max(rb)] = ra.min(rb);
-            }
+    let mut join = |a: usize, b: usize| {
+        let (ra, rb) = (root(&mut parent, a), root(&mut parent, b));
+        parent[ra.max(rb)] = ra.min(rb);
+    };
+    // Corners of many faces are often one place to the last bit.
+    let places: Vec<&[usize]> = order.chunk_by(|a, b| points[*a] == points[*b]).collect();
+    places.iter().flat_map(|place| place.windows(2)).for_each(|w| join(w[0], w[1]));
+    let boxes: Vec<Box3> = places.iter().map(|place| Box3::of([points[place[0]]])).collect();
+    for (a, b) in BoxTree::build(&boxes).pairs(tolerance.point) {
+        let (a, b) = (places[a as usize][0], places[b as usize][0]);
+        if tolerance.same_point(points[a], points[b]) {
+            join(a, b);
         }
     }
     let mut groups = vec![usize::MAX; points.len()];

@@ -14,6 +14,8 @@ use crate::surface::{Lean, Surface};
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
+/// Stretches of one line at most; what is left of it then is taken as it is: values that are all rounding never settle.
+const STRETCHES: usize = 1 << 14;
 /// Newton steps of the inverse; bisection takes over before that.
 const STEPS: usize = 60;
 
@@ -56,7 +58,7 @@ impl Trace {
         while let Some((a, b, left)) = open.pop() {
             job::look();
             let panel = quadrature::kronrod(a, b, |t| trace.speed(t));
-            if left > 0 && panel.error > MEASURE_ACCURACY * scale.max(trace.length) {
+            if left > 0 && trace.panels.len() + open.len() < STRETCHES && panel.error > MEASURE_ACCURACY * scale.max(trace.length) {
                 let middle = 0.5 * (a + b);
                 open.push((middle, b, left - 1));
                 open.push((a, middle, left - 1));
