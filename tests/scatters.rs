@@ -1,5 +1,5 @@
 //! Surfaces through scattered points: what they meet, how smooth they are, and what changes nothing.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+#![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use glam::{DVec2, DVec3};
 use lofting::base::origin::Origin;

@@ -1,5 +1,5 @@
 //! Offsets keep their distance and walls enclose what area and curvature say, on random faces.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+#![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use std::f64::consts::PI;
 
