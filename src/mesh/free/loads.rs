@@ -50,7 +50,7 @@ impl Loads {
         let stale: Vec<u32> = some.iter().copied().filter(|t| corners(*t) != self.seen[*t as usize].0).collect();
         let batches = par::map(stale.len().div_ceil(BATCH), |batch| {
             let some = &stale[batch * BATCH..stale.len().min((batch + 1) * BATCH)];
-            some.iter().map(|t| load(sheet, web, web.tri[*t as usize], None, limits)).collect::<Vec<_>>()
+            some.iter().map(|t| load_with_sides(sheet, web, web.tri[*t as usize], limits)).collect::<Vec<_>>()
         });
         for (t, load) in stale.iter().zip(batches.into_iter().flatten()) {
             self.seen[*t as usize] = (corners(*t), load);
@@ -89,6 +89,9 @@ pub fn is_overturned(sheet: &Sheet, web: &Web, corners: [u32; 3]) -> bool {
 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
 const UPRIGHT: f64 = 0.5;
+/// Share of the limit from which on the sides of steep triangles are looked at, and the cosine below which a triangle is steep.
+const SLACK: f64 = 0.75;
+const STEEP: f64 = 0.97;
 
 /// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
 /// triangle that stands on edge: near to what is over it along its own normal, and its sides far from the surface all the same.
@@ -118,7 +121,28 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], first: Option<(DVec2, D
         Some(limit) => c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max),
         None => 0.0,
     };
-    of_places(sheet, (at.map(|at| at.0), at.map(|at| at.1), beside), limits)
+    let (xy, p) = (at.map(|at| at.0), at.map(|at| at.1));
+    of_places(sheet, (xy, p, beside), limits)
+}
+
+/// The bounds of a triangle of a front, and where it is steep how far its sides are from the surface.
+fn load_with_sides(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+    let found = load(sheet, web, corners, None, limits);
+    let (xy, p) = (corners.map(|n| web.xy[n as usize]), corners.map(|n| web.p[n as usize]));
+    let steep = limits.chord.filter(|_| (SLACK..=1.0).contains(&found.chord) && lean(sheet, xy, p) < STEEP);
+    steep.map_or(found, |limit| Load { chord: found.chord.max(over_sides(sheet, xy, p) / limit), ..found })
+}
+
+/// How far the surface over the sides of a triangle is from them, across each, at a few places: between two triangles at a large angle
+/// a side is farther off than either of them along its own normal.
+fn over_sides(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
+    let side = |k: usize| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let along = (p[j] - p[i]).normalize_or_zero();
+        let off = |share: f64| (sheet.spot(xy[i].lerp(xy[j], share)).p - p[i].lerp(p[j], share)).reject_from_normalized(along).length();
+        if along == DVec3::ZERO { 0.0 } else { [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max) }
+    };
+    side(0).max(side(1)).max(side(2))
 }
 
 /// The same of three places of the chart with their points, by parts.
