@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::cells::{Cells, Face};
 use super::closest::closest;
-use super::core::{Border, Side, Surface};
+use super::core::{Border, Domain, Side, Surface};
 use super::faces::{Edge, without_tails};
 use super::plane;
 use super::pull::{Course, is_pole};
@@ -27,6 +27,7 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
     let foot = foot_of(base, cutters, keep, tolerance)?;
     let dividing = dividing(base, cutters, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
+    undivided(base, &dividing, cells.faces()?.len())?;
     let Some(face) = cells.face(foot)? else {
         return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
     };
@@ -39,7 +40,33 @@ pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tol
     let dividing = dividing(base, cutters, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     let part = |face: &Face| Ok(assembled(base, walks(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
-    cells.faces()?.iter().map(part).collect()
+    let faces = cells.faces()?;
+    undivided(base, &dividing, faces.len())?;
+    faces.iter().map(part).collect()
+}
+
+/// Fails where cuts that end nowhere leave one part of a surface on which every way round encloses something: then one of them was
+/// taken the wrong way round.
+fn undivided(base: &Surface, dividing: &Dividing, parts: usize) -> Result<()> {
+    let (closed_u, closed_v) = base.closed();
+    let pole = |k: usize| matches!(base.side(k), Side::Pole(_));
+    let simple = match base.domain() {
+        Domain::Square => match (closed_u, closed_v) {
+            (false, false) => true,
+            (true, false) => pole(0) || pole(2),
+            (false, true) => pole(1) || pole(3),
+            (true, true) => false,
+        },
+        _ => false,
+    };
+    let cut = dividing.pieces.iter().find(|piece| !piece.rim);
+    match cut.filter(|_| simple && parts < 2) {
+        Some(piece) => {
+            let what = "a cut that ends nowhere parts nothing off";
+            Err(CutFault::NotDivided { surface: base.origin(), what, at: piece.p.1 }.into())
+        }
+        None => Ok(()),
+    }
 }
 
 /// What divides a surface: pieces of its border and of curves, as a graph in (u, v).

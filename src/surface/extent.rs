@@ -22,6 +22,13 @@ pub fn bbox(surface: &Surface) -> Box3 {
     if surface.domain() == Domain::Loop {
         return trimmed_bbox(surface);
     }
+    let chain = |k: usize| if let Side::Chain { chain, .. } = surface.side(k) { Some(chain) } else { None };
+    // A flat face reaches no farther than its borders.
+    if surface.is_flat()
+        && let Some(chains) = (0..surface.n_sides()).map(chain).collect::<Option<Vec<_>>>()
+    {
+        return chains.iter().fold(Box3::EMPTY, |bounds, chain| bounds.union(curve_bbox(chain)));
+    }
     let (us, vs) = surface.cells();
     let (xs, ys) = (stations(&us), stations(&vs));
     let jets = surface.square_jets(&xs, &ys);

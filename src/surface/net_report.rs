@@ -110,7 +110,7 @@ impl Surface {
         let once = |rails: usize, closed: bool| if closed && rails > 1 { rails - 1 } else { rails };
         let (n, m) = (once(blend.along_v().len(), closed.0), once(blend.along_u().len(), closed.1));
         let mut all: Vec<NetCurve> = blend.along_v().iter().zip(&u.nodes).take(n).map(|(rail, x)| row(rail, *x, false)).collect();
-        scales(blend, &mut all, m, &|j| blend.along_u()[j].chain().is_some_and(|c| self.chains().iter().any(|g| g.origin() == c.origin())));
+        scales(blend, &mut all, (m, closed.0), &|j| blend.along_u()[j].chain().is_some_and(|c| self.chains().iter().any(|g| g.origin() == c.origin())));
         all.extend(blend.along_u().iter().zip(&v.nodes).take(m).map(|(rail, y)| row(rail, *y, true)));
         if self.kind() == SurfaceKind::Skin {
             // Sections that a loose skin is not made through, beside those that it is.
@@ -145,7 +145,7 @@ impl Surface {
 }
 
 /// Scales of the stations between those given: of their meetings with the guides against those of the sections beside them.
-fn scales(blend: &Blend, stations: &mut [NetCurve], guides: usize, is_guide: &dyn Fn(usize) -> bool) {
+fn scales(blend: &Blend, stations: &mut [NetCurve], (guides, round): (usize, bool), is_guide: &dyn Fn(usize) -> bool) {
     let anchors: Vec<usize> = (0..guides).filter(|j| is_guide(*j)).collect();
     if anchors.is_empty() || stations.iter().all(|s| s.given) {
         return;
@@ -158,8 +158,9 @@ fn scales(blend: &Blend, stations: &mut [NetCurve], guides: usize, is_guide: &dy
     };
     let given: Vec<usize> = (0..stations.len()).filter(|i| stations[*i].given).collect();
     for (i, station) in stations.iter_mut().enumerate().filter(|(_, s)| !s.given) {
-        let before = given.iter().rev().find(|k| **k < i);
-        let after = given.iter().find(|k| **k > i);
+        // Where the sections go round, the first one comes again after the last.
+        let before = given.iter().rev().find(|k| **k < i).or(given.last().filter(|_| round));
+        let after = given.iter().find(|k| **k > i).or(given.first().filter(|_| round));
         let scale = |k: &usize| if anchors.len() == 1 || spread(*k) == 0.0 { 1.0 } else { spread(i) / spread(*k) };
         let off = |x: f64| if x > 1.0 { x } else { 1.0 / x };
         let both = before.into_iter().chain(after).map(scale);

@@ -259,8 +259,11 @@ pub(super) fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault>
     let (us, vs) = base.breaks();
     let places = |inner: &[f64]| {
         let stops = [&[0.0], inner, &[1.0]].concat();
-        let within = stops.windows(2).flat_map(|w| (0..SAMPLES).map(move |k| w[0] + (w[1] - w[0]) * (k as f64 + 0.5) / SAMPLES as f64));
-        within.map(|x| (x, Lean::After)).collect::<Vec<_>>()
+        let within = stops.windows(2).flat_map(|w| {
+            let at = |k: usize| w[0] + (w[1] - w[0]) * k as f64 / SAMPLES as f64;
+            (0..=SAMPLES).map(move |k| if k == SAMPLES { (w[1], Lean::Before) } else { (at(k), Lean::After) }).collect::<Vec<_>>()
+        });
+        within.collect::<Vec<_>>()
     };
     let jets = base.jets(&places(&us), &places(&vs));
     let tightest = jets.iter().filter_map(|jet| {

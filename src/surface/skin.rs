@@ -10,7 +10,7 @@ use super::rail::Rail;
 use super::reparam::Map;
 use super::skin_ends::{Spanned, ended};
 use super::skin_fit::fitted;
-use crate::base::fault::{Fault, NetFault, Result};
+use crate::base::fault::{Fault, NetFault, Result, ValueFault};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -60,7 +60,7 @@ pub struct Settings {
     pub origin: Origin,
 }
 
-/// The surface through sections in the order given, u along them, with warnings (W614, N727).
+/// The surface through sections in the order given, u along them, with warnings (W614, N677).
 ///
 /// Every section is read in the direction, and every closed one from the start, in which it runs nearest to the section
 /// before; v goes with the mean distance between sections. Needs two sections, three where they close; the curves are all
@@ -82,6 +82,14 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
             }
         };
         aligned.push(next);
+    }
+    if settings.closed
+        && !round
+        && let [Read::Curve(first, turned), .., Read::Curve(last, before)] = aligned.as_slice()
+        && apart((last, *before), (first, 0.0, !*turned)) < apart((last, *before), (first, 0.0, *turned))
+    {
+        let (found, range) = ("sections of which the last one runs against the first one".to_owned(), "`false` for them".to_owned());
+        return Err(ValueFault::OutsideRange { argument: "closed", found, range }.into());
     }
     let (nodes, length) = distances(&aligned, settings.closed);
     if let Some(k) = nodes.windows(2).position(|w| (w[1] - w[0]).max(0.0) <= tolerance.parameter) {

@@ -27,7 +27,8 @@ builtins! {
     /// normals on free borders, those of holes too, so that the faces close: a shell of them has a volume and points outwards. Faces
     /// that go on smoothly into each other share the moved edge; at sharp edges the moved ones run on straight to where they meet, or
     /// are cut back there. The front of a closed shell is its outside, of an open one that of its first face. The wall encloses the
-    /// area times the thickness, but for what curvature and edges add. Where faces do not meet it is E671, which names the edge.
+    /// area times the thickness, but for what curvature and edges add. A surface by itself, not a shell, goes round the corners of its
+    /// profile instead. Pieces that do not hang together have walls on one side only as shells of their own. Where faces do not meet it is E671, which names the edge.
     /// ```loft
     /// surface tube = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 3m))
     /// shell pipe of thicken(tube, 100mm)
@@ -56,13 +57,19 @@ builtins! {
         };
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
         let faces = of.surfaces();
-        let (made, notes) = match faces.as_slice() {
+        // A face by itself keeps the roundings of its profile's offset; as a shell it is what its creases divide it into.
+        let several = match &of {
+            SurfaceOrShell::Shell(_) => without_creases(&faces, origin, &tolerance)?,
+            SurfaceOrShell::Surface(_) => faces,
+        };
+        let (made, notes) = match several.as_slice() {
             [face] => thicken(face, reach, origin, &tolerance)?,
             several => {
                 let flip = matches!(&of, SurfaceOrShell::Shell(shell) if shell.flip);
+                let near = if let SurfaceOrShell::Shell(shell) = &of { shell.snap.map_or(0.0, |snap| snap.0) } else { 0.0 };
                 let inwards = |faces: &[Surface]| points_inwards(&faces.iter().map(|f| (f.clone(), false)).collect::<Vec<_>>()) == Some(true);
                 let turned = |faces: &[Surface], closed: bool| (closed && inwards(faces)) != flip;
-                thicken_all(&without_creases(several, origin, &tolerance)?, reach, &turned, origin, &tolerance)?
+                thicken_all(several, (reach.0, reach.1, near), &turned, origin, &tolerance)?
             }
         };
         notes.iter().for_each(|note| cx.say(note));

@@ -151,7 +151,7 @@ impl<'a> Legs<'a> {
         if !self.corner(f) {
             return Ok(None);
         }
-        let (arriving, leaving) = sides(self.path, f);
+        let (arriving, leaving) = sides(self.path, if f >= 1.0 { 0.0 } else { f });
         let chord = self.path.point(run.1).distance(self.path.point(run.0));
         let length = (run.1 - run.0) * self.path.length();
         if length - chord > EPSILON * self.path.length() {

@@ -8,12 +8,14 @@ use super::border::{Hem, hems};
 use crate::base::fault::{Result, WallEdge, WallFault};
 use crate::base::math;
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 use crate::surface::core::Surface;
 use crate::surface::trim::natural;
 use crate::surface::with_loops;
 
+/// Borders that are no edge of two faces and yet everywhere within so many tolerances are not meant to be two.
+const BESIDE: f64 = 100.0;
 /// Places along an edge at which the faces are compared.
 const PLACES: usize = 9;
 
@@ -55,20 +57,20 @@ pub(super) struct Sheet {
 impl Sheet {
     /// The edges of faces; of neighbours that are turned differently the later one is flipped.
     ///
-    /// Fails with E671 where an edge is shared in part, by more than two faces, or where it is sharp in part.
-    pub fn new(faces: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+    /// Fails with E671 where borders of two faces are no one edge and yet nowhere farther apart than `near`, where an edge is shared in part, by more than two faces, or where it is sharp in part.
+    pub fn new(faces: &[Surface], near: f64, origin: Origin, tolerance: &Tolerance) -> Result<Self> {
         // Loops that run with the face on their left.
         let mut faces: Vec<Surface> = faces.iter().map(|face| with_loops(face, tolerance)).collect::<Result<_>>()?;
-        let first = Self::of(&faces, origin, tolerance)?;
+        let first = Self::of(&faces, near, origin, tolerance)?;
         let turned = first.turned();
         if turned.iter().any(|t| *t) {
             faces = faces.iter().zip(&turned).map(|(face, turned)| if *turned { face.flipped() } else { face.clone() }).collect();
-            return Self::of(&faces, origin, tolerance)?.bent(origin, tolerance);
+            return Self::of(&faces, near, origin, tolerance)?.bent(origin, tolerance);
         }
         first.bent(origin, tolerance)
     }
 
-    fn of(faces: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+    fn of(faces: &[Surface], near: f64, origin: Origin, tolerance: &Tolerance) -> Result<Self> {
         let mut all: Vec<Vec<Hem>> = Vec::new();
         for face in faces {
             all.push(hems(face, &natural(face, tolerance)?, tolerance).into_iter().flatten().flatten().collect());
@@ -99,7 +101,31 @@ impl Sheet {
                 return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why: WallEdge::Part }.into());
             }
         }
+        let glued = Tolerance { point: near.max(BESIDE * tolerance.point), ..*tolerance };
+        for (k, a) in free.iter().enumerate() {
+            let beside = |b: &&&Joint| {
+                a.uses[0].face != b.uses[0].face && (lies_on(&a.chain, &b.chain, &glued) || lies_on(&b.chain, &a.chain, &glued))
+            };
+            if let Some(b) = free[k + 1..].iter().find(beside) {
+                let of = |joint: &Joint| faces[joint.uses[0].face].origin();
+                let at = a.chain.point(0.5);
+                let why = WallEdge::Gap { apart: b.chain.closest(at).2 };
+                return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why }.into());
+            }
+        }
         Ok(Self { faces: faces.to_vec(), hems: all, joints })
+    }
+
+    /// The first face of a second piece, if the faces do not all hang together.
+    pub fn second_piece(&self) -> Option<&Surface> {
+        let mut of: Vec<usize> = (0..self.faces.len()).collect();
+        for _ in 0..self.faces.len() {
+            for joint in &self.joints {
+                let least = joint.uses.iter().map(|at| of[at.face]).min().unwrap_or(0);
+                joint.uses.iter().for_each(|at| of[at.face] = least);
+            }
+        }
+        of.iter().position(|piece| *piece != 0).map(|face| &self.faces[face])
     }
 
     /// The faces that must be flipped so that all look to the side of the first one of each piece.
@@ -217,7 +243,7 @@ fn parted(all: Vec<Vec<Hem>>, origin: Origin, tolerance: &Tolerance) -> Result<V
 }
 
 /// The parameter of a border nearest to a point: by places, then by halving steps.
-fn nearest(hem: &Hem, p: DVec3) -> f64 {
+pub(super) fn nearest(hem: &Hem, p: DVec3) -> f64 {
     const STEPS: usize = 32;
     let off = |t: f64| hem.jet(t, false).map_or(f64::INFINITY, |jet| jet.p.distance(p));
     let mut best = (0..=STEPS).map(|k| k as f64 / STEPS as f64).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0.0);
@@ -229,7 +255,8 @@ fn nearest(hem: &Hem, p: DVec3) -> f64 {
             _ => step *= 0.5,
         }
     }
-    best
+    // A corner to the last bit: on its other side the border has another direction.
+    hem.stops().into_iter().find(|t| (*t - best).abs() <= NUDGE).unwrap_or(best)
 }
 
 /// Whether all of a chain is on another one.

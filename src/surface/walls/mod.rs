@@ -25,7 +25,7 @@ use super::plane;
 use super::ruled::ruled;
 use super::trim::natural;
 
-use crate::base::fault::{Fault, Result};
+use crate::base::fault::{Fault, Result, WallEdge, WallFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::build::line;
@@ -160,20 +160,29 @@ fn named(surface: &Surface, k: usize, tolerance: &Tolerance) -> Result<Option<Ch
 /// The faces of the wall of several faces that share edges: both sides, then rims along the free borders.
 ///
 /// Faces that go on smoothly into each other share the moved edge; at sharp edges they are made longer or cut back to where the moved
-/// ones meet. The sides are those of the first face, of flipped faces where `turned` says so of them and whether they close. Fails as
+/// ones meet. The sides are those of the first face, of flipped faces where `turned` says so of them and whether they close. Borders within `near` of each other
+/// are meant to be one edge. Fails as
 /// [`offset`] does, and with E671 where moved faces do not meet.
 pub fn thicken_all(
     faces: &[Surface],
-    (below, above): (f64, f64),
+    (below, above, near): (f64, f64, f64),
     turned: &dyn Fn(&[Surface], bool) -> bool,
     origin: Origin,
     tolerance: &Tolerance,
 ) -> Result<(Vec<Surface>, Vec<Fault>)> {
-    let mut sheet = Sheet::new(faces, origin, tolerance)?;
+    let mut sheet = Sheet::new(faces, near, origin, tolerance)?;
     let closed = sheet.joints.iter().all(|joint| joint.bend != Bend::Free);
+    // Which side of one piece is that of another one is not told by either.
+    if below != -above
+        && let Some(second) = sheet.second_piece()
+    {
+        let (a, b) = (sheet.faces[0].origin(), second.origin());
+        let at = closest(second, second.hull().center()).point;
+        return Err(WallFault::Edge { wall: origin, a, b, at, why: WallEdge::Loose }.into());
+    }
     if turned(&sheet.faces, closed) {
         let other: Vec<Surface> = sheet.faces.iter().map(Surface::flipped).collect();
-        sheet = Sheet::new(&other, origin, tolerance)?;
+        sheet = Sheet::new(&other, near, origin, tolerance)?;
     }
     let (inner, outer) = (layer(&sheet, below, origin, tolerance)?, layer(&sheet, above, origin, tolerance)?);
     let mut notes = [inner.notes, outer.notes].concat();

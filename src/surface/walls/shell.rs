@@ -10,7 +10,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::build::line;
 use crate::network::{Chain, meet};
-use crate::surface::core::Surface;
+use crate::surface::core::{Domain, Surface};
 use crate::surface::divide;
 use crate::surface::meet::with_surfaces;
 
@@ -162,9 +162,9 @@ impl Making<'_> {
                 return if inside { whole[k].slice(low, high, self.tolerance) } else { whole[k].slice(high, low, self.tolerance) };
             }
             // The way from the first corner to the last one is that of the edge, or nothing is left of it.
-            let (way, old) = (b - a, joints[k].chain.end() - joints[k].chain.start());
-            if way.dot(old) <= 0.0 && joints[k].chain.kinks(self.tolerance).is_empty() && way.length() < old.length() + self.tolerance.point
-            {
+            let middle = joints[k].chain.jet(0.5);
+            let along = whole[k].jet(whole[k].closest(middle.p).0).d1.dot(middle.d1) > 0.0;
+            if (f < g) != along || a.distance(b) <= self.tolerance.point {
                 return Err(self.fault(&joints[k].uses, joints[k].chain.point(0.5), WallEdge::Gone { distance: self.distance }));
             }
             let part = whole[k].slice(f.min(g), f.max(g), self.tolerance)?;
@@ -246,7 +246,14 @@ impl Making<'_> {
         let own: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].uses.iter().any(|at| at.face == face)).collect();
         let cutters: Vec<Chain> = own.iter().map(|k| edges[*k].clone()).collect();
         let ground = &self.longer[face];
-        let Some(keep) = self.middle(face, &cutters) else { return Ok(ground.clone()) };
+        if cutters.is_empty() {
+            return Ok(ground.clone());
+        }
+        let gone = || {
+            let k = own.first().copied().unwrap_or_default();
+            self.fault(&joints[k].uses, joints[k].chain.point(0.5), WallEdge::Gone { distance: self.distance })
+        };
+        let keep = self.middle(face, &own, edges).ok_or_else(gone)?;
         let kept = divide(ground, &cutters, keep, self.origin, self.tolerance)?;
         let length: f64 = cutters.iter().map(Chain::length).sum();
         let free = |k: usize| match kept.side(k) {
@@ -254,29 +261,84 @@ impl Making<'_> {
             _ => 0.0,
         };
         let around: f64 = (0..kept.n_sides()).filter(|k| on(&kept, *k, &cutters, self.tolerance)).map(free).sum();
-        if (around - length).abs() <= ROOM * ROOM * self.tolerance.point * (1 + own.len()) as f64 {
+        // Another border of the longer face among its sides: what is kept lies beyond the edges.
+        let beyond = |k: usize| matches!(kept.side(k), crate::surface::Side::Chain { .. }) && !on(&kept, k, &cutters, self.tolerance);
+        let within = !(0..kept.n_sides()).any(beyond);
+        if within && (around - length).abs() <= ROOM * ROOM * self.tolerance.point * (1 + own.len()) as f64 {
             return Ok(kept);
         }
-        let k = own.first().copied().unwrap_or_default();
-        Err(self.fault(&joints[k].uses, keep, WallEdge::Gone { distance: self.distance }))
+        Err(gone())
     }
 
-    /// A place of a moved face as far from its edges as any; none for a face without edges.
-    fn middle(&self, face: usize, cutters: &[Chain]) -> Option<DVec3> {
-        if cutters.is_empty() {
-            return None;
-        }
+    /// A place of a moved face inside its edges, as far from them as any that is tried: over places of the old face and beside the edges;
+    /// none where nothing is left of the face.
+    fn middle(&self, face: usize, own: &[usize], edges: &[Chain]) -> Option<DVec3> {
         let old = &self.sheet.faces[face];
         let below = whole(old, self.tolerance);
         let (low, high) = old.outlines().iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
         let (low, high) = if low.x <= high.x { (low, high) } else { (DVec2::ZERO, DVec2::ONE) };
         let at = |k: usize| (k as f64 + 0.5) / PLACES as f64;
         let places = (0..PLACES * PLACES).map(|k| low + (high - low) * DVec2::new(at(k % PLACES), at(k / PLACES)));
-        let inside = places.filter(|uv| old.domain() != crate::surface::Domain::Loop || old.keeps(uv.x, uv.y));
-        let points = inside.map(|uv| below.point(uv.x, uv.y) + below.normal(uv.x, uv.y) * self.distance);
-        let room = |p: &DVec3| cutters.iter().map(|c| c.closest(*p).2).fold(f64::INFINITY, f64::min);
-        let best = points.map(|p| (room(&p), p)).max_by(|x, y| x.0.total_cmp(&y.0)).map(|best| best.1)?;
-        Some(super::super::closest::closest(&self.longer[face], best).point)
+        let inside = places.filter(|uv| match old.domain() {
+            Domain::Loop => old.keeps(uv.x, uv.y),
+            Domain::Triangle => uv.x + uv.y < 1.0,
+            _ => true,
+        });
+        let mut points: Vec<DVec3> =
+            inside.map(|uv| below.point(uv.x, uv.y) + below.normal(uv.x, uv.y) * self.distance).collect();
+        let sides: Vec<Inward> = own.iter().flat_map(|k| self.inward(face, *k, &edges[*k])).collect();
+        for side in &sides {
+            let length = side.chain.length();
+            points.extend(STEPS.into_iter().map(|share| side.at + side.way * (share * length)));
+        }
+        let room = |p: &DVec3| -> Option<f64> {
+            let feet = sides.iter().map(|side| (side, side.chain.closest(*p)));
+            let (side, (f, q, off)) = feet.min_by(|x, y| x.1.2.total_cmp(&y.1.2))?;
+            // The nearest edge tells the side; a seam has the face on both.
+            let seam = sides.iter().filter(|other| other.joint == side.joint).count() > 1;
+            (seam || side.inside(f, *p - q)).then_some(off)
+        };
+        let ground = &self.longer[face];
+        let on_face = points.into_iter().map(|p| super::super::closest::closest(ground, p).point);
+        on_face.filter_map(|p| Some((room(&p)?, p))).max_by(|x, y| x.0.total_cmp(&y.0)).map(|best| best.1)
+    }
+
+    /// Where the inside of a face is, beside one of its moved edges: for each use of the edge.
+    fn inward<'c>(&self, face: usize, k: usize, chain: &'c Chain) -> Vec<Inward<'c>> {
+        let joint = &self.sheet.joints[k];
+        let p = joint.chain.point(0.5);
+        let side = |at: &Use| {
+            let hem = &self.sheet.hems[at.face][at.hem];
+            let jet = hem.jet(super::joint::nearest(hem, p), false)?;
+            let (f, q, _) = chain.closest(jet.p + jet.normal * self.distance);
+            let along = chain.jet(f).d1.dot(jet.d1) >= 0.0;
+            let tangent = chain.jet(f).d1.normalize_or_zero() * if along { 1.0 } else { -1.0 };
+            Some(Inward { joint: k, chain, along, normal: jet.normal, at: q, way: jet.normal.cross(tangent) })
+        };
+        joint.uses.iter().filter(|at| at.face == face).filter_map(side).collect()
+    }
+}
+
+/// Shares of the length of an edge by which places beside it are tried.
+const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
+
+/// A moved edge as a border of a face that lies on its left.
+struct Inward<'c> {
+    joint: usize,
+    chain: &'c Chain,
+    /// Whether the loop of the face runs as the chain does.
+    along: bool,
+    normal: DVec3,
+    /// A place of it, and the way from there into the face.
+    at: DVec3,
+    way: DVec3,
+}
+
+impl Inward<'_> {
+    /// Whether a way from a place of the edge leads into the face.
+    fn inside(&self, f: f64, way: DVec3) -> bool {
+        let tangent = self.chain.jet(f).d1 * if self.along { 1.0 } else { -1.0 };
+        self.normal.cross(tangent).dot(way) > 0.0
     }
 }
 
