@@ -110,7 +110,9 @@ impl Surface {
         let once = |rails: usize, closed: bool| if closed && rails > 1 { rails - 1 } else { rails };
         let (n, m) = (once(blend.along_v().len(), closed.0), once(blend.along_u().len(), closed.1));
         let mut all: Vec<NetCurve> = blend.along_v().iter().zip(&u.nodes).take(n).map(|(rail, x)| row(rail, *x, false)).collect();
-        scales(blend, &mut all, (m, closed.0), &|j| blend.along_u()[j].chain().is_some_and(|c| self.chains().iter().any(|g| g.origin() == c.origin())));
+        scales(blend, &mut all, (m, closed.0), &|j| {
+            blend.along_u()[j].chain().is_some_and(|c| self.chains().iter().any(|g| g.origin() == c.origin()))
+        });
         all.extend(blend.along_u().iter().zip(&v.nodes).take(m).map(|(rail, y)| row(rail, *y, true)));
         if self.kind() == SurfaceKind::Skin {
             // Sections that a loose skin is not made through, beside those that it is.

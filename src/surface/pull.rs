@@ -13,6 +13,8 @@ use crate::network::Chain;
 
 /// Steps between two breaks of a curve at the least.
 const LEAST: usize = 8;
+/// Largest share of a turn from one place to the next where a surface closes.
+const TURN: f64 = 0.2;
 /// Halvings of a step before it counts as a leap.
 const DEEPEST: u32 = 12;
 /// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
@@ -284,7 +286,10 @@ fn walk(
     let fine = match &next {
         Ok(uv) => {
             let moved = *uv - here;
-            (moved - ahead).length() <= BEND * moved.length().max(ahead.length()) || moved.length() <= EPSILON.sqrt()
+            // Beside a pole the other way round leads to the same place.
+            let (closed_u, closed_v) = surface.closed();
+            let sure = (!closed_u || moved.x.abs() <= TURN) && (!closed_v || moved.y.abs() <= TURN);
+            sure && (moved - ahead).length() <= BEND * moved.length().max(ahead.length()) || moved.length() <= EPSILON.sqrt()
         }
         Err(_) => false,
     };

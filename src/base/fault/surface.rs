@@ -520,7 +520,7 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         F::NoNet { surface, trimmed } => {
             let (why, help) = match trimmed {
                 true => ("is trimmed", "take `nurbs` of the surface that it was cut from, and trim that"),
-                false => ("is a plane without four sides", "bound it by four curves: `plane(a, b, c, d)`, or by `coons`"),
+                false => ("is a plane without four sides", "bound it by four curves"),
             };
             Report::new("E676", format!("{} has no B-spline form: it {why}", say.quoted(*surface, "the surface")))
                 .at(*surface, why)

@@ -114,10 +114,14 @@ fn edge((a, b): (Origin, Origin), at: DVec3, why: WallEdge, say: &dyn Say) -> Re
     let (x, y, place) = (say.quoted(a, "one face"), say.quoted(b, "another"), say.point(at));
     let report = |message: String| Report::new("E671", message);
     match why {
-        WallEdge::Gap { apart } => report(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
-            .help("let one of them be the border of the other one, as `plane(body.edges[0])`, or give the model a larger `tolerance`"),
-        WallEdge::Loose => report(format!("{x} and {y} do not hang together: on which side of {y} the wall is to be is not told, at {place}"))
-            .help("one shell for each piece that hangs together, or `side: both`"),
+        WallEdge::Gap { apart } => {
+            report(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
+                .help("let one of them be the border of the other one, as `plane(body.edges[0])`, or give the model a larger `tolerance`")
+        }
+        WallEdge::Loose => {
+            report(format!("{x} and {y} do not hang together: on which side of {y} the wall is to be is not told, at {place}"))
+                .help("one shell for each piece that hangs together, or `side: both`")
+        }
         WallEdge::Three => report(format!("{x} and {y} share the edge at {place} with a third face: which walls meet there is not told"))
             .help("thicken the faces on one side of the edge first, then the others"),
         WallEdge::Part => report(format!("{x} and {y} share a part of a border at {place}, not a whole edge"))

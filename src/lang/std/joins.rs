@@ -140,9 +140,9 @@ builtins! {
 }
 
 fields! {
-    /// How far the borders of the faces at an edge are apart at most, or the curves of a surface's net where they should meet.
+    /// The largest distance between the faces at an edge, or in a surface's net.
     ///
-    /// `none` where only one face is at an edge; where more than two meet it is the largest of each two. `none` too of a surface that
+    /// Of the borders of the faces, or of the curves of the net where they should meet. `none` where only one face is at an edge; where more than two meet it is the largest of each two. `none` too of a surface that
     /// was not made through a net.
     fn gap(of: EdgeOrSurface) -> Option<Length> = |cx, of| {
         Ok(match of {

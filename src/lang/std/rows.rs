@@ -6,7 +6,7 @@ use crate::lang::types::Rest;
 use crate::surface::{self, Surface};
 
 builtins! {
-    /// Several surfaces that follow one another along whole common borders, as one surface.
+    /// Surfaces that follow one another along whole borders, as one surface.
     ///
     /// They come in any order and direction. The first one's u and v stay what they are: one runs along the common borders, the other across all
     /// surfaces in proportion to their mean lengths. Every surface stays exactly where it is, and points of a common border have one parameter along it, whatever the

@@ -170,17 +170,17 @@ crate::fields! {
         s: Surface,
     ) -> Angle = |_cx, s| Ok(Angle(s.patch_angle()));
 
-    /// How far it lies at most from the curves that it was made through, at their own parameters.
+    /// The largest distance from the curves that it was made through.
     ///
-    /// None where it was not made through curves. Where curves of a net miss each other it is what a surface between them must leave.
+    /// At their own parameters. None where it was not made through curves. Where curves of a net miss each other it is what a surface between them must leave.
     fn residual(
         /// The surface.
         s: Surface,
     ) -> Option<Length> = |_cx, s| Ok(s.net_curves().iter().map(|c| c.residual).reduce(f64::max).map(Length));
 
-    /// The curves that it was made through: records of `curve`, `along` and `at`, `segments`, `scale` and `residual`.
+    /// The curves that it was made through, as records.
     ///
-    /// Those along v first (stations of a sweep), by ascending u. `scale` is that of the section that was deformed to a station and
+    /// Of `curve`, `along` and `at`, `segments`, `scale` and `residual`. Those along v first (stations of a sweep), by ascending u. `scale` is that of the section that was deformed to a station and
     /// differs most from 1; none of curves that were given. A list of no records where it was not made through curves.
     fn net(
         /// The surface.

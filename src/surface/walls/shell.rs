@@ -10,7 +10,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::build::line;
 use crate::network::{Chain, meet};
-use crate::surface::core::{Domain, Surface};
+use crate::surface::core::{Domain, Side, Surface};
 use crate::surface::divide;
 use crate::surface::meet::with_surfaces;
 
@@ -257,13 +257,20 @@ impl Making<'_> {
         let kept = divide(ground, &cutters, keep, self.origin, self.tolerance)?;
         let length: f64 = cutters.iter().map(Chain::length).sum();
         let free = |k: usize| match kept.side(k) {
-            crate::surface::Side::Chain { chain, from, to } => chain.length() * (to - from).abs(),
+            Side::Chain { chain, from, to } => chain.length() * (to - from).abs(),
             _ => 0.0,
         };
         let around: f64 = (0..kept.n_sides()).filter(|k| on(&kept, *k, &cutters, self.tolerance)).map(free).sum();
-        // Another border of the longer face among its sides: what is kept lies beyond the edges.
-        let beyond = |k: usize| matches!(kept.side(k), crate::surface::Side::Chain { .. }) && !on(&kept, k, &cutters, self.tolerance);
-        let within = !(0..kept.n_sides()).any(beyond);
+        // Another border of the longer face among its sides: what is kept lies beyond the edges. A seam is there twice.
+        let chains: Vec<Option<Chain>> = (0..kept.n_sides())
+            .map(|k| match kept.side(k) {
+                Side::Chain { chain, .. } => Some(chain),
+                _ => None,
+            })
+            .collect();
+        let twin =
+            |k: usize| (0..chains.len()).any(|j| j != k && chains[j].iter().any(|c| on(&kept, k, std::slice::from_ref(c), self.tolerance)));
+        let within = (0..chains.len()).all(|k| chains[k].is_none() || on(&kept, k, &cutters, self.tolerance) || twin(k));
         if within && (around - length).abs() <= ROOM * ROOM * self.tolerance.point * (1 + own.len()) as f64 {
             return Ok(kept);
         }
@@ -284,8 +291,7 @@ impl Making<'_> {
             Domain::Triangle => uv.x + uv.y < 1.0,
             _ => true,
         });
-        let mut points: Vec<DVec3> =
-            inside.map(|uv| below.point(uv.x, uv.y) + below.normal(uv.x, uv.y) * self.distance).collect();
+        let mut points: Vec<DVec3> = inside.map(|uv| below.point(uv.x, uv.y) + below.normal(uv.x, uv.y) * self.distance).collect();
         let sides: Vec<Inward> = own.iter().flat_map(|k| self.inward(face, *k, &edges[*k])).collect();
         for side in &sides {
             let length = side.chain.length();
@@ -344,7 +350,7 @@ impl Inward<'_> {
 
 /// Whether a border of a face is along one of some curves.
 fn on(face: &Surface, k: usize, curves: &[Chain], tolerance: &Tolerance) -> bool {
-    let crate::surface::Side::Chain { chain, from, to } = face.side(k) else { return false };
+    let Side::Chain { chain, from, to } = face.side(k) else { return false };
     let p = chain.point(0.5 * (from + to));
     curves.iter().any(|c| c.closest(p).2 <= ROOM * tolerance.point)
 }
