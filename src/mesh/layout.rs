@@ -342,10 +342,15 @@ impl Layout {
     }
 }
 
-/// How far edges of some patches are glued at most.
+/// How far edges of some patches are glued at most, or curves of their nets miss each other.
 fn reach(input: &Input, patches: impl Iterator<Item = PatchId>) -> f64 {
-    let of = |p: PatchId| input.plan.glue.get(&input.model.patches[p.index()].surface).copied();
-    patches.filter_map(of).fold(input.tolerance.point, f64::max)
+    let of = |p: PatchId| {
+        let surface = input.model.patches[p.index()].surface;
+        let glued = input.plan.glue.get(&surface).copied();
+        let missed = input.model.surfaces[surface.index()].surface.net_gaps().first().map(|gap| gap.by);
+        glued.into_iter().chain(missed)
+    };
+    patches.flat_map(of).fold(input.tolerance.point, f64::max)
 }
 
 /// Uses of a track as seen by something that runs along or against it and places it at `start`.
