@@ -124,7 +124,7 @@ fn golden(bytes: &[u8]) -> Result<Side, String> {
 }
 
 /// The diagonal of all boxes that stand in a golden; without any, its longest curve.
-fn size_of(lines: &[Line]) -> f64 {
+pub(super) fn size_of(lines: &[Line]) -> f64 {
     let boxes = lines.iter().filter_map(|line| match line.get("box") {
         Some(Value::Corners(corners, _)) => Some(corners.map(glam::DVec3::from)),
         _ => None,

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::diff::size_of;
 use super::cells::{Entry, measure_of, together};
 use super::compare::{Allowance, one_thing};
 use super::grow::{Growing, line, yes};
@@ -32,7 +33,9 @@ pub struct Found {
 /// All that a golden holds of this run and of what was seen of its model. `hide` is a folder that messages may name and a golden
 /// may not.
 pub fn of(outcome: &Outcome, looks: Looks, hide: &str) -> Found {
-    let size = outcome.report.bounds.map_or(0.0, |[a, b]| (glam::DVec3::from(b) - glam::DVec3::from(a)).length());
+    let of_curves = outcome.report.bounds.map_or(0.0, |[a, b]| (glam::DVec3::from(b) - glam::DVec3::from(a)).length());
+    // Without curves the boxes of what there is tell the size.
+    let size = if of_curves > 0.0 { of_curves } else { size_of(&of_report(&outcome.report, looks.clone(), 0.0)) };
     let mut lines = of_report(&outcome.report, looks, size);
     lines.iter_mut().for_each(|line| clean(line, size));
     let row = |d: &Diagnostic| diagnostic(d, &outcome.sources, hide);
