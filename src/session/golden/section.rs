@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::diff::size_of;
 use super::cells::{Entry, measure_of, together};
 use super::compare::{Allowance, one_thing};
+use super::diff::size_of;
 use super::grow::{Growing, line, yes};
 use super::line::{Line, on_one_line};
 use super::looks::{Look, Looks, Pairs};
