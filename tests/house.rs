@@ -53,7 +53,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 8_400),
     ("geometry", 5_500),
     ("network", 3_800),
-    ("surface", 21_500),
+    ("surface", 21_800),
     ("model", 5_300),
     ("mesh", 22_700),
     ("io", 8_500),
