@@ -116,7 +116,7 @@ fn edge((a, b): (Origin, Origin), at: DVec3, why: WallEdge, say: &dyn Say) -> Re
     match why {
         WallEdge::Gap { apart } => {
             report(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
-                .help("let one of them be the border of the other one, as `plane(body.edges[0])`, or give the model a larger `tolerance`")
+                .help("let one of them be the border of the other one, or give the model a larger `tolerance`")
         }
         WallEdge::Loose => {
             report(format!("{x} and {y} do not hang together: on which side of {y} the wall is to be is not told, at {place}"))
