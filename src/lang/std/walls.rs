@@ -56,20 +56,14 @@ builtins! {
             WallSide::Back => (-t, 0.0),
         };
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
-        let faces = of.surfaces();
-        // A face by itself keeps the roundings of its profile's offset; as a shell it is what its creases divide it into.
-        let several = match &of {
-            SurfaceOrShell::Shell(_) => without_creases(&faces, origin, &tolerance)?,
-            SurfaceOrShell::Surface(_) => faces,
-        };
-        let (made, notes) = match several.as_slice() {
-            [face] => thicken(face, reach, origin, &tolerance)?,
-            several => {
-                let flip = matches!(&of, SurfaceOrShell::Shell(shell) if shell.flip);
-                let near = if let SurfaceOrShell::Shell(shell) = &of { shell.snap.map_or(0.0, |snap| snap.0) } else { 0.0 };
+        let (made, notes) = match &of {
+            SurfaceOrShell::Surface(face) => thicken(face, reach, origin, &tolerance)?,
+            SurfaceOrShell::Shell(shell) => {
+                let faces = without_creases(&shell.surfaces, origin, &tolerance)?;
+                let near = shell.snap.map_or(0.0, |snap| snap.0);
                 let inwards = |faces: &[Surface]| points_inwards(&faces.iter().map(|f| (f.clone(), false)).collect::<Vec<_>>()) == Some(true);
-                let turned = |faces: &[Surface], closed: bool| (closed && inwards(faces)) != flip;
-                thicken_all(several, (reach.0, reach.1, near), &turned, origin, &tolerance)?
+                let turned = |faces: &[Surface], closed: bool| (closed && inwards(faces)) != shell.flip;
+                thicken_all(&faces, (reach.0, reach.1, near), &turned, origin, &tolerance)?
             }
         };
         notes.iter().for_each(|note| cx.say(note));

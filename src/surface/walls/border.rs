@@ -27,7 +27,7 @@ const STEP: f64 = NUDGE;
 
 /// A border in the direction of its loop, the face on its left.
 #[derive(Clone)]
-pub struct Hem {
+pub struct Boundary {
     surface: Surface,
     side: Side,
     course: Course,
@@ -37,7 +37,7 @@ pub struct Hem {
 
 /// What is known at a place of a border; derivatives by the parameter along it.
 #[derive(Clone, Copy, Debug)]
-pub struct HemJet {
+pub struct BoundaryJet {
     /// The point.
     pub p: DVec3,
     /// Its derivative.
@@ -48,7 +48,7 @@ pub struct HemJet {
     pub turn: DVec3,
 }
 
-impl HemJet {
+impl BoundaryJet {
     /// The point at a distance along the normal, and its derivative.
     pub fn beside(&self, distance: f64) -> (DVec3, DVec3) {
         (self.p + self.normal * distance, self.d1 + self.turn * distance)
@@ -75,9 +75,9 @@ pub(in crate::surface) fn whole(surface: &Surface, tolerance: &Tolerance) -> Sur
 }
 
 /// The borders of all loops of a face, loop by loop; `None` for poles and for seams, across which the face goes on.
-pub fn hems(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec<Option<Hem>>> {
+pub fn boundaries(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
     let below = whole(surface, tolerance);
-    let hem = |border: &Border, course: &Course| Hem {
+    let boundary = |border: &Border, course: &Course| Boundary {
         surface: below.clone(),
         side: border.side.clone(),
         course: course.clone(),
@@ -87,7 +87,7 @@ pub fn hems(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec
     let seam = |walk: &Walk, k: usize| {
         let own = &walk.courses[k];
         let middle = |k: usize| {
-            let jet = hem(&walk.borders[k], &walk.courses[k]).jet(0.5, false);
+            let jet = boundary(&walk.borders[k], &walk.courses[k]).jet(0.5, false);
             jet.map(|jet| jet.p)
         };
         let pole = |k: usize| matches!(walk.borders[k].side, Side::Pole(_));
@@ -100,14 +100,14 @@ pub fn hems(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec
     let each = |walk: &Walk| {
         let one = |k: usize| {
             let pole = matches!(walk.borders[k].side, Side::Pole(_));
-            (!pole && !seam(walk, k)).then(|| hem(&walk.borders[k], &walk.courses[k]))
+            (!pole && !seam(walk, k)).then(|| boundary(&walk.borders[k], &walk.courses[k]))
         };
         (0..walk.borders.len()).map(one).collect()
     };
     walks.iter().map(each).collect()
 }
 
-impl Hem {
+impl Boundary {
     /// Parameters along the border, ends included, between which it has no corner.
     pub fn stops(&self) -> Vec<f64> {
         let inner: Vec<f64> = match (&self.course, &self.side) {
@@ -132,7 +132,7 @@ impl Hem {
     }
 
     /// The place at a parameter from 0 to 1; `before`: of the piece that ends there. `None` where nothing is known of it.
-    pub fn jet(&self, t: f64, before: bool) -> Option<HemJet> {
+    pub fn jet(&self, t: f64, before: bool) -> Option<BoundaryJet> {
         let (uv, p, d1, way) = self.place(t, before)?;
         let lean = |x: f64| if x < 0.0 { Lean::Before } else { Lean::After };
         let way = if before { -way } else { way };
@@ -144,7 +144,7 @@ impl Hem {
             Some((nu, nv)) if self.surface.normal_lean(uv.x, uv.y, leans).dot(normal) > 0.0 => nu * along.x + nv * along.y,
             _ => self.difference(t, before, normal)?,
         };
-        Some(HemJet { p, d1, normal, turn })
+        Some(BoundaryJet { p, d1, normal, turn })
     }
 
     /// The derivative of the normal where the surface stands still.
@@ -210,7 +210,7 @@ impl Hem {
             at: self.jet(0.0, false).map_or(DVec3::ZERO, |jet| jet.p),
         };
         let jet = |t: f64, before: bool| self.jet(t, before).ok_or_else(|| crate::base::fault::Fault::from(lost()));
-        let cubic = |a: f64, b: f64, from: &HemJet, to: &HemJet, d: f64| {
+        let cubic = |a: f64, b: f64, from: &BoundaryJet, to: &BoundaryJet, d: f64| {
             let ((p, dp), (q, dq), h) = (from.beside(d), to.beside(d), b - a);
             [p, p + dp * (h / 3.0), q - dq * (h / 3.0), q]
         };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::border::{Hem, hems, whole};
+use super::border::{Boundary, boundaries, whole};
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -18,9 +18,9 @@ use crate::surface::trim::{Walk, assembled, natural};
 /// The offset of a trimmed surface whose surface below has no creases, with the copies of its borders, loop by loop.
 pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let walks = natural(surface, tolerance)?;
-    let each = |hem: &Option<Hem>| hem.as_ref().map(|hem| hem.copy(distance, origin, tolerance)).transpose();
+    let each = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| boundary.copy(distance, origin, tolerance)).transpose();
     let copies: Vec<Vec<Option<Chain>>> =
-        hems(surface, &walks, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
+        boundaries(surface, &walks, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
     with_loops(surface, (&walks, &copies), distance, origin, tolerance)
 }
 

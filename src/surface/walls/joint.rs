@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
-use super::border::{Hem, hems};
+use super::border::{Boundary, boundaries};
 use crate::base::fault::{Result, WallEdge, WallFault};
 use crate::base::math;
 use crate::base::origin::Origin;
@@ -23,7 +23,7 @@ const PLACES: usize = 9;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Use {
     pub face: usize,
-    pub hem: usize,
+    pub boundary: usize,
 }
 
 /// How two faces stand to each other along an edge, seen from the side of the normals.
@@ -50,7 +50,7 @@ pub(super) struct Joint {
 pub(super) struct Sheet {
     pub faces: Vec<Surface>,
     /// The borders of each face.
-    pub hems: Vec<Vec<Hem>>,
+    pub boundaries: Vec<Vec<Boundary>>,
     pub joints: Vec<Joint>,
 }
 
@@ -71,14 +71,14 @@ impl Sheet {
     }
 
     fn of(faces: &[Surface], near: f64, origin: Origin, tolerance: &Tolerance) -> Result<Self> {
-        let mut all: Vec<Vec<Hem>> = Vec::new();
+        let mut all: Vec<Vec<Boundary>> = Vec::new();
         for face in faces {
-            all.push(hems(face, &natural(face, tolerance)?, tolerance).into_iter().flatten().flatten().collect());
+            all.push(boundaries(face, &natural(face, tolerance)?, tolerance).into_iter().flatten().flatten().collect());
         }
         let all = parted(all, origin, tolerance)?;
         let mut joints: Vec<Joint> = Vec::new();
         for (face, own) in all.iter().enumerate() {
-            for (hem, border) in own.iter().enumerate() {
+            for (boundary, border) in own.iter().enumerate() {
                 let chain = border.copy(0.0, origin, tolerance)?;
                 let found = joints.iter_mut().find(|joint| same(&joint.chain, &chain, tolerance));
                 match found {
@@ -86,8 +86,8 @@ impl Sheet {
                         let (a, b) = (faces[joint.uses[0].face].origin(), faces[face].origin());
                         return Err(WallFault::Edge { wall: origin, a, b, at: chain.point(0.5), why: WallEdge::Three }.into());
                     }
-                    Some(joint) => joint.uses.push(Use { face, hem }),
-                    None => joints.push(Joint { uses: vec![Use { face, hem }], bend: Bend::Free, chain }),
+                    Some(joint) => joint.uses.push(Use { face, boundary }),
+                    None => joints.push(Joint { uses: vec![Use { face, boundary }], bend: Bend::Free, chain }),
                 }
             }
         }
@@ -113,7 +113,7 @@ impl Sheet {
                 return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why }.into());
             }
         }
-        Ok(Self { faces: faces.to_vec(), hems: all, joints })
+        Ok(Self { faces: faces.to_vec(), boundaries: all, joints })
     }
 
     /// The first face of a second piece, if the faces do not all hang together.
@@ -155,9 +155,9 @@ impl Sheet {
     /// Whether both loops run an edge in the same direction.
     fn along(&self, joint: &Joint) -> bool {
         let way = |at: Use, p: DVec3| {
-            let hem = &self.hems[at.face][at.hem];
-            let f = nearest(hem, p);
-            hem.jet(f, false).map_or(DVec3::ZERO, |jet| jet.d1)
+            let boundary = &self.boundaries[at.face][at.boundary];
+            let f = nearest(boundary, p);
+            boundary.jet(f, false).map_or(DVec3::ZERO, |jet| jet.d1)
         };
         let p = joint.chain.point(0.5);
         way(joint.uses[0], p).dot(way(joint.uses[1], p)) > 0.0
@@ -195,13 +195,13 @@ impl Sheet {
 
     /// The normal of a face at a place of its border.
     pub fn normal(&self, at: Use, p: DVec3) -> DVec3 {
-        let hem = &self.hems[at.face][at.hem];
-        hem.jet(nearest(hem, p), false).map_or(DVec3::ZERO, |jet| jet.normal)
+        let boundary = &self.boundaries[at.face][at.boundary];
+        boundary.jet(nearest(boundary, p), false).map_or(DVec3::ZERO, |jet| jet.normal)
     }
 }
 
 /// Borders cut at their corners and where borders of other faces end on them.
-fn parted(all: Vec<Vec<Hem>>, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Vec<Hem>>> {
+fn parted(all: Vec<Vec<Boundary>>, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Vec<Boundary>>> {
     let mut chains: Vec<Vec<Chain>> = Vec::new();
     let mut vertices: Vec<DVec3> = Vec::new();
     let add = |vertices: &mut Vec<DVec3>, p: DVec3| {
@@ -211,41 +211,49 @@ fn parted(all: Vec<Vec<Hem>>, origin: Origin, tolerance: &Tolerance) -> Result<V
     };
     for own in &all {
         let mut row = Vec::new();
-        for hem in own {
-            let chain = hem.copy(0.0, origin, tolerance)?;
+        for boundary in own {
+            let chain = boundary.copy(0.0, origin, tolerance)?;
             let corner = || tolerance.is_kink(chain.jet_before(1.0).d1, chain.jet(0.0).d1);
             if !chain.is_closed(tolerance) || corner() {
                 add(&mut vertices, chain.start());
                 add(&mut vertices, chain.end());
             }
-            hem.corners(tolerance).into_iter().filter_map(|t| hem.jet(t, false)).for_each(|jet| add(&mut vertices, jet.p));
+            boundary.corners(tolerance).into_iter().filter_map(|t| boundary.jet(t, false)).for_each(|jet| add(&mut vertices, jet.p));
             row.push(chain);
         }
         chains.push(row);
     }
-    let parts = |hem: &Hem, chain: &Chain| -> Vec<Hem> {
+    let parts = |boundary: &Boundary, chain: &Chain| -> Vec<Boundary> {
         let on = |p: &&DVec3| chain.closest(**p).2 <= 2.0 * tolerance.point;
         let at_end = |p: DVec3, f: f64| chain.point(f).distance(p) <= 2.0 * tolerance.point;
         let here: Vec<DVec3> = vertices.iter().filter(on).copied().collect();
         let inner = here.iter().filter(|p| !at_end(**p, 0.0) && !at_end(**p, 1.0));
-        let mut cuts: Vec<f64> = inner.map(|p| nearest(hem, *p)).collect();
+        let mut cuts: Vec<f64> = inner.map(|p| nearest(boundary, *p)).collect();
         cuts.sort_by(f64::total_cmp);
         let closed = chain.is_closed(tolerance);
         let starts = here.iter().any(|p| at_end(*p, 0.0));
         if closed && !starts {
             let next = |k: usize| if k + 1 < cuts.len() { cuts[k + 1] } else { cuts[0] + 1.0 };
-            return if cuts.is_empty() { vec![hem.clone()] } else { (0..cuts.len()).map(|k| hem.between(cuts[k], next(k))).collect() };
+            return if cuts.is_empty() {
+                vec![boundary.clone()]
+            } else {
+                (0..cuts.len()).map(|k| boundary.between(cuts[k], next(k))).collect()
+            };
         }
         let stops = [vec![0.0], cuts, vec![1.0]].concat();
-        stops.windows(2).map(|w| hem.between(w[0], w[1])).collect()
+        stops.windows(2).map(|w| boundary.between(w[0], w[1])).collect()
     };
-    Ok(all.iter().zip(&chains).map(|(own, row)| own.iter().zip(row).flat_map(|(hem, chain)| parts(hem, chain)).collect()).collect())
+    Ok(all
+        .iter()
+        .zip(&chains)
+        .map(|(own, row)| own.iter().zip(row).flat_map(|(boundary, chain)| parts(boundary, chain)).collect())
+        .collect())
 }
 
 /// The parameter of a border nearest to a point: by places, then by halving steps.
-pub(super) fn nearest(hem: &Hem, p: DVec3) -> f64 {
+pub(super) fn nearest(boundary: &Boundary, p: DVec3) -> f64 {
     const STEPS: usize = 32;
-    let off = |t: f64| hem.jet(t, false).map_or(f64::INFINITY, |jet| jet.p.distance(p));
+    let off = |t: f64| boundary.jet(t, false).map_or(f64::INFINITY, |jet| jet.p.distance(p));
     let mut best = (0..=STEPS).map(|k| k as f64 / STEPS as f64).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0.0);
     let mut step = 0.5 / STEPS as f64;
     while step > crate::base::tolerance::NEAREST {
@@ -256,7 +264,7 @@ pub(super) fn nearest(hem: &Hem, p: DVec3) -> f64 {
         }
     }
     // A corner to the last bit: on its other side the border has another direction.
-    hem.stops().into_iter().find(|t| (*t - best).abs() <= NUDGE).unwrap_or(best)
+    boundary.stops().into_iter().find(|t| (*t - best).abs() <= NUDGE).unwrap_or(best)
 }
 
 /// Whether all of a chain is on another one.

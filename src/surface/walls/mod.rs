@@ -7,7 +7,7 @@ mod longer;
 mod shell;
 
 pub(super) use border::whole;
-use border::{Hem, curve, hems};
+use border::{Boundary, boundaries, curve};
 pub(super) use carried::trimmed;
 use carried::with_loops;
 
@@ -48,8 +48,9 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
     }
     let walks = natural(surface, tolerance)?;
     let (mut low, mut high, mut rims): (Copies, Copies, Vec<Surface>) = (Vec::new(), Vec::new(), Vec::new());
-    for row in hems(surface, &walks, tolerance) {
-        let made = row.iter().map(|hem| hem.as_ref().map(|hem| rim(hem, (below, above), origin, tolerance)).transpose());
+    for row in boundaries(surface, &walks, tolerance) {
+        let made =
+            row.iter().map(|boundary| boundary.as_ref().map(|boundary| rim(boundary, (below, above), origin, tolerance)).transpose());
         let made: Vec<Option<Rim>> = made.collect::<Result<_>>()?;
         low.push(made.iter().map(|rim| rim.as_ref().map(|rim| rim.low.clone())).collect());
         high.push(made.iter().map(|rim| rim.as_ref().map(|rim| rim.high.clone())).collect());
@@ -82,8 +83,8 @@ struct Rim {
 }
 
 /// The strip along the normals of a face beside its border.
-fn rim(hem: &Hem, (below, above): (f64, f64), origin: Origin, tolerance: &Tolerance) -> Result<Rim> {
-    let [low, high] = hem.copies([below, above], origin, tolerance)?;
+fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, tolerance: &Tolerance) -> Result<Rim> {
+    let [low, high] = boundary.copies([below, above], origin, tolerance)?;
     let n = low.poles.len();
     let net = NurbsSurface {
         degree: (3, 1),
@@ -170,6 +171,11 @@ pub fn thicken_all(
     origin: Origin,
     tolerance: &Tolerance,
 ) -> Result<(Vec<Surface>, Vec<Fault>)> {
+    if let [face] = faces {
+        let closed = boundaries(face, &natural(face, tolerance)?, tolerance).iter().flatten().all(Option::is_none);
+        let face = if turned(faces, closed) { face.flipped() } else { face.clone() };
+        return thicken(&face, (below, above), origin, tolerance);
+    }
     let mut sheet = Sheet::new(faces, near, origin, tolerance)?;
     let closed = sheet.joints.iter().all(|joint| joint.bend != Bend::Free);
     // Which side of one piece is that of another one is not told by either.
@@ -190,15 +196,15 @@ pub fn thicken_all(
     all.extend(inner.faces.iter().map(Surface::flipped));
     for (k, joint) in sheet.joints.iter().enumerate().filter(|(_, joint)| joint.bend == Bend::Free) {
         let at = joint.uses[0];
-        let hem = &sheet.hems[at.face][at.hem];
-        let own = rim(hem, (below, above), origin, tolerance)?;
+        let boundary = &sheet.boundaries[at.face][at.boundary];
+        let own = rim(boundary, (below, above), origin, tolerance)?;
         let ends = |a: &Chain, b: &Chain| tolerance.same_point(a.start(), b.start()) && tolerance.same_point(a.end(), b.end());
         if ends(&own.low, &inner.edges[k]) && ends(&own.high, &outer.edges[k]) {
             all.push(own.face);
             continue;
         }
         let made = strip(&inner.edges[k], &outer.edges[k], origin, tolerance, &mut notes)?;
-        let way = hem.jet(0.5, false).map_or(DVec3::ZERO, |jet| jet.d1);
+        let way = boundary.jet(0.5, false).map_or(DVec3::ZERO, |jet| jet.d1);
         all.push(outwards(made, (&inner.edges[k], &outer.edges[k]), way));
     }
     Ok((all, notes))

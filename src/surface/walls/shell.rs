@@ -76,8 +76,8 @@ impl Making<'_> {
         let first = joint.uses[0];
         match joint.bend {
             Bend::Free | Bend::Smooth => {
-                let hem = &self.sheet.hems[first.face][first.hem];
-                let copy = hem.copy(self.distance, self.origin, self.tolerance)?;
+                let boundary = &self.sheet.boundaries[first.face][first.boundary];
+                let copy = boundary.copy(self.distance, self.origin, self.tolerance)?;
                 if copy.is_closed(self.tolerance) { Ok(copy) } else { self.run_on(&copy, first.face) }
             }
             Bend::Ridge | Bend::Valley => {
@@ -314,8 +314,8 @@ impl Making<'_> {
         let joint = &self.sheet.joints[k];
         let p = joint.chain.point(0.5);
         let side = |at: &Use| {
-            let hem = &self.sheet.hems[at.face][at.hem];
-            let jet = hem.jet(super::joint::nearest(hem, p), false)?;
+            let boundary = &self.sheet.boundaries[at.face][at.boundary];
+            let jet = boundary.jet(super::joint::nearest(boundary, p), false)?;
             let (f, q, _) = chain.closest(jet.p + jet.normal * self.distance);
             let along = chain.jet(f).d1.dot(jet.d1) >= 0.0;
             let tangent = chain.jet(f).d1.normalize_or_zero() * if along { 1.0 } else { -1.0 };
