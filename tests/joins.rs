@@ -1,22 +1,15 @@
 //! Surfaces one after another as one: nothing moves, common borders have one parameter, order and direction change nothing.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/random.rs"]
+mod random;
+
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::surface::nurbs::{Net, nurbs};
 use lofting::surface::{Lean, Surface, join};
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use random::Random;
 
 const AFTER: Lean = Lean::After;
 
@@ -41,24 +34,24 @@ fn between(a: &[DVec3], b: &[DVec3], twist: f64) -> Surface {
     nurbs(&Net { rows: &rows, weights: Some(&weights) }, (2, 3), (None, None), Origin::NONE, &tolerance()).unwrap()
 }
 
-fn row(numbers: &mut Numbers, n: usize) -> Vec<Surface> {
-    let line = |k: usize, numbers: &mut Numbers| -> Vec<DVec3> {
-        (0..4).map(|j| DVec3::new(k as f64 + 0.4 * numbers.next(), j as f64 * 0.7, numbers.next() - 0.5)).collect()
+fn row(numbers: &mut Random, n: usize) -> Vec<Surface> {
+    let line = |k: usize, numbers: &mut Random| -> Vec<DVec3> {
+        (0..4).map(|j| DVec3::new(k as f64 + 0.4 * numbers.share(), j as f64 * 0.7, numbers.share() - 0.5)).collect()
     };
     let lines: Vec<Vec<DVec3>> = (0..=n).map(|k| line(k, numbers)).collect();
-    (0..n).map(|k| between(&lines[k], &lines[k + 1], 0.7 + 0.7 * numbers.next())).collect()
+    (0..n).map(|k| between(&lines[k], &lines[k + 1], 0.7 + 0.7 * numbers.share())).collect()
 }
 
 #[test]
 fn nothing_moves_and_borders_have_one_parameter() {
-    let mut numbers = Numbers(0x701_1ed);
+    let mut numbers = Random(0x701_1ed);
     for case in 0..200 {
         let parts = row(&mut numbers, 2 + case % 4);
         let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();
         let (stops, _) = whole.breaks();
         assert!(stops.len() + 1 >= parts.len());
         for _ in 0..20 {
-            let v = numbers.next();
+            let v = numbers.share();
             // The first one's v stays.
             assert!(whole.point(0.0, v).distance(parts[0].point(0.0, v)) < 1e-13, "case {case}");
             for u in whole.kinks().0 {
@@ -68,7 +61,7 @@ fn nothing_moves_and_borders_have_one_parameter() {
                 assert!(a.dvv.distance(b.dvv) < 1e-8 * (1.0 + a.dvv.length()), "case {case}: {:e}", a.dvv.distance(b.dvv));
             }
             // Derivatives are those of the points.
-            let (u, step) = (0.01 + 0.98 * numbers.next(), 1e-5);
+            let (u, step) = (0.01 + 0.98 * numbers.share(), 1e-5);
             let v = 0.01 + 0.98 * v;
             if stops.iter().all(|s| (s - u).abs() > 2.0 * step) {
                 let jet = whole.jet(u, v);
@@ -80,10 +73,10 @@ fn nothing_moves_and_borders_have_one_parameter() {
                 }
             }
         }
-        let (u, v) = (numbers.next() * 0.7, numbers.next() * 0.7);
+        let (u, v) = (numbers.share() * 0.7, numbers.share() * 0.7);
         let bounds = whole.spread((u, u + 0.2), (v, v + 0.2));
         for _ in 0..30 {
-            let jet = whole.jet(u + 0.2 * numbers.next(), v + 0.2 * numbers.next());
+            let jet = whole.jet(u + 0.2 * numbers.share(), v + 0.2 * numbers.share());
             for (value, range) in
                 [(jet.p, bounds.p), (jet.du, bounds.du), (jet.dv, bounds.dv), (jet.duv, bounds.duv), (jet.dvv, bounds.dvv)]
             {
@@ -96,17 +89,17 @@ fn nothing_moves_and_borders_have_one_parameter() {
 
 #[test]
 fn order_direction_and_nesting_change_nothing() {
-    let mut numbers = Numbers(0x0_de8);
+    let mut numbers = Random(0x0_de8);
     for case in 0..100 {
         let parts = row(&mut numbers, 3 + case % 3);
         let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();
-        let mut others: Vec<Surface> = parts[1..].iter().map(|s| if numbers.next() < 0.5 { s.flipped() } else { s.clone() }).collect();
+        let mut others: Vec<Surface> = parts[1..].iter().map(|s| if numbers.share() < 0.5 { s.flipped() } else { s.clone() }).collect();
         others.reverse();
         let turned = join(&[&parts[..1], &others].concat(), Origin::NONE, &tolerance()).unwrap();
         let first = join(&parts[..2], Origin::NONE, &tolerance()).unwrap();
         let nested = join(&[&[first], &parts[2..]].concat(), Origin::NONE, &tolerance()).unwrap();
         for _ in 0..20 {
-            let (u, v) = (numbers.next(), numbers.next());
+            let (u, v) = (numbers.share(), numbers.share());
             assert_eq!(nested.jet(u, v), whole.jet(u, v), "case {case}");
             assert!(turned.point(u, v).distance(whole.point(u, v)) < 1e-12, "case {case}");
         }

@@ -7,6 +7,9 @@
 #[path = "support/networks.rs"]
 mod networks;
 
+#[path = "support/surfaces.rs"]
+mod surfaces;
+
 use std::slice::from_ref;
 
 use glam::DVec3;
@@ -64,16 +67,9 @@ fn through(points: &[DVec3]) -> Chain {
     Chain::of_curve(&spline(points, &settings, Origin::NONE).unwrap())
 }
 
-/// The largest distance of two surfaces over a grid of parameters, the second one perhaps run backwards or, where it closes, from
-/// another start.
+/// The largest distance of two surfaces over a grid of parameters, the second one perhaps run backwards.
 fn apart(a: &Surface, b: &Surface) -> f64 {
-    let at = |k: i32| f64::from(k) / 9.0;
-    let far = |turn: (bool, bool)| {
-        let place = |x: f64, back: bool| if back { 1.0 - x } else { x };
-        let each = (0..=9).flat_map(|i| (0..=9).map(move |j| (at(i), at(j))));
-        each.map(|(u, v)| a.point(u, v).distance(b.point(place(u, turn.0), place(v, turn.1)))).fold(0.0, f64::max)
-    };
-    [(false, false), (true, false), (false, true), (true, true)].into_iter().map(far).fold(f64::INFINITY, f64::min)
+    surfaces::apart(a, b, 9)
 }
 
 /// How far curves lie off a surface at most.

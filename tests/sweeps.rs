@@ -1,6 +1,9 @@
 //! Properties of sweeps: what they contain, what changes nothing, what moves with them.
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
+#[path = "support/surfaces.rs"]
+mod surfaces;
+
 use std::slice::from_ref;
 
 use glam::DVec3;
@@ -64,13 +67,7 @@ fn made(sections: &[Chain], guides: &[Chain], law: Law) -> Surface {
 
 /// The largest distance of two surfaces over a grid of parameters, the second one perhaps run backwards.
 fn apart(a: &Surface, b: &Surface) -> f64 {
-    let at = |k: i32| f64::from(k) / 12.0;
-    let far = |turn: (bool, bool)| {
-        let place = |x: f64, back: bool| if back { 1.0 - x } else { x };
-        let each = (0..=12).flat_map(|i| (0..=12).map(move |j| (at(i), at(j))));
-        each.map(|(u, v)| a.point(u, v).distance(b.point(place(u, turn.0), place(v, turn.1)))).fold(0.0, f64::max)
-    };
-    [(false, false), (true, false), (false, true), (true, true)].into_iter().map(far).fold(f64::INFINITY, f64::min)
+    surfaces::apart(a, b, 12)
 }
 
 /// How far a curve of the net lies off the line of constant u or v on which it is.

@@ -1,6 +1,9 @@
 //! Offsets keep their distance and walls enclose what area and curvature say, on random faces.
 #![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::panic, missing_docs)]
 
+#[path = "support/random.rs"]
+mod random;
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
@@ -11,25 +14,17 @@ use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::walls::thicken;
 use lofting::surface::{Surface, closest, grid, offset};
+use random::Random;
 
-/// Numbers from 0 to 1 in a row that is always the same.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * self.next()
-    }
+/// A number between two.
+fn between(numbers: &mut Random, a: f64, b: f64) -> f64 {
+    a + (b - a) * numbers.share()
 }
 
 /// A wavy net of 10 × 10, bent nowhere tighter than a radius of about 4.
 fn net(random: &mut Random, tolerance: &Tolerance) -> Surface {
-    let (a, b, tilt) = (random.between(-0.8, 0.8), random.between(-0.8, 0.8), random.between(-0.5, 0.5));
-    let (p, q) = (random.between(0.0, 6.0), random.between(0.0, 6.0));
+    let (a, b, tilt) = (between(random, -0.8, 0.8), between(random, -0.8, 0.8), between(random, -0.5, 0.5));
+    let (p, q) = (between(random, 0.0, 6.0), between(random, 0.0, 6.0));
     let point = |i: usize, j: usize| {
         let (x, y) = (2.5 * i as f64, 2.5 * j as f64);
         DVec3::new(x, y + 0.1 * tilt * x, a * (0.5 * x + p).sin() + b * (0.5 * y + q).cos() + tilt * x)
@@ -44,11 +39,11 @@ fn offsets_keep_their_distance_and_come_back() {
     let mut random = Random(1);
     for case in 0..200 {
         let face = net(&mut random, &tolerance);
-        let d = random.between(0.05, 0.6) * if random.next() < 0.5 { -1.0 } else { 1.0 };
+        let d = between(&mut random, 0.05, 0.6) * if random.share() < 0.5 { -1.0 } else { 1.0 };
         let (made, notes) = offset(&face, d, Origin::NONE, &tolerance).unwrap();
         assert!(notes.is_empty(), "case {case}: {notes:?}");
         for _ in 0..5 {
-            let (u, v) = (random.next(), random.next());
+            let (u, v) = (random.share(), random.share());
             let (p, wanted) = (made.point(u, v), face.point(u, v) + face.normal(u, v) * d);
             assert!(p.distance(wanted) <= tolerance.point, "case {case}: {} at {u} {v}", p.distance(wanted));
             let off = closest(&face, p).distance;
@@ -56,7 +51,7 @@ fn offsets_keep_their_distance_and_come_back() {
         }
         if case % 8 == 0 {
             let (back, _) = offset(&made, -d, Origin::NONE, &tolerance).unwrap();
-            let (u, v) = (random.next(), random.next());
+            let (u, v) = (random.share(), random.share());
             assert!(back.point(u, v).distance(face.point(u, v)) <= 3.0 * tolerance.point, "case {case}");
         }
     }
@@ -80,7 +75,7 @@ fn walls_of_nets_enclose_area_times_thickness_and_a_twelfth_of_the_curvature() {
     let mut random = Random(7);
     for case in 0..200 {
         let face = net(&mut random, &tolerance);
-        let t = random.between(0.1, 1.0);
+        let t = between(&mut random, 0.1, 1.0);
         let (faces, _) = thicken(&face, (-0.5 * t, 0.5 * t), Origin::NONE, &tolerance).unwrap();
         assert_eq!(faces.len(), 6);
         let solid = measure::solid(&faces.into_iter().map(|f| (f, false)).collect::<Vec<_>>());
@@ -100,13 +95,13 @@ fn walls_of_turned_profiles_enclose_what_steiner_says() {
     let mut random = Random(11);
     for case in 0..200 {
         // A cone, or a part of a sphere between its poles.
-        let (r, h, t) = (random.between(3.0, 6.0), random.between(2.0, 8.0), random.between(0.1, 1.0));
+        let (r, h, t) = (between(&mut random, 3.0, 6.0), between(&mut random, 2.0, 8.0), between(&mut random, 0.1, 1.0));
         let axis = lofting::surface::revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };
         let sphere = case % 2 == 1;
         let profile = if sphere {
             build::arc_through(DVec3::new(0.0, 0.0, -r), DVec3::new(0.0, 0.0, r), DVec3::new(r, 0.0, 0.0), Origin::NONE).unwrap()
         } else {
-            build::line(DVec3::new(r, 0.0, 0.0), DVec3::new(r + random.between(-2.0, 2.0), 0.0, h), Origin::NONE).unwrap()
+            build::line(DVec3::new(r, 0.0, 0.0), DVec3::new(r + between(&mut random, -2.0, 2.0), 0.0, h), Origin::NONE).unwrap()
         };
         let face = lofting::surface::revolve(&Chain::of_curve(&profile), &axis, 2.0 * PI, Origin::NONE, &tolerance).unwrap();
         let (faces, _) = thicken(&face, (-0.5 * t, 0.5 * t), Origin::NONE, &tolerance).unwrap();
