@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::breaks::chain_breaks;
-use super::closest::stations;
+use super::samples::stations;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::{BOX, EPSILON};
 use crate::network::Chain;

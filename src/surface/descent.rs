@@ -1,7 +1,7 @@
 //! Local minima of a function of a surface's point, inside the unit square: Newton's method held in a trust region.
 
 use super::Jet2;
-use crate::base::tolerance::{EPSILON, LEAST_CURVATURE};
+use crate::base::tolerance::{EPSILON, LEAST_CURVATURE, NEAREST};
 
 /// Value, gradient (x, y) and second derivatives (xx, xy, yy) of a function of the surface at one place.
 pub struct Local {
@@ -23,23 +23,35 @@ pub struct Minimum {
 /// Steps of one descent.
 const STEPS: usize = 60;
 
-/// Goes down from a place to a local minimum of `f` of the `jet` of each place in the square; never up. Variables at a border
+/// Goes down from a place to a local minimum of `f` of the `jet` of each place in the unit square; never up. Variables at a border
 /// leave it only inwards.
+pub fn descend(jet: &impl Fn(f64, f64) -> Jet2, start: (f64, f64), f: impl Fn(&Jet2) -> Local) -> Minimum {
+    descend_within(jet, [(0.0, 1.0), (0.0, 1.0)], start, f)
+}
+
+/// [`descend`] in a rectangle of the square, given by the first and last value of each variable. Derivatives at its upper borders
+/// are those from inside: beyond them the surface may go on round a crease.
 ///
 /// Each step solves the shifted Newton equations; the shift grows until the value falls and shrinks when it falls as
 /// foreseen (Levenberg's rule), so the method is Newton's near a minimum. Steps are weighed by the lengths that they move the
 /// point by, not by parameters (Marquardt's scaling): beside a pole one of the two moves it by next to nothing.
-pub fn descend(jet: &impl Fn(f64, f64) -> Jet2, start: (f64, f64), f: impl Fn(&Jet2) -> Local) -> Minimum {
-    let at = |(x, y): (f64, f64)| Scaled::at(&jet(x, y), &f);
+pub fn descend_within(
+    jet: &impl Fn(f64, f64) -> Jet2,
+    [xs, ys]: [(f64, f64); 2],
+    start: (f64, f64),
+    f: impl Fn(&Jet2) -> Local,
+) -> Minimum {
+    let inner = |x: f64, high: f64| if high < 1.0 { x.min(high - NEAREST) } else { x };
+    let at = |(x, y): (f64, f64)| Scaled::at(&jet(inner(x, xs.1), inner(y, ys.1)), &f);
     let (mut place, mut here) = (start, at(start));
     let mut shift = 0.0;
     for _ in 0..STEPS {
-        let free = [open(place.0, here.local.gradient[0]), open(place.1, here.local.gradient[1])];
+        let free = [open(place.0, xs, here.local.gradient[0]), open(place.1, ys, here.local.gradient[1])];
         if !free[0] && !free[1] {
             break;
         }
         let [dx, dy] = step(&here.local, free, shift);
-        let next = ((place.0 + dx / here.lengths[0]).clamp(0.0, 1.0), (place.1 + dy / here.lengths[1]).clamp(0.0, 1.0));
+        let next = ((place.0 + dx / here.lengths[0]).clamp(xs.0, xs.1), (place.1 + dy / here.lengths[1]).clamp(ys.0, ys.1));
         let moved = (next.0 - place.0).abs().max((next.1 - place.1).abs());
         if moved <= EPSILON {
             break;
@@ -82,8 +94,8 @@ impl Scaled {
 }
 
 /// Whether a variable may move: not at a border it is pushed against.
-fn open(x: f64, slope: f64) -> bool {
-    !(x <= 0.0 && slope >= 0.0 || x >= 1.0 && slope <= 0.0)
+fn open(x: f64, (low, high): (f64, f64), slope: f64) -> bool {
+    !(x <= low && slope >= 0.0 || x >= high && slope <= 0.0)
 }
 
 /// The shifted Newton step in the free variables, downhill always.

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::closest::stations;
 use super::core::{Domain, Side, Surface};
 use super::curve_extent::curve_bbox;
 use super::descent::{Local, descend};
+use super::samples::stations;
 use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::{BOX, EPSILON};

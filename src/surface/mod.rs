@@ -46,6 +46,7 @@ mod review;
 pub mod revolve;
 mod rolling;
 mod ruled;
+mod samples;
 mod scatter;
 mod shape;
 pub mod skin;

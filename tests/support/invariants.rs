@@ -12,7 +12,7 @@ use lofting::mesh::Mesh;
 use lofting::mesh::chart::Chart;
 use lofting::mesh::data::FaceRange;
 use lofting::session::run::Outcome;
-use lofting::surface::{Domain, Nearest, Side, Surface};
+use lofting::surface::{Domain, Nearest, Side, Surface, SurfaceKind};
 
 /// Distance of nodes of the border from their curves, as a share of the size of the model.
 const ON: f64 = 1e-9;
@@ -167,8 +167,10 @@ impl<'a> Seen<'a> {
             let fitted = |kind| matches!(kind, Kind::Meet | Kind::Project | Kind::Iso);
             matches!(side, Side::Chain { chain, .. } if chain.runs().iter().any(|r| fitted(r.curve.kind())))
         };
+        // Rims of walls are fitted to the borders of their faces.
+        let is_rim = |s: &Surface| s.kind() == SurfaceKind::Ruled && (0..s.n_sides()).all(|k| matches!(s.side(k), Side::Free));
         let mut surfaces = self.mesh.charts.0.iter().map(|c| &c.surface);
-        let fits = surfaces.any(|s| (0..s.n_sides()).any(|k| is_fit(&s.side(k))));
+        let fits = surfaces.any(|s| is_rim(s) || (0..s.n_sides()).any(|k| is_fit(&s.side(k))));
         let room = if fits { 0.25 * tolerance } else { ON * self.size };
         let mut rims: BTreeMap<(&str, u32), usize> = BTreeMap::new();
         for ((a, b), uses) in self.edges() {
@@ -189,8 +191,10 @@ impl<'a> Seen<'a> {
                 Side::Pole(pole) => pole.distance(p) <= room,
                 Side::Free | Side::Seam => false,
             };
-            let rim = |x: f64| x.abs() <= ON || (x - 1.0).abs() <= ON;
-            let lies = || Some(near[f].at(p)).is_some_and(|c| c.distance <= room && (rim(c.uv.0) || rim(c.uv.1)));
+            let lies = || {
+                let (u, v) = near[f].at(p).uv;
+                [(u.round(), v), (u, v.round())].into_iter().any(|(u, v)| surface.point(u, v).distance(p) <= room)
+            };
             sides(surface).into_iter().any(on_side) || own && surface.domain() != Domain::Loop && lies()
                 // A border of a trimmed surface that is a line of its ground.
                 || own && (0..surface.n_sides()).any(|k| surface.border_line(k).is_some()) && lies()
