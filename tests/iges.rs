@@ -12,6 +12,8 @@
 mod entities;
 #[path = "iges/file.rs"]
 mod file;
+#[path = "iges/loops.rs"]
+mod loops;
 #[path = "iges/mutate.rs"]
 mod mutate;
 #[path = "iges/written.rs"]

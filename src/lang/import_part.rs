@@ -8,6 +8,7 @@ use super::units::{self, MILLIMETRE};
 use super::value::{Record, Value};
 use crate::io::iges::{self, Group, Options, Part};
 use crate::network::Chain;
+use crate::surface::Surface;
 
 impl Cx<'_> {
     /// Lists in file order, then everything once more by its name in the file.
@@ -37,17 +38,16 @@ impl Cx<'_> {
         let all: Vec<Value> = part.points.iter().flat_map(|row| &row.value).map(|p| Value::point(*p)).collect();
         let points: Vec<Value> = part.points.iter().map(|item| row(&item.value)).collect();
         let curves: Vec<Value> = part.curves.iter().map(|item| Value::Curve(Chain::of_curve(&item.value))).collect();
-        let surfaces: Vec<Value> = part.built.iter().map(|surface| surface.clone().map_or(Value::None, Value::Surface)).collect();
-        let shown = |list: &[Value]| Value::list(list.iter().filter(|v| !matches!(v, Value::None)).cloned().collect());
-        let pick = |list: &[Value], places: &[usize]| {
-            Value::list(places.iter().filter_map(|k| list.get(*k)).filter(|v| !matches!(v, Value::None)).cloned().collect())
-        };
+        // A face is one surface, or none, or a list of several.
+        let faces = |list: &[Surface]| list.iter().cloned().map(Value::Surface).collect::<Vec<Value>>();
+        let pick = |list: &[Value], places: &[usize]| Value::list(places.iter().filter_map(|k| list.get(*k)).cloned().collect());
+        let pick_faces = |places: &[usize]| Value::list(places.iter().filter_map(|k| part.built.get(*k)).flat_map(|f| faces(f)).collect());
         let mut record_of = |group: &Group, color: Option<[f64; 3]>| {
             let mut fields = vec![
                 ("name", Value::text(&group.name)),
                 ("points", pick(&points, &group.points)),
                 ("curves", pick(&curves, &group.curves)),
-                ("surfaces", pick(&surfaces, &group.surfaces)),
+                ("surfaces", pick_faces(&group.surfaces)),
             ];
             if let Some(rgb) = color {
                 fields.push(("rgb", Value::list(rgb.map(Value::number).to_vec())));
@@ -58,12 +58,17 @@ impl Cx<'_> {
         let colors: Vec<Value> = part.colors.iter().map(|(group, rgb)| record_of(group, Some(*rgb))).collect();
         let names = part.points.iter().map(|i| &i.name).zip(&points);
         let names = names.chain(part.curves.iter().map(|i| &i.name).zip(&curves));
+        let of_face = |list: &Vec<Surface>| match faces(list) {
+            one if one.len() == 1 => one.into_iter().next(),
+            several => (!several.is_empty()).then(|| Value::list(several)),
+        };
+        let surfaces: Vec<Value> = part.built.iter().map(|list| of_face(list).unwrap_or(Value::None)).collect();
         let names = names.chain(part.surfaces.iter().map(|i| &i.name).zip(&surfaces));
         let names = names.chain(part.groups.iter().map(|g| &g.name).zip(&groups));
         let lists = [
             ("points", Value::list(all)),
-            ("curves", shown(&curves)),
-            ("surfaces", shown(&surfaces)),
+            ("curves", Value::list(curves.clone())),
+            ("surfaces", Value::list(part.built.iter().flat_map(|f| faces(f)).collect())),
             ("groups", Value::list(groups.clone())),
             ("colors", Value::list(colors)),
         ];

@@ -189,6 +189,11 @@ impl<'a> Cells<'a> {
 
     /// The face around a place: that of the smallest cell whose outer loop goes round it.
     pub fn face(&self, foot: DVec2) -> Result<Option<Face>> {
+        self.at(foot).map(|c| self.joined(c).map(|(face, _)| face)).transpose()
+    }
+
+    /// The smallest cell whose outer loop goes round a place.
+    pub fn at(&self, foot: DVec2) -> Option<usize> {
         let around = |p: DVec2| {
             let holding = (0..self.cells.len()).filter(|c| self.holds(&self.rows[self.cells[*c][0]], p));
             holding.min_by(|a, b| self.areas[self.cells[*a][0]].total_cmp(&self.areas[self.cells[*b][0]]))
@@ -201,14 +206,33 @@ impl<'a> Cells<'a> {
         let mut copies = self.base.copies(foot.into());
         copies.extend(shifts(self.base).into_iter().map(|by| foot + by));
         let near = places.into_iter().flat_map(|d| copies.iter().map(move |at| *at + d));
-        let cell = near.filter(|p| !on_border(*p)).find_map(around);
-        cell.map(|c| self.joined(c).map(|(face, _)| face)).transpose()
+        near.filter(|p| !on_border(*p)).find_map(around)
     }
 
-    /// All faces, each once.
-    pub fn faces(&self) -> Result<Vec<Face>> {
+    /// How many cells there are.
+    pub fn count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// The cells on the left of a piece and on its right; none beyond the border of the surface.
+    pub fn beside(&self, piece: usize) -> [Option<usize>; 2] {
+        [false, true].map(|backwards| self.left.get(&(piece, backwards)).copied())
+    }
+
+    /// The other side of a piece of a seam.
+    pub fn twin(&self, piece: usize) -> Option<usize> {
+        self.twins.get(&piece).map(|(twin, _)| *twin)
+    }
+
+    /// The area of a cell in (u, v).
+    pub fn size(&self, cell: usize) -> f64 {
+        self.cells[cell].iter().map(|row| self.areas[*row]).sum()
+    }
+
+    /// The faces that some cells make, each once; they go on over no piece but those of seams.
+    pub fn faces_of(&self, kept: &[bool]) -> Result<Vec<Face>> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
-        for c in 0..self.cells.len() {
+        for c in (0..self.cells.len()).filter(|c| kept[*c]) {
             if !seen.contains(&c) {
                 let (face, cells) = self.joined(c)?;
                 seen.extend(cells);
@@ -216,6 +240,11 @@ impl<'a> Cells<'a> {
             }
         }
         Ok(found)
+    }
+
+    /// All faces, each once.
+    pub fn faces(&self) -> Result<Vec<Face>> {
+        self.faces_of(&vec![true; self.cells.len()])
     }
 
     /// The seams on the border of a cell, each with its twin and the turns by which that must be moved.

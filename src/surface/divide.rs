@@ -10,7 +10,7 @@ use super::core::{Border, Domain, Side, Surface};
 use super::faces::{Edge, without_tails};
 use super::plane;
 use super::pull::{Course, is_pole};
-use super::strands::{Piece, Strand, pieces, strands};
+use super::strands::{Meets, Piece, Strand, pieces, strands};
 use super::trim::{Walk, assembled};
 use crate::base::fault::{CutFault, Result};
 use crate::base::job;
@@ -25,7 +25,7 @@ use crate::network::Chain;
 pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let base = &plane::unmapped(base, tolerance)?;
     let foot = foot_of(base, cutters, keep, tolerance)?;
-    let dividing = dividing(base, cutters, tolerance)?;
+    let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     undivided(base, &dividing, cells.faces()?.len())?;
     let Some(face) = cells.face(foot)? else {
@@ -37,7 +37,7 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
 pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     let base = &plane::unmapped(whole, tolerance)?;
-    let dividing = dividing(base, cutters, tolerance)?;
+    let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     let part = |face: &Face| Ok(assembled(base, walks(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
     let faces = cells.faces()?;
@@ -70,14 +70,14 @@ fn undivided(base: &Surface, dividing: &Dividing, parts: usize) -> Result<()> {
 }
 
 /// What divides a surface: pieces of its border and of curves, as a graph in (u, v).
-struct Dividing {
-    pieces: Vec<Piece>,
-    edges: Vec<Edge>,
+pub(super) struct Dividing {
+    pub pieces: Vec<Piece>,
+    pub edges: Vec<Edge>,
 }
 
 /// The pieces of the border and of curves that divide a surface, loose ends left out.
-fn dividing(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) -> Result<Dividing> {
-    let strands = strands(base, cutters, tolerance)?;
+pub(super) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Dividing> {
+    let strands = strands(base, cutters, meets, tolerance)?;
     let (all, along) = pieces(base, &strands, tolerance)?;
     let (edges, places) = graph(base, &all, tolerance);
     let bare: Vec<bool> = all.iter().map(|piece| piece.seam || matches!(piece.border.side, Side::Pole(_))).collect();
@@ -219,7 +219,7 @@ const START: f64 = 0.01;
 const NEAR: (f64, f64) = (NUDGE, 0.1);
 
 /// The loops of a face as walks, the outer one first.
-fn walks(pieces: &[Piece], face: &Face) -> Vec<Walk> {
+pub(super) fn walks(pieces: &[Piece], face: &Face) -> Vec<Walk> {
     let mut walks: Vec<Walk> = face.iter().map(|row| walk(pieces, row)).collect();
     walks.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
     walks

@@ -66,8 +66,17 @@ impl Piece {
     }
 }
 
+/// What cutters are taken to meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meets {
+    /// The border, each other and themselves, anywhere.
+    Anywhere,
+    /// The border anywhere; each other at their ends alone, as the curves of loops do.
+    AtEnds,
+}
+
 /// Borders and cutters with the places where they part each other.
-pub(super) fn strands(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) -> Result<Vec<Strand>> {
+pub(super) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<Strand>> {
     let mut all = Vec::new();
     for walk in natural(base, tolerance)? {
         let sides = walk.borders.len();
@@ -81,7 +90,7 @@ pub(super) fn strands(base: &Surface, cutters: &[Chain], tolerance: &Tolerance) 
         let strand = Strand { chain: Some(chain.clone()), border: None, seam: false, cutter: Some(k), drawn: false, cuts: Vec::new() };
         all.push(strand);
     }
-    part(&mut all, tolerance)?;
+    part(&mut all, meets, tolerance)?;
     Ok(all)
 }
 
@@ -132,14 +141,14 @@ pub(super) fn of_border(
 }
 
 /// Cuts strands where cutters meet them and each other.
-fn part(all: &mut [Strand], tolerance: &Tolerance) -> Result<()> {
+fn part(all: &mut [Strand], meets: Meets, tolerance: &Tolerance) -> Result<()> {
     for j in 0..all.len() {
         let Some(b) = all[j].chain.clone() else { continue };
         if all[j].cutter.is_none() {
             continue;
         }
         for i in 0..j {
-            let Some(a) = all[i].chain.clone() else { continue };
+            let Some(a) = all[i].chain.clone().filter(|_| meets == Meets::Anywhere || all[i].cutter.is_none()) else { continue };
             for m in meet(&a, &b, tolerance)? {
                 all[i].cuts.push(m.fa);
                 all[j].cuts.push(m.fb);
@@ -148,6 +157,9 @@ fn part(all: &mut [Strand], tolerance: &Tolerance) -> Result<()> {
                     all[j].cuts.push(fb);
                 }
             }
+        }
+        if meets == Meets::AtEnds {
+            continue;
         }
         let curve = b.to_curve()?;
         let share = |t: f64| curve.length_at(t) / curve.length();

@@ -228,6 +228,6 @@ fn a_plane_with_holes_keeps_them() {
     let plate = surface::trim(&ground, &[ring(4.0, 0.0)], &[vec![ring(1.0, 2.0)], vec![ring(1.0, -2.0)]], NONE, &tolerance()).unwrap();
     let part = back(&[thing("plate", "", Shown::Surface(plate))], "mm", 1.0);
     assert_eq!(part.surfaces[0].value.holes.len(), 2);
-    let found = measure::area(part.built[0].as_ref().unwrap());
+    let found = measure::area(&part.built[0][0]);
     assert!((found / (14.0 * PI) - 1.0).abs() < 1e-9, "{found}");
 }

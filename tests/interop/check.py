@@ -13,6 +13,7 @@ import traceback
 
 import jsonschema
 
+import cad_in
 import members
 import orders
 import read_back
@@ -129,6 +130,9 @@ def main():
     for model in sorted(glob.glob(os.path.join(HERE, "models", "surfaces", "*.loft"))):
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
+    wrong, n = cad_in.table(loft, os.path.join(work, "cad"))
+    tally.passed += n - len(wrong)
+    tally.failed += len(wrong)
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
     print(f"{tally.passed} passed, {tally.failed} failed")
     return 1 if tally.failed else 0

@@ -8,7 +8,7 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
-use crate::surface::{Surface, trim};
+use crate::surface::{Outlined, Side, Surface, outlined, trim};
 
 impl Part {
     /// Makes [`Part::built`] of the faces; says which could not be made.
@@ -17,11 +17,11 @@ impl Part {
         self.built = Vec::with_capacity(self.surfaces.len());
         for item in &self.surfaces {
             job::look();
-            self.built.push(match item.value.surface(origin, tolerance) {
-                Ok(surface) => Some(surface),
+            self.built.push(match item.value.surfaces(origin, tolerance) {
+                Ok(surfaces) => surfaces,
                 Err(Damage(why)) => {
                     skipped.push(Malformed::line(item.line, format!("{} at D{}: skipped: {why}", item.name, item.d)));
-                    None
+                    Vec::new()
                 }
             });
         }
@@ -30,18 +30,43 @@ impl Part {
 }
 
 impl Face {
-    /// The surface value; borders may be as far off as the file has them.
-    pub fn surface(&self, origin: Origin, tolerance: &Tolerance) -> Result<Surface, Damage> {
+    /// The surface values, one for each outer loop; borders may be as far off as the file has them.
+    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>, Damage> {
         let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.gap), ..*tolerance };
-        let surface = match (&self.outer, self.holes.as_slice()) {
-            (None, []) => self.base.clone(),
-            (outer, holes) => {
-                let outer = outer.as_deref().map(chains).unwrap_or_default();
-                let holes: Vec<Vec<Chain>> = holes.iter().map(|hole| chains(hole)).collect();
-                trim(&self.base, &outer, &holes, origin, &tolerance)?
-            }
+        if self.outer.is_none() && self.holes.is_empty() {
+            return Ok(vec![self.turned(self.base.clone())]);
+        }
+        let trimmed = || {
+            let outer = self.outer.as_deref().map(chains).unwrap_or_default();
+            let holes: Vec<Vec<Chain>> = self.holes.iter().map(|hole| chains(hole)).collect();
+            trim(&self.base, &outer, &holes, origin, &tolerance).map(|surface| vec![surface])
         };
-        Ok(if self.flipped { surface.flipped() } else { surface })
+        let bounded = || {
+            let loops: Vec<Vec<Chain>> = self.outer.iter().chain(&self.holes).map(|border| chains(border)).collect();
+            outlined(
+                &self.base,
+                &loops,
+                Outlined { has_outer: self.outer.is_some(), inside: self.inside, against: self.against },
+                origin,
+                &tolerance,
+            )
+        };
+        // Where nothing closes each loop bounds a part alone, in whatever order its curves are.
+        let made = if self.is_plain() {
+            trimmed().or_else(|why| bounded().map_err(|_| why))
+        } else {
+            bounded().or_else(|why| trimmed().map_err(|_| why))
+        };
+        Ok(made?.into_iter().map(|surface| self.turned(surface)).collect())
+    }
+
+    /// Whether the surface below has neither seams nor poles.
+    fn is_plain(&self) -> bool {
+        self.base.closed() == (false, false) && (0..self.base.n_sides()).all(|k| !matches!(self.base.side(k), Side::Pole(_)))
+    }
+
+    fn turned(&self, surface: Surface) -> Surface {
+        if self.flipped { surface.flipped() } else { surface }
     }
 }
 

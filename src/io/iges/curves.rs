@@ -177,7 +177,7 @@ impl Book {
             self.copy(curve.composite().map_or(1, |c| c.pieces.len()))?;
             pieces.push(curve);
         }
-        let gap = ordered(&mut pieces);
+        let gap = ordered(&mut pieces, if place.in_uv { 0.0 } else { self.slack() });
         if gap > self.slack() && !place.in_uv {
             let gap = self.length(gap);
             self.warn(d, format!("its pieces are {gap} apart"));
@@ -219,10 +219,12 @@ fn is_point(data: &Data) -> bool {
     }
 }
 
-/// Turns pieces that start where the one before does not end, when turning them closes the gap; returns the largest gap left.
-fn ordered(pieces: &mut [Curve]) -> f64 {
+/// Turns pieces that start where the one before does not end, when turning them closes the gap; returns the largest gap left. Points
+/// within `same` are one.
+fn ordered(pieces: &mut [Curve], same: f64) -> f64 {
     let nearest = |p: DVec3, to: &Curve| p.distance(to.start()).min(p.distance(to.end()));
     if let [first, second, ..] = pieces
+        && nearest(first.end(), second) > same
         && nearest(first.start(), second) < 0.5 * nearest(first.end(), second)
     {
         *first = first.reversed();
@@ -230,7 +232,8 @@ fn ordered(pieces: &mut [Curve]) -> f64 {
     let mut widest = 0.0_f64;
     for k in 1..pieces.len() {
         let end = pieces[k - 1].end();
-        if end.distance(pieces[k].end()) < 0.5 * end.distance(pieces[k].start()) {
+        let missed = end.distance(pieces[k].start());
+        if missed > same && end.distance(pieces[k].end()) < 0.5 * missed {
             pieces[k] = pieces[k].reversed();
         }
         widest = widest.max(end.distance(pieces[k].start()));

@@ -7,6 +7,7 @@ use super::compose::composed;
 use super::curves::Place;
 use super::damage::{Damage, damage};
 use super::entities::{Data, EdgeData, LoopEdge, Pointer};
+use super::interior::inside;
 use super::natural::is_natural;
 use super::surfaces::Base;
 use crate::base::bbox::Box3;
@@ -25,6 +26,28 @@ pub struct Border {
     pub uv: Option<Curve>,
 }
 
+/// Curves of a loop, and all that the file has of it in (u, v), those along poles too.
+#[derive(Clone, Debug, Default)]
+struct Run {
+    borders: Vec<Border>,
+    outline: Option<Vec<Curve>>,
+}
+
+impl Run {
+    fn then(mut self, next: Self) -> Self {
+        self.borders.extend(next.borders);
+        self.outline = self.outline.zip(next.outline).map(|(mut a, b)| {
+            a.extend(b);
+            a
+        });
+        self
+    }
+
+    fn none() -> Self {
+        Self { borders: Vec::new(), outline: Some(Vec::new()) }
+    }
+}
+
 /// A part of a surface inside an outer loop and outside inner ones.
 #[derive(Clone, Debug)]
 pub struct Face {
@@ -38,6 +61,10 @@ pub struct Face {
     pub flipped: bool,
     /// The base lies in a plane.
     pub flat: bool,
+    /// The normal of the base is against the file's.
+    pub against: bool,
+    /// A point inside its loops by their (u, v), where the file has all of them.
+    pub inside: Option<DVec3>,
     /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
     pub gap: f64,
 }
@@ -69,14 +96,18 @@ impl Book {
 
     fn walled(&mut self, d: Pointer, surface: Pointer, has_outer: bool, borders: &[Pointer]) -> Result<Face, Damage> {
         let base = self.base(surface, 0).map_err(|Damage(why)| damage(format!("its surface at D{surface}: {why}")))?;
-        let mut loops = Vec::with_capacity(borders.len());
+        let (mut loops, mut outlines) = (Vec::with_capacity(borders.len()), Vec::with_capacity(borders.len()));
         for border in borders {
             job::look();
             let made = self.loop_of(d, *border, &base);
-            loops.push(made.map_err(|Damage(why)| damage(format!("its border at D{border}: {why}")))?);
+            let made = made.map_err(|Damage(why)| damage(format!("its border at D{border}: {why}")))?;
+            loops.push(made.borders);
+            outlines.push(made.outline);
         }
         let reach = loops.iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union);
         let surface = self.surface(&base, &reach)?;
+        let against = base.is_against();
+        let within = if has_outer { inside(&base, &outlines) } else { None };
         self.settle(d, &base, &surface, &mut loops);
         let gap = gap(&surface, &loops);
         for border in &mut loops {
@@ -85,12 +116,23 @@ impl Book {
         let mut loops = loops.into_iter();
         let room = self.slack().max(2.0 * gap);
         let outer = if has_outer { loops.next() } else { None };
-        let outer = outer.filter(|outer| !is_natural(&base, &surface, outer, room, &self.tolerance));
-        Ok(Face { base: surface, outer, holes: loops.collect(), flipped: false, flat: base.is_flat(&self.tolerance), gap })
+        // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
+        let tells = surface.closed() != (false, false) && loops.len() > 0;
+        let outer = outer.filter(|outer| tells || !is_natural(&base, &surface, outer, room, &self.tolerance));
+        Ok(Face {
+            base: surface,
+            outer,
+            holes: loops.collect(),
+            flipped: false,
+            flat: base.is_flat(&self.tolerance),
+            against,
+            inside: within,
+            gap,
+        })
     }
 
     /// The curves of a loop; (u, v) still in the file's parameters.
-    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<Vec<Border>, Damage> {
+    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<Run, Damage> {
         let k = self.place(d)?;
         let data = std::mem::replace(&mut self.decoded[k].data, Data::Busy);
         let made = match &data {
@@ -98,9 +140,9 @@ impl Book {
             Data::Boundary { curves, .. } => {
                 let each = curves.iter().map(|c| {
                     let pieces = self.paired(face, c.space, &c.uv, base)?;
-                    Ok(if c.reversed { backwards(pieces) } else { pieces })
+                    Ok(if c.reversed { Run { borders: backwards(pieces.borders), ..pieces } } else { pieces })
                 });
-                each.collect::<Result<Vec<_>, Damage>>().map(|all| all.into_iter().flatten().collect())
+                each.collect::<Result<Vec<_>, Damage>>().map(|all| all.into_iter().fold(Run::none(), Run::then))
             }
             Data::Loop(edges) => self.edges(face, edges, base),
             // A plane's border may be a curve itself.
@@ -113,21 +155,22 @@ impl Book {
         };
         self.decoded[k].data = data;
         let made = made?;
-        if made.is_empty() {
+        if made.borders.is_empty() {
             return Err(damage("it has no curves"));
         }
         Ok(made)
     }
 
-    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<Vec<Border>, Damage> {
+    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<Run, Damage> {
         let uv = if uv == 0 { Vec::new() } else { vec![uv] };
         self.paired(face, space, &uv, base)
     }
 
     /// A curve in space with its curves in (u, v), piece by piece; where the first is missing or damaged the others make it.
-    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<Vec<Border>, Damage> {
+    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<Run, Damage> {
         let in_uv: Result<Vec<Curve>, Damage> = uv.iter().map(|d| self.curve(*d, Place::UV)).collect();
         let in_uv = in_uv.map(|curves| curves.iter().flat_map(pieces).collect::<Vec<Curve>>());
+        let outline = in_uv.as_ref().ok().filter(|curves| !curves.is_empty()).cloned();
         let in_space = if space == 0 { Err(damage("it has no curve in space")) } else { self.curve(space, Place::SPACE) };
         match (in_space, in_uv) {
             (Ok(curve), in_uv) => {
@@ -140,7 +183,7 @@ impl Book {
                 }
                 let in_uv = if in_uv.len() == pieces.len() { in_uv } else { Vec::new() };
                 let uv = in_uv.into_iter().map(Some).chain(std::iter::repeat(None));
-                Ok(pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect())
+                Ok(Run { borders: pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect(), outline })
             }
             (Err(Damage(why)), Ok(in_uv)) if !in_uv.is_empty() => {
                 if space != 0 {
@@ -154,15 +197,15 @@ impl Book {
                         made.push(Border { space, uv: Some(uv) });
                     }
                 }
-                Ok(made)
+                Ok(Run { borders: made, outline })
             }
             (Err(why), _) => Err(why),
         }
     }
 
     /// A loop of edges of a solid.
-    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<Vec<Border>, Damage> {
-        let mut made = Vec::new();
+    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<Run, Damage> {
+        let mut made = Run::none();
         for edge in edges.iter().filter(|e| !e.is_vertex) {
             let (list, index) = edge.edge;
             let Data::Edges(all) = self.data(list)? else {
@@ -171,10 +214,10 @@ impl Book {
             let found = index.checked_sub(1).and_then(|k| all.get(k)).copied();
             let found = found.ok_or_else(|| damage(format!("the list at D{list} has no edge {index}")))?;
             let mut pieces = self.paired(face, found.curve, &edge.uv, base)?;
-            if let [one] = pieces.as_mut_slice() {
+            if let [one] = pieces.borders.as_mut_slice() {
                 one.space = self.between(&found, &one.space);
             }
-            made.extend(if edge.reversed { backwards(pieces) } else { pieces });
+            made = made.then(if edge.reversed { Run { borders: backwards(pieces.borders), ..pieces } } else { pieces });
         }
         Ok(made)
     }

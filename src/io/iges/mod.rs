@@ -19,6 +19,7 @@ mod entity_faces;
 mod entity_surfaces;
 mod faces;
 mod global;
+mod interior;
 mod lines;
 mod natural;
 mod nets;

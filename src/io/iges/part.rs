@@ -57,8 +57,8 @@ pub struct Part {
     pub curves: Vec<Item<Curve>>,
     /// Surfaces, trimmed or whole.
     pub surfaces: Vec<Item<Face>>,
-    /// What [`Part::build`] made of them; none where it could not.
-    pub built: Vec<Option<Surface>>,
+    /// What [`Part::build`] made of them: one each, several where a face has several outer loops; none where it could not.
+    pub built: Vec<Vec<Surface>>,
     /// Groups, shells and solids.
     pub groups: Vec<Group>,
     /// What has the same colour, with red, green and blue from 0 to 1.
@@ -205,7 +205,9 @@ impl Maker {
             job::look();
             let entry = &self.book.entries[k];
             let (d, kind, status) = (entry.d, entry.kind, entry.status);
-            let alone = !status.physically_dependent || members.contains(&d);
+            // Faces and shells may be marked as parts although nothing has them.
+            let is_bare = matches!(self.book.decoded[k].data, Data::Face { .. } | Data::Shell(_)) && !parts.contains(&d);
+            let alone = !status.physically_dependent || members.contains(&d) || is_bare;
             if status.blanked || !PURPOSES.contains(&status.purpose) || !alone || parts.contains(&d) {
                 continue;
             }
@@ -221,6 +223,7 @@ impl Maker {
                     self.points(d, points);
                 }
                 _ if CURVES.contains(&kind) || kind == 106 => self.curve(d),
+                (_, Data::Face { .. }) => self.surface(d, false),
                 _ if SURFACES.contains(&kind) => self.surface(d, false),
                 _ => {}
             }
@@ -234,7 +237,7 @@ impl Maker {
         self.part
     }
 
-    /// Surfaces that are only the ground of faces, and what visible groups hold.
+    /// Surfaces that are only the ground of faces, faces of shells and shells of solids, and what visible groups hold.
     fn relations(&self) -> (BTreeSet<Pointer>, BTreeSet<Pointer>) {
         let (mut parts, mut members) = (BTreeSet::new(), BTreeSet::new());
         for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
@@ -245,6 +248,8 @@ impl Maker {
                 | Data::OffsetSurface { base: surface, .. } => {
                     parts.insert(*surface);
                 }
+                Data::Shell(faces) => parts.extend(faces.iter().map(|(face, _)| *face)),
+                Data::Solid { shells } => parts.extend(shells),
                 Data::Group(list) if !entry.status.blanked => members.extend(list),
                 _ => {}
             }
@@ -444,6 +449,8 @@ impl Book {
             holes: Vec::new(),
             flipped: false,
             flat: base.is_flat(&self.tolerance),
+            against: base.is_against(),
+            inside: None,
             gap: 0.0,
         })
     }

@@ -31,6 +31,8 @@ pub enum Base {
         profile: Curve,
         /// First and last angle.
         angles: (f64, f64),
+        /// The file's parameter where the profile is an arc and begins: its angle there.
+        first: Option<f64>,
     },
     /// u is the profile's parameter from 0 to 1, v runs along `by`.
     Swept {
@@ -101,8 +103,15 @@ impl Book {
                 let line = self.curve(*axis, Place::SPACE)?;
                 let (about, to) = (line.start(), line.end());
                 let direction = math::unit(to - about, 0.0).ok_or_else(|| damage("its axis has no length"))?;
+                let first = match self.data(*profile)? {
+                    Data::Arc { center, start, .. } => {
+                        let angle = math::atan2(start[1] - center[1], start[0] - center[0]);
+                        Some(if angle < 0.0 { angle + std::f64::consts::TAU } else { angle })
+                    }
+                    _ => None,
+                };
                 let profile = self.curve(*profile, Place::SPACE)?;
-                Ok(Base::Turned { axis: Axis { about, direction }, profile, angles: angles(*start, *end)? })
+                Ok(Base::Turned { axis: Axis { about, direction }, profile, angles: angles(*start, *end)?, first })
             }
             Data::Tabulated { profile, end } => {
                 let profile = self.curve(*profile, Place::SPACE)?;
@@ -206,19 +215,21 @@ impl Book {
             return Err(damage("its radius must be above 0"));
         }
         let across = axis.direction.cross(reference);
-        let angles = (0.0, std::f64::consts::TAU);
-        let turned = |profile: Curve| Base::Turned { axis, profile, angles };
+        let turned = |profile: &Curve| {
+            let net = revolve::net(&profile.to_nurbs(&self.tolerance)?, &axis, std::f64::consts::TAU);
+            Ok(Base::Net(net, [f64::NAN; 4]))
+        };
         match kind {
             192 => Ok(Base::Unbounded { axis, radius, slope: 0.0, reference }),
             194 => Ok(Base::Unbounded { axis, radius, slope: math::tan(b.to_radians()), reference }),
             196 => {
                 let start = axis.about - axis.direction * radius;
-                Ok(turned(build::arc_center(axis.about, start, std::f64::consts::PI, -across, self.origin)?))
+                turned(&build::arc_center(axis.about, start, std::f64::consts::PI, -across, self.origin)?)
             }
             _ => {
                 let center = axis.about + reference * radius;
                 let start = center + reference * (b * self.scale);
-                Ok(turned(build::circle_start(center, start, -across, self.origin)?))
+                turned(&build::circle_start(center, start, -across, self.origin)?)
             }
         }
     }
@@ -281,8 +292,8 @@ impl Base {
         Ok(match self {
             Self::Net(net, range) => Self::Net(carried_net(net, m), range),
             Self::Plane(at, u, v) => Self::Plane(point(at), turns(u), turns(v)),
-            Self::Turned { axis, profile, angles } if is_rigid(m) => {
-                Self::Turned { axis: moved(&axis), profile: carried(&profile, m, tolerance)?, angles }
+            Self::Turned { axis, profile, angles, first } if is_rigid(m) => {
+                Self::Turned { axis: moved(&axis), profile: carried(&profile, m, tolerance)?, angles, first }
             }
             Self::Unbounded { axis, radius, slope, reference } if is_rigid(m) => {
                 let slope = slope * sense;
@@ -298,6 +309,11 @@ impl Base {
                 Self::Ruled { rails: [carried(&a, m, tolerance)?, carried(&b, m, tolerance)?], by_length }
             }
         })
+    }
+
+    /// Whether the normal of its net is against the file's: that of a turned surface has the angle first.
+    pub fn is_against(&self) -> bool {
+        matches!(self, Self::Turned { .. })
     }
 
     /// Whether it lies in a plane.
@@ -320,7 +336,7 @@ impl Base {
         match self {
             Self::Net(net, _) => Ok(net.clone()),
             Self::Plane(..) => Err(damage("it is a plane without a border")),
-            Self::Turned { axis, profile, angles } => {
+            Self::Turned { axis, profile, angles, .. } => {
                 let turn = Motion::rotation(axis.about, axis.direction, angles.0);
                 let profile = profile.moved(&turn).to_nurbs(tolerance)?;
                 Ok(revolve::net(&profile, axis, angles.1 - angles.0))
@@ -329,6 +345,9 @@ impl Base {
             Self::Ruled { rails: [a, b], .. } => Ok(ruled_net(&a.to_nurbs(tolerance)?, &b.to_nurbs(tolerance)?)),
             Self::Unbounded { axis, radius, slope, reference } => {
                 let (low, high) = along(axis, reach)?;
+                // A cone ends at its apex.
+                let apex = -radius / slope;
+                let (low, high) = (if *slope > 0.0 { low.max(apex) } else { low }, if *slope < 0.0 { high.min(apex) } else { high });
                 let at = |h: f64| axis.about + axis.direction * h + *reference * (radius + slope * h).max(0.0);
                 let profile = build::line(at(low), at(high), crate::base::origin::Origin::NONE)?.to_nurbs(tolerance)?;
                 Ok(revolve::net(&profile, axis, std::f64::consts::TAU))
@@ -346,7 +365,9 @@ impl Base {
             }
             Self::Net(..) | Self::Unbounded { .. } => None,
             Self::Plane(at, a, b) => Some(*at + *a * u + *b * v),
-            Self::Turned { axis, profile, .. } => Some(Motion::rotation(axis.about, axis.direction, v).point(along_file(profile, u)?)),
+            Self::Turned { axis, profile, first, .. } => {
+                Some(Motion::rotation(axis.about, axis.direction, v).point(along_file(profile, *first, u)?))
+            }
             Self::Swept { profile, by } => {
                 let (a, b) = profile.domain();
                 Some(profile.point(a + (b - a) * u.clamp(0.0, 1.0)) + *by * v)
@@ -371,11 +392,15 @@ impl Base {
     }
 }
 
-/// The point of a profile at the parameter of the file, where the curve still has that one.
-fn along_file(profile: &Curve, t: f64) -> Option<DVec3> {
+/// The point of a profile at the parameter of the file, where the curve still has that one or is an arc whose first one is known.
+fn along_file(profile: &Curve, first: Option<f64>, t: f64) -> Option<DVec3> {
     use crate::geometry::curve::Shape;
     let (a, b) = profile.domain();
-    matches!(profile.shape(), Shape::Line(..) | Shape::Nurbs(_)).then(|| profile.point(t.clamp(a, b)))
+    match (profile.shape(), first) {
+        (Shape::Line(..) | Shape::Nurbs(_), _) => Some(profile.point(t.clamp(a, b))),
+        (Shape::Arc(arc), Some(first)) => Some(profile.point(a + (b - a) * ((t - first) / arc.sweep).clamp(0.0, 1.0))),
+        _ => None,
+    }
 }
 
 /// Whether a matrix keeps lengths and angles.
