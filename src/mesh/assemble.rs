@@ -22,7 +22,7 @@ use super::rows::{self, Wish};
 use super::sizing::{MOST, Remark, Sizing};
 use super::together::Asked;
 use super::uneven::Uneven;
-use super::{ahead, blame, foresee, inside, lines, second_order, shape_check, strips, together, uneven, verify};
+use super::{ahead, blame, border_error, foresee, inside, lines, second_order, shape_check, strips, together, uneven, verify};
 use crate::base::digest::Digest;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
@@ -454,6 +454,7 @@ fn finish(input: &Input, layout: Layout, done: Done) -> Part {
     if input.plan.order == 2 {
         second_order::add(input, &layout, &nodes, &prepared, &mut mesh);
     }
+    mesh.border_error = border_error::of_free_borders(&layout, &nodes);
     mesh.charts = Charts(prepared.into_iter().map(Prepared::into_chart).collect());
     Part { mesh, ranges, explanation, layout, nodes, sizing }
 }

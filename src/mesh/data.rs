@@ -75,6 +75,8 @@ pub struct Mesh {
     pub groups: Vec<Group>,
     /// Where the nodes of its faces lie on their surfaces; empty for meshes that were read.
     pub charts: Charts,
+    /// Largest distance between the steps of borders of one face alone and their curves, model units; 0 for meshes that were read.
+    pub border_error: f64,
 }
 
 impl Mesh {
@@ -86,6 +88,7 @@ impl Mesh {
             *self = other;
             return;
         }
+        self.border_error = self.border_error.max(other.border_error);
         let n = self.nodes.len() as u32;
         let (l, t, q) = (self.lines.len() as u32, self.triangles.len() as u32, self.quads.len() as u32);
         self.nodes.extend(other.nodes);

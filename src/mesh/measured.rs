@@ -24,7 +24,7 @@ impl Mesh {
             };
             reuse.map_or_else(measure, |reuse| reuse.chord(self.face_key(faces[k], chart, tolerance), measure))
         });
-        Some(errors.into_iter().fold(0.0, f64::max))
+        Some(errors.into_iter().fold(self.border_error, f64::max))
     }
 
     /// Everything that the chord error of a face follows from, by content.

@@ -8,6 +8,7 @@ impl Mesh {
     pub fn moved(&self, motion: &Motion) -> Self {
         let mut moved = self.clone();
         moved.nodes.iter_mut().for_each(|p| *p = motion.point(*p));
+        moved.border_error *= motion.scale();
         for chart in &mut moved.charts.0 {
             chart.surface = chart.surface.moved(motion);
             chart.flipped ^= motion.mirrors();

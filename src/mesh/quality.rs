@@ -166,8 +166,8 @@ impl Mesh {
         center(&mut { faces }).or_else(|| center(&mut { lines })).or_else(|| center(&mut { nodes }))
     }
 
-    /// Largest distance mesh–surface at 25 points a triangle (a quad as its two triangles), model units; `None` where
-    /// the surfaces are not known (a mesh that was read) or there is no face.
+    /// Largest distance mesh–surface at 25 points a triangle (a quad as its two triangles), and of free borders from their curves at
+    /// seven places a step, model units; `None` where the surfaces are not known (a mesh that was read) or there is no face.
     pub fn chord_error(&self, tolerance: &Tolerance) -> Option<f64> {
         self.chord_error_again(tolerance, None)
     }

@@ -148,8 +148,23 @@ impl Plain for Remark {
 pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
     let mut to = Vec::new();
     let Built { mesh, explanation, remarks } = built;
-    let Mesh { name, order, nodes, points, lines, triangles, quads, line_mids, triangle_mids, quad_mids, faces, groups, charts } = mesh;
-    (name, order).put(&mut to);
+    let Mesh {
+        name,
+        order,
+        nodes,
+        points,
+        lines,
+        triangles,
+        quads,
+        line_mids,
+        triangle_mids,
+        quad_mids,
+        faces,
+        groups,
+        charts,
+        border_error,
+    } = mesh;
+    (name, (order, border_error)).put(&mut to);
     (nodes, points).put(&mut to);
     (lines, (triangles, quads)).put(&mut to);
     (line_mids, (triangle_mids, quad_mids)).put(&mut to);
@@ -169,7 +184,7 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     type Parts = (Vec<[u32; 2]>, (Vec<[u32; 3]>, Vec<[u32; 4]>));
     type Mids = (Vec<u32>, (Vec<[u32; 3]>, Vec<[u32; 4]>));
     let mut from = Bytes(bytes);
-    let (name, order) = Plain::take(&mut from)?;
+    let (name, (order, border_error)) = Plain::take(&mut from)?;
     let (nodes, points) = Plain::take(&mut from)?;
     let (lines, (triangles, quads)): Parts = Plain::take(&mut from)?;
     let (line_mids, (triangle_mids, quad_mids)): Mids = Plain::take(&mut from)?;
@@ -180,7 +195,22 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
         Some(Chart { surface: (*surfaces.get(surface as usize)?).clone(), shape, frame, flipped })
     });
     let charts = Charts(charts.collect::<Option<_>>()?);
-    let mesh = Mesh { name, order, nodes, points, lines, triangles, quads, line_mids, triangle_mids, quad_mids, faces, groups, charts };
+    let mesh = Mesh {
+        name,
+        order,
+        nodes,
+        points,
+        lines,
+        triangles,
+        quads,
+        line_mids,
+        triangle_mids,
+        quad_mids,
+        faces,
+        groups,
+        charts,
+        border_error,
+    };
     let sound = from.is_empty() && is_sound(&mesh);
     sound.then(|| Built { mesh, explanation: Explanation { lines: said, ..Explanation::default() }, remarks })
 }

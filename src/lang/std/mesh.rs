@@ -77,7 +77,7 @@ fields! {
     fn min_quality(of: Arc<MeshValue>) -> f64 = |cx, of| Ok(quality(cx, &of)?.min_quality);
     /// Longest over shortest side of an element, the largest of all.
     fn max_aspect(of: Arc<MeshValue>) -> f64 = |cx, of| Ok(quality(cx, &of)?.max_aspect);
-    /// The largest distance between the mesh and its surfaces.
+    /// The largest distance between the mesh and its surfaces, and between free borders and their curves.
     fn chord_error(of: Arc<MeshValue>) -> Length = |cx, of| {
         let tolerance = cx.tolerance()?;
         let mesh = cx.mesh(&of)?;

@@ -23,8 +23,12 @@ const CLEAR: f64 = 0.5;
 const APART: f64 = 0.55;
 /// Least distance of a node, in the chart, to an edge of the border whose chord is off the surface, over the side of the cells.
 const BESIDE: f64 = 0.25;
-/// Distance of the middle of an edge from the surface, over its length, from which on distances to its chord say little.
+/// Distance of an edge from the surface, over its length, from which on distances to its chord say little.
 const BENT: f64 = 0.05;
+/// Parts of an edge at whose ends its distance from the surface is looked at.
+const PLACES: u32 = 8;
+/// Least distance of a node, in the chart, to any edge of the border, over the side of the cells: nearer, it lies on the edge.
+const ON: f64 = 1e-3;
 /// Roots along a side at most.
 const ROOTS: f64 = 2048.0;
 /// Places along each direction at which the largest wanted length is looked for.
@@ -71,7 +75,7 @@ pub fn nodes(task: &Plot) -> Result<Grown, Trouble> {
         });
     }
     tree.balance();
-    Ok(corners(task, &tree))
+    Ok(corners(task, &segments, &tree))
 }
 
 /// The largest wanted length over a box of the chart, by looking.
@@ -95,7 +99,7 @@ fn span(ground: &dyn Ground, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
 /// A corner of leaves: its place on the finest grid, and a leaf.
 type Corner = ((u32, u32), u32);
 
-fn corners(task: &Plot, tree: &Tree) -> Grown {
+fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> Grown {
     let depth = tree.cells().iter().map(|c| c.level).max().unwrap_or(0);
     let mut found: Vec<Corner> = Vec::new();
     for (k, cell) in tree.cells().iter().enumerate().filter(|(_, c)| c.is_leaf() && c.class != Class::Exterior) {
@@ -117,7 +121,10 @@ fn corners(task: &Plot, tree: &Tree) -> Grown {
         }
         let sides = leaves.iter().map(|c| (span(task.ground, tree, c).0, tree.side(c.level)));
         let side = sides.reduce(|a, b| (a.0.min(b.0), a.1.min(b.1))).unwrap_or_default();
-        taken.consider(xy, side);
+        let mut edges = leaves.iter().flat_map(|c| &c.segments).map(|s| segments[*s as usize]);
+        if !edges.any(|edge| is_beside(xy, edge, side.1, ON)) {
+            taken.consider(xy, side);
+        }
     }
     taken.grown
 }
@@ -138,8 +145,11 @@ impl<'a> Taken<'a> {
         let outline = task.outline;
         let is_bent = |edge: &[u32; 2]| {
             let [a, b] = edge.map(|n| n as usize);
-            let there = task.ground.spot(outline.xy[a].midpoint(outline.xy[b])).p;
-            there.distance(outline.p[a].midpoint(outline.p[b])) > BENT * outline.length(*edge)
+            let off = |k: u32| {
+                let t = f64::from(k) / f64::from(PLACES);
+                apart(task.ground.spot(outline.xy[a].lerp(outline.xy[b], t)).p, outline.p[a], outline.p[b])
+            };
+            (1..PLACES).any(|k| off(k) > BENT * outline.length(*edge))
         };
         let bent = outline.edges().filter(is_bent).map(|edge| edge.map(|n| outline.xy[n as usize])).collect();
         let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
@@ -155,7 +165,7 @@ impl<'a> Taken<'a> {
             let [a, b] = outline.edge(sample.tag).map(|n| outline.p[n as usize]);
             apart(p, a, b) < CLEAR * side
         });
-        let beside = |[a, b]: &[DVec2; 2]| apart_in_chart(xy / in_chart, *a / in_chart, *b / in_chart) < BESIDE;
+        let beside = |edge: &[DVec2; 2]| is_beside(xy, *edge, in_chart, BESIDE);
         if near || self.bent.iter().any(beside) || self.nodes.any(p, APART * side, side, |_, _| true) {
             return;
         }
@@ -166,7 +176,8 @@ impl<'a> Taken<'a> {
     }
 }
 
-/// Distance of a place of the chart from a segment.
-fn apart_in_chart(p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    apart(p.extend(0.0), a.extend(0.0), b.extend(0.0))
+/// Whether a place of the chart is nearer to an edge than a share of the sides of the cells.
+fn is_beside(xy: DVec2, [a, b]: [DVec2; 2], sides: DVec2, share: f64) -> bool {
+    let [p, a, b] = [xy, a, b].map(|place| (place / sides).extend(0.0));
+    apart(p, a, b) < share
 }

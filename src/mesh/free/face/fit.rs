@@ -97,7 +97,7 @@ pub(super) fn fitting(
     let smooth = made.input.plan.smooth.map_or(smooth, |n| n.0 as usize);
     let care = Care { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
-    let longest = Longest::new(face.size.0, outline, &rules);
+    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
     let mut fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
     if face.method.is_sparing() {
         let mut laid = fit.laid(&rules, job)?;
