@@ -92,8 +92,8 @@ impl Work<'_> {
         (b - a).cross(d - a).length() <= self.ask.point * longest
     }
 
-    /// Whether the surface between the places of a triangle without area goes round a good way off the line of its corners: they
-    /// are on both sides of a seam, or in several poles.
+    /// Whether the surface between the places of a triangle without area goes round a good way off the line of its corners, and
+    /// farther than the chord error: they are on both sides of a seam, or in several poles.
     fn wraps(&self, web: &Web, c: [u32; 3]) -> bool {
         let sheet = self.ask.sheet;
         let places = c.map(|n| DVec2::from(sheet.uv(web.xy[n as usize])));
@@ -106,7 +106,8 @@ impl Work<'_> {
             .unwrap_or_default();
         let off = sheet.surface().point_by(sheet.quick(), middle.x, middle.y) - a;
         let along = (b - a).normalize_or_zero();
-        (off - along * off.dot(along)).length() > ROUND * a.distance(b) + self.ask.point
+        let near = (ROUND * a.distance(b) + self.ask.point).max(self.ask.limits.chord.unwrap_or(0.0));
+        (off - along * off.dot(along)).length() > near
     }
 
     /// Whether a side of a triangle that is no edge of the border is longer than cells may be.
