@@ -41,6 +41,8 @@ pub const NUDGE: f64 = 1e-6;
 pub const NEWTON_STEP: f64 = 1e-8;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
+/// Relative errors of integrals up to which what does not fall from one size of cells to the next is rounding.
+pub const MEASURE_ROUNDING: f64 = 1e-8;
 /// What is integrated counts as at least this share of what it could be with the same lengths: below that it is rounding.
 pub const LEAST_SIZE: f64 = 1e-4;
 /// Relative error of a volume of which only the sign is wanted, where the body is not thin.

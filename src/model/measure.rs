@@ -6,7 +6,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::measure_quadrature::{Rectangle, WHOLE, flat_integral, integral};
+use super::measure_flat::flat_integral;
+use super::measure_quadrature::{Rectangle, WHOLE, integral};
 use super::measure_triangles::triangles_integral;
 use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;

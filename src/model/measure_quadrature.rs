@@ -1,19 +1,19 @@
 //! Integrals over surfaces: Gauss–Legendre products of rising order, cell by cell, halved where that is not enough.
 
-use glam::DVec3;
-
+use super::measure_progress::Progress;
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::{EPSILON, NUDGE};
-use crate::network::Chain;
-use crate::surface::{Domain, Jet2, Side, Surface};
+use crate::surface::{Domain, Jet2, Surface};
 
 /// Orders of the rules tried one after the other on a cell.
-const ORDERS: [usize; 4] = [4, 7, 11, 16];
+pub(super) const ORDERS: [usize; 4] = [4, 7, 11, 16];
 /// A cell is halved at most so often in each direction.
-const DEEPEST: u32 = 12;
+pub(super) const DEEPEST: u32 = 12;
 /// Cells examined in all.
-const MOST_CELLS: usize = 1 << 17;
+const MOST_CELLS: usize = 1 << 14;
+/// A rule that differs from the one before by more than this share of what that differed by shows that the function is not smooth.
+const SMOOTH: f64 = 0.25;
 /// Cells of a first division above which their errors may be as large as they are.
 const MANY: usize = 1 << 13;
 /// Cells that a rule looks at, at most, for each one that needs it.
@@ -33,6 +33,15 @@ struct Cell {
     x: (f64, f64),
     y: (f64, f64),
     depth: u32,
+}
+
+impl Cell {
+    /// Its four halves in both directions.
+    fn quarters(self) -> [Self; 4] {
+        let (x, y) = (0.5 * (self.x.0 + self.x.1), 0.5 * (self.y.0 + self.y.1));
+        let (left, right, below, above) = ((self.x.0, x), (x, self.x.1), (self.y.0, y), (y, self.y.1));
+        [(left, below), (right, below), (left, above), (right, above)].map(|(x, y)| Self { x, y, depth: self.depth + 1 })
+    }
 }
 
 /// Low and high of x and of y.
@@ -56,7 +65,7 @@ pub fn integral<const N: usize>(
     // A triangle's lines do not follow the square.
     let us = if surface.domain() == Domain::Triangle { Vec::new() } else { us };
     let (us, vs) = (spans(apart(us, kinks.0), within.0), spans(apart(vs, kinks.1), within.1));
-    let mut open: Vec<Cell> = vs.iter().flat_map(|y| us.iter().map(|x| Cell { x: *x, y: *y, depth: 0 })).collect();
+    let open: Vec<Cell> = vs.iter().flat_map(|y| us.iter().map(|x| Cell { x: *x, y: *y, depth: 0 })).collect();
     let share = accuracy / open.len() as f64;
     let first = products(surface, (&us, &vs), &rules[0], f);
     let second = products(surface, (&us, &vs), &rules[1], f);
@@ -64,53 +73,74 @@ pub fn integral<const N: usize>(
     let scale = sizes.iter().fold([0.0; N], |sum, size| std::array::from_fn(|i| sum[i] + size[i]));
     // Of many cells the large ones hold nearly everything: they get a share as large.
     let own = if open.len() > MANY { accuracy } else { 0.0 };
-    let mut allowed: Vec<Sums<N>> = sizes.iter().map(|size| std::array::from_fn(|i| share * scale[i] + own * size[i])).collect();
+    let allowed: Vec<Sums<N>> = sizes.iter().map(|size| std::array::from_fn(|i| share * scale[i] + own * size[i])).collect();
     let mut known: Vec<Vec<Sums<N>>> = first.into_iter().zip(second).map(|(a, b)| vec![a, b]).collect();
     for rule in &rules[2..] {
         sharpen(surface, (&us, &vs), rule, f, &mut known, &allowed);
     }
     // Where the first division has many cells each of them may still be halved.
     let most = MOST_CELLS.max(2 * open.len());
-    // The last cell is taken first: turn the list round so that sums run in one order.
-    open.reverse();
-    known.reverse();
-    allowed.reverse();
+    let mut open: Vec<(Cell, Vec<Sums<N>>, Sums<N>)> =
+        open.into_iter().zip(known).zip(allowed).map(|((cell, known), limit)| (cell, known, limit)).collect();
     let (mut sum, mut error, mut seen) = ([0.0; N], [0.0; N], 0);
-    while let (Some(cell), Some(start), Some(limit)) = (open.pop(), known.pop(), allowed.pop()) {
-        job::look();
-        seen += 1;
-        let known_of = |k: usize| start.get(k).copied();
-        let by_rule = |k: usize| known_of(k).unwrap_or_else(|| product(surface, &cell, &rules[k], f));
-        let mut value = by_rule(0);
-        let mut apart = [f64::INFINITY; N];
-        for k in 1..rules.len() {
-            let next = by_rule(k);
-            apart = std::array::from_fn(|i| (next[i] - value[i]).abs());
-            value = next;
-            if small(&apart, &limit) {
-                break;
+    let mut progress = Progress::new(accuracy, scale);
+    // Cells of one size after the other: where there are too many, what is left is of one size everywhere.
+    while !open.is_empty() {
+        let mut rough = Vec::new();
+        for (cell, start, limit) in open {
+            job::look();
+            let (value, apart) = measured(&rules, &start, &limit, |k| product(surface, &cell, &rules[k], f));
+            if small(&apart, &limit) || cell.depth >= DEEPEST {
+                add(&mut sum, &value);
+                add(&mut error, &apart);
+            } else {
+                rough.push((cell, value, apart, limit));
             }
+            seen += 1;
         }
-        if small(&apart, &limit) || cell.depth >= DEEPEST || seen + open.len() >= most {
-            for i in 0..N {
-                sum[i] += value[i];
-                error[i] += apart[i];
-            }
-            continue;
+        let left = rough.iter().fold(error, |all, (_, _, apart, _)| std::array::from_fn(|i| all[i] + apart[i]));
+        if progress.is_over(&left) || seen + 4 * rough.len() > most {
+            rough.iter().for_each(|(_, value, apart, _)| {
+                add(&mut sum, value);
+                add(&mut error, apart);
+            });
+            break;
         }
-        let (x, y) = (0.5 * (cell.x.0 + cell.x.1), 0.5 * (cell.y.0 + cell.y.1));
-        for (low, high) in
-            [((cell.x.0, x), (cell.y.0, y)), ((x, cell.x.1), (cell.y.0, y)), ((cell.x.0, x), (y, cell.y.1)), ((x, cell.x.1), (y, cell.y.1))]
-        {
-            open.push(Cell { x: low, y: high, depth: cell.depth + 1 });
-            known.push(Vec::new());
-            allowed.push(std::array::from_fn(|i| share * scale[i] + 0.25 * (limit[i] - share * scale[i])));
-        }
+        let halves = |(cell, _, _, limit): (Cell, Sums<N>, Sums<N>, Sums<N>)| {
+            let limit = std::array::from_fn(|i| share * scale[i] + 0.25 * (limit[i] - share * scale[i]));
+            cell.quarters().map(|quarter| (quarter, Vec::new(), limit))
+        };
+        open = rough.into_iter().flat_map(halves).collect();
     }
     (sum, error)
 }
 
-fn small<const N: usize>(apart: &Sums<N>, limit: &Sums<N>) -> bool {
+/// The integrals over a cell by rules of rising order, the first of them known, until they are settled or show that the function is
+/// not smooth there; and what the last two differ by.
+fn measured<const N: usize>(
+    rules: &[Vec<(f64, f64)>],
+    known: &[Sums<N>],
+    limit: &Sums<N>,
+    by_rule: impl Fn(usize) -> Sums<N>,
+) -> (Sums<N>, Sums<N>) {
+    let value_of = |k: usize| known.get(k).copied().unwrap_or_else(|| by_rule(k));
+    let (mut value, mut apart) = (value_of(0), [f64::INFINITY; N]);
+    for k in 1..rules.len() {
+        let (next, before) = (value_of(k), apart.map(|a| SMOOTH * a));
+        apart = std::array::from_fn(|i| (next[i] - value[i]).abs());
+        value = next;
+        if small(&apart, limit) || (0..N).any(|i| apart[i] > limit[i].max(before[i])) {
+            break;
+        }
+    }
+    (value, apart)
+}
+
+fn add<const N: usize>(sum: &mut Sums<N>, value: &Sums<N>) {
+    (0..N).for_each(|i| sum[i] += value[i]);
+}
+
+pub(super) fn small<const N: usize>(apart: &Sums<N>, limit: &Sums<N>) -> bool {
     apart.iter().zip(limit).all(|(a, limit)| a <= limit)
 }
 
@@ -222,96 +252,4 @@ fn weighed<'a, const N: usize>(
         }
     }
     sum
-}
-
-/// The boundary of a flat surface in walking order, each chain with the fractions it is run between.
-fn boundary(surface: &Surface) -> Vec<(Chain, f64, f64)> {
-    let n = surface.n_sides();
-    (0..n)
-        .filter_map(|k| match surface.side(k) {
-            // Sides run with ascending u or v: the walk takes the far ones backwards.
-            Side::Chain { chain, from, to } if surface.domain() == Domain::Loop || k < 2 => Some((chain, from, to)),
-            Side::Chain { chain, from, to } => Some((chain, to, from)),
-            _ => None,
-        })
-        .collect()
-}
-
-/// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
-///
-/// `f` gets jets with unit derivatives in the plane, their cross product the surface's normal.
-pub fn flat_integral<const N: usize>(
-    surface: &Surface,
-    accuracy: f64,
-    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
-) -> (Sums<N>, Sums<N>) {
-    let walk = boundary(surface);
-    let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
-    let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
-    let runs: Vec<(usize, f64, f64)> = walk
-        .iter()
-        .enumerate()
-        .flat_map(|(k, (chain, from, to))| {
-            let mut stops = crate::surface::chain_breaks(chain);
-            stops.insert(0, 0.0);
-            stops.push(1.0);
-            if from > to {
-                stops.reverse();
-            }
-            stops.windows(2).map(|w| (k, w[0], w[1])).collect::<Vec<_>>()
-        })
-        .collect();
-    // The area vector says where the plane is and which side is up.
-    let vector = |rule: &[(f64, f64)]| {
-        runs.iter().fold(DVec3::ZERO, |sum, &(k, a, b)| {
-            rule.iter().fold(sum, |sum, (x, w)| {
-                let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
-                sum + (jet.p - origin).cross(jet.d1) * (0.25 * (b - a) * w)
-            })
-        })
-    };
-    let Some(normal) = crate::base::math::unit(vector(&rules[1]), 0.0) else { return ([0.0; N], [0.0; N]) };
-    let eu = crate::base::math::any_normal(normal);
-    let ev = normal.cross(eu);
-    let inner = gauss_legendre(ORDERS[0]);
-    // ∬ f da db = ∮ F db with F = ∫ f da from the origin's line.
-    let along = |p: DVec3, f: &dyn Fn(&Jet2) -> Sums<N>| {
-        let (a, foot) = ((p - origin).dot(eu), p - eu * (p - origin).dot(eu));
-        inner.iter().fold([0.0; N], |sum, (x, w)| {
-            let jet = Jet2 { p: foot + eu * (0.5 * a * (1.0 + x)), du: eu, dv: ev, ..Jet2::default() };
-            let value = f(&jet);
-            std::array::from_fn(|i| sum[i] + 0.5 * a * w * value[i])
-        })
-    };
-    // The value along a run, or its size.
-    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64), size: bool| {
-        rule.iter().fold([0.0; N], |sum, (x, w)| {
-            let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
-            let (value, step) = (if size { along(jet.p, sized) } else { along(jet.p, f) }, 0.5 * (b - a) * w * jet.d1.dot(ev));
-            std::array::from_fn(|i| sum[i] + if size { (step * value[i]).abs() } else { step * value[i] })
-        })
-    };
-    let scale = runs.iter().fold([0.0; N], |scale: Sums<N>, run| {
-        let size = round(&rules[0], *run, true);
-        std::array::from_fn(|i| scale[i] + size[i])
-    });
-    let share = accuracy / runs.len() as f64;
-    let (mut sum, mut error) = ([0.0; N], [0.0; N]);
-    let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
-    while let Some((run, depth)) = open.pop() {
-        job::look();
-        let (rough, value) = (round(&rules[0], run, false), round(&rules[1], run, false));
-        let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
-        if depth == DEEPEST || small(&apart, &scale.map(|s| share * s)) {
-            for i in 0..N {
-                sum[i] += value[i];
-                error[i] += apart[i];
-            }
-        } else {
-            let middle = 0.5 * (run.1 + run.2);
-            open.push(((run.0, middle, run.2), depth + 1));
-            open.push(((run.0, run.1, middle), depth + 1));
-        }
-    }
-    (sum, error)
 }

@@ -12,6 +12,8 @@ pub mod imprint;
 mod imprint_pieces;
 pub mod loops;
 pub mod measure;
+mod measure_flat;
+mod measure_progress;
 mod measure_quadrature;
 mod measure_strips;
 mod measure_triangles;
