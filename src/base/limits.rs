@@ -43,6 +43,8 @@ limits! {
     pub const WORK_OF_A_CURVE: u64 = 5_000;
     /// The same for each surface of the model.
     pub const WORK_OF_A_SURFACE: u64 = 200_000;
+    /// Work of the areas, volumes and boxes of a report, in evaluations of curves and surfaces, beside that of its surfaces.
+    pub const REPORT_WORK: u64 = 10_000_000;
     /// Work of one output or picture, in evaluations of curves and surfaces.
     pub const FILE_WORK: u64 = 100_000_000;
     /// Work of one call, in evaluations of curves and surfaces.

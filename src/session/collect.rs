@@ -12,9 +12,10 @@ use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
 use crate::mesh::reuse::Reuse;
+use crate::model::topology::Named;
 use crate::model::{Model, SurfaceId, measure};
 use crate::network::{Chain, LinkId, Network};
-use crate::surface::{Domain, Surface};
+use crate::surface::Domain;
 
 use super::report::{
     Cell, CheckRow, Column, Corners, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow,
@@ -108,7 +109,7 @@ fn identity(chain: &Chain, network: &Network, tolerance: &Tolerance) -> (Vec<[u6
 }
 
 /// Declared surfaces; `area` measures one.
-pub fn surfaces(parts: &Parts, model: &Model, area: &mut dyn FnMut(&Surface) -> Option<f64>) -> Vec<SurfaceRow> {
+pub fn surfaces(parts: &Parts, model: &Model, area: &mut dyn FnMut(&Named) -> Option<f64>) -> Vec<SurfaceRow> {
     let row = |n: usize| {
         let named = &model.surfaces[n];
         let patches: Vec<_> = model.patches_of(SurfaceId::at(n)).collect();
@@ -120,7 +121,7 @@ pub fn surfaces(parts: &Parts, model: &Model, area: &mut dyn FnMut(&Surface) -> 
             patches: patches.len(),
             edges: model.edges_of(&patches).len(),
             vertices: model.vertices_of(&patches).len(),
-            area: if named.surface.domain() == Domain::Unbounded { None } else { area(&named.surface) },
+            area: if named.surface.domain() == Domain::Unbounded { None } else { area(named) },
             corners: None,
         }
     };
@@ -134,10 +135,9 @@ pub fn corners(bounds: Box3) -> Option<Corners> {
     found.then(|| [bounds.min, bounds.max].map(|p| p.to_array().map(|x| x + 0.0)))
 }
 
-/// The box of each surface, in order of declaration.
-pub fn boxes(parts: &Parts, model: &Model) -> Vec<Box3> {
-    let of = |n: usize| measure::bounds(std::slice::from_ref(&model.surfaces[n].surface));
-    surfaces_in_order(parts, model).into_iter().map(of).collect()
+/// The box of each surface, in order of declaration; `bounds` measures one.
+pub fn boxes(parts: &Parts, model: &Model, bounds: &mut dyn FnMut(&Named) -> Option<Box3>) -> Vec<Option<Box3>> {
+    surfaces_in_order(parts, model).into_iter().map(|n| bounds(&model.surfaces[n])).collect()
 }
 
 /// Counts of the surface model.
@@ -145,14 +145,13 @@ pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
     TopologyCounts { patches: model.patches.len(), edges: model.edges.len(), vertices: model.vertices.len(), shells }
 }
 
-/// A shell: how it is closed, and what it measures; how its faces join only when `full`.
-pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool) -> Result<ShellRow, Stop> {
+/// A shell: how it is closed, and what it measures; how its faces join only when `full`. What is said of it goes to `said`.
+pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bool), said: &mut Vec<Fault>) -> Result<ShellRow, Stop> {
     let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
-    let mut said = Vec::new();
-    let built = scene.shell(shell, tolerance, &mut said)?;
+    let built = scene.shell(shell, tolerance, said)?;
     // Roofs are open; that a skin of faces with borders of their own is, may be news.
     let news = |fault: &&Fault| fault.code().0 != "N615" || shell.snap.is_some() || built.near > GAP_ROOM * tolerance.point;
-    said.iter().filter(news).for_each(|fault| cx.say(fault));
+    said.retain(|fault| news(&fault));
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
     let sides: Vec<_> = built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
     let members: Vec<_> = built.surfaces.iter().map(|(id, _)| *id).collect();

@@ -14,6 +14,7 @@ use crate::base::digest::{Digest, Digester};
 use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::base::work;
 use crate::lang::memory::Memory;
 use crate::lang::value::ModuleId;
 use crate::mesh::reuse::Reuse;
@@ -62,7 +63,8 @@ pub(super) struct KeptStages {
     pub models: BTreeMap<ModuleId, KeptModel>,
     /// Meshes by their keys.
     pub meshes: BTreeMap<Digest, KeptMesh>,
-    pub areas: BTreeMap<Origin, (Surface, f64)>,
+    /// Areas of surfaces, each with the work that it took.
+    pub areas: BTreeMap<Origin, (Surface, f64, u64)>,
     pub rows: Vec<(Arc<Mesh>, bool, MeshRow)>,
     /// The last two meshes of each declaration: a change that is taken back costs nothing.
     asked: BTreeMap<Place, Asked>,
@@ -76,10 +78,13 @@ impl KeptStages {
     /// The area of a surface, measured once.
     pub fn area(&mut self, surface: &Surface) -> f64 {
         match self.areas.get(&surface.origin()) {
-            Some((before, area)) if before.is(surface) => *area,
+            Some((before, area, work)) if before.is(surface) => {
+                work::spend(*work);
+                *area
+            }
             _ => {
-                let area = measure::area(surface);
-                self.areas.insert(surface.origin(), (surface.clone(), area));
+                let (area, work) = work::measured(|| measure::area(surface));
+                self.areas.insert(surface.origin(), (surface.clone(), area, work));
                 area
             }
         }
@@ -109,7 +114,7 @@ impl KeptStages {
         let live = |surface: &Surface| self.models.values().any(|m| m.model.surfaces.iter().any(|named| named.surface.is(surface)));
         if self.areas.len() > AREAS {
             let areas = std::mem::take(&mut self.areas);
-            self.areas = areas.into_iter().filter(|(_, (surface, _))| live(surface)).collect();
+            self.areas = areas.into_iter().filter(|(_, (surface, ..))| live(surface)).collect();
         }
         if let Some(cache) = &self.cache {
             cache.tidy();

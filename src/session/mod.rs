@@ -21,6 +21,7 @@ mod places;
 mod plan;
 pub mod reference;
 pub mod report;
+mod row_work;
 pub mod run;
 mod shades;
 mod similar;

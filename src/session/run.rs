@@ -10,6 +10,7 @@ use super::kept::Kept;
 use super::picture_paths;
 use super::pictures;
 use super::report::{OutputRow, Report, Timings, VERSION};
+use super::row_work::RowWork;
 use super::stages::Stages;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity, ValueFault};
@@ -23,6 +24,8 @@ use crate::lang::plans::PictureSpec;
 use crate::lang::run::{Entry, TableRow};
 use crate::lang::value::{ModuleId, Value};
 use crate::mesh::Mesh;
+use crate::model::measure;
+use crate::model::topology::Named;
 
 /// What is to be run.
 pub struct Task<'a> {
@@ -148,6 +151,7 @@ struct Run<'r> {
     /// Files that outputs of the script may not write.
     barred: BTreeSet<String>,
     light: bool,
+    rows: RowWork,
 }
 
 impl<'r> Run<'r> {
@@ -167,6 +171,7 @@ impl<'r> Run<'r> {
             unnamed: Vec::new(),
             barred: BTreeSet::new(),
             light: false,
+            rows: RowWork::new(),
         }
     }
 
@@ -267,6 +272,9 @@ impl<'r> Run<'r> {
             self.shells(&tolerance);
             self.meshes(&tolerance);
         }
+        if let Some(fault) = &self.rows.exceeded {
+            self.cx.say(fault);
+        }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();
         self.report.checks = self.cx.checks().iter().map(|check| collect::check(check, &self.cx.sources)).collect();
     }
@@ -277,14 +285,26 @@ impl<'r> Run<'r> {
         self.report.network = collect::network_counts(network);
         self.report.curves = collect::curves(parts, network);
         self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
-        self.report.surfaces = collect::surfaces(parts, model, &mut |surface| (!self.light).then(|| self.stages.area(surface)));
+        let (rows, light, stages) = (&mut self.rows, self.light, self.stages);
+        rows.allow_surfaces(model.surfaces.len());
+        let mut area = |named: &Named| {
+            let what = || format!("the area of `{}`", named.name);
+            if light { None } else { rows.part(named.surface.origin(), what, || stages.area(&named.surface)) }
+        };
+        self.report.surfaces = collect::surfaces(parts, model, &mut area);
         self.flows = collect::flows(&self.cx, parts, model);
         self.report.topology = collect::topology(model, 0);
         if !self.task.full {
             return Box3::EMPTY;
         }
         let mut bounds = network.curves.iter().fold(Box3::EMPTY, |bounds, c| bounds.union(c.curve.bbox()));
-        for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(parts, model)) {
+        let rows = &mut self.rows;
+        let mut own = |named: &Named| {
+            let what = || format!("the box of `{}`", named.name);
+            rows.part(named.surface.origin(), what, || measure::bounds(std::slice::from_ref(&named.surface)))
+        };
+        for (row, found) in self.report.surfaces.iter_mut().zip(collect::boxes(parts, model, &mut own)) {
+            let found = found.unwrap_or(Box3::EMPTY);
             row.corners = collect::corners(found);
             bounds = row.corners.map_or(bounds, |_| bounds.union(found));
         }
@@ -304,8 +324,12 @@ impl<'r> Run<'r> {
     fn shells(&mut self, tolerance: &Tolerance) {
         let shells = self.cx.shells(ModuleId::MAIN);
         for shell in self.take(shells).unwrap_or_default() {
-            let row = collect::shell(&mut self.cx, &shell.value, tolerance, self.task.full);
-            if let Some(row) = self.take(row) {
+            let (cx, full, mut said) = (&mut self.cx, self.task.full, Vec::new());
+            self.rows.allow_surfaces(shell.value.surfaces.len());
+            let what = || format!("what the shell `{}` measures", shell.value.name);
+            let row = self.rows.part(shell.value.origin, what, || collect::shell(cx, &shell.value, (tolerance, full), &mut said));
+            if let Some(row) = row.and_then(|row| self.take(row)) {
+                said.iter().for_each(|fault| self.cx.say(fault));
                 self.report.shells.push(row);
             }
         }

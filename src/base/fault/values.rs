@@ -139,6 +139,13 @@ pub enum ValueFault {
         /// What would be made, for example "the network".
         what: &'static str,
     },
+    /// E217: a row of the report that takes more work than all of them may.
+    RowWork {
+        /// What is measured.
+        of: Origin,
+        /// What of it and its name, for example "the area of `roof`".
+        what: String,
+    },
     /// E217: a list or work limit.
     Limit {
         /// What would be made, for example "a mesh of 4 000 000 000 elements".
@@ -261,6 +268,9 @@ impl Describe for ValueFault {
                 .help("fewer or simpler parts, and points that are not far off by mistake"),
             Self::StageWork { what } => Report::new("E217", format!("{what} takes more work than it may"))
                 .help("fewer or simpler curves and surfaces, and points that are not far off by mistake"),
+            Self::RowWork { of, what } => Report::new("E217", format!("{what} takes more work than it may"))
+                .at(*of, "measured for the report")
+                .help("fewer or simpler parts, and points that are not far off by mistake"),
             Self::Limit { what, limit } => {
                 Report::new("E217", format!("{what} is too much")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))
             }
