@@ -14,8 +14,8 @@ use super::{job, work};
 
 /// Children of a node.
 const FAN: usize = 8;
-/// Work of a pair that is found, in evaluations of a curve.
-const PAIR: u64 = 4;
+/// Work of a pair that is found where hardly anything is done with it, in evaluations of a curve.
+pub const PAIR: u64 = 4;
 /// Bits of each coordinate in the sorting key.
 const KEY_BITS: u32 = 21;
 
@@ -69,7 +69,9 @@ impl BoxTree {
     }
 
     /// All pairs of items whose boxes come within `margin` of each other along every axis, ascending, the smaller index first.
-    pub fn pairs(&self, margin: f64) -> Vec<(u32, u32)> {
+    ///
+    /// Each costs `work`, in evaluations of a curve, so that the list is not longer than a budget allows.
+    pub fn pairs(&self, margin: f64, work: u64) -> Vec<(u32, u32)> {
         let mut pairs = Vec::new();
         let Some(top) = self.levels.len().checked_sub(1) else { return pairs };
         // Nodes of one level, to be compared with each other; equal ones with themselves.
@@ -86,7 +88,7 @@ impl BoxTree {
             }
             if level == 0 {
                 if a != b {
-                    work::spend(PAIR);
+                    work::spend(work);
                     let (a, b) = (self.items[a], self.items[b]);
                     pairs.push((a.min(b), a.max(b)));
                 }
@@ -179,7 +181,7 @@ mod tests {
                 assert_eq!(near, expected, "{n}");
                 all.extend(expected.iter().filter(|&&b| b > a).map(|&b| (a as u32, b as u32)));
             }
-            assert_eq!(tree.pairs(margin), all, "{n}");
+            assert_eq!(tree.pairs(margin, PAIR), all, "{n}");
         }
     }
 
@@ -201,7 +203,7 @@ mod tests {
                 .flat_map(|a| (a + 1..1000).map(move |b| (a, b)))
                 .filter(|&(a, b)| thin[a as usize].touches(&thin[b as usize], 0.0))
                 .collect();
-            assert_eq!(tree.pairs(0.0), pairs);
+            assert_eq!(tree.pairs(0.0, PAIR), pairs);
             let groups = &tree.levels[1];
             let touching = |a: &Box3| groups.iter().filter(|b| a.touches(b, 0.0)).count();
             let most = groups.iter().map(touching).filter(|&n| n < groups.len() / 2).max();
@@ -222,6 +224,7 @@ mod tests {
     #[test]
     fn boxes_in_one_place_are_all_pairs() {
         let tree = BoxTree::build(&vec![Box3::of([DVec3::ONE]); 40]);
-        assert_eq!(tree.pairs(0.0).len(), 40 * 39 / 2);
+        let all = 40 * 39 / 2;
+        assert_eq!(work::measured(|| tree.pairs(0.0, 32).len()), (all, 32 * all as u64));
     }
 }

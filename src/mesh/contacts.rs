@@ -16,7 +16,7 @@ use super::inside;
 use super::layout::Layout;
 use super::nodes::Nodes;
 use crate::base::bbox::Box3;
-use crate::base::boxtree::BoxTree;
+use crate::base::boxtree::{BoxTree, PAIR};
 use crate::base::fault::{Result, SurfaceFault};
 use crate::base::par;
 use crate::base::tolerance::SINGULAR;
@@ -405,7 +405,7 @@ impl Known<'_> {
     /// Faces that bend and cross inside both; two planes cross where a border of one goes through the other.
     fn crossings(&mut self) {
         let scan = self.scan;
-        let pairs = scan.tree.pairs(0.0).into_iter().map(|(a, b)| (a as usize, b as usize));
+        let pairs = scan.tree.pairs(0.0, PAIR).into_iter().map(|(a, b)| (a as usize, b as usize));
         let wanted = |(a, b): &(usize, usize)| {
             let flat = scan.leaves[*a].is_flat() && scan.leaves[*b].is_flat();
             !flat && scan.surface_of(*a) != scan.surface_of(*b) && !self.touches.contains_key(&scan.key(*a, *b))

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::patches::{Pieces, RawEdge};
 use super::topology::{Edge, EdgeCurve, EdgeId, Model, Named, Patch, PatchId, PatchSide, SurfaceId, Vertex, VertexId};
 use crate::base::bbox::Box3;
-use crate::base::boxtree::BoxTree;
+use crate::base::boxtree::{BoxTree, PAIR};
 use crate::base::job;
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
@@ -30,7 +30,7 @@ fn cluster(points: &[DVec3], tolerance: &Tolerance) -> (Vec<usize>, Vec<DVec3>) 
     let places: Vec<&[usize]> = order.chunk_by(|a, b| points[*a] == points[*b]).collect();
     places.iter().flat_map(|place| place.windows(2)).for_each(|w| join(w[0], w[1]));
     let boxes: Vec<Box3> = places.iter().map(|place| Box3::of([points[place[0]]])).collect();
-    for (a, b) in BoxTree::build(&boxes).pairs(tolerance.point) {
+    for (a, b) in BoxTree::build(&boxes).pairs(tolerance.point, PAIR) {
         let (a, b) = (places[a as usize][0], places[b as usize][0]);
         if tolerance.same_point(points[a], points[b]) {
             join(a, b);

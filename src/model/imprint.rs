@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 
 use super::topology::{EdgeId, Model, SurfaceId};
-use crate::base::boxtree::BoxTree;
+use crate::base::boxtree::{BoxTree, PAIR};
 use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
 use crate::base::origin::Origin;
@@ -144,7 +144,7 @@ impl Model {
                 joined.entry((a, b)).or_default().push(EdgeId::at(n));
             }
         }
-        let pairs = BoxTree::build(&boxes).pairs(tolerance.point);
+        let pairs = BoxTree::build(&boxes).pairs(tolerance.point, PAIR);
         let pairs = pairs.into_iter().map(|(a, b)| (listed[a as usize], listed[b as usize])).filter(|(a, b)| a != b);
         pairs.map(|pair| (pair, joined.get(&pair).cloned().unwrap_or_default())).collect()
     }

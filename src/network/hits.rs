@@ -29,6 +29,8 @@ pub struct Contact {
     pub to: Option<([f64; 2], DVec3)>,
 }
 
+/// Work of two curves whose boxes touch, before they are looked at: at least so much is done with them.
+const OF_A_PAIR: u64 = 32;
 /// Pairs handed to a thread at once.
 const CHUNK: usize = 256;
 
@@ -40,7 +42,7 @@ pub fn all(curves: &[NetCurve], tolerance: &Tolerance, job: &Job) -> Result<Vec<
 /// Pairs whose boxes touch, then curves that may meet themselves.
 fn near(curves: &[NetCurve], tolerance: &Tolerance) -> Vec<(u32, u32)> {
     let boxes: Vec<Box3> = curves.iter().map(|c| c.curve.bbox()).collect();
-    let mut pairs = BoxTree::build(&boxes).pairs(tolerance.point);
+    let mut pairs = BoxTree::build(&boxes).pairs(tolerance.point, OF_A_PAIR);
     pairs.extend((0..curves.len() as u32).filter(|&k| may_meet_itself(&curves[k as usize].curve)).map(|k| (k, k)));
     pairs
 }
