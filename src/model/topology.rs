@@ -166,7 +166,8 @@ impl Model {
 
     /// Patches of a surface.
     pub fn patches_of(&self, surface: SurfaceId) -> impl Iterator<Item = PatchId> + '_ {
-        (0..self.patches.len()).map(PatchId::at).filter(move |p| self.patches[p.index()].surface == surface)
+        let first = self.patches.partition_point(|p| p.surface < surface);
+        (first..self.patches.len()).map(PatchId::at).take_while(move |p| self.patches[p.index()].surface == surface)
     }
 
     /// Edges of some patches, ascending, each once.
@@ -209,6 +210,9 @@ impl Model {
             for vertex in [edge.vertices.0, edge.vertices.1] {
                 *at_vertex.get_mut(vertex.index()).ok_or(format!("edge {n} ends at no vertex"))? += 1;
             }
+        }
+        if !self.patches.is_sorted_by_key(|p| p.surface) {
+            return Err("patches do not come in the order of their surfaces".to_owned());
         }
         for (n, patch) in self.patches.iter().enumerate() {
             self.check_patch(PatchId::at(n), patch)?;
