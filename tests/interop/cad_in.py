@@ -2,7 +2,7 @@
 of writing: faces written and read, the worst ratio of the areas of a face, the ratio of the volumes, and whether what is closed stays so.
 
 As `faces` a file holds trimmed surfaces (144), as `solids` shells with edges that faces share (514). A row is right when every face is in, each
-with its area to `AREA`, and a closed part is closed with its volume to `VOLUME`; else its last column tells the cause.
+with its area to `AREA`, and a closed part is closed with its volume to `VOLUME`; else its last column tells the cause, which must be the known one.
 """
 import concurrent.futures
 import json
@@ -25,6 +25,16 @@ MODES = ["faces", "solids"]
 AREA = VOLUME = 1e-6
 # Seconds for one file.
 LONGEST = 120
+# Parts that are known not to come in whole, and what the program says of each; one that comes in right has to be taken out of here.
+DEGREE, OFFSET = "degrees are 1 to 9", "offsets of curved surfaces are not read"
+KNOWN = {
+    "knob": DEGREE,
+    "loft_circles": DEGREE,
+    "loft_ruled": DEGREE,
+    "offset_sheet": OFFSET,
+    "pipe": DEGREE,
+    "thread": DEGREE,
+}
 
 MODEL = """units mm
 import "{file}" as part
@@ -133,7 +143,7 @@ def shown(cells):
 
 
 def table(loft, work, chosen=()):
-    """Prints all rows; the labels of those that are wrong, and how many there are in all."""
+    """Prints all rows; the labels of those that are wrong for no known cause, and how many there are in all."""
     Message.DefaultMessenger_s().ChangePrinters().Clear()
     IGESControl_Controller.Init_s()
     jobs = []
@@ -158,7 +168,11 @@ def table(loft, work, chosen=()):
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for (cells, right), (name, mode, _) in zip(pool.map(lambda job: row(loft, work, *job), jobs), jobs):
             print(shown(cells), flush=True)
-            if not right:
+            if name in KNOWN and right:
+                print(f"{name} as {mode} comes in right: take it out of the known ones", flush=True)
+            if name in KNOWN and not right and KNOWN[name] in cells["why"]:
+                continue
+            if not right or name in KNOWN:
                 wrong.append(f"{name} as {mode}")
     return wrong, len(jobs)
 
