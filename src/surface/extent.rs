@@ -100,9 +100,31 @@ const BORDER: usize = 64;
 /// Rectangles looked at before what is left is taken by its bound.
 const MOST: usize = 20_000;
 
+/// The side of a triangle along which u + v = 1.
+const SLANT: usize = 1;
+
+/// The box of what of a triangle lies over the corner of a rectangle, which the side with u + v = 1 cuts, by the box of that side: each
+/// point is on the way along u, or along v, to that side, and on the way from the corner.
+fn below_slant(surface: &Surface, corner: (f64, f64), slant: Box3) -> Box3 {
+    let step = 1.0 - corner.0 - corner.1;
+    // All ways there stay in the square over the corner.
+    let spread = surface.spread((corner.0, 1.0 - corner.1), (corner.1, 1.0 - corner.0));
+    let at = surface.point(corner.0, corner.1);
+    let none = DVec3::ZERO;
+    let (up, down) = ((spread.du.high.max(none), spread.dv.high.max(none)), (spread.du.low.min(none), spread.dv.low.min(none)));
+    let high = (slant.max - down.0 * step).min(slant.max - down.1 * step).min(at + up.0.max(up.1) * step);
+    let low = (slant.min - up.0 * step).max(slant.min - up.1 * step).max(at + down.0.min(down.1) * step);
+    Box3 { min: low, max: high }
+}
+
 /// Grows a box of points of the surface until it holds the surface, by branch and bound.
 fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
     let triangle = surface.domain() == Domain::Triangle;
+    let slant = match surface.side(SLANT) {
+        Side::Chain { chain, from, to } if triangle && from.min(to) <= 0.0 && from.max(to) >= 1.0 => Some(curve_bbox(&chain)),
+        _ => None,
+    };
+    bounds = slant.map_or(bounds, |slant| bounds.union(slant));
     let (us, vs) = surface.cells();
     let stops = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
     let (us, vs) = (stops(&us), stops(&vs));
@@ -119,7 +141,11 @@ fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
         if !triangle || u.1 + v.1 <= 1.0 {
             bounds = bounds.with(spread.mid.p);
         }
-        let hull = spread.p.bounds();
+        let mut hull = spread.p.bounds();
+        if let Some(slant) = slant.filter(|_| u.1 + v.1 > 1.0) {
+            let within = below_slant(surface, (u.0, v.0), slant);
+            hull = Box3 { min: hull.min.max(within.min), max: hull.max.min(within.max) };
+        }
         let over = (hull.max - bounds.max).max(bounds.min - hull.min);
         if (0..3).all(|k| over[k] <= room[k]) {
             continue;
