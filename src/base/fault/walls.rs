@@ -89,7 +89,9 @@ impl Describe for WallFault {
             )
             .at(*surface, "its normals jump there")
             .at(*offset, "has no one place beside the crease")
-            .help("divide it along the crease, `split(s, by: …)`, and move the parts one by one"),
+            .help(
+                "make two surfaces of it that meet at the crease, each from what of its curves lies on one side, and move them one by one",
+            ),
             Self::Tip { offset, surface, at } => {
                 Report::new("E670", format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
                     .at(*surface, "its normals do not come together there")

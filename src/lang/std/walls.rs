@@ -1,7 +1,7 @@
 //! Walls: faces with a thickness.
 
 use super::kinds::SurfaceOrShell;
-use crate::base::fault::{Say, ValueFault};
+use crate::base::fault::{Fault, Say, ValueFault};
 use crate::lang::types::Length;
 use crate::model::measure::points_inwards;
 use crate::surface::Surface;
@@ -17,6 +17,19 @@ choices! {
         Front = "front",
         /// On the other side.
         Back = "back",
+    }
+}
+
+/// What is wrong with the distance by which a side of a wall is moved, said of the wall's thickness.
+fn of_thickness(fault: Fault, side: &WallSide, thickness: f64) -> Fault {
+    let Fault::Value(value) = fault else { return fault };
+    match *value {
+        ValueFault::LengthOutside { argument: "distance", range, .. } => {
+            let both = matches!(side, WallSide::Both);
+            let (argument, found) = if both { ("thickness / 2", 0.5 * thickness) } else { ("thickness", thickness) };
+            ValueFault::LengthOutside { argument, found, range }.into()
+        }
+        other => other.into(),
     }
 }
 
@@ -57,13 +70,13 @@ builtins! {
         };
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
         let (made, notes) = match &of {
-            SurfaceOrShell::Surface(face) => thicken(face, reach, origin, &tolerance)?,
+            SurfaceOrShell::Surface(face) => thicken(face, reach, origin, &tolerance).map_err(|fault| of_thickness(fault, &side, t))?,
             SurfaceOrShell::Shell(shell) => {
                 let faces = without_creases(&shell.surfaces, origin, &tolerance)?;
                 let near = shell.snap.map_or(0.0, |snap| snap.0);
                 let inwards = |faces: &[Surface]| points_inwards(&faces.iter().map(|f| (f.clone(), false)).collect::<Vec<_>>()) == Some(true);
                 let turned = |faces: &[Surface], closed: bool| (closed && inwards(faces)) != shell.flip;
-                thicken_all(&faces, (reach.0, reach.1, near), &turned, origin, &tolerance)?
+                thicken_all(&faces, (reach.0, reach.1, near), &turned, origin, &tolerance).map_err(|fault| of_thickness(fault, &side, t))?
             }
         };
         notes.iter().for_each(|note| cx.say(note));
