@@ -16,7 +16,7 @@ use lofting::geometry::{Curve, Ends, Spline};
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::revolve::Axis;
-use lofting::surface::{Surface, Way, carried, extrude, plane, revolve, split, trim};
+use lofting::surface::{Surface, Way, carried, extrude, meet, plane, revolve, split, trim};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 
@@ -294,5 +294,88 @@ fn parts_of_a_face_with_holes_are_the_face_again() {
             Err(fault) if reason(&fault) => Err(TestCaseError::reject("cuts nothing off")),
             Err(fault) => Err(TestCaseError::fail(format!("{fault:?}: {what:?}"))),
         }
+    });
+}
+
+/// A number of any size up to 0.1, of either sign, or none.
+fn slight() -> impl Strategy<Value = f64> + Clone {
+    prop_oneof![1 => Just(0.0), 4 => (1.0_f64..8.0, any::<bool>()).prop_map(|(n, minus)| if minus { -pow10(-n) } else { pow10(-n) })]
+}
+
+fn pow10(n: f64) -> f64 {
+    lofting::base::math::exp(n * std::f64::consts::LN_10)
+}
+
+/// A plane through a place of a surface or a little beside it, through its axis, tangent to it or across, and a little turned.
+#[derive(Clone, Debug)]
+struct Beside {
+    at: (f64, f64),
+    kind: u32,
+    off: f64,
+    turn: (f64, f64),
+}
+
+impl Beside {
+    fn plane(&self, surface: &Surface) -> Option<(DVec3, DVec3)> {
+        let (u, v) = self.at;
+        let (p, jet) = (surface.point(u, v), surface.jet(u, v));
+        let normal = match self.kind {
+            0 => DVec3::Y,
+            1 => jet.du.cross(jet.dv).try_normalize()?,
+            2 => jet.du.try_normalize().or(jet.dv.try_normalize())?,
+            _ => DVec3::Z,
+        };
+        let (x, y) = normal.any_orthonormal_pair();
+        let normal = (normal + x * self.turn.0 + y * self.turn.1).normalize();
+        // Through the axis, or through the place.
+        let p = if self.kind == 0 { DVec3::ZERO } else { p };
+        Some((p + normal * self.off, normal))
+    }
+}
+
+#[test]
+fn planes_beside_seams_poles_and_tangents_part_a_surface() {
+    let tolerance = Tolerance::new(1e-6, 1.0);
+    let axis = Axis { about: DVec3::ZERO, direction: DVec3::Z };
+    let p = DVec3::new;
+    let (low, out, top) = (p(0.0, 1e-6, -1.0), p(1.0, 0.0, 0.0), p(0.0, 0.0, 1.0));
+    let wide = chain(arc_through(low, top, out, Origin::NONE));
+    let mut all = surfaces();
+    all.push(("ball with a wide pole", revolve(&wide, &axis, TAU, Origin::NONE, &tolerance).unwrap()));
+    all.push(("half ball with a wide pole", revolve(&wide, &axis, PI, Origin::NONE, &tolerance).unwrap()));
+    let place = || prop_oneof![2 => Just(0.0), 2 => Just(1.0), 1 => Just(0.5), 1 => 0.0_f64..1.0];
+    let beside = ((place(), place()), 0..4_u32, slight(), (slight(), slight()));
+    let beside = beside.prop_map(|(at, kind, off, turn)| Beside { at, kind, off, turn });
+    check(10, &(0..all.len(), beside), |(k, beside)| {
+        let (name, surface) = &all[k];
+        let what = (name, &beside);
+        let Some((at, normal)) = beside.plane(surface) else { return Err(TestCaseError::reject("no plane")) };
+        let flat = plane::unbounded(at, normal, Origin::NONE).unwrap();
+        let fault = |fault: Fault| match format!("{fault:?}").contains("NotDivided") {
+            true => TestCaseError::fail(format!("{fault:?}: {what:?}")),
+            false => TestCaseError::reject("refused"),
+        };
+        let cutters = meet::with_surfaces(std::slice::from_ref(surface), &[flat], Origin::NONE, &tolerance).map_err(fault)?.curves;
+        if cutters.is_empty() {
+            return Err(TestCaseError::reject("no cut"));
+        }
+        let parts = split(surface, &cutters, Origin::NONE, &tolerance).map_err(fault)?;
+        let (all, sum) = (measure::area(surface), parts.iter().map(measure::area).sum::<f64>());
+        prop_assert!((sum - all).abs() <= 1e-5 * all, "{sum} of {all} in {} parts: {what:?}", parts.len());
+        // What lies on one side of the plane lies in no part with what lies on the other.
+        let mut sides: Vec<(bool, bool)> = vec![(false, false); parts.len()];
+        for (i, j) in (0..24).flat_map(|i| (0..24).map(move |j| (i, j))) {
+            let (u, v) = ((f64::from(i) + 0.513) / 24.0, (f64::from(j) + 0.487) / 24.0);
+            let off = (surface.point(u, v) - at).dot(normal);
+            if off.abs() <= 100.0 * tolerance.point || !surface.holds(u, v) {
+                continue;
+            }
+            let holding: Vec<usize> = (0..parts.len()).filter(|k| parts[*k].holds(u, v)).collect();
+            prop_assert!(holding.len() == 1, "({u}, {v}) lies in {} of {} parts: {what:?}", holding.len(), parts.len());
+            let side = &mut sides[holding[0]];
+            if off > 0.0 { side.0 = true } else { side.1 = true }
+        }
+        prop_assert!(!sides.contains(&(true, true)), "a part on both sides, of {}: {what:?}", parts.len());
+        Ok(())
     });
 }

@@ -152,12 +152,14 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
                 places[0].lerp(places[places.len() - 1], f)
             }
         };
-        let share = |vertex: usize| START * (shortest[&vertex] / length(piece)).min(1.0);
+        let away = |shortest: f64| (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
+        let share = |vertex: usize| away(shortest[&vertex]) / length(piece);
         let (first, last) = match length(piece).is_finite() {
             true => (share(ends.0), share(ends.1)),
             false => (START, START),
         };
-        (place(first) - piece.uv.0, place(1.0 - last) - piece.uv.1)
+        // From the place of the vertex: where pieces leave a run that they share, only what they are off it tells them apart.
+        (place(first) - places[ends.0].0, place(1.0 - last) - places[ends.1].0)
     };
     let edges = all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece, &ends) }).collect();
     (edges, places)
@@ -215,6 +217,9 @@ fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
 
 /// Share of the shortest piece at a vertex at which directions out of it are taken.
 const START: f64 = 0.01;
+/// Directions are taken so many tolerances away from a vertex, or at this share of the shortest piece where that is less.
+const CLEAR: f64 = 8.0;
+const CLEAR_SHARE: f64 = 0.25;
 /// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
 const NEAR: (f64, f64) = (NUDGE, 0.1);
 

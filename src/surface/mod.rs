@@ -50,6 +50,7 @@ mod ruled;
 mod samples;
 mod scatter;
 mod shape;
+mod shared_runs;
 pub mod skin;
 mod skin_ends;
 mod skin_fit;

@@ -8,12 +8,13 @@ use glam::{DVec2, DVec3};
 use super::carry::{Way, carried};
 use super::core::{Border, Domain, Side, Surface};
 use super::pull::{Course, Off, Pull, is_pole};
+use super::shared_runs;
 use super::trim::{Walk, natural};
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::{Hit, build, self_intersect};
-use crate::network::{Chain, meet};
+use crate::network::Chain;
 
 /// A border of the surface or a cutter, whole.
 #[derive(Clone, Debug)]
@@ -149,7 +150,7 @@ fn part(all: &mut [Strand], meets: Meets, tolerance: &Tolerance) -> Result<()> {
         }
         for i in 0..j {
             let Some(a) = all[i].chain.clone().filter(|_| meets == Meets::Anywhere || all[i].cutter.is_none()) else { continue };
-            for m in meet(&a, &b, tolerance)? {
+            for m in shared_runs::meetings(&a, &b, tolerance)? {
                 all[i].cuts.push(m.fa);
                 all[j].cuts.push(m.fb);
                 if let Some((fa, fb)) = m.shared_to {
