@@ -83,7 +83,7 @@ pub use joined::join;
 pub use nurbs::{Net, NurbsSurface};
 pub use offset::offset;
 pub use outlined::{Outlined, outlined};
-pub use polynomial::polynomial;
+pub use polynomial::{polynomial, polynomial_net};
 pub use rail::{Lean, Rail};
 pub use reparam::{Map, Reparam};
 pub use revolve::{axis_of, revolve};

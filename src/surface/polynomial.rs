@@ -13,6 +13,11 @@ use crate::geometry::bounds::binomial;
 ///
 /// b_i = Σ_{k≤i} C(i, k) / C(n, k) a_k in both directions. E306 for rows of different length, no row or a degree above 9.
 pub fn polynomial(a: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+    nurbs::bezier(&Net { rows: &polynomial_net(a)?, weights: None }, origin, tolerance)
+}
+
+/// The control points of [`polynomial`], model units; fails as it does.
+pub fn polynomial_net(a: &[Vec<DVec3>]) -> Result<Vec<Vec<DVec3>>> {
     let (n, m) = (a.len(), a.first().map_or(0, Vec::len));
     let fault = |found: String, range: &str| ValueFault::OutsideRange { argument: "x", found, range: range.to_owned() };
     if let Some(row) = a.iter().find(|row| row.len() != m) {
@@ -23,7 +28,7 @@ pub fn polynomial(a: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Re
     }
     let along_u = bernstein(a);
     let turned: Vec<Vec<DVec3>> = (0..m).map(|j| along_u.iter().map(|row| row[j]).collect()).collect();
-    nurbs::bezier(&Net { rows: &bernstein(&turned), weights: None }, origin, tolerance)
+    Ok(bernstein(&turned))
 }
 
 /// Bézier rows of rows of coefficients of ascending powers.

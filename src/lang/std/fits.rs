@@ -85,7 +85,9 @@ fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Stop> {
         }
         Data::Rows(net) => {
             said.check(true)?;
-            let (net, tolerance) = (rows(net), cx.tolerance()?);
+            let net = rows(net);
+            cx.seen(net.iter().flatten().copied());
+            let tolerance = cx.tolerance()?;
             let (surface, notes) = surface::fit::fit(&net, within, cx.origin(), &tolerance)?;
             Ok(Value::Surface(finished(cx, surface, &notes)?))
         }

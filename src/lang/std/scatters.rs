@@ -25,8 +25,10 @@ builtins! {
         /// The direction of heights; the normal of the plane nearest to the points when left out.
         along: Option<Direction>,
     ) -> Surface = |cx, points, along| {
+        let points = places(points);
+        cx.seen(points.iter().copied());
         let tolerance = cx.tolerance()?;
-        let (surface, notes) = surface::scatter(&places(points), along.map(|d| d.0), cx.origin(), &tolerance)?;
+        let (surface, notes) = surface::scatter(&points, along.map(|d| d.0), cx.origin(), &tolerance)?;
         finished(cx, surface, &notes)
     };
 }

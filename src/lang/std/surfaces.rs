@@ -438,8 +438,9 @@ builtins! {
         /// A weight for each point, in the same rows.
         weights: Option<Vec<Vec<f64>>>,
     ) -> Surface = |cx, net, weights| {
-        let tolerance = cx.tolerance()?;
         let net = rows(net);
+        cx.seen(net.iter().flatten().copied());
+        let tolerance = cx.tolerance()?;
         let surface = nurbs::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
@@ -464,7 +465,6 @@ builtins! {
         /// Those of z.
         z: Vec<Vec<Length>>,
     ) -> Surface = |cx, x, y, z| {
-        let tolerance = cx.tolerance()?;
         let shape = |rows: &[Vec<Length>]| rows.iter().map(Vec::len).collect::<Vec<_>>();
         for (argument, other) in [("y", &y), ("z", &z)] {
             if shape(other) != shape(&x) {
@@ -474,7 +474,10 @@ builtins! {
         }
         let row = |i: usize| (0..x[i].len()).map(|j| DVec3::new(x[i][j].0, y[i][j].0, z[i][j].0)).collect();
         let coefficients: Vec<Vec<DVec3>> = (0..x.len()).map(row).collect();
-        let surface = crate::surface::polynomial(&coefficients, cx.origin(), &tolerance)?;
+        let net = crate::surface::polynomial_net(&coefficients)?;
+        cx.seen(net.iter().flatten().copied());
+        let tolerance = cx.tolerance()?;
+        let surface = nurbs::bezier(&Net { rows: &net, weights: None }, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
 
@@ -498,8 +501,10 @@ builtins! {
         /// A weight for each point, in the same rows.
         weights: Option<Vec<Vec<f64>>>,
     ) -> Surface = |cx, net, degree_u, degree_v, knots_u, knots_v, weights| {
+        let net = rows(net);
+        cx.seen(net.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
-        let (net, knots) = (rows(net), (knots_u.as_deref(), knots_v.as_deref()));
+        let knots = (knots_u.as_deref(), knots_v.as_deref());
         let net = Net { rows: &net, weights: weights.as_deref() };
         let surface = nurbs::nurbs(&net, (degree_u, degree_v), knots, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
@@ -515,8 +520,10 @@ builtins! {
         /// Rows of points along u, one row per v, all as long.
         points: Vec<Vec<Point>>,
     ) -> Surface = |cx, points| {
+        let points = rows(points);
+        cx.seen(points.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
-        let (surface, notes) = interpolate::grid(&rows(points), cx.origin(), &tolerance)?;
+        let (surface, notes) = interpolate::grid(&points, cx.origin(), &tolerance)?;
         finished(cx, surface, &notes)
     };
 }
