@@ -12,7 +12,7 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_through, circle, ellipse, helix, line, offset, polyline, spline};
-use lofting::geometry::{Curve, Ends, Motion, Spline};
+use lofting::geometry::{Curve, Ends, Motion, Spline, spread};
 use lofting::mesh::chart::{Chart, Shape};
 use lofting::mesh::faces::Frame;
 use lofting::mesh::{Elements, FaceRange, Input, Mesh, Method as MeshMethod, Plan, build as mesh_of};
@@ -233,6 +233,21 @@ fn no_second_derivative_exceeds_its_bound() {
                     assert!(out <= 1e-8, "{name} {what} at {x} {y} of {u:?} {v:?}: {out}");
                 }
             }
+        }
+    }
+}
+
+/// What rounding leaves of a span beside a knot says nothing of the rest.
+#[test]
+fn a_stretch_that_ends_beside_a_knot_is_bounded_as_one_that_ends_at_it() {
+    let points = [p(0.0, 0.0, 0.0), p(4.0, -1.0, 0.4), p(8.0, 0.5, 0.6), p(12.0, 1.0, 0.0), p(13.0, 4.0, 1.0)];
+    let curve = curved(&points);
+    let knots = curve.knots();
+    for w in knots.windows(2) {
+        for off in [1e-15, 1e-14, 1e-13, 1e-12] {
+            let (at, beside) = (spread(&curve, w[0], w[1]), spread(&curve, w[0] - off, w[1] + off));
+            assert!(beside.bend.reach() <= 1.001 * at.bend.reach(), "{off:e}: {} for {}", beside.bend.reach(), at.bend.reach());
+            assert!(beside.tangent.reach() <= 1.001 * at.tangent.reach());
         }
     }
 }

@@ -35,10 +35,15 @@ pub const FRAME: f64 = 1e-12;
 pub const CUSP: f64 = 1e-10;
 /// Two runs of a loop that meet within the tolerance and are farther apart than this share of it do not cross each other.
 pub const BESIDE: f64 = 1e-3;
+/// A piece of a stretch of a curve that is shorter than this share of the curve is there by rounding: the stretch was to end at a knot
+/// and ends beside it. What is said of it by differences is noise, and what it adds to bounds is nothing.
+pub const SLIVER: f64 = 1e-10;
 /// Least interval, as a share of the domain, over which a direction is taken where derivatives vanish.
 pub const NUDGE: f64 = 1e-6;
 /// Step of a Newton iteration, as a share of the piece, after which one more would change nothing.
 pub const NEWTON_STEP: f64 = 1e-8;
+/// Two sums of areas in (u, v) that differ by no more than this share are of one region.
+pub const RELATIVE_AREA: f64 = 1e-7;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
 /// Relative errors of integrals up to which what does not fall from one size of cells to the next is rounding.

@@ -10,7 +10,7 @@ use super::nurbs::{Nurbs, projected};
 use super::nurbs_edit::Bezier;
 use crate::base::math;
 use crate::base::range::{Range, Ranges};
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{EPSILON, SLIVER};
 use crate::base::work;
 
 /// What the unit tangent and the curvature vector of a stretch may be.
@@ -49,13 +49,16 @@ pub fn spread(curve: &Curve, t0: f64, t1: f64) -> Spread {
             let (out, along) = turned(*u, *v, t0, t1);
             Spread::smooth(along * (1.0 / r), out * (-1.0 / (r * r)))
         }
-        Shape::Arc(arc) => of_nurbs(&arc.part(t0, t1).to_nurbs()),
+        Shape::Arc(arc) => of_nurbs(&arc.part(t0, t1).to_nurbs(), 0.0),
         Shape::Helix(helix) => {
             let (out, along) = turned(helix.u, helix.v, t0, t1);
             let speed = helix.speed();
             Spread::smooth((along + helix.rise) * (1.0 / speed), out * (-1.0 / (speed * speed)))
         }
-        Shape::Nurbs(c) => of_nurbs(&c.part(t0, t1)),
+        Shape::Nurbs(c) => {
+            let (first, last) = curve.domain();
+            of_nurbs(&c.part(t0, t1), SLIVER * (last - first))
+        }
         Shape::Offset(offset) => {
             let base = spread(&offset.base, t0, t1);
             // Same directions; lengths grow by 1 − d·k.
@@ -64,7 +67,14 @@ pub fn spread(curve: &Curve, t0: f64, t1: f64) -> Spread {
             Spread { bend: if growth.low > 0.0 { base.bend * growth.inverse() } else { Ranges::ANY }, ..base }
         }
         Shape::Composite(c) => {
-            let (first, last) = (c.locate(t0).0, c.locate_before(t1).0);
+            let (mut first, mut last) = (c.locate(t0).0, c.locate_before(t1).0);
+            let least = SLIVER * (c.breaks[c.breaks.len() - 1] - c.breaks[0]);
+            if first < last && c.breaks[first + 1] - t0 <= least {
+                first += 1;
+            }
+            if first < last && t1 - c.breaks[last] <= least {
+                last -= 1;
+            }
             let one = |i: usize| spread(&c.pieces[i], c.own(i, t0.max(c.breaks[i])), c.own(i, t1.min(c.breaks[i + 1])));
             (first + 1..=last).fold(one(first), |whole, i| {
                 let jump = direction(&c.pieces[i], false) - direction(&c.pieces[i - 1], true);
@@ -91,10 +101,14 @@ fn turned(u: DVec3, v: DVec3, t0: f64, t1: f64) -> (Ranges, Ranges) {
     (forward * out + sides * along, forward * along + sides * out)
 }
 
-fn of_nurbs(c: &Nurbs) -> Spread {
+/// Pieces no wider than `least` are passed over beside wider ones: they are there because a stretch that was to end at a knot ends
+/// beside it, and differences of their control points over their width are nothing but rounding.
+fn of_nurbs(c: &Nurbs, least: f64) -> Spread {
     let mut whole: Option<(Spread, DVec3)> = None;
-    for piece in c.beziers() {
-        let own = of_bezier(&piece, c.polynomial);
+    let pieces = c.beziers();
+    let wide = pieces.iter().any(|piece| piece.t1 - piece.t0 > least);
+    for piece in pieces.iter().filter(|piece| !wide || piece.t1 - piece.t0 > least) {
+        let own = of_bezier(piece, c.polynomial);
         let n = piece.poles.len();
         let start = (projected(piece.poles[1]) - projected(piece.poles[0])).normalize_or_zero();
         let end = (projected(piece.poles[n - 1]) - projected(piece.poles[n - 2])).normalize_or_zero();

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::chain::Chain;
 use crate::base::range::Ranges;
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::SLIVER;
 use crate::geometry::{Spread, spread};
 
 /// Derivatives of a chain with respect to its fraction over a stretch.
@@ -25,7 +25,8 @@ pub fn of_chain(chain: &Chain, f0: f64, f1: f64) -> ChainSpread {
     let mut whole: Option<Spread> = None;
     for (k, run) in chain.runs().iter().enumerate() {
         let (a, b) = (f0.max(joints[k]), f1.min(joints[k + 1]));
-        if b - a <= EPSILON && whole.is_some() || b <= a {
+        // What is there of a run by rounding alone says nothing beside the rest.
+        if b - a <= SLIVER && f1 - f0 > 2.0 * SLIVER || b <= a {
             continue;
         }
         let at = |f: f64| run.s0 + (run.s1 - run.s0) * ((f - joints[k]) / (joints[k + 1] - joints[k])).clamp(0.0, 1.0);
@@ -35,7 +36,7 @@ pub fn of_chain(chain: &Chain, f0: f64, f1: f64) -> ChainSpread {
         let parts = [(low.min(turn), high.min(turn)), (low.max(turn) - turn, high.max(turn) - turn)];
         let mut own: Option<Spread> = None;
         for (s0, s1) in parts {
-            if s1 - s0 <= EPSILON * turn && (own.is_some() || (s0, s1) == (0.0, 0.0) || s1 <= s0) {
+            if s1 - s0 <= SLIVER * turn && (high - low > 2.0 * SLIVER * turn || own.is_some() || s1 <= s0) {
                 continue;
             }
             let found = spread(&run.curve, run.curve.param_at_length(s0), run.curve.param_at_length(s1));

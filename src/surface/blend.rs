@@ -16,7 +16,7 @@ use super::rail::{Lean, Rail};
 use super::weights::{Axis, Weights};
 use crate::base::bbox::Box3;
 use crate::base::par;
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::SLIVER;
 use crate::geometry::{Jet, Motion};
 
 /// Rows of points made by one thread at a time.
@@ -196,7 +196,7 @@ impl Blend {
         let inner = |axis: &Axis, rails: &[Rail]| {
             let mut all = if axis.is_piecewise() { axis.nodes.clone() } else { Vec::new() };
             rails.iter().for_each(|rail| rail.breaks(&mut all));
-            tidy(all, EPSILON)
+            tidy(all, SLIVER)
         };
         (inner(&self.u, &self.along_u), inner(&self.v, &self.along_v))
     }
@@ -205,7 +205,7 @@ impl Blend {
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         let inner = |axis: &Axis, rails: &[Rail]| {
             let kinks = rails.iter().flat_map(Rail::kinks).map(|k| k.0);
-            tidy(axis.nodes.iter().copied().chain(kinks).collect(), EPSILON)
+            tidy(axis.nodes.iter().copied().chain(kinks).collect(), SLIVER)
         };
         (inner(&self.u, &self.along_u), inner(&self.v, &self.along_v))
     }

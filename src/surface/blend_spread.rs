@@ -3,6 +3,8 @@
 //! With E_i = F_i − Σ_j b_j P_ij and H_j = G_j − Σ_i a_i P_ij the derivatives are sums of products of a function of u and
 //! one of v: ∂uu = Σ a_i″ E_i + Σ b_j G_j″, ∂uv = Σ a_i′ E_i′ + Σ b_j′ G_j′, ∂vv = Σ a_i F_i″ + Σ b_j″ H_j.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
 use super::Jet2;
@@ -19,8 +21,10 @@ pub struct BlendStrip {
     terms: Vec<usize>,
     shares: usize,
     weights: Vec<([f64; 3], [Range; 3])>,
-    /// The curves along the strip, one per term of the other direction.
+    /// The curves along the strip, one per node of the other direction.
     rails: Vec<Line>,
+    /// Slopes across them: sums of all curves, made for the cells that ask for them.
+    slopes: Vec<OnceLock<Line>>,
 }
 
 impl Blend {
@@ -38,20 +42,30 @@ impl Blend {
         let idle = along_u && self.along_v().is_empty();
         let middle = axis.weights(0.5 * (x0 + x1), Lean::After);
         let weights = if idle { Vec::new() } else { middle.values().iter().copied().zip(axis.ranges(x0, x1)).collect::<Vec<_>>() };
-        let mut rails: Vec<Line> = rails.iter().map(|rail| rail.line(x0, x1)).collect();
-        if !rails.is_empty() {
-            let slopes: Vec<Line> = across.slopes().iter().map(|row| Line::sum(row.iter().copied().zip(rails.iter().copied()))).collect();
-            rails.extend(slopes);
-        }
+        let rails: Vec<Line> = rails.iter().map(|rail| rail.line(x0, x1)).collect();
+        let slopes = if rails.is_empty() { Vec::new() } else { vec![OnceLock::new(); across.slopes().len()] };
         let terms = if idle { Vec::new() } else { middle.iter().map(|(term, _)| term).collect() };
-        BlendStrip { terms, shares: axis.shares(), weights, rails }
+        BlendStrip { terms, shares: axis.shares(), weights, rails, slopes }
+    }
+
+    /// The curve or slope of a term along a strip (`along_u`: of u).
+    fn term(&self, strip: &BlendStrip, along_u: bool, term: usize) -> Line {
+        let Some(slope) = term.checked_sub(strip.rails.len()) else { return strip.rails[term] };
+        let across = if along_u { self.axes().1 } else { self.axes().0 };
+        let sum = || Line::sum(across.slopes()[slope].iter().copied().zip(strip.rails.iter().copied()));
+        *strip.slopes[slope].get_or_init(sum)
+    }
+
+    /// The sum of some terms of a strip.
+    fn mixed(&self, strip: &BlendStrip, along_u: bool, terms: &[usize], m: &[f64]) -> Line {
+        Line::sum(m.iter().copied().zip(terms.iter().map(|term| self.term(strip, along_u, *term))))
     }
 
     /// Σ m_k (F_k − Σ_j b_j P_kj) of some terms of one strip (`along_u`: G_k less Σ_i a_i P_ik).
     ///
     /// Corners are mixed before they meet ranges, and as the weights' derivatives sum to 0 their differences count alone.
     fn rest(&self, strip: &BlendStrip, along_u: bool, terms: &[usize], m: &[f64]) -> Line {
-        let line = mixed(&strip.rails, terms, m);
+        let line = self.mixed(strip, along_u, terms, m);
         let corner = |own: &usize| -> DVec3 {
             let at = |k: usize| if along_u { self.corner(*own, k) } else { self.corner(k, *own) };
             terms.iter().zip(m).map(|(k, share)| at(*k) * *share).sum()
@@ -71,14 +85,14 @@ impl Blend {
 
     /// Bounds over the rectangle of a strip of u and one of v.
     pub fn spread(&self, u: &BlendStrip, v: &BlendStrip, half: (f64, f64)) -> Spread {
-        let g = |m: &[f64]| mixed(&u.rails, &v.terms, m);
+        let g = |m: &[f64]| self.mixed(u, true, &v.terms, m);
         let (a, b) = (Shares { weights: &u.weights, shares: u.shares }, Shares { weights: &v.weights, shares: v.shares });
         if self.along_v().is_empty() {
             let second = [blended(b, 0, 2, &g), blended(b, 1, 1, &g), blended(b, 2, 0, &g)];
             let first = [blended(b, 0, 1, &g), blended(b, 1, 0, &g)];
             return Spread::new(self.middle(u, v), half, second, Some(first));
         }
-        let f = |m: &[f64]| mixed(&v.rails, &u.terms, m);
+        let f = |m: &[f64]| self.mixed(v, false, &u.terms, m);
         let e = |m: &[f64]| self.rest(v, false, &u.terms, m);
         let h = |m: &[f64]| self.rest(u, true, &v.terms, m);
         let second = [
@@ -104,7 +118,7 @@ impl Blend {
             jet.dvv += e.d2 * w[0];
         }
         for ((w, _), term) in v.weights.iter().zip(&v.terms) {
-            let g = u.rails[*term].mid;
+            let g = self.term(u, true, *term).mid;
             jet.p += g.p * w[0];
             jet.dv += g.p * w[1];
             jet.dvv += g.p * w[2];
@@ -114,8 +128,4 @@ impl Blend {
         }
         jet
     }
-}
-
-fn mixed(lines: &[Line], terms: &[usize], m: &[f64]) -> Line {
-    Line::sum(m.iter().copied().zip(terms.iter().map(|term| lines[*term])))
 }
