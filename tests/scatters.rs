@@ -161,6 +161,31 @@ fn bounds_hold() {
     }
 }
 
+/// Between noisy points a surface stays about where they are, or says that it does not.
+#[test]
+fn surfaces_that_stand_out_over_their_points_say_so() {
+    let mut numbers = Random(0x0_0e5e);
+    let (mut told, mut worst) = (0, 0.0_f64);
+    for case in 0..100 {
+        let points = cloud(&mut numbers, 12 + case, |x, y| 0.1 * (1234.5 * x).sin() * (987.6 * y).cos());
+        let (surface, notes) = scatter(&points, Some(DVec3::Z), Origin::NONE, &Tolerance::new(1e-7, 3.0)).unwrap();
+        let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.z), b.max(p.z)));
+        let mut out = 0.0_f64;
+        for [a, b, c] in surface.triangles() {
+            for (x, y) in [(0.3, 0.3), (0.1, 0.6), (0.6, 0.1), (0.2, 0.1), (0.45, 0.45)] {
+                let at = a + (b - a) * x + (c - a) * y;
+                let z = surface.point(at.x, at.y).z;
+                out = out.max(z - high).max(low - z);
+            }
+        }
+        let said = notes.iter().any(|note| note.code().0 == "W226");
+        told += usize::from(said);
+        worst = worst.max(if said { 0.0 } else { out / (high - low) });
+    }
+    assert!(worst <= 0.6, "a surface stands out {worst} of the range of its heights without a word");
+    assert!(told <= 20, "{told} of 100");
+}
+
 /// Second derivatives jump across the sides of triangles: a net of few pieces keeps them only where they hardly do.
 #[test]
 fn nets_of_quadratics_are_made_and_of_rough_points_refused() {

@@ -73,6 +73,7 @@ codes! {
     now "W223", "snap-moves-far", "`snap` moves an end by more than a hundredth of its curve";
     now "W224", "group-not-meshed", "no mesh that is written holds anything of a group";
     now "W225", "points-merged", "scattered points are given twice";
+    now "W226", "points-exceeded", "a surface stands out far over its scattered points";
     now "E230", "not-in-this-version", "a word of a later version";
     now "E301", "argument-missing", "an argument is missing";
     now "E302", "too-many-arguments", "too many arguments";

@@ -6,6 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::measure_cut_triangles::cut_triangles_integral;
 use super::measure_flat::flat_integral;
 use super::measure_quadrature::{Rectangle, WHOLE, integral};
 use super::measure_triangles::triangles_integral;
@@ -167,7 +168,10 @@ pub(super) fn over<const N: usize>(
         (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, (&at, &sized)),
         (_, SurfaceKind::Scatter) => triangles_integral(surface, &surface.triangles(), accuracy, &at),
         _ if surface.is_flat() => flat_integral(surface, accuracy, (&at, &sized)),
-        (Domain::Loop, _) => trimmed_integral(surface, accuracy, (&at, &sized)),
+        (Domain::Loop, _) => {
+            let patchwise = if surface.is_scattered() { cut_triangles_integral(surface, accuracy, &at) } else { None };
+            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, (&at, &sized)))
+        }
         _ => integral(surface, WHOLE, accuracy, (&at, &sized)),
     }
 }

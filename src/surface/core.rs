@@ -461,6 +461,11 @@ impl Surface {
         }
     }
 
+    /// Whether it, or what it was cut from, goes through scattered points: it is analytic over its triangles.
+    pub fn is_scattered(&self) -> bool {
+        matches!(self.0.parts.shape, Shape::Scatter(_))
+    }
+
     /// The triangles of (u, v) over which the surface is analytic, all of a whole surface through scattered points; empty for others.
     pub fn triangles(&self) -> Vec<[DVec2; 3]> {
         let Shape::Scatter(field) = &self.0.parts.shape else { return Vec::new() };

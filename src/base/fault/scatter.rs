@@ -52,6 +52,17 @@ pub enum ScatterFault {
         /// Rise over run.
         steep: f64,
     },
+    /// W226: a surface that stands out far over its points.
+    StandsOut {
+        /// The surface.
+        surface: Origin,
+        /// The place that is farthest beyond the heights of all points, of those looked at.
+        at: DVec3,
+        /// How far beyond.
+        off: f64,
+        /// How far the points' heights are apart at the most.
+        range: f64,
+    },
 }
 
 impl Describe for ScatterFault {
@@ -88,6 +99,15 @@ impl Describe for ScatterFault {
                 let message = format!("{which} rises {steep:.0} times as far as it runs from {a} to {b}");
                 label(Report::new("W668", message), "very steep")
                     .help("points of two sheets are no surface over one plane: leave one sheet out, or choose another `along:`")
+            }
+            Self::StandsOut { surface, at, off, range } => {
+                let which = say.quoted(*surface, "this surface");
+                let (off, at, range) = (say.length(*off), say.point(*at), say.length(*range));
+                let message =
+                    format!("{which} stands out {off} beyond the heights of all its points, at {at}; the heights differ by {range}");
+                label(Report::new("W226", message), "neighbours with very different heights").help(
+                    "leave out points that stand close together at different heights, or give more of them where the surface stands out",
+                )
             }
         }
     }

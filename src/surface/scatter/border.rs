@@ -77,6 +77,18 @@ fn outer(triangles: &[[usize; 3]]) -> BTreeMap<(usize, usize), usize> {
     found
 }
 
+/// Of each triangle the points across its sides, of the triangles there; the sides in the order of their first corners.
+pub fn opposite(triangles: &[[usize; 3]]) -> Vec<[Option<usize>; 3]> {
+    let mut apex = BTreeMap::new();
+    for t in triangles {
+        (0..3).for_each(|k| {
+            apex.insert((t[k], t[(k + 1) % 3]), t[(k + 2) % 3]);
+        });
+    }
+    let across = |t: &[usize; 3]| [0, 1, 2].map(|k| apex.get(&(t[(k + 1) % 3], t[k])).copied());
+    triangles.iter().map(across).collect()
+}
+
 /// The sides in runs along one line each, beginning at a corner.
 pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Side>> {
     let n = sides.len();

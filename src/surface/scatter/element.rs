@@ -1,5 +1,6 @@
 //! The cubic triangle of Clough & Tocher (1965): three cubics about the centre of a triangle that meet its corners with their
-//! gradients, with a slope across each side that is linear along it. Neighbours are C1, and quadratics are reproduced.
+//! gradients. Towards the centre of the neighbour the slope is linear along each side: neighbours are C1, quadratics are reproduced,
+//! and a short side does not carry its steepness through a long triangle, as slopes at right angles to it would.
 
 use glam::DVec2;
 
@@ -155,20 +156,28 @@ pub struct Corner {
     pub slope: DVec2,
 }
 
-/// The three pieces over a triangle, counter-clockwise; piece k has the side from corner k to the next one. `size` are the
-/// lengths of the box over which u and v run 0…1 from the origin.
-pub fn pieces(corners: &[Corner; 3], size: DVec2) -> [Piece; 3] {
+/// The three pieces over a triangle, counter-clockwise; piece k has the side from corner k to the next one. `opposite` are the
+/// corners of the neighbours across the sides that are not on them, none on the border; `size` are the lengths of the box over which
+/// u and v run 0…1 from the origin.
+pub fn pieces(corners: &[Corner; 3], opposite: [Option<DVec2>; 3], size: DVec2) -> [Piece; 3] {
     let center = (corners[0].at + corners[1].at + corners[2].at) / 3.0;
     // A third of the way from corner a towards a place.
     let towards = |a: usize, p: DVec2| corners[a].h + corners[a].slope.dot(p - corners[a].at) / 3.0;
     let next = |a: usize| (a + 1) % 3;
     let side = [0, 1, 2].map(|a| (towards(a, corners[next(a)].at), towards(next(a), corners[a].at)));
     let inward = [0, 1, 2].map(|a| towards(a, center));
+    // Where the line from the centre to that of the neighbour crosses a side, as a share of it; on the border in its middle.
+    let crossing = |a: usize| {
+        let (from, way) = (corners[a].at, corners[next(a)].at - corners[a].at);
+        opposite[a].map_or(0.5, |other| {
+            let apex = corners[next(next(a))].at;
+            (1.0 + (apex - from).perp_dot(other - apex) / way.perp_dot(other - apex)) / 3.0
+        })
+    };
     // The ordinate in the middle of each piece: the slope across its side is linear.
     let middle = [0, 1, 2].map(|a| {
         let b = next(a);
-        let way = corners[b].at - corners[a].at;
-        let foot = (center - corners[a].at).dot(way) / way.length_squared();
+        let foot = crossing(a);
         let (near, far) = side[a];
         let across = |inner: f64, first: f64, second: f64| inner - (1.0 - foot) * first - foot * second;
         (1.0 - foot) * near + foot * far + 0.5 * (across(inward[a], corners[a].h, near) + across(inward[b], far, corners[b].h))

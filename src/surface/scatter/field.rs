@@ -226,6 +226,25 @@ impl Field {
         [uu / (w * w), uv / (w * h), vv / (h * h)]
     }
 
+    /// How far heights are beyond two at most, and where; `None` where none is. Looked at are places of the pieces whose bounds are.
+    pub fn beyond_heights(&self, low: f64, high: f64) -> Option<(f64, DVec3)> {
+        /// Steps along the sides of a piece.
+        const STEPS: usize = 8;
+        let mut most: Option<(f64, DVec3)> = None;
+        for piece in self.pieces.iter().filter(|piece| piece.ordinates.iter().any(|h| *h < low || *h > high)) {
+            let [a, b, c] = piece.corners;
+            for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| (i, j))) {
+                let uv = a + (b - a) * (i as f64 / STEPS as f64) + (c - a) * (j as f64 / STEPS as f64);
+                let h = piece.height(uv).h;
+                let off = (h - high).max(low - h);
+                if off > most.map_or(0.0, |known| known.0) {
+                    most = Some((off, self.lifted(uv, h)));
+                }
+            }
+        }
+        most
+    }
+
     /// Bounds over a rectangle.
     pub fn spread(&self, u: (f64, f64), v: (f64, f64)) -> Spread {
         let middle = DVec2::new(0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));

@@ -26,7 +26,7 @@ use crate::base::triangulate::delaunay;
 /// Steeper than this, rise over run, a side of a triangle deserves a word: the points may be of two sheets.
 const STEEP: f64 = 10.0;
 
-/// The surface through points, over the plane that comes nearest to them or across `along`; warnings too (W225, W668).
+/// The surface through points, over the plane that comes nearest to them or across `along`; warnings too (W225, W226, W668).
 ///
 /// Points within the tolerance of each other count once. Their order changes nothing. Fails with E402 below three points, E409
 /// for an `along` without length, E665 where all points lie on one line of the plane, E675 where two lie over one another.
@@ -57,18 +57,30 @@ pub fn scatter(points: &[DVec3], along: Option<DVec3>, origin: Origin, tolerance
     notes.extend(steepest(&places, &triangles, origin, |p| base.place(p)));
     let gradients = slopes::slopes(&places, &triangles);
     let corner = |k: usize| Corner { at: flat[k] - low, h: places[k].z, slope: gradients[k] };
-    let made = triangles.iter().flat_map(|t| {
+    let beside = border::opposite(&triangles);
+    let made = triangles.iter().zip(beside).flat_map(|(t, others)| {
         job::look();
-        pieces(&t.map(corner), size)
+        pieces(&t.map(corner), others.map(|other| other.map(|k| flat[k] - low)), size)
     });
     let made = made.collect();
     let [ex, ey] = base.axes;
     let frame = Frame { origin: base.place(low.extend(0.0)), eu: ex * size.x, ev: ey * size.y };
     let rim: Vec<usize> = sides.iter().map(|side| side.piece).collect();
     let field = Field::new(frame, normal, made, &rim);
+    notes.extend(standing_out(&places, &field, origin));
     let count = places.len();
     let surface = border::surface(field, &border::runs(&sides, &flat, tolerance), count, origin, tolerance)?;
     Ok((surface, notes))
+}
+
+/// Share of the range of all heights beyond which a surface that stands out over it deserves a word.
+const OUT: f64 = 0.5;
+
+/// W226 for the place that is farthest beyond the heights of all points, where that is far.
+fn standing_out(places: &[DVec3], field: &Field, origin: Origin) -> Option<Fault> {
+    let (low, high) = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.z), b.max(p.z)));
+    let (off, at) = field.beyond_heights(low, high)?;
+    (off > OUT * (high - low)).then(|| ScatterFault::StandsOut { surface: origin, at, off, range: high - low }.into())
 }
 
 /// W668 for the steepest side of all triangles, where it is very steep.
