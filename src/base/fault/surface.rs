@@ -579,7 +579,9 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
                 say.length(distance.abs())
             );
             let most = say.length(largest.copysign(*distance));
-            Report::new("W664", message).at(*surface, "turns back there").help(format!("a distance of less than {most} does not fold"))
+            Report::new("W664", message)
+                .at(*surface, "turns back there")
+                .help(format!("a distance between 0 and {most} does not fold there"))
         }
         F::PlaneNotFlat { curve, off, at, tolerance } => Report::new(
             "E655",
