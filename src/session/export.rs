@@ -224,7 +224,11 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
         }
     }
     let scale = Scale { unit, model: scale.unwrap_or(1.0), tolerance };
-    let unsupported = |what| FileFault::Unsupported { of: spec.path_origin, what, help: None, edits: Vec::new() };
+    // Through scattered points there is one cubic a triangle, and no net of few strips where slopes differ much.
+    let scattered = things.iter().any(|thing| matches!(&thing.shown, Shown::Surface(surface) if surface.is_scattered()));
+    let help = scattered
+        .then(|| "export a mesh of it, made with a `chord_error:`, to a format of meshes: splines hold smooth points only".to_owned());
+    let unsupported = |what| FileFault::Unsupported { of: spec.path_origin, what, help, edits: Vec::new() };
     let sheet = iges::write::sheet(&things, &scale).map_err(unsupported)?;
     let name = spec.path.rsplit('/').next().unwrap_or(&spec.path);
     put(spec, files, &mut |out| iges::write::write(&sheet, name, &scale, out))

@@ -132,7 +132,7 @@ impl Surface {
         if strips <= MOST_STRIPS {
             return Ok(());
         }
-        let what = format!("the spline form of scattered points, about {strips:.0} strips of pieces each way,");
+        let what = format!("the spline form of rough scattered points, with about {strips:.0} strips of pieces each way,");
         Err(CurveFault::NotConverged { of: self.origin(), what, at }.into())
     }
 
