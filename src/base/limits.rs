@@ -25,6 +25,8 @@ limits! {
     pub const DATA_BYTES: u64 = 256 << 20;
     /// Largest coordinate or length of a curve, model units either way: its fourth power must not overflow.
     pub const COORDINATE: f64 = 1e50;
+    /// Turns of one helix, either way: each takes some kilobytes.
+    pub const HELIX_TURNS: f64 = 10_000.0;
     /// Members of one list.
     pub const LIST_MEMBERS: usize = 10_000_000;
     /// Members of all lists that are held at a time, with 3 for each list itself: 32 bytes each, under 1 GiB together with what they hold.

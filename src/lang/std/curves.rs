@@ -5,12 +5,14 @@ use glam::DVec3;
 use super::kinds::PointsOrSurface;
 use super::surfaces::finished;
 use crate::base::fault::{Fault, ValueFault};
+use crate::base::limits::HELIX_TURNS;
 use crate::base::math;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::builtins;
 use crate::geometry::{Curve, Ends, Kind, Spline, build, fillet, polynomial};
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::types::{Angle, Direction, FromValue, Length, Point, Ty};
+use crate::lang::units::number_text;
 use crate::lang::value::Value;
 use crate::network::Chain;
 use crate::surface::{Surface, offset};
@@ -403,12 +405,16 @@ builtins! {
         start: Point,
         /// Rise of one turn.
         pitch: Length,
-        /// How many turns; negative runs clockwise.
+        /// How many turns, at most 10000; negative runs clockwise.
         turns: f64,
         /// Direction of the axis.
         axis: Direction = "(0, 0, 1)",
     ) -> Chain = |cx, center, start, pitch, turns, axis| {
         let axis = unit(axis.0, "axis")?;
+        if turns.abs() > HELIX_TURNS {
+            let (found, range) = (number_text(turns), format!("at most {HELIX_TURNS} either way"));
+            return Err(ValueFault::OutsideRange { argument: "turns", found, range }.into());
+        }
         Ok(whole(build::helix(center.0, axis, start.0, pitch.0, turns, cx.origin())?))
     };
 
