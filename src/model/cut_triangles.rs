@@ -181,9 +181,12 @@ impl<'a> Cut<'a> {
 #[derive(Default)]
 struct Ways {
     crossings: BTreeMap<usize, Vec<Crossing>>,
-    /// Loops that stay in one triangle.
-    closed: Vec<(usize, Vec<(usize, (f64, f64))>)>,
+    /// Loops that stay in one triangle, with the triangle.
+    closed: Vec<(usize, Loop)>,
 }
+
+/// Parts of borders, each with its ends.
+type Loop = Vec<(usize, (f64, f64))>;
 
 /// From where a border leaves a triangle to where the next one enters it, counter-clockwise; `None` where two go to one.
 fn kept_sides(crossings: &[Crossing]) -> Option<Vec<(Place, Place)>> {

@@ -33,6 +33,7 @@ impl<const N: usize> Progress<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::math;
 
     fn rounds(accuracy: f64, error: impl Fn(i32) -> f64) -> i32 {
         let mut progress = Progress::new(accuracy, [0.0, 2.0]);
@@ -42,9 +43,9 @@ mod tests {
     #[test]
     fn halving_ends_at_the_accuracy_or_where_only_rounding_is_left() {
         // Errors across a fold fall to a quarter.
-        assert_eq!(rounds(1e-10, |k| 2.0 * f64::powi(0.25, k)), 17);
+        assert_eq!(rounds(1e-10, |k| 2.0 * math::powi(0.25, k)), 17);
         // Errors beside a line of infinite slope fall to 0.7.
-        assert!(rounds(1e-10, |k| 2e-8 * f64::powi(0.5, k).sqrt()) > 8);
+        assert!(rounds(1e-10, |k| 2e-8 * math::powi(0.5, k).sqrt()) > 8);
         // Rounding stays what it is.
         assert_eq!(rounds(1e-10, |_| 1e-8), 3);
         assert_eq!(rounds(1e-10, |k| if k < 9 { 0.1 } else { 1e-8 }), 11);
