@@ -93,6 +93,8 @@ pub const VAST: f64 = 1e120;
 pub const NEAREST_PLACE: f64 = 1e-3;
 /// A place outside of a triangle by this share of it, or less, is read from it.
 pub const BESIDE_TRIANGLE: f64 = 1e-9;
+/// A node nearer to an edge of a border, in the chart, than this share of the side of the cells about it lies on the edge.
+pub const ON_EDGE: f64 = 1e-3;
 /// Damping of the second derivatives of a nearest quadratic, as a share of the sum of all squares.
 pub const DAMPED_BENDS: f64 = 1e-4;
 /// Damping of its first ones.

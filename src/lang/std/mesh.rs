@@ -77,7 +77,9 @@ fields! {
     fn min_quality(of: Arc<MeshValue>) -> f64 = |cx, of| Ok(quality(cx, &of)?.min_quality);
     /// Longest over shortest side of an element, the largest of all.
     fn max_aspect(of: Arc<MeshValue>) -> f64 = |cx, of| Ok(quality(cx, &of)?.max_aspect);
-    /// The largest distance between the mesh and its surfaces, and between free borders and their curves.
+    /// The largest distance between the mesh and its surfaces.
+    ///
+    /// Free borders count with their distance from the curves that they follow.
     fn chord_error(of: Arc<MeshValue>) -> Length = |cx, of| {
         let tolerance = cx.tolerance()?;
         let mesh = cx.mesh(&of)?;

@@ -13,6 +13,7 @@ use super::grow::{Grown, SIGHT, apart, samples};
 use super::outline::Outline;
 use super::tree::{Cell, Class, Halt, Tree};
 use crate::base::job;
+use crate::base::tolerance::ON_EDGE;
 
 /// Side of a cell over the wanted length: its diagonal is then hardly longer than a side may be.
 const SIDE: f64 = 0.74;
@@ -27,8 +28,6 @@ const BESIDE: f64 = 0.25;
 const BENT: f64 = 0.05;
 /// Parts of an edge at whose ends its distance from the surface is looked at.
 const PLACES: u32 = 8;
-/// Least distance of a node, in the chart, to any edge of the border, over the side of the cells: nearer, it lies on the edge.
-const ON: f64 = 1e-3;
 /// Roots along a side at most.
 const ROOTS: f64 = 2048.0;
 /// Places along each direction at which the largest wanted length is looked for.
@@ -122,7 +121,7 @@ fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> Grown {
         let sides = leaves.iter().map(|c| (span(task.ground, tree, c).0, tree.side(c.level)));
         let side = sides.reduce(|a, b| (a.0.min(b.0), a.1.min(b.1))).unwrap_or_default();
         let mut edges = leaves.iter().flat_map(|c| &c.segments).map(|s| segments[*s as usize]);
-        if !edges.any(|edge| is_beside(xy, edge, side.1, ON)) {
+        if !edges.any(|edge| is_beside(xy, edge, side.1, ON_EDGE)) {
             taken.consider(xy, side);
         }
     }
