@@ -64,6 +64,18 @@ impl<'a> Seen<'a> {
         self.mesh.nodes[n as usize]
     }
 
+    /// Triangles as the chord error is measured: quads by the diagonal from their first corner.
+    fn measured(&self) -> Vec<([u32; 3], usize)> {
+        let of_face = |f: usize| {
+            let face = self.faces[f];
+            let triangles = self.mesh.triangles[face.triangles.start as usize..face.triangles.end as usize].iter().copied();
+            let quads = self.mesh.quads[face.quads.start as usize..face.quads.end as usize].iter();
+            let halves = quads.flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+            triangles.chain(halves).map(move |t| (t, f)).collect::<Vec<_>>()
+        };
+        (0..self.faces.len()).flat_map(of_face).collect()
+    }
+
     /// Edges of elements (not of their halves), with the faces that have them.
     fn edges(&self) -> BTreeMap<(u32, u32), Vec<(bool, usize)>> {
         let mut edges: BTreeMap<(u32, u32), Vec<(bool, usize)>> = BTreeMap::new();
@@ -212,7 +224,7 @@ impl<'a> Seen<'a> {
     fn chord(&self, near: &[Nearest], told: Option<f64>, found: &mut Vec<String>) -> bool {
         let told = told.unwrap_or(0.0);
         let mut worst = (0.0_f64, DVec3::ZERO);
-        for (t, f) in some(&self.triangles) {
+        for (t, f) in some(&self.measured()) {
             let [a, b, c] = t.map(|n| self.p(n));
             for (i, j) in (0..7).flat_map(|i| (0..7 - i).map(move |j| (f64::from(i) / 6.0, f64::from(j) / 6.0))) {
                 let p = a + (b - a) * i + (c - a) * j;
