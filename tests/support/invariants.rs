@@ -64,13 +64,14 @@ impl<'a> Seen<'a> {
         self.mesh.nodes[n as usize]
     }
 
-    /// Triangles as the chord error is measured: quads by the diagonal from their first corner.
-    fn measured(&self) -> Vec<([u32; 3], usize)> {
+    /// Triangles, with quads by the diagonal from one of their corners.
+    fn cut_from(&self, corner: usize) -> Vec<([u32; 3], usize)> {
         let of_face = |f: usize| {
             let face = self.faces[f];
             let triangles = self.mesh.triangles[face.triangles.start as usize..face.triangles.end as usize].iter().copied();
             let quads = self.mesh.quads[face.quads.start as usize..face.quads.end as usize].iter();
-            let halves = quads.flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+            let at = move |q: &[u32; 4], k: usize| q[(corner + k) % 4];
+            let halves = quads.flat_map(move |q| [[at(q, 0), at(q, 1), at(q, 2)], [at(q, 0), at(q, 2), at(q, 3)]]);
             triangles.chain(halves).map(move |t| (t, f)).collect::<Vec<_>>()
         };
         (0..self.faces.len()).flat_map(of_face).collect()
@@ -220,11 +221,10 @@ impl<'a> Seen<'a> {
         all.len()
     }
 
-    /// 25 places of a triangle are no farther from their surface than is said, and than the setting allows.
-    fn chord(&self, near: &[Nearest], told: Option<f64>, found: &mut Vec<String>) -> bool {
-        let told = told.unwrap_or(0.0);
+    /// The farthest of 25 places of each triangle from their surface, and where.
+    fn farthest(&self, near: &[Nearest], triangles: &[([u32; 3], usize)]) -> (f64, DVec3) {
         let mut worst = (0.0_f64, DVec3::ZERO);
-        for (t, f) in some(&self.measured()) {
+        for (t, f) in some(triangles) {
             let [a, b, c] = t.map(|n| self.p(n));
             for (i, j) in (0..7).flat_map(|i| (0..7 - i).map(move |j| (f64::from(i) / 6.0, f64::from(j) / 6.0))) {
                 let p = a + (b - a) * i + (c - a) * j;
@@ -234,6 +234,18 @@ impl<'a> Seen<'a> {
                 let off = (p - foot.point).dot(normal).abs();
                 worst = if off > worst.0 { (off, p) } else { worst };
             }
+        }
+        worst
+    }
+
+    /// Places of triangles are no farther from their surface than is said, and than the setting allows; of quads by one of the two
+    /// diagonals, for which one the measure takes is not told.
+    fn chord(&self, near: &[Nearest], told: Option<f64>, found: &mut Vec<String>) -> bool {
+        let told = told.unwrap_or(0.0);
+        let mut worst = self.farthest(near, &self.cut_from(0));
+        if worst.0 > told && !self.mesh.quads.is_empty() {
+            let other = self.farthest(near, &self.cut_from(1));
+            worst = if other.0 < worst.0 { other } else { worst };
         }
         // What is told comes from places too, and is nothing where it is nothing but rounding.
         if worst.0 > told * 1.05 + ON * self.size {
