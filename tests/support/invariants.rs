@@ -64,15 +64,15 @@ impl<'a> Seen<'a> {
         self.mesh.nodes[n as usize]
     }
 
-    /// Triangles, with quads by the diagonal from one of their corners.
-    fn cut_from(&self, corner: usize) -> Vec<([u32; 3], usize)> {
+    /// Elements with the face of each: triangles as one half, quads as two halves by either diagonal.
+    fn elements(&self) -> Vec<([Vec<[u32; 3]>; 2], usize)> {
         let of_face = |f: usize| {
             let face = self.faces[f];
-            let triangles = self.mesh.triangles[face.triangles.start as usize..face.triangles.end as usize].iter().copied();
+            let triangles = self.mesh.triangles[face.triangles.start as usize..face.triangles.end as usize].iter();
             let quads = self.mesh.quads[face.quads.start as usize..face.quads.end as usize].iter();
-            let at = move |q: &[u32; 4], k: usize| q[(corner + k) % 4];
-            let halves = quads.flat_map(move |q| [[at(q, 0), at(q, 1), at(q, 2)], [at(q, 0), at(q, 2), at(q, 3)]]);
-            triangles.chain(halves).map(move |t| (t, f)).collect::<Vec<_>>()
+            let whole = triangles.map(|t| [vec![*t], vec![*t]]);
+            let cut = quads.map(|[a, b, c, d]| [vec![[*a, *b, *c], [*a, *c, *d]], vec![[*b, *c, *d], [*b, *d, *a]]]);
+            whole.chain(cut).map(|halves| (halves, f)).collect::<Vec<_>>()
         };
         (0..self.faces.len()).flat_map(of_face).collect()
     }
@@ -221,10 +221,10 @@ impl<'a> Seen<'a> {
         all.len()
     }
 
-    /// The farthest of 25 places of each triangle from their surface, and where.
-    fn farthest(&self, near: &[Nearest], triangles: &[([u32; 3], usize)]) -> (f64, DVec3) {
+    /// The farthest of 25 places of each of some triangles from the surface of a face, and where.
+    fn farthest(&self, near: &[Nearest], triangles: &[[u32; 3]], f: usize) -> (f64, DVec3) {
         let mut worst = (0.0_f64, DVec3::ZERO);
-        for (t, f) in some(triangles) {
+        for t in triangles {
             let [a, b, c] = t.map(|n| self.p(n));
             for (i, j) in (0..7).flat_map(|i| (0..7 - i).map(move |j| (f64::from(i) / 6.0, f64::from(j) / 6.0))) {
                 let p = a + (b - a) * i + (c - a) * j;
@@ -238,14 +238,18 @@ impl<'a> Seen<'a> {
         worst
     }
 
-    /// Places of triangles are no farther from their surface than is said, and than the setting allows; of quads by one of the two
+    /// Places of elements are no farther from their surface than is said, and than the setting allows; of a quad by one of its two
     /// diagonals, for which one the measure takes is not told.
     fn chord(&self, near: &[Nearest], told: Option<f64>, found: &mut Vec<String>) -> bool {
         let told = told.unwrap_or(0.0);
-        let mut worst = self.farthest(near, &self.cut_from(0));
-        if worst.0 > told && !self.mesh.quads.is_empty() {
-            let other = self.farthest(near, &self.cut_from(1));
-            worst = if other.0 < worst.0 { other } else { worst };
+        let mut worst = (0.0_f64, DVec3::ZERO);
+        for ([one, other], f) in some(&self.elements()) {
+            let mut off = self.farthest(near, &one, f);
+            if off.0 > told && one != other {
+                let again = self.farthest(near, &other, f);
+                off = if again.0 < off.0 { again } else { off };
+            }
+            worst = if off.0 > worst.0 { off } else { worst };
         }
         // What is told comes from places too, and is nothing where it is nothing but rounding.
         if worst.0 > told * 1.05 + ON * self.size {
