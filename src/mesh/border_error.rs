@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::edges::distance_to_segment;
 use super::layout::Layout;
 use super::nodes::Nodes;
 use crate::base::par;
@@ -30,14 +31,7 @@ fn of_stretch(layout: &Layout, nodes: &Nodes, stretch: usize) -> f64 {
     let points = layout.points_along(stretch, &fractions);
     let step = |step: &[DVec3]| {
         let (a, b) = (step[0], step[step.len() - 1]);
-        step.iter().map(|p| off_chord(*p, a, b)).fold(0.0, f64::max)
+        step.iter().map(|p| distance_to_segment(*p, a, b)).fold(0.0, f64::max)
     };
     (0..ends.len() - 1).map(|k| step(&points[k * PLACES as usize..=(k + 1) * PLACES as usize])).fold(0.0, f64::max)
-}
-
-/// Distance of a point from the segment between two others.
-fn off_chord(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let along = b - a;
-    let t = if along.length_squared() > 0.0 { ((p - a).dot(along) / along.length_squared()).clamp(0.0, 1.0) } else { 0.0 };
-    p.distance(a + along * t)
 }

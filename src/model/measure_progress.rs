@@ -6,6 +6,7 @@ use crate::base::tolerance::MEASURE_ROUNDING;
 /// Errors that fall by less than this from one size of cells to the next do not fall, and so often in a row that they never will.
 const STALLED: f64 = 0.9;
 const STALLS: u32 = 2;
+
 /// How the errors of an integral fall from one size of cells to the next.
 pub struct Progress<const N: usize> {
     accuracy: f64,
