@@ -12,9 +12,10 @@ use super::measure_quadrature::{Rectangle, WHOLE, integral};
 use super::measure_triangles::triangles_integral;
 use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
+use crate::base::fault::{CutFault, Result};
 use crate::base::par;
 use crate::base::quadrature::integrate;
-use crate::base::tolerance::{LEAST_SIZE, MEASURE_ACCURACY, SIGN_ACCURACY};
+use crate::base::tolerance::{LEAST_SIZE, MEASURE_ACCURACY, SIGN_ACCURACY, TOLD_APART, Tolerance};
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, chain_breaks};
 
@@ -53,6 +54,21 @@ pub fn area(surface: &Surface) -> f64 {
 pub fn area_within(surface: &Surface) -> (f64, f64) {
     let (area, error) = over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]);
     (area[0], error[0])
+}
+
+/// Fails with E721 where the areas of the parts into which curves divide a surface do not add up to its own, within its accuracy and
+/// what vertices that are one within tolerances may take from each part.
+pub fn adds_up(whole: &Surface, cuts: &[Chain], parts: &[f64], tolerance: &Tolerance) -> Result<()> {
+    /// Area about a vertex, in squares of the distance within which ends are one vertex, and share of the whole.
+    const ROOM: (f64, f64) = (4.0, 1e3 * MEASURE_ACCURACY);
+    let ((own, error), sum) = (area_within(whole), parts.iter().sum::<f64>());
+    let vertex = (TOLD_APART * tolerance.point).powi(2);
+    let vertices = (whole.n_sides() + 2 * (cuts.len() + parts.len())) as f64;
+    if whole.domain() == Domain::Unbounded || (sum - own).abs() <= ROOM.0 * vertices * vertex + ROOM.1 * own + error {
+        return Ok(());
+    }
+    let cuts = cuts.iter().map(Chain::origin).collect();
+    Err(CutFault::PartsNotWhole { surface: whole.origin(), cuts, whole: own, parts: sum, tolerance: tolerance.point }.into())
 }
 
 /// Area of the part of a surface between two values of u and two of v, square model units; of a plane without a map and

@@ -8,17 +8,32 @@ use crate::base::quadrature::gauss_legendre;
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Side, Surface};
 
-/// The boundary of a flat surface in walking order, each chain with the fractions it is run between.
-fn boundary(surface: &Surface) -> Vec<(Chain, f64, f64)> {
-    let n = surface.n_sides();
-    (0..n)
-        .filter_map(|k| match surface.side(k) {
-            // Sides run with ascending u or v: the walk takes the far ones backwards.
-            Side::Chain { chain, from, to } if surface.domain() == Domain::Loop || k < 2 => Some((chain, from, to)),
-            Side::Chain { chain, from, to } => Some((chain, to, from)),
-            _ => None,
-        })
-        .collect()
+/// One loop of a boundary in walking order, each chain with the fractions it is run between.
+type Boundary = Vec<(Chain, f64, f64)>;
+
+/// The loops that bound a flat surface.
+fn boundary(surface: &Surface) -> Vec<Boundary> {
+    let side = |k: usize| match surface.side(k) {
+        // Sides run with ascending u or v: the walk takes the far ones backwards.
+        Side::Chain { chain, from, to } if surface.domain() == Domain::Loop || k < 2 => Some((chain, from, to)),
+        Side::Chain { chain, from, to } => Some((chain, to, from)),
+        _ => None,
+    };
+    let mut first = 0;
+    let loops = surface.loops().into_iter().map(|sides| {
+        first += sides;
+        (first - sides..first).filter_map(side).collect()
+    });
+    loops.collect()
+}
+
+/// The steps between the end of each chain of a loop and the start of the next, which meet within a tolerance only.
+fn gaps(walk: &Boundary) -> impl Iterator<Item = (DVec3, DVec3)> {
+    let ends = |k: usize| {
+        let ((before, _, end), (after, start, _)) = (&walk[k], &walk[(k + 1) % walk.len()]);
+        (before.point(*end), after.point(*start))
+    };
+    (0..walk.len()).map(ends).filter(|(a, b)| a != b)
 }
 
 /// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
@@ -29,7 +44,9 @@ pub fn flat_integral<const N: usize>(
     accuracy: f64,
     (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
 ) -> (Sums<N>, Sums<N>) {
-    let walk = boundary(surface);
+    let loops = boundary(surface);
+    let gaps: Vec<(DVec3, DVec3)> = loops.iter().flat_map(gaps).collect();
+    let walk = loops.concat();
     let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
     let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
     let runs: Vec<(usize, f64, f64)> = walk
@@ -81,6 +98,13 @@ pub fn flat_integral<const N: usize>(
     });
     let share = accuracy / runs.len() as f64;
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
+    // A border that is not closed bounds an area that depends on where it is seen from: straight steps close it.
+    for (a, b) in gaps {
+        for (x, w) in &rules[0] {
+            let (value, step) = (along(a.midpoint(b) + (b - a) * (0.5 * x), f), 0.5 * w * (b - a).dot(ev));
+            (0..N).for_each(|i| sum[i] += step * value[i]);
+        }
+    }
     let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
         job::look();

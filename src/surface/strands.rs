@@ -176,9 +176,10 @@ fn part(all: &mut [Strand], meets: Meets, tolerance: &Tolerance) -> Result<()> {
         let near = tolerance.point / chain.length();
         // A loop that is cut begins at a cut: its own start is no end.
         strand.cuts.retain(|f| *f > near && *f < 1.0 - near);
-        strand.cuts.extend([0.0, 1.0]);
         strand.cuts.sort_by(f64::total_cmp);
         strand.cuts.dedup_by(|b, a| *b - *a <= 2.0 * near);
+        strand.cuts.insert(0, 0.0);
+        strand.cuts.push(1.0);
     }
     Ok(())
 }

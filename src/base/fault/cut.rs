@@ -84,6 +84,19 @@ pub enum CutFault {
         /// The model's tolerance.
         tolerance: f64,
     },
+    /// E721 `cuts-too-near`: the parts of a surface do not add up to it.
+    PartsNotWhole {
+        /// The surface.
+        surface: Origin,
+        /// The curves that divide it.
+        cuts: Vec<Origin>,
+        /// Area of the surface, square model units.
+        whole: f64,
+        /// Sum of the areas of its parts, square model units.
+        parts: f64,
+        /// The model's tolerance.
+        tolerance: f64,
+    },
     /// E660 `keep-off`: the point that says which part to keep is not on the surface, or on a cut.
     KeepOff {
         /// The surface.
@@ -156,6 +169,14 @@ impl Describe for CutFault {
                 }
                 report
                     .help("move one of them away or onto the other, or give a smaller `tolerance`")
+                    .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
+            }
+            Self::PartsNotWhole { surface, cuts, whole, parts, tolerance } => {
+                let name = say.quoted(*surface, "the surface");
+                let message = format!("the parts of {name} make up {:.4} % of its area: curves that divide it come too near", 100.0 * parts / whole);
+                let report = cuts.iter().fold(Report::new("E721", message).at(*surface, "this surface"), |r, cut| r.at(*cut, "this curve"));
+                report
+                    .help("a smaller `tolerance` tells curves apart that are near to each other")
                     .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
             }
             Self::CutOpen { cutter, surface, ends, outside } => {

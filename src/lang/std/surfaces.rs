@@ -381,6 +381,7 @@ builtins! {
         let cutters = crate::lang::meetings::cutters(cx, &s, by)?;
         let parts = crate::surface::split(&s, &cutters, cx.origin(), &tolerance)?;
         let mut keyed: Vec<([i64; 3], f64, Surface)> = parts.into_iter().map(|part| by_centre(part, &tolerance)).collect();
+        measure::adds_up(&s, &cutters, &keyed.iter().map(|part| part.1).collect::<Vec<_>>(), &tolerance)?;
         keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         keyed.into_iter().map(|(_, _, part)| finished(cx, part, &[])).collect()
     };
