@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use glam::{DVec2, DVec3};
 
 use super::core::{Domain, Surface};
-use super::faces::{Edge, Half, followers, loops};
+use super::faces::{Edge, Half, components, followers, is_plane, loops};
 use super::pull::Course;
 use super::strands::Piece;
 use super::trim::shifts;
@@ -59,6 +59,10 @@ impl<'a> Cells<'a> {
         let mut made =
             Self { base, pieces, next, rows, areas, cells, left: BTreeMap::new(), twins: BTreeMap::new(), step, point: tolerance.point };
         made.areas = made.rows.iter().map(|row| made.area(row)).collect();
+        if !is_plane(edges, &made.rows) {
+            let crowded = made.rows.iter().find_map(|row| made.crowded(row));
+            return Err(crowded.unwrap_or_else(|| made.fault("loops leave a vertex in a wrong order", made.rows[0][0])));
+        }
         made.bound(edges)?;
         made.pair(tolerance)?;
         Ok(made)
@@ -298,22 +302,4 @@ impl<'a> Cells<'a> {
         let face = loops(&next).into_iter().map(|row| row.into_iter().map(moved).collect()).collect();
         Ok((face, by.into_keys().collect()))
     }
-}
-
-/// A number for each vertex, the same for those that edges join.
-fn components(edges: &[Edge]) -> Vec<usize> {
-    let n = edges.iter().map(|e| e.ends.0.max(e.ends.1) + 1).max().unwrap_or(0);
-    let mut of: Vec<usize> = (0..n).collect();
-    fn root(of: &mut [usize], mut k: usize) -> usize {
-        while of[k] != k {
-            of[k] = of[of[k]];
-            k = of[k];
-        }
-        k
-    }
-    for edge in edges {
-        let (a, b) = (root(&mut of, edge.ends.0), root(&mut of, edge.ends.1));
-        of[a.max(b)] = a.min(b);
-    }
-    (0..n).map(|k| root(&mut of, k)).collect()
 }

@@ -7,11 +7,11 @@ use glam::{DVec2, DVec3};
 use super::cells::{Cells, Face};
 use super::closest::closest;
 use super::core::{Border, Domain, Side, Surface};
-use super::faces::{Edge, without_tails};
+use super::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
 use super::plane;
 use super::pull::{Course, is_pole};
-use super::strands::{Meets, Piece, Strand, pieces, strands};
-use super::trim::{Walk, assembled};
+use super::strands::{Meets, Piece, Strand, bounded, pieces, strands, within};
+use super::trim::{Walk, assembled, natural};
 use crate::base::fault::{CutFault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
@@ -81,14 +81,25 @@ pub(super) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, toleranc
     let (all, along) = pieces(base, &strands, tolerance)?;
     let (edges, places) = graph(base, &all, tolerance);
     let bare: Vec<bool> = all.iter().map(|piece| piece.seam || matches!(piece.border.side, Side::Pole(_))).collect();
-    let stays = without_tails(&edges, &sites(base, &places, tolerance), &bare);
+    let mut stays = without_tails(&edges, &sites(base, &places, tolerance), &bare);
+    // A curve from one loop to another, as from the border to a hole, parts nothing either.
+    let kept: Vec<usize> = (0..all.len()).filter(|k| stays[*k]).collect();
+    let graph: Vec<Edge> = kept.iter().map(|k| edges[*k].clone()).collect();
+    let rows = loops(&followers(&graph));
+    if is_plane(&graph, &rows) {
+        bridges(&rows).into_iter().map(|k| kept[k]).filter(|k| !all[*k].rim).for_each(|k| stays[k] = false);
+    }
     for (k, cutter) in cutters.iter().enumerate() {
         let parts = || (0..all.len()).filter(|i| strands[all[*i].strand].cutter == Some(k));
         let outside = parts().next().is_none();
         if parts().any(|i| stays[i]) || outside && along.contains(&k) {
             continue;
         }
-        let ends = if outside { Vec::new() } else { open_ends(cutter, &strands, &all, &stays, tolerance) };
+        let mut ends = if outside { Vec::new() } else { open_ends(cutter, &strands, &all, &stays, tolerance) };
+        if bounded(base) {
+            let loops = natural(base, tolerance)?;
+            ends.retain(|p| within(base, &loops, *p).is_some());
+        }
         return Err(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends, outside }.into());
     }
     let kept = || (0..all.len()).filter(|i| stays[*i]);
@@ -134,13 +145,12 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
         (Course::Pull(pull), Some(chain)) => chain.length() * (pull.fraction(1.0) - pull.fraction(0.0)).abs(),
         _ => f64::INFINITY,
     };
-    let mut shortest: BTreeMap<usize, f64> = BTreeMap::new();
-    for (piece, ends) in all.iter().zip(&ends) {
-        for vertex in [ends.0, ends.1] {
-            let least = shortest.entry(vertex).or_insert(f64::INFINITY);
-            *least = least.min(length(piece));
-        }
+    let mut fans: BTreeMap<usize, Vec<(usize, bool)>> = BTreeMap::new();
+    for (k, ends) in ends.iter().enumerate() {
+        fans.entry(ends.0).or_default().push((k, false));
+        fans.entry(ends.1).or_default().push((k, true));
     }
+    let away: BTreeMap<usize, f64> = fans.iter().map(|(vertex, fan)| (*vertex, apart_at(all, fan, &length, tolerance))).collect();
     let out = |piece: &Piece, ends: &(usize, usize)| {
         let place = |f: f64| match (&piece.course, piece.own_chain()) {
             (Course::Pull(pull), Some(chain)) => {
@@ -152,8 +162,7 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
                 places[0].lerp(places[places.len() - 1], f)
             }
         };
-        let away = |shortest: f64| (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
-        let share = |vertex: usize| away(shortest[&vertex]) / length(piece);
+        let share = |vertex: usize| away[&vertex] / length(piece);
         let (first, last) = match length(piece).is_finite() {
             true => (share(ends.0), share(ends.1)),
             false => (START, START),
@@ -163,6 +172,26 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
     };
     let edges = all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece, &ends) }).collect();
     (edges, places)
+}
+
+/// How far from a vertex the pieces that leave it are apart, in space, so that their directions tell their order: pieces that touch or
+/// cross flatly may run within the tolerance of each other for long.
+fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f64, tolerance: &Tolerance) -> f64 {
+    let shortest = fan.iter().map(|(k, _)| length(&all[*k])).fold(f64::INFINITY, f64::min);
+    let first = (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
+    let place = |(k, last): &(usize, bool), away: f64| {
+        let (piece, share) = (&all[*k], away / length(&all[*k]));
+        match (&piece.course, piece.own_chain()) {
+            (Course::Pull(pull), Some(chain)) => Some(chain.point(pull.fraction(if *last { 1.0 - share } else { share }))),
+            _ => None,
+        }
+    };
+    let apart = |away: f64| {
+        let places: Vec<DVec3> = fan.iter().filter_map(|end| place(end, away)).collect();
+        (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > APART * tolerance.point))
+    };
+    let farther = std::iter::successors(Some(first), |away| Some(2.0 * away)).take_while(|away| *away <= CLEAR_SHARE * shortest);
+    farther.filter(|away| away.is_finite()).find(|away| apart(*away)).unwrap_or(first)
 }
 
 /// The vertices at the ends of pieces, and their places: ends that are near to each other are one vertex, the nearest ones first,

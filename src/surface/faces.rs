@@ -1,6 +1,6 @@
 //! Faces of a plane graph in (u, v): loops with the face on their left, and which loop lies in which.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
@@ -55,6 +55,42 @@ pub(super) fn loops(next: &BTreeMap<Half, Half>) -> Vec<Vec<Half>> {
         }
     }
     out
+}
+
+/// Whether loops are those of a plane graph, as many as Euler's formula asks for; else edges cross or leave a vertex in a wrong order.
+pub(super) fn is_plane(edges: &[Edge], rows: &[Vec<Half>]) -> bool {
+    let vertices: BTreeSet<usize> = edges.iter().flat_map(|edge| [edge.ends.0, edge.ends.1]).collect();
+    let graph = components(edges);
+    let parts = vertices.iter().filter(|vertex| graph[**vertex] == **vertex).count();
+    rows.len() + vertices.len() == edges.len() + 2 * parts
+}
+
+/// The edges of a plane graph that one loop runs both ways: without them what they join falls apart, and they part nothing.
+pub(super) fn bridges(rows: &[Vec<Half>]) -> BTreeSet<usize> {
+    let twice = |row: &Vec<Half>| {
+        let mut edges: Vec<usize> = row.iter().map(|half| half.0).collect();
+        edges.sort_unstable();
+        edges.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect::<Vec<_>>()
+    };
+    rows.iter().flat_map(twice).collect()
+}
+
+/// A number for each vertex, the same for those that edges join.
+pub(super) fn components(edges: &[Edge]) -> Vec<usize> {
+    let n = edges.iter().map(|e| e.ends.0.max(e.ends.1) + 1).max().unwrap_or(0);
+    let mut of: Vec<usize> = (0..n).collect();
+    fn root(of: &mut [usize], mut k: usize) -> usize {
+        while of[k] != k {
+            of[k] = of[of[k]];
+            k = of[k];
+        }
+        k
+    }
+    for edge in edges {
+        let (a, b) = (root(&mut of, edge.ends.0), root(&mut of, edge.ends.1));
+        of[a.max(b)] = a.min(b);
+    }
+    (0..n).map(|k| root(&mut of, k)).collect()
 }
 
 /// Edges without those that hang on one site only, again and again; `true` for those that stay. A site is where vertices are one

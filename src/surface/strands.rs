@@ -178,6 +178,11 @@ fn part(all: &mut [Strand], meets: Meets, tolerance: &Tolerance) -> Result<()> {
         strand.cuts.retain(|f| *f > near && *f < 1.0 - near);
         strand.cuts.sort_by(f64::total_cmp);
         strand.cuts.dedup_by(|b, a| *b - *a <= 2.0 * near);
+        let beside = [strand.cuts.first(), strand.cuts.last()].map(|cut| cut.is_some_and(|f| f.min(1.0 - f) <= 2.0 * near));
+        // Between two cuts a loop's own start is no reason to take them as one.
+        if !(chain.is_closed(tolerance) && strand.cuts.len() > 1 && beside == [true; 2]) {
+            strand.cuts.retain(|f| *f > 2.0 * near && *f < 1.0 - 2.0 * near);
+        }
         strand.cuts.insert(0, 0.0);
         strand.cuts.push(1.0);
     }
@@ -195,7 +200,9 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
             let whole = strand.cuts.len() == 2;
             let run = if whole { chain.clone() } else { chain.slice(w[0], w[1], tolerance)? };
             let middle = run.point(MIDDLE);
-            let lies_on = |other: &Strand| other.chain.as_ref().is_some_and(|c| c.closest(middle).2 <= 2.0 * tolerance.point);
+            let places = ALONG.map(|f| run.point(f));
+            let is_along = |c: &Chain| places.iter().all(|p| c.closest(*p).2 <= 2.0 * tolerance.point);
+            let lies_on = |other: &Strand| other.chain.as_ref().is_some_and(is_along);
             if let Some(cutter) = strand.cutter
                 && strands[..k].iter().any(lies_on)
             {
@@ -227,12 +234,12 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
 }
 
 /// Whether a surface is bounded by curves in (u, v), and not by the square or triangle of its parameters.
-fn bounded(base: &Surface) -> bool {
+pub(super) fn bounded(base: &Surface) -> bool {
     base.domain() == Domain::Loop
 }
 
 /// Where in (u, v) a point of a surface lies inside its loops; `None` beyond them.
-fn within(base: &Surface, loops: &[Walk], p: DVec3) -> Option<DVec2> {
+pub(super) fn within(base: &Surface, loops: &[Walk], p: DVec3) -> Option<DVec2> {
     let near = base.flat_uv(p).unwrap_or_else(|| super::closest::closest(&base.untrimmed(), p).uv);
     if !bounded(base) {
         return Some(near.into());
@@ -243,6 +250,8 @@ fn within(base: &Surface, loops: &[Walk], p: DVec3) -> Option<DVec2> {
 
 /// Where a piece is asked where it lies: no place that is special for anything.
 const MIDDLE: f64 = 0.4873;
+/// Where a piece is compared with another strand; it runs along one that is near at all of them.
+const ALONG: [f64; 3] = [MIDDLE, 0.2327, 0.7719];
 
 fn of_whole(strand: usize, border: &Border, course: &Course, run: Chain, seam: bool) -> Piece {
     let places = course.places();
