@@ -2,6 +2,7 @@
 
 mod bdf;
 mod blocks;
+pub mod cad;
 pub mod curves;
 pub mod deck;
 pub mod endings;

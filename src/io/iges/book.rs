@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use glam::DAffine3;
 
-use super::damage::{Damage, damage};
 use super::entities::{Data, Decoded, Pointer, decode};
 use super::params::Reader;
 use super::records::{Entry, Records};
@@ -12,6 +11,8 @@ use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::part::Options;
 
 /// Matrices, composites, groups inside each other.
 pub const NESTED: usize = 32;
@@ -19,19 +20,6 @@ pub const NESTED: usize = 32;
 const COPIES_PER_BYTE: usize = 4;
 /// What may be copied in any case.
 const COPIES: usize = 1 << 20;
-
-/// What the reader needs to know of the model.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Millimetres in the model's unit.
-    pub model: f64,
-    /// Name of the model's unit, for messages.
-    pub unit: &'static str,
-    /// Millimetres in the file's unit, where the import says it; else the file does.
-    pub file: Option<f64>,
-    /// The import.
-    pub origin: Origin,
-}
 
 /// Entities by pointer, with what was made of them.
 #[derive(Debug)]

@@ -4,10 +4,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::damage::{Damage, damage};
 use super::params::Reader;
 use super::records::Entry;
 use super::{entity_curves as curves, entity_faces as faces, entity_surfaces as surfaces};
+use crate::io::cad::damage::{Damage, damage};
 
 /// Pointer to an entity: the number of its first directory line.
 pub type Pointer = u32;

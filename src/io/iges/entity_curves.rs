@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::damage::{Damage, damage};
 use super::entities::{Data, SplineData};
 use super::params::Reader;
+use crate::io::cad::damage::{Damage, damage};
 
 /// 100.
 pub fn arc(r: &mut Reader) -> Result<Data, Damage> {

@@ -1,8 +1,8 @@
 //! Parameters of trimmed surfaces and of solids given by their borders.
 
-use super::damage::Damage;
 use super::entities::{BoundaryCurve, Data, EdgeData, LoopEdge};
 use super::params::Reader;
+use crate::io::cad::damage::Damage;
 
 /// 141.
 pub fn boundary(r: &mut Reader) -> Result<Data, Damage> {

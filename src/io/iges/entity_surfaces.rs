@@ -1,9 +1,9 @@
 //! Parameters of surface entities.
 
-use super::damage::{Damage, damage};
 use super::entities::{Data, NetData};
 use super::entity_curves::{check_degree, increasing, range};
 use super::params::Reader;
+use crate::io::cad::damage::{Damage, damage};
 
 /// 108.
 pub fn plane(r: &mut Reader) -> Result<Data, Damage> {

@@ -1,30 +1,20 @@
-//! Trimmed surfaces: a base and the loops of curves on it.
+//! Trimmed surfaces of a file: which surface, and which curves are its loops.
 
 use glam::DVec3;
 
 use super::book::Book;
-use super::compose::composed;
 use super::curves::Place;
-use super::damage::{Damage, damage};
 use super::entities::{Data, EdgeData, LoopEdge, Pointer};
-use super::interior::inside;
-use super::natural::is_natural;
-use super::surfaces::Base;
-use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::{NEAR_MISS, NUDGE};
 use crate::geometry::{Curve, closest};
-use crate::surface::{Nearest, Side, Surface};
-
-/// One curve of a loop.
-#[derive(Clone, Debug)]
-pub struct Border {
-    /// The curve in space, in the loop's direction; it counts.
-    pub space: Curve,
-    /// The same in the (u, v) of the base surface, z = 0, in any direction: where the file has it, it agrees with the curve in
-    /// space, and the file's parameters are the surface's in proportion.
-    pub uv: Option<Curve>,
-}
+use crate::io::cad::base::Base;
+use crate::io::cad::carry::carried;
+use crate::io::cad::compose::composed;
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::face::{self, Border, Face, Known, backwards, pieces};
+use crate::io::cad::interior::inside;
+use crate::surface::Surface;
 
 /// Curves of a loop, and all that the file has of it in (u, v), those along poles too.
 #[derive(Clone, Debug, Default)]
@@ -46,27 +36,6 @@ impl Run {
     fn none() -> Self {
         Self { borders: Vec::new(), outline: Some(Vec::new()) }
     }
-}
-
-/// A part of a surface inside an outer loop and outside inner ones.
-#[derive(Clone, Debug)]
-pub struct Face {
-    /// The surface it is part of.
-    pub base: Surface,
-    /// The outer loop; `None`: the surface's own border.
-    pub outer: Option<Vec<Border>>,
-    /// Loops of holes.
-    pub holes: Vec<Vec<Border>>,
-    /// The face looks the other way than the base.
-    pub flipped: bool,
-    /// The base lies in a plane.
-    pub flat: bool,
-    /// The normal of the base is against the file's.
-    pub against: bool,
-    /// A point inside its loops by their (u, v), where the file has all of them.
-    pub inside: Option<DVec3>,
-    /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
-    pub gap: f64,
 }
 
 impl Book {
@@ -104,31 +73,11 @@ impl Book {
             loops.push(made.borders);
             outlines.push(made.outline);
         }
-        let reach = loops.iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union);
-        let surface = self.surface(&base, &reach)?;
-        let against = base.is_against();
-        let within = if has_outer { inside(&base, &outlines) } else { None };
+        let surface = base.surface(&face::reach(&loops), self.origin, &self.tolerance)?;
+        let inside = if has_outer { inside(&base, &outlines) } else { None };
         self.settle(d, &base, &surface, &mut loops);
-        let gap = gap(&surface, &loops);
-        for border in &mut loops {
-            self.cut_at_poles(&surface, border);
-        }
-        let mut loops = loops.into_iter();
-        let room = self.slack().max(2.0 * gap);
-        let outer = if has_outer { loops.next() } else { None };
-        // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
-        let tells = surface.closed() != (false, false) && loops.len() > 0;
-        let outer = outer.filter(|outer| tells || !is_natural(&base, &surface, outer, room, &self.tolerance));
-        Ok(Face {
-            base: surface,
-            outer,
-            holes: loops.collect(),
-            flipped: false,
-            flat: base.is_flat(&self.tolerance),
-            against,
-            inside: within,
-            gap,
-        })
+        let known = Known { has_outer, against: base.is_against(), inside, slack: self.slack() };
+        Ok(Face::inside(&base, surface, loops, known, &self.tolerance))
     }
 
     /// The curves of a loop; (u, v) still in the file's parameters.
@@ -238,31 +187,6 @@ impl Book {
         if a.distance <= room && b.distance <= room && a.t < b.t { curve.part(a.t, b.t) } else { curve.clone() }
     }
 
-    /// Cuts curves where they run through a pole of the surface: their (u, v) jump there.
-    fn cut_at_poles(&self, surface: &Surface, border: &mut Vec<Border>) {
-        let room = NEAR_MISS * self.slack();
-        for k in 0..surface.n_sides() {
-            let Side::Pole(pole) = surface.side(k) else { continue };
-            let mut cut = Vec::with_capacity(border.len());
-            for piece in border.drain(..) {
-                let found = closest(&piece.space, pole);
-                let inside = |end: DVec3| found.point.distance(end) > room;
-                if found.distance <= room && inside(piece.space.start()) && inside(piece.space.end()) {
-                    let (a, b) = piece.space.domain();
-                    cut.push(Border { space: piece.space.part(a, found.t), uv: None });
-                    cut.push(Border { space: piece.space.part(found.t, b), uv: None });
-                } else {
-                    cut.push(piece);
-                }
-            }
-            // At the pole the loop begins: its (u, v) jump there and nowhere else.
-            if let Some(first) = cut.iter().position(|b| b.space.start().distance(pole) <= room) {
-                cut.rotate_left(first);
-            }
-            *border = cut;
-        }
-    }
-
     /// Puts (u, v) into the parameters of the surface, and drops those that do not agree with the curve in space.
     fn settle(&mut self, d: Pointer, base: &Base, surface: &Surface, loops: &mut [Vec<Border>]) {
         let map = base.to_surface();
@@ -270,7 +194,7 @@ impl Book {
         let mut worst = 0.0_f64;
         for border in loops.iter_mut().flatten() {
             let moved = match (&map, &border.uv) {
-                (Some(m), Some(uv)) => super::curves::carried(uv, m, &self.tolerance).ok(),
+                (Some(m), Some(uv)) => carried(uv, m, &self.tolerance).ok(),
                 _ => None,
             };
             border.uv = moved.filter(|uv| {
@@ -287,42 +211,10 @@ impl Book {
     }
 }
 
-/// Places along a curve at which its distance from the surface is measured.
-const SAMPLES: usize = 8;
-
-/// Largest distance of the curves from the surface, and of the end of each from the start of the next one in its loop.
-fn gap(surface: &Surface, loops: &[Vec<Border>]) -> f64 {
-    let nearest = Nearest::new(surface);
-    let foot = |p: DVec3| match surface.flat_uv(p) {
-        Some((u, v)) => p.distance(surface.point(u, v)),
-        None => nearest.at(p).distance,
-    };
-    let mut widest = 0.0_f64;
-    for border in loops {
-        for (k, curve) in border.iter().enumerate() {
-            let (a, b) = curve.space.domain();
-            for i in 0..=SAMPLES {
-                widest = widest.max(foot(curve.space.point(a + (b - a) * i as f64 / SAMPLES as f64)));
-            }
-            widest = widest.max(curve.space.end().distance(border[(k + 1) % border.len()].space.start()));
-        }
-    }
-    widest
-}
-
 /// Largest distance of the ends of a curve in (u, v) from those of the curve in space, in the better direction.
 fn disagreement(surface: &Surface, uv: &Curve, space: &Curve) -> f64 {
     let at = |p: DVec3| surface.point(p.x.clamp(0.0, 1.0), p.y.clamp(0.0, 1.0));
     let (a, b) = (at(uv.start()), at(uv.end()));
     let off = |c: DVec3, d: DVec3| a.distance(c).max(b.distance(d));
     off(space.start(), space.end()).min(off(space.end(), space.start()))
-}
-
-/// The curves that a curve is made of.
-fn pieces(curve: &Curve) -> Vec<Curve> {
-    curve.composite().map_or_else(|| vec![curve.clone()], |c| c.pieces.clone())
-}
-
-fn backwards(borders: Vec<Border>) -> Vec<Border> {
-    borders.into_iter().rev().map(|b| Border { space: b.space.reversed(), uv: b.uv }).collect()
 }

@@ -8,21 +8,15 @@
 //! and what stands on it. Pointers are followed to a fixed depth, and what may be copied is bounded by the size of the file.
 
 mod book;
-mod build;
-mod compose;
 mod conics;
 mod curves;
-mod damage;
 mod entities;
 mod entity_curves;
 mod entity_faces;
 mod entity_surfaces;
 mod faces;
 mod global;
-mod interior;
 mod lines;
-mod natural;
-mod nets;
 mod params;
 mod part;
 mod records;
@@ -30,7 +24,6 @@ mod sheet;
 mod surfaces;
 pub mod write;
 
-pub use book::Options;
-pub use faces::{Border, Face};
-pub use part::{Group, Item, Opened, Part, open};
+pub use super::cad::part::{Group, Item, Options, Part};
+pub use part::{Opened, open};
 pub use sheet::Sheet;

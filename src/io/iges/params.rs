@@ -1,6 +1,6 @@
 //! Free-format parameters: values between separators, texts counted in advance (`5Hround`).
 
-use super::damage::{Damage, damage};
+use crate::io::cad::damage::{Damage, damage};
 
 /// Where the values of a list of parameters stand in its text.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,68 +6,18 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::book::{Book, NESTED, Options};
+use super::book::{Book, NESTED};
 use super::curves::Place;
-use super::damage::Damage;
 use super::entities::{Data, Pointer};
-use super::faces::Face;
 use super::records;
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::limits;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::Curve;
-use crate::surface::Surface;
-
-/// Something of the file under its name.
-#[derive(Clone, Debug)]
-pub struct Item<T> {
-    /// The file's name for it, or its kind and number (`curve3`); no two of a file are the same.
-    pub name: String,
-    /// Red, green and blue from 0 to 1, where the file gives it a colour.
-    pub color: Option<[f64; 3]>,
-    /// Number of its directory line.
-    pub d: u32,
-    /// Line of the file where its parameters start.
-    pub line: u64,
-    /// The thing.
-    pub value: T,
-}
-
-/// Things under one name, as indices.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Group {
-    /// The file's name for it, or `group` and its number.
-    pub name: String,
-    /// Of [`Part::points`].
-    pub points: Vec<usize>,
-    /// Of [`Part::curves`].
-    pub curves: Vec<usize>,
-    /// Of [`Part::surfaces`].
-    pub surfaces: Vec<usize>,
-}
-
-/// What an IGES file holds, in file order and model units.
-#[derive(Clone, Debug, Default)]
-pub struct Part {
-    /// Points, one each, or rows of them.
-    pub points: Vec<Item<Vec<DVec3>>>,
-    /// Curves.
-    pub curves: Vec<Item<Curve>>,
-    /// Surfaces, trimmed or whole.
-    pub surfaces: Vec<Item<Face>>,
-    /// What [`Part::build`] made of them: one each, several where a face has several outer loops; none where it could not.
-    pub built: Vec<Vec<Surface>>,
-    /// Groups, shells and solids.
-    pub groups: Vec<Group>,
-    /// What has the same colour, with red, green and blue from 0 to 1.
-    pub colors: Vec<(Group, [f64; 3])>,
-    /// The file's unit.
-    pub unit: &'static str,
-    /// What was repaired or skipped, by line.
-    pub warnings: Vec<Malformed>,
-}
+use crate::io::cad::damage::Damage;
+use crate::io::cad::face::Face;
+use crate::io::cad::part::{Group, Item, Names, Options, Part, Place as Made, Shades};
 
 /// Kinds of entities that surfaces are.
 const SURFACES: &[u32] = &[108, 114, 118, 120, 122, 128, 140, 143, 144, 190, 192, 194, 196, 198];
@@ -162,39 +112,17 @@ impl Opened {
     /// Makes curves and surfaces of the entities.
     pub fn part(mut self, tolerance: Tolerance) -> Part {
         self.book.tolerance = tolerance;
-        let part = Part { unit: self.book.unit, ..Part::default() };
-        let names = RESERVED.iter().map(|n| ((*n).to_owned(), 1)).collect();
-        Maker { book: self.book, part, made: BTreeMap::new(), names, shades: BTreeMap::new() }.run()
+        let part = Part { unit: self.book.unit, mark: "D", ..Part::default() };
+        Maker { book: self.book, part, made: BTreeMap::new(), names: Names::default(), shades: Shades::default() }.run()
     }
-}
-
-/// Names that the lists of a part have themselves.
-const RESERVED: &[&str] = &["points", "curves", "surfaces", "groups", "colors", "unit"];
-
-/// Where something made of an entity stands in the part.
-#[derive(Clone, Copy, Debug)]
-enum Made {
-    Point(usize),
-    Curve(usize),
-    Surface(usize),
 }
 
 struct Maker {
     book: Book,
     part: Part,
     made: BTreeMap<Pointer, Made>,
-    /// Names given so far, and how often each was wanted.
-    names: BTreeMap<String, usize>,
-    /// Places of colours.
-    shades: BTreeMap<[u64; 3], usize>,
-}
-
-fn put(group: &mut Group, made: Made) {
-    match made {
-        Made::Point(k) => group.points.push(k),
-        Made::Curve(k) => group.curves.push(k),
-        Made::Surface(k) => group.surfaces.push(k),
-    }
+    names: Names,
+    shades: Shades,
 }
 
 impl Maker {
@@ -309,9 +237,9 @@ impl Maker {
         let name = self.name(d, word, before);
         let color = self.color(d);
         if let (Some((rgb, color_name)), Some(made)) = (&color, self.made.get(&d).copied()) {
-            put(self.colored(*rgb, color_name), made);
+            self.shades.group(&mut self.part.colors, *rgb, color_name).put(made);
         }
-        Item { name, color: color.map(|c| c.0), d, line: self.book.line(d), value }
+        Item { name, color: color.map(|c| c.0), id: u64::from(d), line: self.book.line(d), value }
     }
 
     /// The name property, else the label, else a word and a number; with another number where it is taken.
@@ -328,13 +256,7 @@ impl Maker {
             n => format!("{}{n}", e.label),
         });
         let wanted = given.or(label).unwrap_or_else(|| format!("{word}{}", before + 1));
-        let mut name = wanted.clone();
-        while let Some(times) = self.names.get_mut(&name) {
-            *times += 1;
-            name = format!("{wanted}_{times}");
-        }
-        self.names.insert(name.clone(), 1);
-        name
+        self.names.give(&wanted)
     }
 
     /// Colour with the file's name for it.
@@ -350,17 +272,6 @@ impl Maker {
         }
     }
 
-    /// The group of a colour, made when it is new.
-    fn colored(&mut self, rgb: [f64; 3], name: &str) -> &mut Group {
-        let n = self.part.colors.len();
-        let k = *self.shades.entry(rgb.map(f64::to_bits)).or_insert(n);
-        if k == n {
-            let name = if name.is_empty() { format!("color{}", n + 1) } else { name.to_owned() };
-            self.part.colors.push((Group { name, ..Group::default() }, rgb));
-        }
-        &mut self.part.colors[k].0
-    }
-
     /// A group of what its members are; faces of shells are made here.
     fn group(&mut self, d: Pointer) {
         let mut group = Group::default();
@@ -368,7 +279,7 @@ impl Maker {
         if let Err(Damage(why)) = self.gather(d, &mut group, &mut seen, 0) {
             self.skipped(d, &why);
         }
-        if group.points.is_empty() && group.curves.is_empty() && group.surfaces.is_empty() {
+        if group.is_empty() {
             return;
         }
         let word = match self.book.data(d) {
@@ -389,7 +300,7 @@ impl Maker {
             return Ok(());
         }
         match self.made.get(&d) {
-            Some(made) => put(group, *made),
+            Some(made) => group.put(*made),
             None => {
                 let inside: Vec<(Pointer, Option<bool>)> = match self.book.data(d) {
                     Ok(Data::Group(list)) => list.iter().map(|m| (*m, None)).collect(),
@@ -417,7 +328,7 @@ impl Maker {
         let off = self.part.surfaces.iter().filter(|s| s.value.gap > slack);
         let n = off.clone().count();
         if let Some(worst) = off.max_by(|a, b| a.value.gap.total_cmp(&b.value.gap)) {
-            let (d, gap) = (worst.d, worst.value.gap);
+            let (d, gap) = (worst.id as Pointer, worst.value.gap);
             let others = if n == 1 { String::new() } else { format!(", as the borders of {} more faces are by less", n - 1) };
             let gap = self.book.length(gap);
             self.book.warn(d, format!("its borders are up to {gap} off its surface or each other{others}"));
@@ -443,15 +354,7 @@ impl Book {
     /// A surface that nothing trims.
     fn whole(&mut self, d: Pointer) -> Result<Face, Damage> {
         let base = self.base(d, 0)?;
-        Ok(Face {
-            base: self.surface(&base, &Box3::EMPTY)?,
-            outer: None,
-            holes: Vec::new(),
-            flipped: false,
-            flat: base.is_flat(&self.tolerance),
-            against: base.is_against(),
-            inside: None,
-            gap: 0.0,
-        })
+        let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
+        Ok(Face::whole(&base, surface, &self.tolerance))
     }
 }

@@ -17,11 +17,7 @@ use std::sync::Arc;
 
 use glam::{BVec3, DAffine3, DMat3, DVec3};
 
-use super::compose::{composed, fitted};
-use super::curves::carried;
-use super::damage::{Damage, damage};
 use super::sheet::{Role, Sheet, Values, counted, real};
-use super::surfaces::Base;
 use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL, Tolerance};
@@ -29,6 +25,10 @@ use crate::geometry::arc::EllipticArc;
 use crate::geometry::curve::Shape;
 use crate::geometry::nurbs::projected;
 use crate::geometry::{Curve, Kind, Nurbs, build};
+use crate::io::cad::base::Base;
+use crate::io::cad::carry::carried;
+use crate::io::cad::compose::{composed, fitted};
+use crate::io::cad::damage::{Damage, damage};
 use crate::io::deck::Loss;
 use crate::network::Chain;
 use crate::surface::{Domain, NetForm, NurbsSurface, Off, Side, Surface};

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::surfaces::Base;
+use super::base::Base;
 use crate::geometry::Curve;
 
 /// Steps along each curve.

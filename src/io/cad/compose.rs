@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::curves::carried;
+use super::base::Base;
+use super::carry::carried;
 use super::damage::{Damage, damage};
-use super::surfaces::Base;
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, Tolerance};

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::faces::Border;
-use super::surfaces::Base;
+use super::base::Base;
+use super::face::Border;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curve::Shape;

@@ -1,7 +1,7 @@
 //! Faces as surface values.
 
 use super::damage::Damage;
-use super::faces::{Border, Face};
+use super::face::{Border, Face};
 use super::part::Part;
 use crate::base::fault::Malformed;
 use crate::base::job;
@@ -20,7 +20,7 @@ impl Part {
             self.built.push(match item.value.surfaces(origin, tolerance) {
                 Ok(surfaces) => surfaces,
                 Err(Damage(why)) => {
-                    skipped.push(Malformed::line(item.line, format!("{} at D{}: skipped: {why}", item.name, item.d)));
+                    skipped.push(Malformed::line(item.line, format!("{} at {}{}: skipped: {why}", item.name, self.mark, item.id)));
                     Vec::new()
                 }
             });

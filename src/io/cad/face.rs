@@ -1,0 +1,148 @@
+//! Trimmed surfaces: a base and the loops of curves on it.
+
+use glam::DVec3;
+
+use super::base::Base;
+use super::natural::is_natural;
+use crate::base::bbox::Box3;
+use crate::base::tolerance::{NEAR_MISS, Tolerance};
+use crate::geometry::{Curve, closest};
+use crate::surface::{Nearest, Side, Surface};
+
+/// One curve of a loop.
+#[derive(Clone, Debug)]
+pub struct Border {
+    /// The curve in space, in the loop's direction; it counts.
+    pub space: Curve,
+    /// The same in the (u, v) of the base surface, z = 0, in any direction: where the file has it, it agrees with the curve in
+    /// space, and the file's parameters are the surface's in proportion.
+    pub uv: Option<Curve>,
+}
+
+/// A part of a surface inside an outer loop and outside inner ones.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// The surface it is part of.
+    pub base: Surface,
+    /// The outer loop; `None`: the surface's own border.
+    pub outer: Option<Vec<Border>>,
+    /// Loops of holes.
+    pub holes: Vec<Vec<Border>>,
+    /// The face looks the other way than the base.
+    pub flipped: bool,
+    /// The base lies in a plane.
+    pub flat: bool,
+    /// The normal of the base is against the file's.
+    pub against: bool,
+    /// A point inside its loops by their (u, v), where the file has all of them.
+    pub inside: Option<DVec3>,
+    /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
+    pub gap: f64,
+}
+
+/// What is known of a face beside its surface and the curves of its loops.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// The first loop bounds the face from outside.
+    pub has_outer: bool,
+    /// The normal of the surface is against the file's.
+    pub against: bool,
+    /// A point inside the loops, where one is known.
+    pub inside: Option<DVec3>,
+    /// What may lie between two points that the file calls one, model units.
+    pub slack: f64,
+}
+
+impl Face {
+    /// All of a surface.
+    pub fn whole(base: &Base, surface: Surface, tolerance: &Tolerance) -> Self {
+        let (flat, against) = (base.is_flat(tolerance), base.is_against());
+        Self { base: surface, outer: None, holes: Vec::new(), flipped: false, flat, against, inside: None, gap: 0.0 }
+    }
+
+    /// The part of a surface inside its loops.
+    pub fn inside(base: &Base, surface: Surface, mut loops: Vec<Vec<Border>>, known: Known, tolerance: &Tolerance) -> Self {
+        let gap = gap(&surface, &loops);
+        for border in &mut loops {
+            cut_at_poles(&surface, border, NEAR_MISS * known.slack);
+        }
+        let mut loops = loops.into_iter();
+        let room = known.slack.max(2.0 * gap);
+        let outer = if known.has_outer { loops.next() } else { None };
+        // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
+        let tells = surface.closed() != (false, false) && loops.len() > 0;
+        let outer = outer.filter(|outer| tells || !is_natural(base, &surface, outer, room, tolerance));
+        Self {
+            base: surface,
+            outer,
+            holes: loops.collect(),
+            flipped: false,
+            flat: base.is_flat(tolerance),
+            against: known.against,
+            inside: known.inside,
+            gap,
+        }
+    }
+}
+
+/// Cuts curves where they run through a pole of the surface: their (u, v) jump there.
+fn cut_at_poles(surface: &Surface, border: &mut Vec<Border>, room: f64) {
+    for k in 0..surface.n_sides() {
+        let Side::Pole(pole) = surface.side(k) else { continue };
+        let mut cut = Vec::with_capacity(border.len());
+        for piece in border.drain(..) {
+            let found = closest(&piece.space, pole);
+            let inside = |end: DVec3| found.point.distance(end) > room;
+            if found.distance <= room && inside(piece.space.start()) && inside(piece.space.end()) {
+                let (a, b) = piece.space.domain();
+                cut.push(Border { space: piece.space.part(a, found.t), uv: None });
+                cut.push(Border { space: piece.space.part(found.t, b), uv: None });
+            } else {
+                cut.push(piece);
+            }
+        }
+        // At the pole the loop begins: its (u, v) jump there and nowhere else.
+        if let Some(first) = cut.iter().position(|b| b.space.start().distance(pole) <= room) {
+            cut.rotate_left(first);
+        }
+        *border = cut;
+    }
+}
+
+/// Places along a curve at which its distance from the surface is measured.
+const SAMPLES: usize = 8;
+
+/// Largest distance of the curves from the surface, and of the end of each from the start of the next one in its loop.
+fn gap(surface: &Surface, loops: &[Vec<Border>]) -> f64 {
+    let nearest = Nearest::new(surface);
+    let foot = |p: DVec3| match surface.flat_uv(p) {
+        Some((u, v)) => p.distance(surface.point(u, v)),
+        None => nearest.at(p).distance,
+    };
+    let mut widest = 0.0_f64;
+    for border in loops {
+        for (k, curve) in border.iter().enumerate() {
+            let (a, b) = curve.space.domain();
+            for i in 0..=SAMPLES {
+                widest = widest.max(foot(curve.space.point(a + (b - a) * i as f64 / SAMPLES as f64)));
+            }
+            widest = widest.max(curve.space.end().distance(border[(k + 1) % border.len()].space.start()));
+        }
+    }
+    widest
+}
+
+/// The box around all curves of loops.
+pub fn reach(loops: &[Vec<Border>]) -> Box3 {
+    loops.iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union)
+}
+
+/// The curves that a curve is made of.
+pub fn pieces(curve: &Curve) -> Vec<Curve> {
+    curve.composite().map_or_else(|| vec![curve.clone()], |c| c.pieces.clone())
+}
+
+/// A loop run the other way.
+pub fn backwards(borders: Vec<Border>) -> Vec<Border> {
+    borders.into_iter().rev().map(|b| Border { space: b.space.reversed(), uv: b.uv }).collect()
+}

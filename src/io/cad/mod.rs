@@ -1,0 +1,13 @@
+//! What CAD formats have in common: exact surfaces with the loops of curves on them, made into surface values, and the part that
+//! offers them by name. Readers of a format make [`face::Face`]s and put them into a [`part::Part`].
+
+pub mod base;
+mod build;
+pub mod carry;
+pub mod compose;
+pub mod damage;
+pub mod face;
+pub mod interior;
+mod natural;
+pub mod nets;
+pub mod part;

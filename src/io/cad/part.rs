@@ -1,0 +1,145 @@
+//! What a CAD file offers: points, curves, surfaces and groups by name.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::face::Face;
+use crate::base::fault::Malformed;
+use crate::base::origin::Origin;
+use crate::geometry::Curve;
+use crate::surface::Surface;
+
+/// What a reader needs to know of the model.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Millimetres in the model's unit.
+    pub model: f64,
+    /// Name of the model's unit, for messages.
+    pub unit: &'static str,
+    /// Millimetres in the file's unit, where the import says it; else the file does.
+    pub file: Option<f64>,
+    /// The import.
+    pub origin: Origin,
+}
+
+/// Names that the lists of a part have themselves.
+const RESERVED: &[&str] = &["points", "curves", "surfaces", "groups", "colors", "unit"];
+
+/// Names given so far, and how often each was wanted.
+#[derive(Clone, Debug)]
+pub struct Names(BTreeMap<String, usize>);
+
+impl Default for Names {
+    fn default() -> Self {
+        Self(RESERVED.iter().map(|n| ((*n).to_owned(), 1)).collect())
+    }
+}
+
+impl Names {
+    /// The wanted name, with a number where it is taken.
+    pub fn give(&mut self, wanted: &str) -> String {
+        let mut name = wanted.to_owned();
+        while let Some(times) = self.0.get_mut(&name) {
+            *times += 1;
+            name = format!("{wanted}_{times}");
+        }
+        self.0.insert(name.clone(), 1);
+        name
+    }
+}
+
+/// Something of the file under its name.
+#[derive(Clone, Debug)]
+pub struct Item<T> {
+    /// The file's name for it, or its kind and number (`curve3`); no two of a file are the same.
+    pub name: String,
+    /// Red, green and blue from 0 to 1, where the file gives it a colour.
+    pub color: Option<[f64; 3]>,
+    /// Its number in the file.
+    pub id: u64,
+    /// Line of the file where it stands.
+    pub line: u64,
+    /// The thing.
+    pub value: T,
+}
+
+/// Things under one name, as indices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// The file's name for it, or `group` and its number.
+    pub name: String,
+    /// Of [`Part::points`].
+    pub points: Vec<usize>,
+    /// Of [`Part::curves`].
+    pub curves: Vec<usize>,
+    /// Of [`Part::surfaces`].
+    pub surfaces: Vec<usize>,
+}
+
+/// What a CAD file holds, in file order and model units.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Points, one each, or rows of them.
+    pub points: Vec<Item<Vec<DVec3>>>,
+    /// Curves.
+    pub curves: Vec<Item<Curve>>,
+    /// Surfaces, trimmed or whole.
+    pub surfaces: Vec<Item<Face>>,
+    /// What [`Part::build`] made of them: one each, several where a face has several outer loops; none where it could not.
+    pub built: Vec<Vec<Surface>>,
+    /// Groups, shells and solids.
+    pub groups: Vec<Group>,
+    /// What has the same colour, with red, green and blue from 0 to 1.
+    pub colors: Vec<(Group, [f64; 3])>,
+    /// What stands before the number of an entity in messages: `D` or `#`.
+    pub mark: &'static str,
+    /// The file's unit.
+    pub unit: &'static str,
+    /// What was repaired or skipped, by line.
+    pub warnings: Vec<Malformed>,
+}
+
+/// Where something of the file stands in the part.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// In [`Part::points`].
+    Point(usize),
+    /// In [`Part::curves`].
+    Curve(usize),
+    /// In [`Part::surfaces`].
+    Surface(usize),
+}
+
+impl Group {
+    /// Adds a member.
+    pub fn put(&mut self, member: Place) {
+        match member {
+            Place::Point(k) => self.points.push(k),
+            Place::Curve(k) => self.curves.push(k),
+            Place::Surface(k) => self.surfaces.push(k),
+        }
+    }
+
+    /// Whether nothing is in it.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty() && self.curves.is_empty() && self.surfaces.is_empty()
+    }
+}
+
+/// Places of colours among [`Part::colors`].
+#[derive(Clone, Debug, Default)]
+pub struct Shades(BTreeMap<[u64; 3], usize>);
+
+impl Shades {
+    /// The group of a colour, made when it is new.
+    pub fn group<'p>(&mut self, colors: &'p mut Vec<(Group, [f64; 3])>, rgb: [f64; 3], name: &str) -> &'p mut Group {
+        let n = colors.len();
+        let k = *self.0.entry(rgb.map(f64::to_bits)).or_insert(n);
+        if k == n {
+            let name = if name.is_empty() { format!("color{}", n + 1) } else { name.to_owned() };
+            colors.push((Group { name, ..Group::default() }, rgb));
+        }
+        &mut colors[k].0
+    }
+}
