@@ -5,10 +5,14 @@
 mod random;
 
 use glam::DVec3;
+use lofting::base::math;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
+use lofting::geometry::build::line;
+use lofting::network::Chain;
 use lofting::surface::nurbs::{Net, nurbs};
-use lofting::surface::{Lean, Surface, join};
+use lofting::surface::revolve::{Axis, revolve};
+use lofting::surface::{Lean, Nearest, Surface, join};
 use random::Random;
 
 const AFTER: Lean = Lean::After;
@@ -102,6 +106,59 @@ fn order_direction_and_nesting_change_nothing() {
             let (u, v) = (numbers.share(), numbers.share());
             assert_eq!(nested.jet(u, v), whole.jet(u, v), "case {case}");
             assert!(turned.point(u, v).distance(whole.point(u, v)) < 1e-12, "case {case}");
+        }
+    }
+}
+
+/// Cones, each on the circle where the one before ends, with their seams at any angle and either way round.
+fn tower(numbers: &mut Random, n: usize) -> Vec<Surface> {
+    let radius: Vec<f64> = (0..=n).map(|_| 0.5 + numbers.share()).collect();
+    let cone = |k: usize, numbers: &mut Random| {
+        let (sin, cos) = math::sin_cos(numbers.share() * std::f64::consts::TAU);
+        let at = |k: usize| DVec3::new(radius[k] * cos, radius[k] * sin, k as f64);
+        let ends = if numbers.share() < 0.5 { (at(k), at(k + 1)) } else { (at(k + 1), at(k)) };
+        let direction = if numbers.share() < 0.5 { DVec3::Z } else { -DVec3::Z };
+        let profile = Chain::of_curve(&line(ends.0, ends.1, Origin::NONE).unwrap());
+        revolve(&profile, &Axis { about: DVec3::ZERO, direction }, std::f64::consts::TAU, Origin::NONE, &tolerance()).unwrap()
+    };
+    (0..n).map(|k| cone(k, numbers)).collect()
+}
+
+#[test]
+fn seams_of_closed_borders_may_lie_anywhere() {
+    let mut numbers = Random(0x5ea_0);
+    for case in 0..60 {
+        let parts = tower(&mut numbers, 2 + case % 3);
+        let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();
+        assert_eq!(whole.closed(), (true, false), "case {case}");
+        let near = Nearest::new(&whole);
+        for part in &parts {
+            for _ in 0..20 {
+                let p = part.point(numbers.share(), numbers.share());
+                assert!(near.at(p).distance < 1e-9, "case {case}: {p} is {} off", near.at(p).distance);
+            }
+        }
+        for _ in 0..20 {
+            let (u, v) = (numbers.share(), numbers.share());
+            // No step is at the seam of all, nor at that of a part.
+            assert!(whole.point(0.0, v).distance(whole.point(1.0, v)) < 1e-12, "case {case}");
+            for line in whole.breaks().0 {
+                let [a, b] = [Lean::Before, Lean::After].map(|lean| whole.jet_lean(line, v, (lean, AFTER)));
+                assert!(a.p.distance(b.p) < 1e-9 && a.du.distance(b.du) < 1e-6, "case {case}: {line}");
+            }
+            // Every point is on a cone of the tower.
+            let p = whole.point(u, v);
+            let off = parts.iter().map(|part| Nearest::new(part).at(p).distance).fold(f64::INFINITY, f64::min);
+            assert!(off < 1e-9, "case {case}: {p} is {off} off");
+        }
+        let (u, v) = (numbers.share() * 0.8, numbers.share() * 0.8);
+        let bounds = whole.spread((u, u + 0.2), (v, v + 0.2));
+        for _ in 0..30 {
+            let jet = whole.jet(u + 0.2 * numbers.share(), v + 0.2 * numbers.share());
+            for (value, range) in [(jet.p, bounds.p), (jet.du, bounds.du), (jet.dv, bounds.dv), (jet.duu, bounds.duu)] {
+                let room = DVec3::splat(1e-9 * (1.0 + value.length()));
+                assert!(value.cmpge(range.low - room).all() && value.cmple(range.high + room).all(), "case {case}: {value} {range:?}");
+            }
         }
     }
 }

@@ -114,7 +114,7 @@ impl Shape {
             Self::Nurbs(s) => s.breaks(),
             Self::Framed(s) => s.breaks(),
             Self::Scatter(s) => s.lines(),
-            Self::Joined(s) => s.lines(super::Surface::breaks),
+            Self::Joined(s) => s.all_lines(super::Surface::breaks),
             Self::Trilateral(s) => {
                 let (mut us, mut vs) = (Vec::new(), Vec::new());
                 s.sides()[0].breaks(&mut us);
@@ -132,7 +132,7 @@ impl Shape {
             Self::Nurbs(s) => s.breaks(),
             Self::Framed(s) => s.cells(),
             Self::Scatter(s) => s.lines(),
-            Self::Joined(s) => s.lines(super::Surface::cells),
+            Self::Joined(s) => s.all_lines(super::Surface::cells),
             Self::Trilateral(_) | Self::Plane(_) => (Vec::new(), Vec::new()),
         }
     }

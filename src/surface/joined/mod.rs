@@ -82,13 +82,20 @@ fn row(all: &[Surface], rims: &[Vec<Rim>], links: &[Link]) -> Result<Row> {
     let (near, far) = if across_v { (0, 2) } else { (3, 1) };
     let walk = |side: usize, ahead: bool, seen: &mut Vec<usize>| -> Vec<Piece> {
         let (mut found, mut at, mut turn) = (Vec::new(), (0, side), start);
+        let mut before = Piece::new(all[0].clone(), start, 0);
         while let Some(link) = links.iter().find(|l| l.ends.contains(&at)) {
             let (next, entered) = link.from(at);
             if seen.contains(&next) {
                 break;
             }
             turn = rims::turn(entered, ahead, turn.back_y != link.reversed);
-            found.push(Piece::new(all[next].clone(), turn, next));
+            let mut piece = Piece::new(all[next].clone(), turn, next);
+            let (end, begin) = if ahead { (1.0, 0.0) } else { (0.0, 1.0) };
+            if link.apart {
+                piece.begin_at(begin, before.jet(end, 0.0, LAST).p);
+            }
+            before = piece.clone();
+            found.push(piece);
             seen.push(next);
             at = (next, (entered + 2) % 4);
         }
@@ -145,6 +152,11 @@ fn surface(joined: Joined, across_v: bool, origin: Origin, tolerance: &Tolerance
     let pieces = joined.pieces();
     let smooth: Vec<f64> = (1..pieces.len()).filter(|k| !folds(&joined, *k, tolerance)).map(|k| joined.seams()[k - 1]).collect();
     let (mut us, mut vs) = joined.lines(|s| (s.kinks().0.to_vec(), s.kinks().1.to_vec()));
+    // Seams of pieces that are none of all.
+    let along = if across_v { &mut us } else { &mut vs };
+    along.extend(joined.turned_seams().into_iter().filter(|y| joined.fold_at(*y) > tolerance.angle));
+    along.sort_by(f64::total_cmp);
+    along.dedup();
     let across = if across_v { &mut vs } else { &mut us };
     across.retain(|x| smooth.iter().all(|s| s != x));
     let point = |x: f64, y: f64| if across_v { joined.jet(y, x, LAST).p } else { joined.jet(x, y, LAST).p };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::shape::{Piece, Turn, foot};
+use super::shape::{Piece, Turn, foot, foot_round};
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::surface::core::{Side, Surface};
@@ -17,6 +17,8 @@ pub struct Rim {
     side: usize,
     points: Vec<DVec3>,
     piece: Piece,
+    /// The surface closes along it.
+    closed: bool,
 }
 
 /// Two sides that are one curve.
@@ -26,6 +28,8 @@ pub struct Link {
     pub ends: [(usize, usize); 2],
     /// They run against each other.
     pub reversed: bool,
+    /// They are closed and begin at different points.
+    pub apart: bool,
 }
 
 impl Link {
@@ -61,7 +65,8 @@ impl Rim {
     fn of(surface: &Surface, side: usize) -> Self {
         let piece = Piece::new(surface.clone(), turn(side, true, false), 0);
         let at = |n: usize| piece.jet(0.0, n as f64 / STEPS as f64, (Lean::After, Lean::After)).p;
-        Self { side, points: (0..=STEPS).map(at).collect(), piece }
+        let closed = if side.is_multiple_of(2) { surface.closed().0 } else { surface.closed().1 };
+        Self { side, points: (0..=STEPS).map(at).collect(), piece, closed }
     }
 
     /// How far it is from another one at the most, and where on it.
@@ -69,28 +74,40 @@ impl Rim {
         let far = |p: DVec3| {
             let near = |n: &usize| other.points[*n].distance_squared(p);
             let start = (0..=STEPS).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap_or(0);
-            let w = foot(&other.piece, start as f64 / STEPS as f64, p);
+            let start = start as f64 / STEPS as f64;
+            let w = if other.closed { foot_round(&other.piece, 0.0, start, p) } else { foot(&other.piece, start, p) };
             other.piece.jet(0.0, w, (Lean::After, Lean::After)).p.distance(p)
         };
         let each = self.points.iter().map(|p| (far(*p), *p));
         each.fold((0.0, self.points[0]), |most, next| if next.0 > most.0 { next } else { most })
     }
 
-    /// Whether both are one curve, and if so whether they run against each other.
-    fn same(&self, other: &Self, tolerance: &Tolerance) -> Option<bool> {
+    /// Whether both are one curve, and if so whether they run against each other, and whether they begin at different points.
+    fn same(&self, other: &Self, tolerance: &Tolerance) -> Option<(bool, bool)> {
         let ends = |rim: &Self| (rim.points[0], rim.points[STEPS]);
         let ((a, b), (c, d)) = (ends(self), ends(other));
         let one = |p: DVec3, q: DVec3| tolerance.same_point(p, q);
-        let reversed = match (one(a, c) && one(b, d), one(a, d) && one(b, c)) {
+        let (reversed, apart) = match (one(a, c) && one(b, d), one(a, d) && one(b, c)) {
+            (false, false) if self.closed && other.closed => (self.runs_against(other), true),
             (false, false) => return None,
             // Closed: a quarter of the way tells.
             (true, true) => {
                 let (p, q) = (self.points[STEPS / 4], [other.points[STEPS / 4], other.points[STEPS - STEPS / 4]]);
-                p.distance(q[1]) < p.distance(q[0])
+                (p.distance(q[1]) < p.distance(q[0]), false)
             }
-            (_, reversed) => reversed,
+            (_, reversed) => (reversed, false),
         };
-        (self.apart(other).0 <= tolerance.point && other.apart(self).0 <= tolerance.point).then_some(reversed)
+        (self.apart(other).0 <= tolerance.point && other.apart(self).0 <= tolerance.point).then_some((reversed, apart))
+    }
+
+    /// Of closed ones that are one curve: whether they run against each other, by what is a little farther on.
+    fn runs_against(&self, other: &Self) -> bool {
+        let near = |p: DVec3| {
+            let far = |n: &usize| other.points[*n].distance_squared(p);
+            (0..STEPS).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
+        };
+        let step = (near(self.points[STEPS / 8]) + STEPS - near(self.points[0])) % STEPS;
+        step > STEPS / 2
     }
 }
 
@@ -100,8 +117,8 @@ pub fn links(all: &[Surface], rims: &[Vec<Rim>], tolerance: &Tolerance) -> Vec<L
     for a in 0..all.len() {
         for b in a + 1..all.len() {
             for (x, y) in rims[a].iter().flat_map(|x| rims[b].iter().map(move |y| (x, y))) {
-                if let Some(reversed) = x.same(y, tolerance) {
-                    found.push(Link { ends: [(a, x.side), (b, y.side)], reversed });
+                if let Some((reversed, apart)) = x.same(y, tolerance) {
+                    found.push(Link { ends: [(a, x.side), (b, y.side)], reversed, apart });
                 }
             }
         }

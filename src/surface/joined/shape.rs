@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
+use crate::base::math;
 use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Motion;
@@ -88,25 +89,64 @@ pub struct Piece {
     pub turn: Turn,
     /// Its place in the order in which they were given.
     pub given: usize,
+    /// Of a piece that closes in y: its y, turned, where y is 0. Its seam lies elsewhere than that of all then.
+    pub shift: f64,
     /// Its y at even steps of the y of the one before; empty where both are one.
     follow: Vec<f64>,
 }
 
-crate::content!(Piece { surface, turn, given, follow });
+crate::content!(Piece { surface, turn, given, shift, follow });
 
 impl Piece {
     /// A surface that lies so, its own y not yet told.
     pub fn new(surface: Surface, turn: Turn, given: usize) -> Self {
-        Self { surface, turn, given, follow: Vec::new() }
+        Self { surface, turn, given, shift: 0.0, follow: Vec::new() }
+    }
+
+    /// Begins y where the border x = `x` is nearest to a point. Of pieces that close in y.
+    pub fn begin_at(&mut self, x: f64, p: DVec3) {
+        let far = |w: f64| self.jet(x, w, (Lean::After, Lean::After)).p.distance_squared(p);
+        let even = |n: usize| n as f64 / (4 * PLACES) as f64;
+        let start = (0..4 * PLACES).min_by(|a, b| far(even(*a)).total_cmp(&far(even(*b)))).map_or(0.0, even);
+        let w = foot_round(self, x, start, p);
+        self.shift = if w < 1.0 { w } else { 0.0 };
+    }
+
+    /// Where its seam lies in y; none where y begins there.
+    pub fn seam(&self) -> Option<f64> {
+        (self.shift > 0.0).then_some(1.0 - self.shift)
+    }
+
+    /// Its own y, turned, at a y, on the side to which the lean points at its seam.
+    fn around(&self, y: f64, lean: Lean) -> f64 {
+        let Some(seam) = self.seam() else { return y };
+        if y > seam || y == seam && lean == Lean::After { y - seam } else { y + self.shift }
     }
 
     /// Point and derivatives with respect to its own x and y.
     pub fn jet(&self, x: f64, y: f64, leans: Leans) -> Jet2 {
+        // At its ends, which may be inside the surface, it is known from inside.
+        let lean = if y >= 1.0 {
+            Lean::Before
+        } else if y <= 0.0 {
+            Lean::After
+        } else {
+            leans.1
+        };
+        let (y, leans) = (self.around(y, lean), (leans.0, lean));
         let (u, v) = self.turn.place(x, y);
         self.turn.jet(self.surface.jet_lean(u, v, self.turn.leans(leans)))
     }
 
+    /// Bounds over a rectangle whose y has the seam beside it at most.
     fn spread(&self, x: (f64, f64), y: (f64, f64)) -> Spread {
+        let after = self.seam().is_some_and(|seam| 0.5 * (y.0 + y.1) > seam);
+        let own = |y: f64| match self.seam() {
+            None => y,
+            Some(seam) if after => (y - seam).max(0.0),
+            Some(_) => (y + self.shift).min(1.0),
+        };
+        let y = (own(y.0), own(y.1));
         let (a, b) = (self.turn.place(x.0, y.0), self.turn.place(x.1, y.1));
         let order = |a: f64, b: f64| (a.min(b), a.max(b));
         self.turn.spread(self.surface.spread(order(a.0, b.0), order(a.1, b.1)))
@@ -116,7 +156,9 @@ impl Piece {
     fn lines(&self, (us, vs): (Vec<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>) {
         let (xs, ys) = if self.turn.swap { (vs, us) } else { (us, vs) };
         let each = |list: Vec<f64>, back: bool| list.into_iter().map(|x| backwards(back, x)).collect();
-        (each(xs, self.turn.back_x), each(ys, self.turn.back_y))
+        let from_start = |y: f64| if y < self.shift { y + 1.0 - self.shift } else { y - self.shift };
+        let ys: Vec<f64> = each(ys, self.turn.back_y);
+        (each(xs, self.turn.back_x), ys.into_iter().map(from_start).collect())
     }
 }
 
@@ -130,9 +172,11 @@ pub struct Joined {
     across_v: bool,
     /// Whether first derivatives jump at some stop.
     rough: bool,
+    /// Whether they jump at a seam of a piece that is none of all.
+    bent: bool,
 }
 
-crate::content!(Joined { pieces, stops, across_v } but { rough });
+crate::content!(Joined { pieces, stops, across_v } but { rough, bent });
 
 impl Joined {
     /// Pieces in order, each with its mean length along x; the borders between them are found to be common.
@@ -144,10 +188,11 @@ impl Joined {
             Some(*sum / total)
         }));
         stops.push(1.0);
-        let mut made = Self { pieces, stops, across_v, rough: false };
+        let mut made = Self { pieces, stops, across_v, rough: false, bent: false };
         for k in 1..made.pieces.len() {
             made.pieces[k].follow = made.table(k);
         }
+        made.bent = made.turned_seams().into_iter().any(|y| !made.is_even_along(y));
         made.rough = (1..made.pieces.len()).any(|k| !made.is_even(k));
         made
     }
@@ -181,6 +226,15 @@ impl Joined {
         (0..=PLACES).step_by(4).all(|n| {
             let (a, b) = self.beside(k, n as f64 / PLACES as f64);
             a.du.distance(b.du) <= EPSILON * PLACES as f64 * (a.du.length() + b.du.length())
+        })
+    }
+
+    /// Whether first derivatives across a line of constant y are the same on both sides.
+    fn is_even_along(&self, y: f64) -> bool {
+        (0..=PLACES).step_by(4).all(|n| {
+            let x = n as f64 / PLACES as f64;
+            let [a, b] = [Lean::Before, Lean::After].map(|lean| self.xy_jet(x, y, (Lean::After, lean)).dv);
+            a.distance(b) <= EPSILON * PLACES as f64 * (a.length() + b.length())
         })
     }
 
@@ -290,7 +344,23 @@ impl Joined {
 
     /// Where the formula changes along u or v, and whether first derivatives may jump there.
     pub fn changes(&self, along_u: bool) -> (Vec<f64>, bool) {
-        if along_u == self.across_v { (Vec::new(), false) } else { (self.seams().to_vec(), self.rough) }
+        if along_u == self.across_v { (self.turned_seams(), self.bent) } else { (self.seams().to_vec(), self.rough) }
+    }
+
+    /// The y at which pieces have a seam inside.
+    pub fn turned_seams(&self) -> Vec<f64> {
+        let one = |(k, piece): (usize, &Piece)| piece.seam().map(|seam| self.common(k, seam));
+        tidy(self.pieces.iter().enumerate().filter_map(one).collect(), EPSILON * PLACES as f64)
+    }
+
+    /// How normals turn at most over a line of constant y.
+    pub fn fold_at(&self, y: f64) -> f64 {
+        let normal = |x: f64, lean: Lean| {
+            let jet = self.xy_jet(x, y, (Lean::After, lean));
+            jet.du.cross(jet.dv).normalize_or_zero()
+        };
+        let at = |n: usize| (n as f64 + 0.5) / PLACES as f64;
+        (0..PLACES).map(|n| math::angle_between(normal(at(n), Lean::Before), normal(at(n), Lean::After))).fold(0.0, f64::max)
     }
 
     /// Bounds over a rectangle that no seam crosses.
@@ -328,7 +398,16 @@ impl Joined {
         Spread { mid, half, p: s.p, du, dv, duu, duv, dvv }
     }
 
-    /// Lines of all pieces and the seams, of u and of v.
+    /// Lines of all pieces and the seams between and in them, of u and of v.
+    pub fn all_lines(&self, of: impl Fn(&Surface) -> (Vec<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>) {
+        let (mut us, mut vs) = self.lines(of);
+        let along = if self.across_v { &mut us } else { &mut vs };
+        along.extend(self.turned_seams());
+        *along = tidy(std::mem::take(along), EPSILON * PLACES as f64);
+        (us, vs)
+    }
+
+    /// Lines of all pieces and the seams between them, of u and of v.
     pub fn lines(&self, of: impl Fn(&Surface) -> (Vec<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>) {
         let (mut xs, mut ys) = (self.seams().to_vec(), Vec::new());
         for (k, piece) in self.pieces.iter().enumerate() {
@@ -356,9 +435,22 @@ impl Joined {
 
 /// The y near a guess where the first border of a piece is nearest to a point.
 pub fn foot(piece: &Piece, guess: f64, p: DVec3) -> f64 {
+    foot_on(piece, 0.0, guess, p)
+}
+
+/// The same of the line of constant x of a piece that closes in y: beside its seam the foot may be on either side of it.
+pub fn foot_round(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
+    let starts = if guess <= 0.0 || guess >= 1.0 { vec![0.0, 1.0] } else { vec![guess] };
+    let far = |w: &f64| piece.jet(x, *w, (Lean::After, Lean::After)).p.distance_squared(p);
+    let feet = starts.into_iter().map(|start| foot_on(piece, x, start, p));
+    feet.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(guess)
+}
+
+/// The y near a guess where the line of constant x is nearest to a point.
+fn foot_on(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
     let mut w = guess;
     for _ in 0..STEPS {
-        let jet = piece.jet(0.0, w, (Lean::After, Lean::After));
+        let jet = piece.jet(x, w, (Lean::After, Lean::After));
         let off = jet.p - p;
         let bend = jet.dv.length_squared() + off.dot(jet.dvv);
         let square = jet.dv.length_squared();
