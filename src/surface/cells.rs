@@ -60,7 +60,7 @@ impl<'a> Cells<'a> {
             Self { base, pieces, next, rows, areas, cells, left: BTreeMap::new(), twins: BTreeMap::new(), step, point: tolerance.point };
         made.areas = made.rows.iter().map(|row| made.area(row)).collect();
         if !is_plane(edges, &made.rows) {
-            let crowded = made.rows.iter().find_map(|row| made.crowded(row));
+            let crowded = [BESIDE, 1.0].into_iter().find_map(|beside| made.rows.iter().find_map(|row| made.crowded(row, beside)));
             return Err(crowded.unwrap_or_else(|| made.fault("loops leave a vertex in a wrong order", made.rows[0][0])));
         }
         made.bound(edges)?;
@@ -73,7 +73,7 @@ impl<'a> Cells<'a> {
         let beyond = |h: &Half| h.1 && self.pieces[h.0].rim;
         let outside: Vec<bool> = self.rows.iter().map(|row| row.iter().any(beyond)).collect();
         if let Some(r) = (0..self.rows.len()).find(|r| outside[*r] && !self.rows[*r].iter().all(beyond)) {
-            return Err(self.crowded(&self.rows[r]).unwrap_or_else(|| self.fault("a part runs over the border", self.rows[r][0])));
+            return Err(self.crowded(&self.rows[r], BESIDE).unwrap_or_else(|| self.fault("a part runs over the border", self.rows[r][0])));
         }
         let outer: Vec<usize> = (0..self.rows.len()).filter(|r| !outside[*r] && self.areas[*r] > self.step * self.step).collect();
         let mut cells: BTreeMap<usize, Vec<usize>> = outer.iter().map(|r| (*r, vec![*r])).collect();
@@ -86,7 +86,9 @@ impl<'a> Cells<'a> {
                 Some(o) => cells.entry(*o).or_default().push(r),
                 None if self.base.domain() == Domain::Unbounded => {}
                 None => {
-                    return Err(self.crowded(&self.rows[r]).unwrap_or_else(|| self.fault("a loop lies in no part", self.rows[r][0])));
+                    return Err(self
+                        .crowded(&self.rows[r], BESIDE)
+                        .unwrap_or_else(|| self.fault("a loop lies in no part", self.rows[r][0])));
                 }
             }
         }
@@ -128,8 +130,9 @@ impl<'a> Cells<'a> {
         CutFault::NotDivided { surface: self.base.origin(), what, at }.into()
     }
 
-    /// E721 where a piece of a loop that bounds no cell is as short as vertices are taken as one, or runs that near beside another piece.
-    fn crowded(&self, row: &[Half]) -> Option<Fault> {
+    /// E721 where a piece of a loop that bounds no cell is as short as vertices are taken as one, or runs that near beside another piece,
+    /// `beside` times as far from its ends.
+    fn crowded(&self, row: &[Half], beside: f64) -> Option<Fault> {
         let near = TOLD_APART * self.point;
         let chain = |k: usize| self.pieces[k].own_chain();
         let fault = |k: usize, other: usize, at: DVec3, apart: f64| {
@@ -155,7 +158,7 @@ impl<'a> Cells<'a> {
             let Course::Pull(pull) = &piece.course else { continue };
             let places = (1..LOOKS).map(|n| pull.fraction(n as f64 / LOOKS as f64)).map(|f| (own.point(f), pull.guess(f)));
             // Where pieces part they are near to each other in any case.
-            for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > BESIDE * near) {
+            for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > beside * near) {
                 let passes = |course: &Course| course.places().windows(2).any(|w| Course::Line(w[0].into(), w[1].into()).touches(uv, NEAR));
                 for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].course)) {
                     let apart = chain(other).map_or(f64::INFINITY, |chain| chain.closest(at).2);

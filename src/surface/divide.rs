@@ -190,8 +190,11 @@ fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f6
         let places: Vec<DVec3> = fan.iter().filter_map(|end| place(end, away)).collect();
         (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > APART * tolerance.point))
     };
-    let farther = std::iter::successors(Some(first), |away| Some(2.0 * away)).take_while(|away| *away <= CLEAR_SHARE * shortest);
-    farther.filter(|away| away.is_finite()).find(|away| apart(*away)).unwrap_or(first)
+    if !(first > 0.0 && first.is_finite()) {
+        return first;
+    }
+    let mut farther = std::iter::successors(Some(first), |away| Some(1.5 * away)).take_while(|away| *away <= FARTHEST * shortest);
+    farther.find(|away| apart(*away)).unwrap_or(first)
 }
 
 /// The vertices at the ends of pieces, and their places: ends that are near to each other are one vertex, the nearest ones first,
@@ -249,6 +252,8 @@ const START: f64 = 0.01;
 /// Directions are taken so many tolerances away from a vertex, or at this share of the shortest piece where that is less.
 const CLEAR: f64 = 8.0;
 const CLEAR_SHARE: f64 = 0.25;
+/// Directions of pieces that are not apart there are taken no farther away than at this share of the shortest piece.
+const FARTHEST: f64 = 0.45;
 /// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
 const NEAR: (f64, f64) = (NUDGE, 0.1);
 

@@ -173,7 +173,8 @@ impl Describe for CutFault {
             }
             Self::PartsNotWhole { surface, cuts, whole, parts, tolerance } => {
                 let name = say.quoted(*surface, "the surface");
-                let message = format!("the parts of {name} make up {:.4} % of its area: curves that divide it come too near", 100.0 * parts / whole);
+                let message =
+                    format!("the parts of {name} make up {:.4} % of its area: curves that divide it come too near", 100.0 * parts / whole);
                 let report = cuts.iter().fold(Report::new("E721", message).at(*surface, "this surface"), |r, cut| r.at(*cut, "this curve"));
                 report
                     .help("a smaller `tolerance` tells curves apart that are near to each other")
@@ -183,7 +184,7 @@ impl Describe for CutFault {
                 let places = say.points(ends);
                 let why = match ends.len() {
                     _ if *outside => "all of it lies beyond the border".to_owned(),
-                    0 => "both ends are on the border, and what lies beside it goes on round the surface".to_owned(),
+                    0 => "it runs from border to border, and what lies on its two sides is one part".to_owned(),
                     1 => format!("it ends inside at {}", places[0]),
                     _ => format!("both its ends lie inside, at {}", places.join(" and ")),
                 };
