@@ -29,6 +29,10 @@ use crate::mesh::edges::Limits;
 use crate::mesh::explain::{Decider, Tally};
 use crate::mesh::sources::Sources;
 
+/// Work of a cell and of a node of a border in one try, in evaluations of the surface: all are sorted and looked through anew.
+const CELL_WORK: u64 = 10;
+const NODE_WORK: u64 = 4;
+
 /// What a face is laid out by.
 pub struct Ask<'a> {
     /// The surface in its chart.
@@ -146,7 +150,7 @@ impl Work<'_> {
     /// One try: the triangles, or cells cut where they do not keep the limits.
     fn round(&mut self) -> Tried<Option<Laid>> {
         let outline = self.ask.outline;
-        work::spend(self.cells.all().len() as u64);
+        work::spend(CELL_WORK * self.cells.all().len() as u64 + NODE_WORK * self.at.len() as u64);
         let mut corners = self.corners();
         let mut web = Web::default();
         (web.p, web.xy, web.fixed) = (outline.p.clone(), outline.xy.clone(), outline.p.len() as u32);
