@@ -271,6 +271,11 @@ pub fn parse_real(text: &str) -> Option<f64> {
     text.parse().ok()
 }
 
+/// The article before a word.
+pub fn article(word: &str) -> &'static str {
+    if word.starts_with(['a', 'e', 'i', 'o', 'u', 'A', 'E', 'I', 'O', 'U']) { "an" } else { "a" }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

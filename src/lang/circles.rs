@@ -78,6 +78,7 @@ impl Cx<'_> {
         let text = format!("`{}` needs itself: {} → all curves and surfaces → {}", names[0], names.join(" → "), names[0]);
         let help = self.may_stay_out(part).then(|| self.stay_out(part));
         let keyword = self.machine.at(part.0).script.declarations[part.1 as usize].keyword_span;
+        let alone = borders_of(self.sources.text(self.machine.at(site.module).file, span));
         let here = part == (site.module, site.declaration);
         let file = self.machine.at(part.0).file;
         let named = (!here).then(|| Label { file, span: keyword, text: format!("`{}` is one of them", names[0]) });
@@ -85,7 +86,10 @@ impl Cx<'_> {
         match help {
             Some(help) if here => draft.help(help).put(keyword, "let").stop(),
             Some(help) => draft.help(help).stop(),
-            None => draft.stop(),
+            None => match alone {
+                Some(help) => draft.help(help).stop(),
+                None => draft.stop(),
+            },
         }
     }
 
@@ -101,4 +105,11 @@ impl Cx<'_> {
             _ => format!("`let {name} = …`: a `let` curve stays out of the network, so it may be made from all of it"),
         }
     }
+}
+
+/// How a border of a surface alone is named, for an expression that asks for its edges in the model.
+fn borders_of(text: &str) -> Option<String> {
+    let (surface, _) = [".rims", ".edges", ".edge("].into_iter().find_map(|word| text.split_once(word))?;
+    let is_name = !surface.is_empty() && surface.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    is_name.then(|| format!("the borders of a surface by itself are `iso({surface}, u: 0)`, `u: 1`, `v: 0` and `v: 1`"))
 }

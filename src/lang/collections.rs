@@ -20,6 +20,7 @@ use super::value::{MeshValue, ShellValue, Value};
 use crate::base::fault::ValueFault;
 use crate::base::limits;
 use crate::base::origin::Origin;
+use crate::base::text::article;
 use crate::mesh::{Elements, Method};
 
 /// A setting as resolved: its key, its value, the expression that says it.
@@ -327,7 +328,7 @@ impl Cx<'_> {
     #[cold]
     fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Stop {
         let near = meant(key, table.iter().map(|s| s.key)).map(str::to_owned);
-        let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("a {word}") });
+        let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("{} {word}", article(word)) });
         let label = near.as_ref().map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
         let keys: Vec<&str> = table.iter().map(|s| s.key).collect();
         let alike = near.as_deref().and_then(|near| lookalikes::difference(key, near));

@@ -24,6 +24,7 @@ use crate::base::fault::{Cure, Fault, MeshFault, Result, SurfaceFault, Touching}
 use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
 use crate::base::par;
+use crate::base::text::article;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::model::Course;
 use crate::model::atoms::Use;
@@ -684,11 +685,6 @@ struct Lines {
     rank: u8,
     /// Arc length, model units.
     length: f64,
-}
-
-/// The article before a word.
-fn article(word: &str) -> &'static str {
-    if word.starts_with('e') { "an" } else { "a" }
 }
 
 /// The borders that an edge is in the mesh, each stretch once.

@@ -2,6 +2,7 @@
 
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
+use crate::base::text::article;
 
 /// A place in a data file where it stops making sense.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -286,10 +287,6 @@ fn same_file(outputs: &[(Origin, String)], members: Option<usize>) -> Report {
     let labels = outputs.iter().rev().enumerate();
     let last = outputs.len().saturating_sub(1);
     labels.fold(report, |report, (k, (of, _))| report.at(*of, if k == last { "written here first" } else { "would replace it" }))
-}
-
-fn article(name: &str) -> &'static str {
-    if name.starts_with(['a', 'e', 'i', 'o', 'u', 'A', 'E', 'I', 'O', 'U']) { "an" } else { "a" }
 }
 
 fn quoted_tail(rest: &[String]) -> String {
