@@ -13,10 +13,11 @@ use super::cells::Cells;
 use super::closest::Nearest;
 use super::core::{Domain, Side, Surface};
 use super::divide::{dividing, walks};
+
 use super::plane;
 use super::pull::Course;
 use super::strands::{Meets, Piece};
-use super::trim::assembled;
+use super::trim::{assembled, shifts};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Result, SurfaceFault};
 use crate::base::origin::Origin;
@@ -189,10 +190,11 @@ impl Sides<'_> {
             let nearest = Nearest::new(self.base);
             for chain in inner {
                 let p = chain.point(MIDDLE);
-                let on_seam = |piece: &&Piece| piece.seam && near(piece, p, ONE * self.tolerance.point);
+                let foot = DVec2::from(nearest.at(p).uv);
+                let on_seam = |piece: &&Piece| piece.seam && near(self.base, piece, (p, foot), ONE * self.tolerance.point);
                 let beside = (0..self.pieces.len()).filter(|k| on_seam(&&self.pieces[*k])).filter_map(|k| self.cells.beside(k)[0]);
                 let beside: Vec<usize> = beside.collect();
-                let found = if beside.is_empty() { self.cells.at(DVec2::from(nearest.at(p).uv)).into_iter().collect() } else { beside };
+                let found = if beside.is_empty() { self.cells.at(foot).into_iter().collect() } else { beside };
                 found.into_iter().for_each(|c| votes[c][1] += chain.length());
             }
             let within = self.known.inside.and_then(|p| self.cells.at(DVec2::from(nearest.at(p).uv)));
@@ -240,13 +242,15 @@ fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
     }
 }
 
-/// Whether a point lies on a piece.
-fn near(piece: &Piece, p: DVec3, room: f64) -> bool {
-    match piece.own_chain() {
-        Some(chain) => chain.closest(p).2 <= room,
-        None => {
-            let (a, b) = (piece.p.0, piece.p.2);
-            piece.p.1.distance(p) <= a.distance(piece.p.1).max(b.distance(piece.p.1))
+/// Whether a point with its place on the surface lies on a piece.
+fn near(base: &Surface, piece: &Piece, (p, foot): (DVec3, DVec2), room: f64) -> bool {
+    match (piece.own_chain(), &piece.course) {
+        (Some(chain), _) => chain.closest(p).2 <= room,
+        (None, Course::Line(a, b)) => {
+            let (a, along) = (DVec2::from(*a), DVec2::from(*b) - DVec2::from(*a));
+            let on_line = |uv: DVec2| a + along * ((uv - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            shifts(base).into_iter().map(|by| on_line(foot + by)).any(|uv| base.point(uv.x, uv.y).distance(p) <= room)
         }
+        (None, Course::Pull(_)) => false,
     }
 }
