@@ -51,6 +51,10 @@ limits! {
     pub const FILE_WORK: u64 = 100_000_000;
     /// Work of one call, in evaluations of curves and surfaces.
     pub const CALL_WORK: u64 = 25_000_000;
+    /// Places of the parts of one STEP file.
+    pub const PART_INSTANCES: usize = 100_000;
+    /// Control points and pieces of borders that the placed parts of one STEP file may have, beside 4 for each byte.
+    pub const PART_COPIES: usize = 4_000_000;
     /// Pixels along a side of a picture.
     pub const PICTURE_SIDE: u32 = 8_192;
     /// Pixels of one picture.

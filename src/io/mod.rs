@@ -16,6 +16,7 @@ pub mod obj_read;
 mod ply;
 mod romanize;
 mod sets;
+pub mod step;
 mod stl;
 pub mod stl_read;
 pub mod table;

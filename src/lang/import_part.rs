@@ -1,4 +1,4 @@
-//! `import "part.igs" as part`: points, curves, surfaces and groups of a CAD file as values.
+//! `import "part.igs" as part`, `import "part.step" as part`: points, curves, surfaces and groups of a CAD file as values.
 
 use std::sync::Arc;
 
@@ -6,23 +6,38 @@ use super::cx::{Cx, Stop};
 use super::imports::File;
 use super::units::{self, MILLIMETRE};
 use super::value::{Record, Value};
-use crate::io::iges::{self, Group, Options, Part};
+use crate::base::bbox::Box3;
+use crate::base::tolerance::Tolerance;
+use crate::io::cad::part::{Group, Options, Part};
+use crate::io::{iges, step};
 use crate::network::Chain;
 use crate::surface::Surface;
 
 impl Cx<'_> {
-    /// Lists in file order, then everything once more by its name in the file.
+    /// An IGES file.
     pub(super) fn iges(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Stop> {
+        let opened = iges::open(bytes, &self.cad_options(file)).map_err(|at| file.malformed(at))?;
+        self.cad(file, opened.reach(), |tolerance| opened.part(tolerance))
+    }
+
+    /// A STEP file.
+    pub(super) fn step_file(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Stop> {
+        let opened = step::open(bytes, &self.cad_options(file)).map_err(|at| file.malformed(at))?;
+        self.cad(file, opened.reach(), |tolerance| opened.part(tolerance))
+    }
+
+    fn cad_options(&self, file: &File) -> Options {
         let millimetres = |unit| units::convert(1.0, unit, MILLIMETRE, 1);
-        let options =
-            Options { model: millimetres(self.unit), unit: self.unit.name, file: file.unit.map(millimetres), origin: file.origin };
-        let opened = iges::open(bytes, &options).map_err(|at| file.malformed(at))?;
-        let reach = opened.reach();
+        Options { model: millimetres(self.unit), unit: self.unit.name, file: file.unit.map(millimetres), origin: file.origin }
+    }
+
+    /// Lists in file order, then everything once more by its name in the file.
+    fn cad(&mut self, file: &File, reach: Box3, make: impl FnOnce(Tolerance) -> Part) -> Result<Value, Stop> {
         if !reach.is_empty() {
             self.seen([reach.min, reach.max]);
         }
         let tolerance = self.tolerance()?;
-        let mut part = opened.part(tolerance);
+        let mut part = make(tolerance);
         self.steps(part.points.len() + part.curves.len() + part.surfaces.len())?;
         let mut warnings = std::mem::take(&mut part.warnings);
         warnings.append(&mut part.build(file.origin, &tolerance));
@@ -55,6 +70,8 @@ impl Cx<'_> {
             self.record(fields)
         };
         let groups: Vec<Value> = part.groups.iter().map(|group| record_of(group, None)).collect();
+        let shells: Vec<Value> = part.shells.iter().map(|group| record_of(group, None)).collect();
+        let solids: Vec<Value> = part.solids.iter().map(|group| record_of(group, None)).collect();
         let colors: Vec<Value> = part.colors.iter().map(|(group, rgb)| record_of(group, Some(*rgb))).collect();
         let names = part.points.iter().map(|i| &i.name).zip(&points);
         let names = names.chain(part.curves.iter().map(|i| &i.name).zip(&curves));
@@ -70,6 +87,8 @@ impl Cx<'_> {
             ("curves", Value::list(curves.clone())),
             ("surfaces", Value::list(part.built.iter().flat_map(|f| faces(f)).collect())),
             ("groups", Value::list(groups.clone())),
+            ("shells", Value::list(shells)),
+            ("solids", Value::list(solids)),
             ("colors", Value::list(colors)),
         ];
         let named = names.filter(|(_, value)| !matches!(value, Value::None)).map(|(name, value)| (name.as_str(), value.clone()));

@@ -7,7 +7,6 @@ use glam::DVec3;
 use super::bind::Signature;
 use super::cx::{Cx, Stop};
 use super::eval::{Code, Gather};
-use super::later;
 use super::load::file_fault;
 use super::settings::IMPORT;
 use super::syntax::ast::{Arg, ExprId};
@@ -25,7 +24,7 @@ use crate::mesh::Mesh;
 /// Notes about one file that are said one by one; more are counted.
 const REPAIRS_SAID: usize = 5;
 /// Endings that can be imported.
-const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl", "igs", "iges"];
+const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl", "igs", "iges", "stp", "step", "p21"];
 
 /// Endings of tables, which may have a header.
 const TABLES: &[&str] = &["csv", "dat", "txt"];
@@ -53,9 +52,6 @@ impl Cx<'_> {
     pub(super) fn import(&mut self, code: Code<'_>, path: ExprId, args: &[Arg]) -> Result<Value, Stop> {
         let (written, origin) = self.path_text(code, path)?;
         let ending = written.rsplit_once('.').map_or(String::new(), |e| e.1.to_ascii_lowercase());
-        if later::is_ending(&ending) {
-            return Err(self.not_yet(code, &format!("reading .{ending} files"), code.span(path)));
-        }
         if !ENDINGS.contains(&ending.as_str()) {
             return Err(FileFault::NoSuchFormat { of: origin, path: written, known: ENDINGS.to_vec() }.into());
         }
@@ -80,6 +76,7 @@ impl Cx<'_> {
                 Ok(self.record([("mesh", mesh)]))
             }
             "igs" | "iges" => self.iges(&file, &bytes),
+            "stp" | "step" | "p21" => self.step_file(&file, &bytes),
             _ => {
                 let layout = Layout::of_extension(&ending).unwrap_or(Layout::Blanks);
                 let table = io::table::read(&bytes, &Reading { layout, header: file.header, is_unit: &is_unit });

@@ -12,16 +12,9 @@ use super::value::{ModuleId, Value};
 
 const FUNCTIONS: &[&str] = &["hermite", "hydrostatics"];
 
-const ENDINGS: &[&str] = &["stp", "step"];
-
 /// Whether a later version has a function of this name.
 pub(super) fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name)
-}
-
-/// Whether a later version reads files with this ending.
-pub(super) fn is_ending(ending: &str) -> bool {
-    ENDINGS.contains(&ending)
 }
 
 impl Cx<'_> {

@@ -6,7 +6,7 @@ use super::base::Base;
 use super::natural::is_natural;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::{NEAR_MISS, Tolerance};
-use crate::geometry::{Curve, closest};
+use crate::geometry::{Curve, Motion, closest};
 use crate::surface::{Nearest, Side, Surface};
 
 /// One curve of a loop.
@@ -81,6 +81,26 @@ impl Face {
             against: known.against,
             inside: known.inside,
             gap,
+        }
+    }
+}
+
+impl Face {
+    /// Carried by a motion; one that mirrors keeps the side it looks to.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        let carried = |border: &Vec<Border>| {
+            let one = |b: &Border| Border { space: b.space.moved(motion), uv: b.uv.clone() };
+            border.iter().map(one).collect::<Vec<Border>>()
+        };
+        Self {
+            base: self.base.moved(motion),
+            outer: self.outer.as_ref().map(carried),
+            holes: self.holes.iter().map(carried).collect(),
+            flipped: self.flipped != motion.mirrors(),
+            against: self.against != motion.mirrors(),
+            inside: self.inside.map(|p| motion.point(p)),
+            gap: self.gap * motion.scale(),
+            ..*self
         }
     }
 }

@@ -24,7 +24,7 @@ pub struct Options {
 }
 
 /// Names that the lists of a part have themselves.
-const RESERVED: &[&str] = &["points", "curves", "surfaces", "groups", "colors", "unit"];
+const RESERVED: &[&str] = &["points", "curves", "surfaces", "groups", "shells", "solids", "colors", "unit"];
 
 /// Names given so far, and how often each was wanted.
 #[derive(Clone, Debug)]
@@ -90,6 +90,10 @@ pub struct Part {
     pub built: Vec<Vec<Surface>>,
     /// Groups, shells and solids.
     pub groups: Vec<Group>,
+    /// Shells, those of solids too.
+    pub shells: Vec<Group>,
+    /// Solids.
+    pub solids: Vec<Group>,
     /// What has the same colour, with red, green and blue from 0 to 1.
     pub colors: Vec<(Group, [f64; 3])>,
     /// What stands before the number of an entity in messages: `D` or `#`.

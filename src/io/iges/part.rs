@@ -288,7 +288,25 @@ impl Maker {
             _ => "group",
         };
         group.name = self.name(d, word, self.part.groups.len());
+        self.bodies(d, &group);
         self.part.groups.push(group);
+    }
+
+    /// Puts solids and shells into lists of their own, shells of solids too.
+    fn bodies(&mut self, d: Pointer, group: &Group) {
+        match self.book.data(d) {
+            Ok(Data::Shell(_)) => self.part.shells.push(group.clone()),
+            Ok(Data::Solid { shells }) => {
+                for shell in shells.clone() {
+                    let Ok(Data::Shell(faces)) = self.book.data(shell) else { continue };
+                    let mut skin = Group { name: group.name.clone(), ..Group::default() };
+                    faces.iter().filter_map(|(face, _)| self.made.get(face)).for_each(|made| skin.put(*made));
+                    self.part.shells.push(skin);
+                }
+                self.part.solids.push(group.clone());
+            }
+            _ => {}
+        }
     }
 
     fn gather(&mut self, d: Pointer, group: &mut Group, seen: &mut BTreeSet<Pointer>, depth: usize) -> Result<(), Damage> {

@@ -72,7 +72,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "import",
         (Kind::Import, Keyword::Import),
         "import \"file.csv\" as name\nimport \"file.csv\" (header: true  unit: m) as name",
-        "Data: csv, dat, txt, json, OBJ, STL or IGES (`part.curves[0]`, `part[\"deck\"]`). Curves of it join the network when a `curve` binds them.",
+        "Data: csv, dat, txt, json, OBJ, STL, IGES or STEP (`part.curves[0]`, `part[\"deck\"]`). Curves of it join the network when a `curve` binds them.",
     ),
     inside(
         "in",

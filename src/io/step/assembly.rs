@@ -1,0 +1,397 @@
+//! Which products a file has, where they stand in each other, and what is shown of each.
+//!
+//! A product has representations, whose items are its geometry; it stands in other products by occurrences, each with a motion from the
+//! frame of the one to that of the other. A mapped item places a representation without a product.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::part21::File;
+use super::reader::{Frame, Step};
+use super::units::{Units, of_context};
+use crate::base::job;
+use crate::base::limits;
+use crate::geometry::Motion;
+use crate::io::cad::damage::{Damage, damage};
+
+/// Products and representations inside each other.
+const DEEP: usize = 64;
+
+/// Something of a representation, where it is placed.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    /// The item.
+    pub item: u32,
+    /// The context of its representation, that says the units.
+    pub units: Units,
+    /// From the item's frame to the model's; lengths in model units.
+    pub motion: Motion,
+    /// Of [`Assembly::instances`].
+    pub instance: usize,
+}
+
+/// A product at one place, or a representation without one.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// The file's name for it; may be empty.
+    pub name: String,
+    /// The instance that it is a part of.
+    pub parent: Option<usize>,
+    /// The entity that names it.
+    pub entity: u32,
+}
+
+/// All that is shown, in file order.
+#[derive(Clone, Debug, Default)]
+pub struct Assembly {
+    /// Items with their places.
+    pub placed: Vec<Placed>,
+    /// Products at their places; parents before their parts.
+    pub instances: Vec<Instance>,
+}
+
+/// A product in another one.
+#[derive(Clone, Debug)]
+struct Occurrence {
+    entity: u32,
+    child: u32,
+    name: String,
+    /// The relationship between the representations, and the one of the two that is the child's, where the file has it.
+    link: Option<u32>,
+}
+
+#[derive(Debug, Default)]
+struct Tables {
+    /// Items and context of each representation.
+    representations: BTreeMap<u32, (Vec<u32>, Option<u32>)>,
+    /// Representations of each product definition.
+    shapes: BTreeMap<u32, Vec<u32>>,
+    /// Representations that are the same thing in the same place.
+    same: BTreeMap<u32, Vec<u32>>,
+    occurrences: BTreeMap<u32, Vec<Occurrence>>,
+    /// Products that are parts of others.
+    parts: BTreeSet<u32>,
+    /// Representations that mapped items place.
+    mapped: BTreeSet<u32>,
+    /// Representations of what is no product: features, properties.
+    aspects: BTreeSet<u32>,
+    products: Vec<u32>,
+}
+
+/// Whether an entity is a representation of a shape.
+fn is_representation(file: &File, k: u32) -> bool {
+    file.names(k).any(|n| n.ends_with(b"SHAPE_REPRESENTATION"))
+}
+
+impl Tables {
+    fn of(file: &File) -> Self {
+        let mut tables = Self::default();
+        let mut defined: BTreeMap<u32, u32> = BTreeMap::new();
+        let (mut shown, mut links, mut used) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..file.records.len() as u32 {
+            if k % 1024 == 0 {
+                job::look();
+            }
+            let row = file.parameters(k);
+            match file.name(k) {
+                b"PRODUCT_DEFINITION" | b"PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS" => tables.products.push(k),
+                b"PRODUCT_DEFINITION_SHAPE" => {
+                    if let Ok(of) = row.entity(2) {
+                        defined.insert(k, of);
+                    }
+                }
+                b"SHAPE_DEFINITION_REPRESENTATION" => shown.extend(row.entity(0).ok().zip(row.entity(1).ok())),
+                b"NEXT_ASSEMBLY_USAGE_OCCURRENCE" => used.push(k),
+                b"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION" => links.extend(row.entity(0).ok().zip(row.entity(1).ok())),
+                b"MAPPED_ITEM" => {
+                    let of = row.entity(1).and_then(|map| file.parameters(map).entity(1));
+                    tables.mapped.extend(of);
+                }
+                b"SHAPE_REPRESENTATION_RELATIONSHIP" => {
+                    if let (Ok(a), Ok(b)) = (row.entity(2), row.entity(3)) {
+                        tables.same.entry(a).or_default().push(b);
+                        tables.same.entry(b).or_default().push(a);
+                    }
+                }
+                _ if is_representation(file, k) => {
+                    let row = file.under(k, b"REPRESENTATION").unwrap_or(row);
+                    let items = row.list(1).map(|list| list.values().filter_map(|v| v.entity().ok()).collect()).unwrap_or_default();
+                    tables.representations.insert(k, (items, row.entity(2).ok()));
+                }
+                _ => {}
+            }
+        }
+        for (shape, representation) in shown {
+            match defined.get(&shape) {
+                Some(of) => tables.shapes.entry(*of).or_default().push(representation),
+                None => drop(tables.aspects.insert(representation)),
+            }
+        }
+        // The relationship that places an occurrence.
+        let links: BTreeMap<u32, u32> = links.into_iter().filter_map(|(link, shape)| Some((*defined.get(&shape)?, link))).collect();
+        for k in used {
+            let row = file.parameters(k);
+            let (Ok(parent), Ok(child)) = (row.entity(3), row.entity(4)) else { continue };
+            let text = |n: usize| row.text(n).trim().to_owned();
+            let name = [1, 0, 5].into_iter().map(text).find(|t| !t.is_empty()).unwrap_or_default();
+            tables.parts.insert(child);
+            tables.occurrences.entry(parent).or_default().push(Occurrence { entity: k, child, name, link: links.get(&k).copied() });
+        }
+        tables
+    }
+
+    /// The representations that are one with some, which none of another product is.
+    fn one_with(&self, first: &[u32], owned: &BTreeSet<u32>) -> Vec<u32> {
+        let mut all: Vec<u32> = first.to_vec();
+        let mut seen: BTreeSet<u32> = all.iter().copied().collect();
+        let mut at = 0;
+        while let Some(k) = all.get(at).copied() {
+            at += 1;
+            for other in self.same.get(&k).into_iter().flatten() {
+                if !owned.contains(other) && self.representations.contains_key(other) && seen.insert(*other) {
+                    all.push(*other);
+                }
+            }
+        }
+        all
+    }
+}
+
+struct Walk<'s, 'f> {
+    step: &'s mut Step<'f>,
+    tables: Tables,
+    /// Representations that products have by themselves.
+    owned: BTreeSet<u32>,
+    units: BTreeMap<u32, Units>,
+    shown: BTreeSet<u32>,
+    found: Assembly,
+    full: bool,
+}
+
+/// What a file shows, placed.
+pub fn assembly(step: &mut Step) -> Assembly {
+    let tables = Tables::of(step.file);
+    let owned = tables.shapes.values().flatten().copied().collect();
+    let mut walk = Walk { step, tables, owned, units: BTreeMap::new(), shown: BTreeSet::new(), found: Assembly::default(), full: false };
+    let still = Motion::translation(glam::DVec3::ZERO);
+    let mapped = |walk: &Walk, p: u32| walk.tables.shapes.get(&p).is_some_and(|all| all.iter().any(|r| walk.tables.mapped.contains(r)));
+    let products = walk.tables.products.clone();
+    for product in products.iter().copied() {
+        if !walk.tables.parts.contains(&product) && !mapped(&walk, product) {
+            walk.product(product, None, String::new(), product, &still, 0);
+        }
+    }
+    // Representations that no product shows, and those of products that are parts of each other in a circle.
+    for of_parts in [false, true] {
+        let left: Vec<u32> = walk.tables.representations.keys().copied().collect();
+        for representation in left {
+            let skip = walk.shown.contains(&representation)
+                || walk.tables.aspects.contains(&representation)
+                || (!of_parts && walk.tables.mapped.contains(&representation));
+            if !skip && (of_parts || !walk.owned.contains(&representation)) {
+                walk.alone(representation, &still);
+            }
+        }
+    }
+    walk.found
+}
+
+impl Walk<'_, '_> {
+    fn units(&mut self, context: Option<u32>) -> Units {
+        let Some(context) = context else { return Units::NONE };
+        if let Some(units) = self.units.get(&context) {
+            return *units;
+        }
+        let mut said = Vec::new();
+        let units = of_context(self.step.file, context, &mut |k, what| said.push((k, what)));
+        said.into_iter().for_each(|(k, what)| self.step.warn(k, what));
+        self.units.insert(context, units);
+        units
+    }
+
+    /// Adds an instance; none when there are too many.
+    fn instance(&mut self, name: String, parent: Option<usize>, entity: u32) -> Option<usize> {
+        if self.found.instances.len() >= limits::PART_INSTANCES {
+            self.too_many(entity);
+            return None;
+        }
+        self.found.instances.push(Instance { name, parent, entity });
+        Some(self.found.instances.len() - 1)
+    }
+
+    fn too_many(&mut self, entity: u32) {
+        if !self.full {
+            self.full = true;
+            self.step.warn(entity, format!("more than {} placed parts; those from here on are skipped", limits::PART_INSTANCES));
+        }
+    }
+
+    /// A product with its parts.
+    fn product(&mut self, product: u32, parent: Option<usize>, name: String, entity: u32, motion: &Motion, depth: usize) {
+        if self.full {
+            return;
+        }
+        job::look();
+        if depth > DEEP {
+            return self.step.warn(entity, "skipped: products are nested too deep, or are parts of themselves");
+        }
+        let own = product_name(self.step.file, product);
+        let name = if name.is_empty() || depth == 0 { own } else { name };
+        let Some(instance) = self.instance(name, parent, entity) else { return };
+        let first = self.tables.shapes.get(&product).cloned().unwrap_or_default();
+        for representation in self.tables.one_with(&first, &self.owned) {
+            self.representation(representation, instance, motion, depth);
+        }
+        for occurrence in self.tables.occurrences.get(&product).cloned().unwrap_or_default() {
+            let placed = match occurrence.link {
+                Some(link) => self.link(link, &occurrence),
+                // Mapped items place it.
+                None if self.tables.shapes.get(&occurrence.child).is_some_and(|r| r.iter().any(|r| self.tables.mapped.contains(r))) => {
+                    continue;
+                }
+                None => Ok(Motion::translation(glam::DVec3::ZERO)),
+            };
+            match placed {
+                Ok(placed) => {
+                    let Occurrence { child, name, entity, .. } = occurrence;
+                    self.product(child, Some(instance), name, entity, &placed.then(motion), depth + 1);
+                }
+                Err(Damage(why)) => self.step.warn(occurrence.entity, format!("skipped: its place cannot be read: {why}")),
+            }
+        }
+    }
+
+    /// A representation that no product has.
+    fn alone(&mut self, representation: u32, motion: &Motion) {
+        let name = self.step.file.under(representation, b"REPRESENTATION").unwrap_or(self.step.file.parameters(representation)).text(0);
+        let Some((items, _)) = self.tables.representations.get(&representation) else { return };
+        let file = self.step.file;
+        if items.iter().all(|k| file.name(*k).starts_with(b"AXIS")) {
+            return;
+        }
+        if let Some(instance) = self.instance(name, None, representation) {
+            self.representation(representation, instance, motion, 0);
+        }
+    }
+
+    fn representation(&mut self, representation: u32, instance: usize, motion: &Motion, depth: usize) {
+        if depth > DEEP {
+            return self.step.warn(representation, "skipped: representations are nested too deep, or are parts of themselves");
+        }
+        self.shown.insert(representation);
+        let Some((items, context)) = self.tables.representations.get(&representation).cloned() else { return };
+        let units = self.units(context);
+        for item in items {
+            if self.full {
+                return;
+            }
+            if self.step.file.name(item) == b"MAPPED_ITEM" {
+                self.mapped(item, instance, units, motion, depth);
+                continue;
+            }
+            if self.found.placed.len() >= limits::PART_INSTANCES {
+                return self.too_many(item);
+            }
+            self.found.placed.push(Placed { item, units, motion: *motion, instance });
+        }
+    }
+
+    /// A representation placed by a mapped item, with those that are one with it.
+    fn mapped(&mut self, item: u32, instance: usize, units: Units, motion: &Motion, depth: usize) {
+        let row = self.step.file.parameters(item);
+        let placed = (|| {
+            let map = self.step.file.parameters(row.entity(1)?);
+            let (origin, of) = (map.entity(0)?, map.entity(1)?);
+            let inner = self.tables.representations.get(&of).and_then(|r| r.1);
+            let inner = self.units(inner);
+            self.step.measure_in(inner);
+            let from = self.step.frame(origin)?;
+            self.step.measure_in(units);
+            Ok::<_, Damage>((of, self.target(row.entity(2)?, &from)?))
+        })();
+        match placed {
+            Ok((of, placed)) => {
+                let name = row.text(0);
+                let Some(instance) = self.instance(name, Some(instance), item) else { return };
+                for representation in self.tables.one_with(&[of], &self.owned) {
+                    self.representation(representation, instance, &placed.then(motion), depth + 1);
+                }
+            }
+            Err(Damage(why)) => self.step.warn(item, format!("skipped: its place cannot be read: {why}")),
+        }
+    }
+
+    /// The motion from a frame to a placement or by a transformation.
+    fn target(&self, target: u32, from: &Frame) -> Result<Motion, Damage> {
+        let file = self.step.file;
+        let Some(row) = file.under(target, b"CARTESIAN_TRANSFORMATION_OPERATOR_3D") else {
+            return Ok(from.to(&self.step.frame(target)?));
+        };
+        let (x, y, at, scale, z) = if file.is_complex(target) {
+            let of = file.under(target, b"CARTESIAN_TRANSFORMATION_OPERATOR").ok_or_else(|| damage("it has no origin"))?;
+            (of.maybe(0)?, of.maybe(1)?, of.entity(2)?, of.number(3).unwrap_or(1.0), row.maybe(0)?)
+        } else {
+            // Name, and name and description of the transformation, stand before its axes.
+            let from = row.values().count().saturating_sub(5);
+            (row.maybe(from)?, row.maybe(from + 1)?, row.entity(from + 2)?, row.number(from + 3).unwrap_or(1.0), row.maybe(from + 4)?)
+        };
+        if scale <= 0.0 {
+            return Err(damage("its scale is not above 0"));
+        }
+        let at = self.step.point(at)?;
+        let direction = |k: Option<u32>| k.map(|k| self.step.direction(k)).transpose();
+        let z = direction(z)?.unwrap_or(glam::DVec3::Z);
+        let x = direction(x)?.unwrap_or_else(|| crate::base::math::any_normal(z));
+        let x = crate::base::math::unit(x.reject_from_normalized(z), 0.0).ok_or_else(|| damage("its axes are one"))?;
+        let right = z.cross(x);
+        let mirrors = direction(y)?.is_some_and(|y| y.dot(right) < 0.0);
+        let to = Frame { at, x, y: right, z };
+        let motion = Motion::scaling(from.at, scale).then(&from.to(&to));
+        Ok(if mirrors { motion.then(&Motion::mirror(at, right)) } else { motion })
+    }
+
+    /// The motion of an occurrence: the frame of one representation goes to that of the other.
+    fn link(&mut self, link: u32, occurrence: &Occurrence) -> Result<Motion, Damage> {
+        let file = self.step.file;
+        let relation = file.under(link, b"REPRESENTATION_RELATIONSHIP").unwrap_or_else(|| file.parameters(link));
+        let (first, second) = (relation.entity(2)?, relation.entity(3)?);
+        let transform = match file.under(link, b"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION") {
+            Some(row) => row.entity(if file.is_complex(link) { 0 } else { 4 })?,
+            None => return Ok(Motion::translation(glam::DVec3::ZERO)),
+        };
+        let row = file.parameters(transform);
+        if file.name(transform) != b"ITEM_DEFINED_TRANSFORMATION" {
+            let units = self.tables.representations.get(&second).and_then(|r| r.1);
+            let units = self.units(units);
+            self.step.measure_in(units);
+            let still = Frame { at: glam::DVec3::ZERO, x: glam::DVec3::X, y: glam::DVec3::Y, z: glam::DVec3::Z };
+            return self.target(transform, &still);
+        }
+        let (mut a, mut b) = (row.entity(2)?, row.entity(3)?);
+        let holds = |r: u32, k: u32| self.tables.representations.get(&r).is_some_and(|(items, _)| items.contains(&k));
+        // Each frame belongs to the representation on its side; some files have them crossed.
+        if !holds(first, a) && !holds(second, b) && holds(first, b) && holds(second, a) {
+            std::mem::swap(&mut a, &mut b);
+        }
+        let mut frame = |representation: u32, k: u32| {
+            let context = self.tables.representations.get(&representation).and_then(|r| r.1);
+            let units = self.units(context);
+            self.step.measure_in(units);
+            self.step.frame(k)
+        };
+        let (of_first, of_second) = (frame(first, a)?, frame(second, b)?);
+        let shapes = self.tables.shapes.get(&occurrence.child);
+        let is_child = |r: u32| shapes.is_some_and(|all| all.contains(&r));
+        let swapped = is_child(second) && !is_child(first);
+        Ok(if swapped { of_second.to(&of_first) } else { of_first.to(&of_second) })
+    }
+}
+
+/// The name of the product that a definition is of.
+fn product_name(file: &File, definition: u32) -> String {
+    let formation = file.parameters(definition).entity(2);
+    let product = formation.and_then(|f| file.parameters(f).entity(2));
+    let Ok(row) = product.map(|p| file.parameters(p)) else { return String::new() };
+    let name = row.text(1);
+    let name = if name.trim().is_empty() { row.text(0) } else { name };
+    name.trim().to_owned()
+}

@@ -1,0 +1,172 @@
+//! Faces: a surface and the loops of edges on it, each in its direction.
+
+use glam::DVec3;
+
+use super::reader::{NESTED, Step};
+use crate::base::bbox::Box3;
+use crate::base::job;
+use crate::base::math;
+use crate::geometry::{Curve, build};
+use crate::io::cad::base::Base;
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::face::{self, Border, Face, Known, backwards, pieces};
+
+impl Step<'_> {
+    /// The face that an entity is, looking the other way where it is `turned`.
+    pub fn face(&mut self, k: u32, turned: bool) -> Result<Face, Damage> {
+        let (mut k, mut turned) = (k, turned);
+        for _ in 0..NESTED {
+            match self.file.name(k) {
+                b"ORIENTED_FACE" => {
+                    let row = self.file.parameters(k);
+                    turned ^= !row.flag(3, true);
+                    k = row.entity(2)?;
+                }
+                b"SUBFACE" => return Err(damage(format!("{} is a part of a face", self.said(k)))),
+                b"ADVANCED_FACE" | b"FACE_SURFACE" => {
+                    let row = self.file.parameters(k);
+                    let same = row.flag(3, true);
+                    let surface = row.entity(2)?;
+                    return self.bounded_face(&row.entities(1)?, Some(surface), same, turned);
+                }
+                b"FACE" => return self.bounded_face(&self.file.parameters(k).entities(1)?, None, true, turned),
+                _ if self.file.under(k, b"FACE_SURFACE").is_some() => {
+                    let (Some(own), Some(of)) = (self.file.under(k, b"FACE_SURFACE"), self.file.under(k, b"FACE")) else {
+                        return Err(damage("it has no loops"));
+                    };
+                    return self.bounded_face(&of.entities(0)?, Some(own.entity(0)?), own.flag(1, true), turned);
+                }
+                _ => return Err(damage(format!("{} is no face", self.said(k)))),
+            }
+        }
+        Err(damage("faces are nested too deep, or are made of themselves"))
+    }
+
+    /// A face of bounds; one without a surface lies in the plane of its points.
+    fn bounded_face(&mut self, bounds: &[u32], surface: Option<u32>, same: bool, turned: bool) -> Result<Face, Damage> {
+        let mut loops: Vec<Vec<Border>> = Vec::with_capacity(bounds.len());
+        let mut outer = 0;
+        for bound in bounds {
+            job::look();
+            let row = self.file.parameters(*bound);
+            let name = self.file.name(*bound);
+            if !matches!(name, b"FACE_BOUND" | b"FACE_OUTER_BOUND") {
+                return Err(damage(format!("{} is no bound of a face", self.said(*bound))));
+            }
+            let made = self.loop_of(row.entity(1)?).map_err(|Damage(why)| damage(format!("its bound #{}: {why}", self.file.id(*bound))))?;
+            if made.is_empty() {
+                continue;
+            }
+            if name == b"FACE_OUTER_BOUND" {
+                outer = loops.len();
+            }
+            loops.push(if row.flag(2, true) { made } else { backwards(made) });
+        }
+        if outer < loops.len() {
+            loops[..=outer].rotate_right(1);
+        }
+        let reach = face::reach(&loops);
+        let base = match surface {
+            Some(of) => self.base(of, &reach, 0).map_err(|Damage(why)| damage(format!("its surface {}: {why}", self.said(of))))?,
+            None => plane_of(loops.first().map_or(&[], Vec::as_slice))?,
+        };
+        let surface = base.surface(&reach, self.origin, &self.tolerance)?;
+        let mut made = if loops.is_empty() {
+            Face::whole(&base, surface, &self.tolerance)
+        } else {
+            let known = Known { has_outer: true, against: !same, inside: None, slack: self.slack() };
+            Face::inside(&base, surface, loops, known, &self.tolerance)
+        };
+        made.against = !same;
+        made.flipped = same == turned;
+        Ok(made)
+    }
+
+    /// The curves of a loop; none for a vertex.
+    fn loop_of(&mut self, k: u32) -> Result<Vec<Border>, Damage> {
+        let row = self.file.parameters(k);
+        let of = |curve: &Curve| pieces(curve).into_iter().map(|space| Border { space, uv: None }).collect::<Vec<Border>>();
+        match self.file.name(k) {
+            b"VERTEX_LOOP" => Ok(Vec::new()),
+            b"POLY_LOOP" => {
+                let points = row.entities(1)?.into_iter().map(|p| self.point(p)).collect::<Result<Vec<DVec3>, Damage>>()?;
+                let n = points.len();
+                let sides = (0..n).map(|i| (points[i], points[(i + 1) % n])).filter(|(a, b)| a != b);
+                sides.map(|(a, b)| Ok(Border { space: build::line(a, b, self.origin)?, uv: None })).collect()
+            }
+            b"EDGE_LOOP" => {
+                let mut borders = Vec::new();
+                for oriented in row.entities(1)? {
+                    borders.extend(self.used(oriented, &of)?);
+                }
+                Ok(borders)
+            }
+            _ if self.file.under(k, b"PATH").is_some() => {
+                let edges = self.file.under(k, b"PATH").map_or(Ok(Vec::new()), |r| r.entities(0))?;
+                let mut borders = Vec::new();
+                for oriented in edges {
+                    borders.extend(self.used(oriented, &of)?);
+                }
+                Ok(borders)
+            }
+            _ => Err(damage(format!("{} is no loop", self.said(k)))),
+        }
+    }
+
+    /// The curves of an edge in the direction of its loop.
+    fn used(&mut self, oriented: u32, of: &dyn Fn(&Curve) -> Vec<Border>) -> Result<Vec<Border>, Damage> {
+        let (mut k, mut ahead) = (oriented, true);
+        for _ in 0..NESTED {
+            if self.file.name(k) != b"ORIENTED_EDGE" {
+                let curve = self.edge(k).map_err(|Damage(why)| damage(format!("its edge #{}: {why}", self.file.id(k))))?;
+                self.spend(1)?;
+                return Ok(if ahead { of(&curve) } else { backwards(of(&curve)) });
+            }
+            let row = self.file.parameters(k);
+            ahead ^= !row.flag(4, true);
+            k = row.entity(3)?;
+        }
+        Err(damage(format!("#{} is made of itself", self.file.id(oriented))))
+    }
+
+    /// A surface that entities of several kinds may be: whole, between parameters, or inside curves.
+    pub fn sheet(&mut self, k: u32, depth: usize) -> Result<Face, Damage> {
+        if depth > NESTED {
+            return Err(damage("surfaces are nested too deep, or are made of themselves"));
+        }
+        let row = self.file.parameters(k);
+        match self.file.name(k) {
+            b"RECTANGULAR_TRIMMED_SURFACE" => self.rectangle(k),
+            b"ORIENTED_SURFACE" => {
+                let mut face = self.sheet(row.entity(1)?, depth + 1)?;
+                face.flipped ^= !row.flag(2, true);
+                Ok(face)
+            }
+            b"CURVE_BOUNDED_SURFACE" => {
+                let mut loops = Vec::new();
+                for boundary in row.entities(2)? {
+                    let curve = self.bounded(boundary, 0)?;
+                    loops.push(pieces(&curve).into_iter().map(|space| Border { space, uv: None }).collect::<Vec<Border>>());
+                }
+                let base = self.base(row.entity(1)?, &face::reach(&loops), 0)?;
+                let surface = base.surface(&face::reach(&loops), self.origin, &self.tolerance)?;
+                let known = Known { has_outer: !row.flag(3, false), against: false, inside: None, slack: self.slack() };
+                Ok(Face::inside(&base, surface, loops, known, &self.tolerance))
+            }
+            _ => {
+                let base = self.base(k, &Box3::EMPTY, 0)?;
+                let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
+                Ok(Face::whole(&base, surface, &self.tolerance))
+            }
+        }
+    }
+}
+
+/// The plane of a loop's points, which see it counter-clockwise.
+fn plane_of(borders: &[Border]) -> Result<Base, Damage> {
+    let at = borders.first().map_or(DVec3::ZERO, |b| b.space.start());
+    let twice = |b: &Border| (b.space.start() - at).cross(b.space.end() - at);
+    let normal = math::unit(borders.iter().map(twice).sum(), 0.0).ok_or_else(|| damage("its loop has no plane"))?;
+    let first = math::any_normal(normal);
+    Ok(Base::Plane(at, first, normal.cross(first)))
+}

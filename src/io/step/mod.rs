@@ -1,0 +1,29 @@
+//! Reads STEP files (ISO 10303-21) of the schemas AP203, AP214 and AP242: curves, surfaces, faces, shells, solids and assemblies of them.
+//!
+//! ```text
+//!   bytes → records (spans of the file) → products and their places → items of each as faces → part (names, groups)
+//! ```
+//!
+//! A file that breaks the rules is read as far as it is clear what it means, with a warning each; a damaged entity costs itself and what
+//! stands on it. References are followed to a fixed depth, and what may be copied is bounded.
+
+mod assembly;
+mod conics;
+mod curves;
+mod faces;
+mod looks;
+mod part;
+mod part21;
+mod places;
+mod reach;
+mod reader;
+mod rectangles;
+mod rows;
+mod shapes;
+mod sniff;
+mod splines;
+mod strings;
+mod surfaces;
+mod units;
+
+pub use part::{Opened, open};

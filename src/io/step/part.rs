@@ -1,0 +1,350 @@
+//! What a file offers: the faces, curves and points of its products at their places, by name.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::assembly::{Assembly, Instance, Placed, assembly};
+use super::looks::{Color, Looks};
+use super::part21::{self, File};
+use super::reader::Step;
+use super::shapes::{Bundle, Item as Shape, Sort, Unread};
+use super::units::Units;
+use crate::base::bbox::Box3;
+use crate::base::fault::Malformed;
+use crate::base::job;
+use crate::base::limits;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::Motion;
+use crate::io::cad::damage::Damage;
+use crate::io::cad::part::{Group, Item, Names, Options, Part, Place, Shades};
+
+/// A file read as far as its records and the places of its products, no geometry yet.
+#[derive(Debug)]
+pub struct Opened<'b> {
+    file: File<'b>,
+    options: Options,
+    assembly: Assembly,
+    warnings: Vec<Malformed>,
+}
+
+/// Reads a file, or says where it stops being one.
+pub fn open<'b>(bytes: &'b [u8], options: &Options) -> Result<Opened<'b>, Malformed> {
+    let mut file = part21::read(bytes)?;
+    if file.records.is_empty() {
+        let why = file.warnings.first().map_or(String::new(), |w| format!(": {}", w.what));
+        return Err(Malformed::line(1, format!("the file holds no entity that can be read{why}")));
+    }
+    let mut warnings = std::mem::take(&mut file.warnings);
+    let mut step = Step::new(&file, *options);
+    let assembly = assembly(&mut step);
+    warnings.append(&mut step.warnings);
+    if assembly.placed.is_empty() {
+        warnings.push(Malformed::line(1, "the file shows nothing: no shape representation has an item"));
+    }
+    Ok(Opened { file, options: *options, assembly, warnings })
+}
+
+impl Opened<'_> {
+    /// A box that holds about all that is shown, model units: for the tolerance of the model.
+    pub fn reach(&self) -> Box3 {
+        let mut step = Step::new(&self.file, self.options);
+        let mut boxes: Vec<(u32, Units, Box3)> = Vec::new();
+        let mut known: BTreeMap<u32, usize> = BTreeMap::new();
+        let mut seen = vec![u32::MAX; self.file.records.len()];
+        let mut reach = Box3::EMPTY;
+        for placed in &self.assembly.placed {
+            let k = match known.get(&placed.item).filter(|k| boxes[**k].1 == placed.units) {
+                Some(k) => *k,
+                None => {
+                    step.measure_in(placed.units);
+                    let own = step.reach(placed.item, &mut seen, boxes.len() as u32);
+                    boxes.push((placed.item, placed.units, own));
+                    known.insert(placed.item, boxes.len() - 1);
+                    boxes.len() - 1
+                }
+            };
+            let own = boxes[k].2;
+            if !own.is_empty() {
+                let corner = |k: usize| {
+                    let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
+                    DVec3::new(pick(0, own.min.x, own.max.x), pick(1, own.min.y, own.max.y), pick(2, own.min.z, own.max.z))
+                };
+                reach = (0..8).fold(reach, |reach, k| reach.with(placed.motion.point(corner(k))));
+            }
+        }
+        reach
+    }
+
+    /// Makes curves and faces of the items.
+    pub fn part(self, tolerance: Tolerance) -> Part {
+        let Self { file, options, assembly, warnings } = self;
+        let mut step = Step::new(&file, options);
+        step.tolerance = tolerance;
+        step.warnings = warnings;
+        let unit = assembly.placed.first().map_or(Units::NONE, |p| p.units).name();
+        let maker = Maker {
+            looks: Looks::of(&file),
+            step,
+            part: Part { unit, mark: "#", ..Part::default() },
+            names: Names::default(),
+            shades: Shades::default(),
+            made: BTreeMap::new(),
+            held: assembly.instances.iter().map(|_| Group::default()).collect(),
+            single: vec![None; assembly.instances.len()],
+            slack: 0.0,
+        };
+        maker.run(&assembly)
+    }
+}
+
+struct Maker<'f> {
+    step: Step<'f>,
+    looks: Looks,
+    part: Part,
+    names: Names,
+    shades: Shades,
+    /// Places of what was made of an entity, all copies of it.
+    made: BTreeMap<u32, Vec<Place>>,
+    /// What each instance has by itself.
+    held: Vec<Group>,
+    /// The solid or shell that took the name of an instance, being all it has.
+    single: Vec<Option<usize>>,
+    /// Largest distance that a context of the file calls none, model units.
+    slack: f64,
+}
+
+/// A text that some systems write for no name.
+fn given(name: String) -> Option<String> {
+    let name = name.trim();
+    (!name.is_empty() && name != "NONE").then(|| name.to_owned())
+}
+
+impl Maker<'_> {
+    fn run(mut self, assembly: &Assembly) -> Part {
+        let mut unread = Unread::new();
+        let mut shapes: BTreeMap<u32, (Units, Shape)> = BTreeMap::new();
+        let mut uses: BTreeMap<u32, usize> = BTreeMap::new();
+        let mut of_instance = vec![0_usize; assembly.instances.len()];
+        for placed in &assembly.placed {
+            *uses.entry(placed.item).or_insert(0) += 1;
+            of_instance[placed.instance] += usize::from(is_body(self.step.file, placed.item));
+        }
+        for placed in &assembly.placed {
+            job::look();
+            let left = uses.entry(placed.item).or_insert(1);
+            *left = left.saturating_sub(1);
+            let last = *left == 0;
+            let known = shapes.remove(&placed.item).filter(|(units, _)| *units == placed.units);
+            let shape = match known {
+                Some((_, shape)) => shape,
+                None => {
+                    self.step.measure_in(placed.units);
+                    self.slack = self.slack.max(self.step.slack());
+                    self.step.item(placed.item, &mut unread)
+                }
+            };
+            if let Err(Damage(why)) = self.step.spend(shape.weight()) {
+                self.step.warn(placed.item, format!("skipped: {why}"));
+                break;
+            }
+            let instance = &assembly.instances[placed.instance];
+            let alone = of_instance[placed.instance] == 1;
+            if last {
+                self.put(shape, placed, instance, alone);
+            } else {
+                self.put(shape.clone(), placed, instance, alone);
+                shapes.insert(placed.item, (placed.units, shape));
+            }
+        }
+        self.instances(assembly);
+        self.layers();
+        for (word, (k, n)) in unread {
+            let what = if n == 1 { "entity".to_owned() } else { format!("{n} entities") };
+            let line = self.step.file.line(k);
+            self.step.warnings.push(Malformed::line(line, format!("{what} of type {word} are not read")));
+        }
+        self.gaps();
+        self.part.warnings = std::mem::take(&mut self.step.warnings);
+        self.part
+    }
+
+    /// Puts a placed item into the part.
+    fn put(&mut self, shape: Shape, placed: &Placed, instance: &Instance, alone: bool) {
+        let still = placed.motion == Motion::translation(DVec3::ZERO);
+        let (points, curves, faces) = (self.part.points.len(), self.part.curves.len(), self.part.surfaces.len());
+        let solid = placed.item;
+        for (entity, p) in shape.points {
+            let color = self.looks.curve(&[entity, solid]).cloned();
+            let at = Place::Point(self.part.points.len());
+            let item = self.named(entity, "point", self.part.points.len(), color, at, vec![placed.motion.point(p)]);
+            self.part.points.push(item);
+        }
+        for (entity, curve) in shape.curves {
+            let color = self.looks.curve(&[entity, solid]).cloned();
+            let curve = if still { curve } else { curve.moved(&placed.motion) };
+            if curve.length() <= self.step.tolerance.point {
+                self.step.warn(entity, "skipped: it is shorter than the tolerance");
+                continue;
+            }
+            let at = Place::Curve(self.part.curves.len());
+            let item = self.named(entity, "curve", self.part.curves.len(), color, at, curve);
+            self.part.curves.push(item);
+        }
+        for (entity, face, shell) in shape.faces {
+            let color = self.looks.surface(&[entity, shell.unwrap_or(entity), solid]).cloned();
+            let at = Place::Surface(self.part.surfaces.len());
+            let face = if still { face } else { face.moved(&placed.motion) };
+            let item = self.named(entity, "surface", self.part.surfaces.len(), color, at, face);
+            self.part.surfaces.push(item);
+        }
+        let first = [points, curves, faces];
+        let held = self.held.get_mut(placed.instance);
+        if let Some(held) = held {
+            held.points.extend(points..self.part.points.len());
+            held.curves.extend(curves..self.part.curves.len());
+            held.surfaces.extend(faces..self.part.surfaces.len());
+        }
+        let mut solid_name = String::new();
+        for bundle in &shape.bundles {
+            let group = moved(bundle, first);
+            if group.is_empty() {
+                continue;
+            }
+            self.bundle(bundle, group, &mut solid_name, (placed.instance, instance), alone);
+        }
+    }
+
+    /// Puts a solid, shell or set into its lists.
+    fn bundle(&mut self, bundle: &Bundle, mut group: Group, solid: &mut String, (place, instance): (usize, &Instance), alone: bool) {
+        let own = given(self.step.file.parameters(bundle.entity).text(0));
+        let all = [Place::Point as fn(usize) -> Place, Place::Curve, Place::Surface];
+        let members = [&group.points, &group.curves, &group.surfaces];
+        let members: Vec<Place> = all.iter().zip(members).flat_map(|(kind, list)| list.iter().map(|k| kind(*k))).collect();
+        self.made.entry(bundle.entity).or_default().extend(members);
+        if bundle.sort == Sort::Skin {
+            group.name = own.unwrap_or_else(|| solid.clone());
+            self.part.shells.push(group);
+            return;
+        }
+        let named_by_part = own.is_none() && alone && given(instance.name.clone()).is_some();
+        // A product with one body is that body: its name says which copy it is.
+        let copied = alone && instance.parent.is_some() && given(instance.name.clone()).is_some();
+        let wanted = if named_by_part || copied { Some(instance.name.clone()) } else { own };
+        let word = match bundle.sort {
+            Sort::Solid => "solid",
+            Sort::Set => "set",
+            _ => "shell",
+        };
+        let before = self.part.groups.len();
+        let wanted = wanted.unwrap_or_else(|| format!("{word}{}", before + 1));
+        group.name = self.names.give(&wanted);
+        solid.clone_from(&group.name);
+        if wanted == instance.name && alone {
+            self.single[place] = Some(before);
+        }
+        match bundle.sort {
+            Sort::Solid => self.part.solids.push(group.clone()),
+            Sort::Shell => self.part.shells.push(group.clone()),
+            _ => {}
+        }
+        self.part.groups.push(group);
+    }
+
+    fn named<T>(&mut self, entity: u32, word: &str, before: usize, color: Option<Color>, at: Place, value: T) -> Item<T> {
+        self.made.entry(entity).or_default().push(at);
+        let file = self.step.file;
+        let wanted = given(file.parameters(entity).text(0)).unwrap_or_else(|| format!("{word}{}", before + 1));
+        if let Some((rgb, name)) = &color {
+            self.shades.group(&mut self.part.colors, *rgb, name).put(at);
+        }
+        let name = self.names.give(&wanted);
+        Item { name, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
+    }
+
+    /// A group for each named product at its place, with the parts of it.
+    fn instances(&mut self, assembly: &Assembly) {
+        let mut budget = limits::PART_COPIES;
+        for k in (0..assembly.instances.len()).rev() {
+            let Some(parent) = assembly.instances[k].parent else { continue };
+            let inner = self.held[k].clone();
+            let n = inner.points.len() + inner.curves.len() + inner.surfaces.len();
+            if n > budget {
+                self.step.warn(assembly.instances[k].entity, "its products are nested so deep that not all have a group of their own");
+                break;
+            }
+            budget -= n;
+            let held = &mut self.held[parent];
+            held.points.extend(inner.points);
+            held.curves.extend(inner.curves);
+            held.surfaces.extend(inner.surfaces);
+        }
+        for (k, instance) in assembly.instances.iter().enumerate() {
+            let mut group = std::mem::take(&mut self.held[k]);
+            let is_single = self.single[k].is_some_and(|body| {
+                let body = &self.part.groups[body];
+                [(&body.points, &group.points), (&body.curves, &group.curves), (&body.surfaces, &group.surfaces)]
+                    .iter()
+                    .all(|(a, b)| a.len() == b.len())
+            });
+            let Some(name) = given(instance.name.clone()).filter(|_| !is_single && !group.is_empty()) else { continue };
+            for list in [&mut group.points, &mut group.curves, &mut group.surfaces] {
+                list.sort_unstable();
+            }
+            group.name = self.names.give(&name);
+            self.part.groups.push(group);
+        }
+    }
+
+    /// A group for each layer.
+    fn layers(&mut self) {
+        for (k, name, items) in std::mem::take(&mut self.looks.layers) {
+            let mut group = Group::default();
+            for item in items {
+                self.made.get(&item).into_iter().flatten().for_each(|at| group.put(*at));
+            }
+            for list in [&mut group.points, &mut group.curves, &mut group.surfaces] {
+                list.sort_unstable();
+                list.dedup();
+            }
+            if group.is_empty() {
+                continue;
+            }
+            group.name = self.names.give(&given(name).unwrap_or_else(|| format!("layer{}", self.step.file.id(k))));
+            self.part.groups.push(group);
+        }
+    }
+
+    /// Says once by how much borders are off.
+    fn gaps(&mut self) {
+        let off = self.part.surfaces.iter().filter(|s| s.value.gap > self.slack);
+        let n = off.clone().count();
+        if let Some(worst) = off.max_by(|a, b| a.value.gap.total_cmp(&b.value.gap)) {
+            let (name, id, line) = (worst.name.clone(), worst.id, worst.line);
+            let others = if n == 1 { String::new() } else { format!(", as the borders of {} more faces are by less", n - 1) };
+            let gap = self.step.length(worst.value.gap);
+            let what = format!("#{id} {name}: its borders are up to {gap} off its surface or each other{others}");
+            self.step.warnings.push(Malformed::line(line, what));
+        }
+    }
+}
+
+/// Whether an item is a solid or a shell.
+fn is_body(file: &File, k: u32) -> bool {
+    const BODIES: &[&[u8]] = &[
+        b"MANIFOLD_SOLID_BREP",
+        b"BREP_WITH_VOIDS",
+        b"FACETED_BREP",
+        b"SHELL_BASED_SURFACE_MODEL",
+        b"FACE_BASED_SURFACE_MODEL",
+        b"GEOMETRIC_SET",
+        b"GEOMETRIC_CURVE_SET",
+    ];
+    file.names(k).any(|n| BODIES.contains(&n))
+}
+
+/// The members of a bundle in the lists of the part.
+fn moved(bundle: &Bundle, first: [usize; 3]) -> Group {
+    let list = |k: usize| (first[k] + bundle.ranges[k].0..first[k] + bundle.ranges[k].1).collect();
+    Group { name: String::new(), points: list(0), curves: list(1), surfaces: list(2) }
+}

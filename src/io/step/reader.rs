@@ -1,0 +1,177 @@
+//! What is read of a file and what is known while it is read: points, directions, frames.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat3, DVec3};
+
+use super::part21::File;
+use super::units::Units;
+use crate::base::fault::Malformed;
+use crate::base::limits;
+use crate::base::math;
+use crate::base::origin::Origin;
+use crate::base::tolerance::{PARALLEL, Tolerance};
+use crate::geometry::{Curve, Motion};
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::part::Options;
+
+/// Curves, surfaces and other things that are made of things of their kind.
+pub const NESTED: usize = 32;
+/// What may be copied for each byte of the file: an honest file uses each entity a few times.
+const COPIES_PER_BYTE: usize = 4;
+
+/// A place with three unit vectors at right angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The place, model units.
+    pub at: DVec3,
+    /// First direction.
+    pub x: DVec3,
+    /// Second direction.
+    pub y: DVec3,
+    /// Third direction, the axis.
+    pub z: DVec3,
+}
+
+impl Frame {
+    fn matrix(&self) -> DMat3 {
+        DMat3::from_cols(self.x, self.y, self.z)
+    }
+
+    /// The motion that takes this frame to another.
+    pub fn to(&self, other: &Self) -> Motion {
+        Motion::rigid(other.matrix() * self.matrix().transpose(), self.at, other.at)
+    }
+}
+
+/// A file with the model it comes into.
+#[derive(Debug)]
+pub struct Step<'f> {
+    /// Its records.
+    pub file: &'f File<'f>,
+    /// The model.
+    pub options: Options,
+    /// Of the model.
+    pub tolerance: Tolerance,
+    /// The import.
+    pub origin: Origin,
+    /// Units of what is read now.
+    pub units: Units,
+    /// Model units in one unit of length of what is read now.
+    pub scale: f64,
+    /// What was repaired or skipped.
+    pub warnings: Vec<Malformed>,
+    /// What may still be copied.
+    left: usize,
+    /// Curves of edges made so far, in the units of now.
+    pub edges: BTreeMap<u32, Result<Curve, Damage>>,
+}
+
+impl<'f> Step<'f> {
+    /// Nothing made yet.
+    pub fn new(file: &'f File<'f>, options: Options) -> Self {
+        Self {
+            file,
+            options,
+            tolerance: Tolerance::new(0.0, 0.0),
+            origin: options.origin,
+            units: Units::NONE,
+            scale: options.file.unwrap_or(1.0) / options.model,
+            warnings: Vec::new(),
+            left: limits::PART_COPIES + COPIES_PER_BYTE * file.bytes.len(),
+            edges: BTreeMap::new(),
+        }
+    }
+
+    /// Takes `n` from what may be copied: pieces of curves, control points, faces.
+    pub fn spend(&mut self, n: usize) -> Result<(), Damage> {
+        match self.left.checked_sub(n) {
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
+            None => Err(damage("it repeats other entities more often than a file of this size may")),
+        }
+    }
+
+    /// Reads in other units from now on.
+    pub fn measure_in(&mut self, units: Units) {
+        let millimetres = self.options.file.or(units.millimetres).unwrap_or(1.0);
+        if units != self.units {
+            self.edges.clear();
+        }
+        self.units = units;
+        self.scale = millimetres / self.options.model;
+    }
+
+    /// What may lie between two points that the file calls one, model units.
+    pub fn slack(&self) -> f64 {
+        self.tolerance.point.max(self.units.uncertainty / self.options.model)
+    }
+
+    /// The number and name of an entity, for messages.
+    pub fn said(&self, k: u32) -> String {
+        format!("#{} {}", self.file.id(k), String::from_utf8_lossy(self.file.name(k)))
+    }
+
+    /// Says something about an entity, at its line.
+    pub fn warn(&mut self, k: u32, what: impl std::fmt::Display) {
+        let what = format!("{}: {what}", self.said(k));
+        self.warnings.push(Malformed::line(self.file.line(k), what));
+    }
+
+    /// A length of the model in words, roughly.
+    pub fn length(&self, x: f64) -> String {
+        format!("{x:.1e} {}", self.options.unit)
+    }
+
+    fn three(&self, k: u32, what: &[u8], word: &str) -> Result<DVec3, Damage> {
+        let Some(row) = self.file.under(k, what) else { return Err(damage(format!("{} is no {word}", self.said(k)))) };
+        let list = row.list(if self.file.is_complex(k) { 0 } else { 1 })?;
+        let mut p = DVec3::ZERO;
+        for (axis, value) in list.values().take(3).enumerate() {
+            p[axis] = value.number().map_err(|Damage(why)| damage(format!("{}: {why}", self.said(k))))?;
+        }
+        Ok(p)
+    }
+
+    /// A point in model units; one of two coordinates lies in z = 0.
+    pub fn point(&self, k: u32) -> Result<DVec3, Damage> {
+        Ok(self.three(k, b"CARTESIAN_POINT", "point")? * self.scale)
+    }
+
+    /// A unit vector.
+    pub fn direction(&self, k: u32) -> Result<DVec3, Damage> {
+        let v = self.three(k, b"DIRECTION", "direction")?;
+        math::unit(v, 0.0).ok_or_else(|| damage(format!("{} has no length", self.said(k))))
+    }
+
+    /// A vector in model units.
+    pub fn vector(&self, k: u32) -> Result<DVec3, Damage> {
+        let Some(row) = self.file.under(k, b"VECTOR") else { return Err(damage(format!("{} is no vector", self.said(k)))) };
+        Ok(self.direction(row.entity(1)?)? * (row.number(2)? * self.scale))
+    }
+
+    /// The point of a vertex.
+    pub fn vertex(&self, k: u32) -> Result<DVec3, Damage> {
+        let Some(row) = self.file.under(k, b"VERTEX_POINT") else { return Err(damage(format!("{} is no vertex", self.said(k)))) };
+        self.point(row.entity(if self.file.is_complex(k) { 0 } else { 1 })?)
+    }
+
+    /// A placement in space or in a plane, or an axis alone.
+    pub fn frame(&self, k: u32) -> Result<Frame, Damage> {
+        let row = self.file.parameters(k);
+        let inside = |Damage(why): Damage| damage(format!("{}: {why}", self.said(k)));
+        let at = self.point(row.entity(1).map_err(inside)?)?;
+        let direction = |n: usize| row.maybe(n).map_err(inside)?.map(|d| self.direction(d)).transpose();
+        let (z, x) = match self.file.name(k) {
+            b"AXIS2_PLACEMENT_3D" => (direction(2)?.unwrap_or(DVec3::Z), direction(3)?),
+            b"AXIS1_PLACEMENT" => (direction(2)?.unwrap_or(DVec3::Z), None),
+            b"AXIS2_PLACEMENT_2D" => (DVec3::Z, direction(2)?),
+            _ => return Err(damage(format!("{} is no placement", self.said(k)))),
+        };
+        let x = x.and_then(|x| math::unit(x.reject_from_normalized(z), PARALLEL));
+        let x = x.unwrap_or_else(|| math::unit(DVec3::X.reject_from_normalized(z), PARALLEL).unwrap_or(DVec3::Y));
+        Ok(Frame { at, x, y: z.cross(x), z })
+    }
+}

@@ -1,0 +1,220 @@
+//! Surface entities as surfaces of the model. Their normals are those of the file.
+
+use glam::{DVec3, DVec4};
+
+use super::conics::Endless;
+use super::curves::Course;
+use super::reader::{Frame, NESTED, Step};
+use super::splines::{self, Netted};
+use crate::base::bbox::Box3;
+use crate::base::math;
+use crate::base::tolerance::{EPSILON, PARALLEL};
+use crate::geometry::nurbs::weighted;
+use crate::geometry::{Curve, build};
+use crate::io::cad::base::{Base, turned};
+use crate::io::cad::carry::check_weights;
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::nets::trimmed_net;
+use crate::surface::NurbsSurface;
+use crate::surface::revolve::Axis;
+
+/// How far surfaces without ends reach beyond what lies on them, as a share of its size.
+const BEYOND: f64 = 0.1;
+
+impl Step<'_> {
+    /// The surface that an entity is, where it has no ends around a box.
+    pub fn base(&mut self, k: u32, reach: &Box3, depth: usize) -> Result<Base, Damage> {
+        if depth > NESTED {
+            return Err(damage("surfaces are nested too deep, or are made of themselves"));
+        }
+        let file = self.file;
+        let row = file.parameters(k);
+        let name = file.name(k);
+        if file.under(k, b"B_SPLINE_SURFACE").is_some() || name.ends_with(b"_SURFACE_WITH_KNOTS") || is_knotless(name) {
+            return self.net(k);
+        }
+        let length = |step: &Self, n: usize| Ok::<f64, Damage>(row.number(n)? * step.scale);
+        match name {
+            b"PLANE" => {
+                let frame = self.frame(row.entity(1)?)?;
+                Ok(Base::Plane(frame.at, frame.x, frame.y))
+            }
+            b"CYLINDRICAL_SURFACE" | b"CONICAL_SURFACE" => {
+                let frame = self.frame(row.entity(1)?)?;
+                let radius = length(self, 2)?;
+                let slope = if name == b"CONICAL_SURFACE" { math::tan(row.number(3)? * self.units.radians) } else { 0.0 };
+                if radius < 0.0 || (radius == 0.0 && slope == 0.0) {
+                    return Err(damage("its radius must be above 0"));
+                }
+                Ok(Base::Unbounded { axis: axis(&frame), radius, slope, reference: frame.x })
+            }
+            b"SPHERICAL_SURFACE" => {
+                let frame = self.frame(row.entity(1)?)?;
+                let radius = length(self, 2)?;
+                if radius <= 0.0 {
+                    return Err(damage("its radius must be above 0"));
+                }
+                Base::sphere(&axis(&frame), radius, frame.x, self.origin, &self.tolerance)
+            }
+            b"TOROIDAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE" => {
+                let frame = self.frame(row.entity(1)?)?;
+                self.torus(&frame, [length(self, 2)?, length(self, 3)?], row.flag(4, true))
+            }
+            b"SURFACE_OF_LINEAR_EXTRUSION" => {
+                let of = self.course(row.entity(1)?, 0)?;
+                let along = self.vector(row.entity(2)?)?;
+                self.extruded(&of, along, reach)
+            }
+            b"SURFACE_OF_REVOLUTION" => {
+                let of = self.course(row.entity(1)?, 0)?;
+                let frame = self.frame(row.entity(2)?)?;
+                self.revolved(&of, &axis(&frame), reach)
+            }
+            b"OFFSET_SURFACE" => {
+                let base = self.base(row.entity(1)?, reach, depth + 1)?;
+                offset(base, length(self, 2)?)
+            }
+            b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
+                Err(damage(format!("{} stands where a whole surface should", self.said(k))))
+            }
+            _ => Err(damage(format!("{} is no surface that can be read", self.said(k)))),
+        }
+    }
+
+    fn net(&mut self, k: u32) -> Result<Base, Damage> {
+        let Netted { degree, knots, points, weights } = splines::surface(self, k)?;
+        let counts = (points.len(), points[0].len());
+        let weight = |i: usize, j: usize| weights.as_ref().map_or(1.0, |w| w[i][j]);
+        if let Some(weights) = &weights {
+            check_weights(&weights.concat())?;
+        }
+        let poles: Vec<DVec4> =
+            (0..counts.1).flat_map(|j| (0..counts.0).map(move |i| (i, j))).map(|(i, j)| weighted(points[i][j], weight(i, j))).collect();
+        let range = [knots.0[degree.0], knots.0[counts.0], knots.1[degree.1], knots.1[counts.1]];
+        Ok(Base::Net(trimmed_net(NurbsSurface { degree, knots, poles, counts }, range)?, range))
+    }
+
+    fn torus(&mut self, frame: &Frame, [major, minor]: [f64; 2], outer: bool) -> Result<Base, Damage> {
+        if !(major >= 0.0 && minor > 0.0) {
+            return Err(damage("its radii must be above 0"));
+        }
+        let axis = axis(frame);
+        if major > minor * (1.0 + EPSILON) {
+            return Base::torus(&axis, [major, minor], frame.x, self.origin, &self.tolerance);
+        }
+        // The tube meets the axis where its angle is this one, either way.
+        let meets = math::acos((-major / minor).clamp(-1.0, 1.0));
+        let circle = Endless::Ellipse(frame.at + frame.x * major, frame.x * minor, frame.z * minor);
+        let (a, b) = if outer { (-meets, meets) } else { (meets, std::f64::consts::TAU - meets) };
+        if b - a <= PARALLEL {
+            return Err(damage("nothing of it lies inside"));
+        }
+        turned(&circle.part(a, b, self.origin)?, &axis, &self.tolerance)
+    }
+
+    fn extruded(&mut self, of: &Course, along: DVec3, reach: &Box3) -> Result<Base, Damage> {
+        let direction = math::unit(along, 0.0).ok_or_else(|| damage("it is swept by nothing"))?;
+        if let Course::Endless(Endless::Line(p, d)) = of {
+            let first = math::unit(*d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
+            let normal = math::unit(first.cross(direction), PARALLEL).ok_or_else(|| damage("its line is swept along itself"))?;
+            return Ok(Base::Plane(*p, first, normal.cross(first)));
+        }
+        if reach.is_empty() {
+            return Err(damage("it is swept without end"));
+        }
+        let profile = self.within(of, reach)?;
+        let (low, high) = stretch(reach, profile.start(), direction);
+        // The profile itself reaches along the direction too.
+        let own = profile.bbox();
+        let (first, last) = stretch(&own, profile.start(), direction);
+        let (low, high) = (low - last.max(0.0), high - first.min(0.0));
+        let room = BEYOND * (high - low);
+        let by = direction * (high - low + 2.0 * room);
+        let start = crate::geometry::Motion::translation(direction * (low - room));
+        Ok(Base::Swept { profile: profile.moved(&start), by })
+    }
+
+    /// The stretch of a curve near a box: all of one with ends.
+    fn within(&mut self, of: &Course, reach: &Box3) -> Result<Curve, Damage> {
+        match of {
+            Course::Bounded(curve) => Ok(curve.clone()),
+            Course::Endless(endless) if endless.closes() => endless.part(0.0, std::f64::consts::TAU, self.origin),
+            Course::Endless(endless) => {
+                let at: Vec<f64> = corners(reach).iter().map(|p| endless.parameter(*p)).collect();
+                let (a, b) = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(*t), b.max(*t)));
+                let room = BEYOND * (b - a);
+                endless.part(a - room, b + room, self.origin)
+            }
+        }
+    }
+
+    fn revolved(&mut self, of: &Course, axis: &Axis, reach: &Box3) -> Result<Base, Damage> {
+        let Course::Endless(Endless::Line(p, d)) = *of else {
+            let profile = self.within(of, reach)?;
+            return Ok(Base::Turned { axis: *axis, profile, angles: (0.0, std::f64::consts::TAU), first: None });
+        };
+        let d = math::unit(d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
+        let rise = d.dot(axis.direction);
+        if rise.abs() <= PARALLEL {
+            return Err(damage("its line turns in a plane without end"));
+        }
+        if reach.is_empty() {
+            return Err(damage("its line has no ends"));
+        }
+        let (low, high) = stretch(reach, axis.about, axis.direction);
+        let room = BEYOND * (high - low).max(reach.diagonal() * BEYOND);
+        let at = |h: f64| (h - (p - axis.about).dot(axis.direction)) / rise;
+        let (a, b) = (at(low - room), at(high + room));
+        let (mut a, mut b) = (a.min(b), a.max(b));
+        // A line that meets the axis makes two cones; the one beside the box is meant.
+        let (foot, across) = ((p - axis.about).reject_from_normalized(axis.direction), d.reject_from_normalized(axis.direction));
+        let meets = -foot.dot(across) / across.length_squared();
+        if meets.is_finite() && (foot + across * meets).length() <= self.tolerance.rounding && a < meets && meets < b {
+            if 0.5 * (a + b) > meets {
+                a = meets;
+            } else {
+                b = meets;
+            }
+        }
+        let profile = build::line(p + d * a, p + d * b, self.origin)?;
+        Ok(Base::Turned { axis: *axis, profile, angles: (0.0, std::f64::consts::TAU), first: None })
+    }
+}
+
+fn is_knotless(name: &[u8]) -> bool {
+    matches!(name, b"BEZIER_SURFACE" | b"UNIFORM_SURFACE" | b"QUASI_UNIFORM_SURFACE")
+}
+
+fn axis(frame: &Frame) -> Axis {
+    Axis { about: frame.at, direction: frame.z }
+}
+
+/// The offset of an elementary surface, along its normal.
+fn offset(base: Base, by: f64) -> Result<Base, Damage> {
+    match base {
+        Base::Plane(at, u, v) => Ok(Base::Plane(at + u.cross(v) * by, u, v)),
+        Base::Unbounded { axis, radius, slope, reference } => {
+            let radius = radius + by * (1.0 + slope * slope).sqrt();
+            if radius > 0.0 {
+                Ok(Base::Unbounded { axis, radius, slope, reference })
+            } else {
+                Err(damage("its offset turns it inside out"))
+            }
+        }
+        _ => Err(damage("offsets of curved surfaces are not read")),
+    }
+}
+
+/// The corners of a box.
+fn corners(b: &Box3) -> [DVec3; 8] {
+    std::array::from_fn(|k| {
+        let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
+        DVec3::new(pick(0, b.min.x, b.max.x), pick(1, b.min.y, b.max.y), pick(2, b.min.z, b.max.z))
+    })
+}
+
+/// How far a box reaches along a direction from a point.
+fn stretch(reach: &Box3, from: DVec3, direction: DVec3) -> (f64, f64) {
+    let along = corners(reach).map(|p| (p - from).dot(direction));
+    (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max))
+}
