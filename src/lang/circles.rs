@@ -111,5 +111,5 @@ impl Cx<'_> {
 fn borders_of(text: &str) -> Option<String> {
     let (surface, _) = [".rims", ".edges", ".edge("].into_iter().find_map(|word| text.split_once(word))?;
     let is_name = !surface.is_empty() && surface.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    is_name.then(|| format!("the borders of a surface by itself are `iso({surface}, u: 0)`, `u: 1`, `v: 0` and `v: 1`"))
+    is_name.then(|| format!("`iso` takes a border of `{surface}` by itself, at 0 or 1 of u or v"))
 }
