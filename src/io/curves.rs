@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn other_endings_say_what_there_is() {
-        assert!(matches!(curve_format_for(Origin::NONE, "a.stp"), Err(FileFault::LaterFormat { format: "STEP", .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.glb"), Err(FileFault::LaterFormat { format: "glTF", .. })));
         assert!(matches!(curve_format_for(Origin::NONE, "a.xyz"), Err(FileFault::NoSuchFormat { .. })));
         assert!(matches!(curve_format_for(Origin::NONE, "a.inp"), Err(FileFault::Unsupported { .. })));
     }

@@ -27,13 +27,15 @@ pub enum Sort {
 /// All sorts.
 const SORTS: [Sort; 7] = [Sort::Meshes, Sort::Curves, Sort::Surfaces, Sort::Shells, Sort::Points, Sort::Records, Sort::Pictures];
 /// Endings of CAD files.
-const CAD: [&str; 2] = ["igs", "iges"];
+const CAD: [&str; 4] = ["igs", "iges", STEP[0], STEP[1]];
+/// Endings of STEP files.
+pub const STEP: [&str; 2] = ["step", "stp"];
 /// Endings of lists of records.
 const RECORDS: [&str; 2] = ["csv", "json"];
 /// Endings of pictures.
 const PICTURES: [&str; 2] = ["png", "svg"];
 /// Formats of a later version, by ending.
-const LATER: &[(&str, &str)] = &[("glb", "glTF"), ("gltf", "glTF"), ("stp", "STEP"), ("step", "STEP"), ("html", "HTML")];
+const LATER: &[(&str, &str)] = &[("glb", "glTF"), ("gltf", "glTF"), ("html", "HTML")];
 
 impl Sort {
     /// Its plural.
@@ -65,7 +67,7 @@ impl Sort {
         let dotted = |endings: Vec<&str>| endings.iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(" ");
         match self {
             Self::Surfaces | Self::Shells => {
-                "export a mesh of it (`mesh fine of …`), or write the surface itself as IGES: \"….igs\"".to_owned()
+                "export a mesh of it (`mesh fine of …`), or write the surface itself as STEP or IGES: \"….step\", \"….igs\"".to_owned()
             }
             _ => format!("{} go into {}", self.words(), dotted(self.endings())),
         }
@@ -111,7 +113,8 @@ mod tests {
         assert_eq!(said("x.obj", Sort::Points), "obj holds meshes and curves, not points");
         assert_eq!(said("x.igs", Sort::Meshes), "igs holds curves, surfaces, shells and points, not meshes");
         assert_eq!(said("x.json", Sort::Pictures), "json holds lists of records, not pictures");
-        assert!(said("x.step", Sort::Surfaces).contains("not in this version"));
+        assert_eq!(said("x.step", Sort::Meshes), "step holds curves, surfaces, shells and points, not meshes");
+        assert!(said("x.glb", Sort::Surfaces).contains("not in this version"));
         assert!(said("x.xyz", Sort::Curves).contains("no format has the ending"));
         assert_eq!(ending_for(Origin::NONE, "a/b.SVG", Sort::Pictures).as_deref(), Ok("svg"));
     }

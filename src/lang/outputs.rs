@@ -97,7 +97,7 @@ impl Cx<'_> {
         let units = word("units").and_then(|(w, origin)| units::file_unit(&w).map(|u| (u, origin)));
         let things = things.unwrap_or_default();
         let elements = find(&settings, "element").map_or_else(Vec::new, |said| self.elements(code, written, &said.value, said.origin));
-        Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), elements, units, origin })
+        Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), elements, schema: word("schema"), units, origin })
     }
 
     /// The words of `element:`; those of a list written out have their own places.

@@ -146,6 +146,8 @@ pub struct ExportSpec {
     pub encoding: Said<Arc<str>>,
     /// The words of `element:`, each with its place.
     pub elements: Vec<(Arc<str>, Origin)>,
+    /// `schema:` as a word.
+    pub schema: Said<Arc<str>>,
     /// `units:` of the file.
     pub units: Said<super::units::LengthUnit>,
     /// The declaration.

@@ -10,6 +10,8 @@ pub const ELEMENTS: &[&str] = &["triangles", "quads", "mixed"];
 pub const METHODS: &[&str] = &["auto", "mapped", "quadtree", "delaunay", "isoline", "display"];
 /// Words of `encoding:`.
 pub const ENCODINGS: &[&str] = &["binary", "text"];
+/// Words of `schema:`.
+pub const SCHEMAS: &[&str] = crate::io::step::write::Schema::WORDS;
 /// Words of `units:` of an export.
 pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "inch", "ft"];
 /// Elements of decks.
@@ -161,6 +163,7 @@ pub const EXPORT: &[Setting] = &[
         default: "by format",
         ty: Ty::OneOf(&[Ty::Choice(DECK_ELEMENTS), Ty::List(&Ty::Choice(DECK_ELEMENTS))]),
     },
+    Setting { key: "schema", docs: "Application protocol of a STEP file.", default: "ap242", ty: Ty::Choice(SCHEMAS) },
     Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS) },
 ];
 

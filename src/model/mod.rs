@@ -2,6 +2,7 @@
 
 pub mod apart;
 pub mod atoms;
+pub mod body;
 pub mod carry;
 pub mod contact;
 mod cut_border;
@@ -33,6 +34,7 @@ pub mod stretches;
 pub mod topology;
 pub mod trace;
 
+pub use body::{Body, BodyEdge, BodyFace, Skin};
 pub use contact::{Apart, Contact, Spread};
 pub use loops::Loop;
 pub use moments::Moments;

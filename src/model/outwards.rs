@@ -93,6 +93,11 @@ impl Model {
         Ok(())
     }
 
+    /// Whether one closed component, which points outwards, has another one inside it; E413 where that cannot be told.
+    pub(super) fn holds(&self, outer: &Component, inner: &Component, tolerance: &Tolerance) -> Result<bool> {
+        self.skin(outer).holds(&self.skin(inner), tolerance)
+    }
+
     fn skin(&self, component: &Component) -> Skin {
         let surface = |id: SurfaceId| self.surfaces[id.index()].surface.clone();
         let faces: Vec<(Surface, bool)> = component.faces.iter().map(|(id, other)| (surface(*id), *other)).collect();

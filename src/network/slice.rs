@@ -6,7 +6,7 @@ use super::chain::{Chain, Run, same_curve};
 use super::snap::may_snap;
 use crate::base::fault::{CurveEnd, NetworkFault, Result};
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{SLIVER, Tolerance};
 use crate::geometry::{Curve, closest as closest_on_curve};
 
 /// [`Chain::slice`].
@@ -33,13 +33,13 @@ pub fn slice(chain: &Chain, (f0, f1): (f64, f64), tolerance: &Tolerance) -> Resu
     Ok(if f1 < f0 { part.reversed() } else { part })
 }
 
-/// The runs between two ascending fractions; `f0 < f1`.
+/// The runs between two ascending fractions, `f0 < f1`, without those that rounding left beside a joint.
 fn runs_between(chain: &Chain, f0: f64, f1: f64) -> Vec<Run> {
     let joints = chain.joints();
     let mut runs = Vec::new();
     for (k, run) in chain.runs().iter().enumerate() {
         let (from, to) = (joints[k].max(f0), joints[k + 1].min(f1));
-        if from < to {
+        if to - from > SLIVER {
             let s0 = if from == joints[k] { run.s0 } else { chain.locate(from).1 };
             let s1 = if to == joints[k + 1] { run.s1 } else { chain.locate(to).1 };
             runs.push(normal(Run { curve: run.curve.clone(), s0, s1 }));

@@ -10,7 +10,7 @@ use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
 use crate::io::curves::{Drawing, Polyline, curve_format_for};
-use crate::io::endings::{Sort, misfit};
+use crate::io::endings::{STEP, Sort, misfit};
 use crate::io::iges;
 use crate::io::iges::write::{Scale, Shown, Thing};
 use crate::io::json::{self, Json};
@@ -40,8 +40,10 @@ fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRo
     let Some(sort) = sort_of(first) else {
         return Err(unsupported(*origin, format!("{} cannot be exported", first.ty().words())));
     };
+    no_schema(spec)?;
     let (bytes, losses) = match (extension(&spec.path).as_str(), sort) {
         ("igs" | "iges", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => cad(cx, spec, files)?,
+        ("step" | "stp", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => super::export_step::step(cx, spec, files)?,
         (_, Sort::Meshes) => mesh(cx, spec, files)?,
         (_, Sort::Curves) => curves(cx, spec, files)?,
         (_, Sort::Records) => records(cx, spec, files)?,
@@ -73,7 +75,7 @@ fn sort_of(value: &Value) -> Option<Sort> {
 }
 
 /// Size of a file and what it could not hold.
-type Written = (u64, Vec<Loss>);
+pub(super) type Written = (u64, Vec<Loss>);
 
 fn unsupported(of: Origin, what: String) -> Stop {
     let help = Some("export meshes, curves, or a list of records".to_owned());
@@ -81,7 +83,11 @@ fn unsupported(of: Origin, what: String) -> Stop {
 }
 
 /// Writes through `fill`; a failure names the path.
-fn put(spec: &ExportSpec, files: &dyn Files, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<Vec<Loss>>) -> Result<Written, Stop> {
+pub(super) fn put(
+    spec: &ExportSpec,
+    files: &dyn Files,
+    fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<Vec<Loss>>,
+) -> Result<Written, Stop> {
     let mut losses = Vec::new();
     let written = files.write(&spec.path, &mut |out| fill(out).map(|found| losses = found));
     match written {
@@ -98,7 +104,7 @@ fn put(spec: &ExportSpec, files: &dyn Files, fill: &mut dyn FnMut(&mut dyn Write
 }
 
 /// Name of the file's unit of length, and model units in one of it where it is another one.
-fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>) {
+pub(super) fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>) {
     let model = cx.unit();
     match spec.units {
         Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::units::convert(1.0, unit, model, 1))),
@@ -129,7 +135,7 @@ fn one_thing(spec: &ExportSpec) -> Stop {
 }
 
 /// Settings that mean something for meshes only.
-fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
+pub(super) fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
     let said = spec.encoding.as_ref().map(|s| ("encoding", s.1)).or(spec.elements.first().map(|s| ("element", s.1)));
     match said {
         Some((key, of)) => {
@@ -137,6 +143,17 @@ fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
             Err(FileFault::Unsupported { of, what, help: Some(format!("remove `{key}:`")), edits: vec![Edit::DropSetting] }.into())
         }
         None => Ok(()),
+    }
+}
+
+/// The application protocol is a matter of STEP files.
+fn no_schema(spec: &ExportSpec) -> Result<(), Stop> {
+    match &spec.schema {
+        Some((_, of)) if !STEP.contains(&extension(&spec.path).as_str()) => {
+            let what = "`schema:` is for STEP files".to_owned();
+            Err(FileFault::Unsupported { of: *of, what, help: Some("remove `schema:`".to_owned()), edits: vec![Edit::DropSetting] }.into())
+        }
+        _ => Ok(()),
     }
 }
 

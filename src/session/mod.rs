@@ -7,6 +7,7 @@ mod consumed;
 mod cuts;
 pub mod disk;
 mod export;
+mod export_step;
 pub mod golden;
 pub mod guard;
 pub mod json;

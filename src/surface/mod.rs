@@ -14,6 +14,7 @@ pub mod core;
 mod curve_extent;
 mod descent;
 mod divide;
+pub mod elementary;
 mod extent;
 pub mod extrude;
 mod faces;

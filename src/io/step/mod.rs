@@ -1,4 +1,5 @@
-//! Reads STEP files (ISO 10303-21) of the schemas AP203, AP214 and AP242: curves, surfaces, faces, shells, solids and assemblies of them.
+//! Reads and writes STEP files (ISO 10303-21) of the schemas AP203, AP214 and AP242: curves, surfaces, faces, shells, solids and
+//! assemblies of them. Of what is read:
 //!
 //! ```text
 //!   bytes → records (spans of the file) → products and their places → items of each as faces → part (names, groups)
@@ -25,5 +26,6 @@ mod splines;
 mod strings;
 mod surfaces;
 mod units;
+pub mod write;
 
 pub use part::{Opened, open};

@@ -140,6 +140,7 @@ const WRITTEN: Fields = &[
     field("of", Kind::Word),
     field("encoding", Kind::Word),
     field("element", Kind::Word),
+    field("schema", Kind::Word),
     field("units", Kind::Word),
     field("pixels", Kind::Word),
     field("eye", Kind::List(Measure::Ratio)),

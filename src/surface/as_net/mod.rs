@@ -7,10 +7,13 @@ mod splines;
 mod strips;
 
 use super::core::{Domain, Surface, SurfaceKind};
+use super::iso::between;
 use super::nurbs::NurbsSurface;
+use super::rail::Rail;
+use super::reparam::Map;
 use super::revolve::Axis;
 use super::shape::Shape;
-use super::sweep::Path;
+use super::sweep::{Path, Sweep};
 use super::{extrude, revolve};
 use crate::base::fault::{CurveFault, Result, SurfaceFault};
 use crate::base::origin::Origin;
@@ -101,6 +104,22 @@ impl Surface {
     pub(super) fn offset_net(&self, distance: f64, tolerance: &Tolerance) -> Result<NurbsSurface> {
         self.few_strips(tolerance)?;
         Fit::new(self, tolerance).beside(distance).run()
+    }
+
+    /// The exact net of an extruded or revolved surface between two values of v, by the parameter of its profile; `None` where the profile
+    /// or the surface is none. Of a trimmed surface that of the whole one.
+    pub fn swept_net(&self, v: (f64, f64), tolerance: &Tolerance) -> Option<NurbsSurface> {
+        let parts = self.parts();
+        let Shape::Sweep(sweep) = &parts.shape else { return None };
+        let Rail::Chain { chain, map, .. } = sweep.profile() else { return None };
+        let (from, to) = match (parts.domain, parts.flipped) {
+            (Domain::Loop, _) => (0.0, 1.0),
+            (_, true) => (1.0 - v.1, 1.0 - v.0),
+            (_, false) => v,
+        };
+        let profile = between(chain, map.value(from), map.value(to), tolerance).ok()?;
+        let net = exact(&Shape::Sweep(Sweep::new(Rail::new(profile, Map::identity()), sweep.path())))?;
+        Some(self.turned(NetForm { net, off: Off::Exact }).net)
     }
 
     /// Within the tolerance, in the same (u, v) where it has to be.

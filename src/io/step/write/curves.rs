@@ -1,0 +1,149 @@
+//! Curves as STEP entities: lines, circles and B-splines.
+
+use glam::DVec3;
+
+use super::text::{Id, Records, Values};
+use crate::base::fault::Result;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::arc::EllipticArc;
+use crate::geometry::curve::Shape;
+use crate::geometry::{Curve, Nurbs};
+
+/// How lengths go into the file.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale {
+    /// Model units in one unit of the file.
+    pub model: f64,
+    /// Of the model: what is no B-spline is within it.
+    pub tolerance: Tolerance,
+}
+
+/// The geometry of an edge: without ends where it is a line or a circle.
+pub fn along(records: &mut Records, curve: &Curve, scale: &Scale) -> Result<Id> {
+    if let Some([a, b]) = corners(curve).as_deref() {
+        let (at, way) = (records.point(*a / scale.model), records.direction((*b - *a).normalize_or_zero()));
+        let vector = records.put("VECTOR", |v| {
+            v.text("").id(way).real(1.0);
+        });
+        return Ok(records.put("LINE", |v| {
+            v.text("").id(at).id(vector);
+        }));
+    }
+    match curve.shape() {
+        Shape::Arc(arc) if arc.radius.is_some() => Ok(circle(records, arc, "", scale)),
+        _ => Ok(spline(records, &curve.to_nurbs(&scale.tolerance)?, "", scale)),
+    }
+}
+
+/// The whole circle of an arc; its angle is 0 where the arc begins.
+fn circle(records: &mut Records, arc: &EllipticArc, name: &str, scale: &Scale) -> Id {
+    let x = arc.u.normalize_or_zero();
+    let frame = records.frame(arc.center / scale.model, arc.u.cross(arc.v).normalize_or_zero(), x);
+    let radius = arc.u.length() / scale.model;
+    records.put("CIRCLE", |v| {
+        v.text(name).id(frame).real(radius);
+    })
+}
+
+/// A curve with its ends, under a name.
+pub fn bounded(records: &mut Records, curve: &Curve, name: &str, scale: &Scale) -> Result<Id> {
+    if let Some(points) = corners(curve) {
+        let points: Vec<Id> = points.into_iter().map(|p| records.point(p / scale.model)).collect();
+        return Ok(records.put("POLYLINE", |v| {
+            v.text(name).ids(&points);
+        }));
+    }
+    match curve.shape() {
+        Shape::Composite(composite) => {
+            let mut segments = Vec::with_capacity(composite.pieces.len());
+            for (k, piece) in composite.pieces.iter().enumerate() {
+                let part = bounded(records, piece, "", scale)?;
+                let last = k + 1 == composite.pieces.len() && !curve.is_closed(&scale.tolerance);
+                segments.push(records.put("COMPOSITE_CURVE_SEGMENT", |v| {
+                    v.word(if last { ".DISCONTINUOUS." } else { ".CONTINUOUS." }).flag(true).id(part);
+                }));
+            }
+            Ok(records.put("COMPOSITE_CURVE", |v| {
+                v.text(name).ids(&segments).word(".U.");
+            }))
+        }
+        Shape::Arc(arc) if arc.radius.is_some() && arc.sweep >= std::f64::consts::TAU => Ok(circle(records, arc, name, scale)),
+        Shape::Arc(arc) if arc.radius.is_some() => {
+            let basis = circle(records, arc, "", scale);
+            let end = |v: &mut Values, at: f64| {
+                v.list(|v| {
+                    v.typed("PARAMETER_VALUE", at);
+                });
+            };
+            Ok(records.put("TRIMMED_CURVE", |v| {
+                end(v.text(name).id(basis), 0.0);
+                end(v, arc.sweep);
+                v.flag(true).word(".PARAMETER.");
+            }))
+        }
+        _ => Ok(spline(records, &curve.to_nurbs(&scale.tolerance)?, name, scale)),
+    }
+}
+
+/// The corners of a line or of lines in a row.
+fn corners(curve: &Curve) -> Option<Vec<DVec3>> {
+    match curve.shape() {
+        Shape::Line(a, b) => Some(vec![*a, *b]),
+        Shape::Nurbs(c) if c.degree == 1 && c.polynomial => Some((0..c.poles.len()).map(|k| c.pole(k)).collect()),
+        Shape::Composite(composite) => {
+            let mut points = vec![curve.start()];
+            for piece in &composite.pieces {
+                points.extend_from_slice(&corners(piece)?[1..]);
+            }
+            Some(points)
+        }
+        _ => None,
+    }
+}
+
+/// Distinct knots and how often each stands.
+pub fn knots(all: &[f64]) -> (Vec<usize>, Vec<f64>) {
+    all.chunk_by(|a, b| a == b).map(|same| (same.len(), same[0])).unzip()
+}
+
+/// A B-spline, rational where its weights differ.
+pub fn spline(records: &mut Records, curve: &Nurbs, name: &str, scale: &Scale) -> Id {
+    let (a, b) = curve.domain();
+    let n = curve.knots.len();
+    let is_full = curve.knots[0] == a && curve.knots[n - 1] == b;
+    let part;
+    let curve = if is_full {
+        curve
+    } else {
+        part = curve.part(a, b);
+        &part
+    };
+    let points: Vec<Id> = (0..curve.poles.len()).map(|k| records.point(curve.pole(k) / scale.model)).collect();
+    let closed = curve.pole(0) == curve.pole(curve.poles.len() - 1);
+    let (times, places) = knots(&curve.knots);
+    let shape = |v: &mut Values| {
+        v.int(curve.degree).ids(&points).word(".UNSPECIFIED.").flag(closed).word(".F.");
+    };
+    let parameters = |v: &mut Values| {
+        v.ints(times.iter().copied()).reals(places.iter().copied()).word(".UNSPECIFIED.");
+    };
+    if curve.polynomial {
+        return records.put("B_SPLINE_CURVE_WITH_KNOTS", |v| {
+            shape(v.text(name));
+            parameters(v);
+        });
+    }
+    records.put_complex(|v| {
+        v.part("BOUNDED_CURVE", |_| {});
+        v.part("B_SPLINE_CURVE", shape);
+        v.part("B_SPLINE_CURVE_WITH_KNOTS", parameters);
+        v.part("CURVE", |_| {});
+        v.part("GEOMETRIC_REPRESENTATION_ITEM", |_| {});
+        v.part("RATIONAL_B_SPLINE_CURVE", |v| {
+            v.reals(curve.poles.iter().map(|q| q.w));
+        });
+        v.part("REPRESENTATION_ITEM", |v| {
+            v.text(name);
+        });
+    })
+}

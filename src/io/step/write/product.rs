@@ -1,0 +1,192 @@
+//! What stands round the geometry: head of the file, units, the product and its representations.
+
+use glam::DVec3;
+
+use super::text::{Id, Records, Values};
+
+/// An application protocol.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Schema {
+    /// AP 242, managed model based 3D engineering.
+    #[default]
+    Ap242,
+    /// AP 214, automotive design.
+    Ap214,
+    /// AP 203, configuration controlled design, second edition.
+    Ap203,
+}
+
+impl Schema {
+    /// Words of scripts.
+    pub const WORDS: &[&str] = &["ap242", "ap214", "ap203"];
+
+    /// The one that a word names.
+    pub fn of(word: &str) -> Option<Self> {
+        [Self::Ap242, Self::Ap214, Self::Ap203].into_iter().find(|s| s.word() == word)
+    }
+
+    fn word(self) -> &'static str {
+        Self::WORDS[match self {
+            Self::Ap242 => 0,
+            Self::Ap214 => 1,
+            Self::Ap203 => 2,
+        }]
+    }
+
+    /// Name of the schema with its object identifier.
+    pub fn schema(self) -> &'static str {
+        match self {
+            Self::Ap242 => "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }",
+            Self::Ap214 => "AUTOMOTIVE_DESIGN { 1 0 10303 214 3 1 1 }",
+            Self::Ap203 => "AP203_CONFIGURATION_CONTROLLED_3D_DESIGN_OF_MECHANICAL_PARTS_AND_ASSEMBLIES_MIM_LF { 1 0 10303 403 2 1 2 }",
+        }
+    }
+
+    /// The application, the protocol's name and its year.
+    fn application(self) -> (&'static str, &'static str, usize) {
+        match self {
+            Self::Ap242 => ("managed model based 3d engineering", "ap242_managed_model_based_3d_engineering", 2014),
+            Self::Ap214 => ("core data for automotive mechanical design processes", "automotive_design", 2009),
+            Self::Ap203 => {
+                ("configuration controlled 3D design of mechanical parts and assemblies", "ap203_configuration_controlled_3d_design", 2011)
+            }
+        }
+    }
+}
+
+/// The context of the geometry: its units and its accuracy.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// The context of representations.
+    pub context: Id,
+    /// The unit of length.
+    pub length: Id,
+}
+
+/// Prefixes of the metre by the units of scripts.
+const METRES: &[(&str, &str)] = &[("um", ".MICRO."), ("mm", ".MILLI."), ("cm", ".CENTI."), ("m", "$"), ("km", ".KILO.")];
+/// Units of scripts that are so many millimetres.
+const CONVERTED: &[(&str, &str, f64)] = &[("in", "INCH", 25.4), ("ft", "FOOT", 304.8)];
+
+fn metre(records: &mut Records, prefix: &str) -> Id {
+    records.put_complex(|v| {
+        v.part("LENGTH_UNIT", |_| {});
+        v.part("NAMED_UNIT", |v| {
+            v.word("*");
+        });
+        v.part("SI_UNIT", |v| {
+            v.word(prefix).word(".METRE.");
+        });
+    })
+}
+
+fn length_unit(records: &mut Records, unit: &str) -> Id {
+    if let Some((_, name, size)) = CONVERTED.iter().find(|u| u.0 == unit) {
+        let dimensions = records.put("DIMENSIONAL_EXPONENTS", |v| {
+            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0].into_iter().for_each(|x| {
+                v.real(x);
+            });
+        });
+        let millimetre = metre(records, ".MILLI.");
+        let measure = records.put("LENGTH_MEASURE_WITH_UNIT", |v| {
+            v.typed("LENGTH_MEASURE", *size).id(millimetre);
+        });
+        return records.put_complex(|v| {
+            v.part("CONVERSION_BASED_UNIT", |v| {
+                v.text(name).id(measure);
+            });
+            v.part("LENGTH_UNIT", |_| {});
+            v.part("NAMED_UNIT", |v| {
+                v.id(dimensions);
+            });
+        });
+    }
+    metre(records, METRES.iter().find(|u| u.0 == unit).map_or(".MILLI.", |u| u.1))
+}
+
+fn angle_unit(records: &mut Records, kind: &str, name: &str) -> Id {
+    records.put_complex(|v| {
+        v.part("NAMED_UNIT", |v| {
+            v.word("*");
+        });
+        let si = |v: &mut Values| {
+            v.word("$").word(name);
+        };
+        // Types of one record stand in the order of their letters.
+        if kind < "SI_UNIT" {
+            v.part(kind, |_| {});
+            v.part("SI_UNIT", si);
+        } else {
+            v.part("SI_UNIT", si);
+            v.part(kind, |_| {});
+        }
+    })
+}
+
+/// Units and accuracy; `accuracy` in units of the file.
+pub fn context(records: &mut Records, unit: &str, accuracy: f64) -> Context {
+    let length = length_unit(records, unit);
+    let plane = angle_unit(records, "PLANE_ANGLE_UNIT", ".RADIAN.");
+    let solid = angle_unit(records, "SOLID_ANGLE_UNIT", ".STERADIAN.");
+    let uncertainty = records.put("UNCERTAINTY_MEASURE_WITH_UNIT", |v| {
+        v.typed("LENGTH_MEASURE", accuracy).id(length).text("distance_accuracy_value").text("tolerance of the model");
+    });
+    let context = records.put_complex(|v| {
+        v.part("GEOMETRIC_REPRESENTATION_CONTEXT", |v| {
+            v.int(3);
+        });
+        v.part("GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", |v| {
+            v.ids(&[uncertainty]);
+        });
+        v.part("GLOBAL_UNIT_ASSIGNED_CONTEXT", |v| {
+            v.ids(&[length, plane, solid]);
+        });
+        v.part("REPRESENTATION_CONTEXT", |v| {
+            v.text("").text("3D");
+        });
+    });
+    Context { context, length }
+}
+
+/// The product of the file; gives the definition of its shape.
+pub fn product(records: &mut Records, schema: Schema, name: &str) -> Id {
+    let (application, protocol, year) = schema.application();
+    let context = records.put("APPLICATION_CONTEXT", |v| {
+        v.text(application);
+    });
+    records.put("APPLICATION_PROTOCOL_DEFINITION", |v| {
+        v.text("international standard").text(protocol).int(year).id(context);
+    });
+    let mechanical = records.put("PRODUCT_CONTEXT", |v| {
+        v.text("").id(context).text("mechanical");
+    });
+    let product = records.put("PRODUCT", |v| {
+        v.text(name).text(name).text("").ids(&[mechanical]);
+    });
+    records.put("PRODUCT_RELATED_PRODUCT_CATEGORY", |v| {
+        v.text("part").text("").ids(&[product]);
+    });
+    let formation = records.put("PRODUCT_DEFINITION_FORMATION", |v| {
+        v.text("").text("").id(product);
+    });
+    let design = records.put("PRODUCT_DEFINITION_CONTEXT", |v| {
+        v.text("part definition").id(context).text("design");
+    });
+    let definition = records.put("PRODUCT_DEFINITION", |v| {
+        v.text("design").text("").id(formation).id(design);
+    });
+    records.put("PRODUCT_DEFINITION_SHAPE", |v| {
+        v.text("").text("").id(definition);
+    })
+}
+
+/// The shape of a product: one representation of everything in it, so that readers find each thing under its name.
+pub fn shape(records: &mut Records, (product, name): (Id, &str), context: Context, kind: &str, items: &[Id]) {
+    let frame = records.frame(DVec3::ZERO, DVec3::Z, DVec3::X);
+    let representation = records.put(kind, |v| {
+        v.text(name).ids(&[&[frame], items].concat()).id(context.context);
+    });
+    records.put("SHAPE_DEFINITION_REPRESENTATION", |v| {
+        v.id(product).id(representation);
+    });
+}

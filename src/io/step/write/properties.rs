@@ -1,0 +1,45 @@
+//! Validation properties: area and volume of what was written, for readers to compare with what they find.
+
+use super::product::Context;
+use super::text::{Id, Records};
+use super::{Setup, Thing};
+
+/// Area and volume, model units.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Measured {
+    /// Area of faces.
+    pub area: Option<f64>,
+    /// Volume of solids.
+    pub volume: Option<f64>,
+}
+
+/// Writes the sums over all things as properties of the product.
+pub fn put(records: &mut Records, things: &[Thing], (product, context): (Id, Context), setup: &Setup) {
+    let sum = |of: fn(&Measured) -> Option<f64>| things.iter().filter_map(|t| of(&t.measured)).reduce(|a, b| a + b);
+    let model = setup.scale.model;
+    let kinds = [
+        ("surface area", "surface area measure", "AREA_MEASURE", 2, sum(|m| m.area)),
+        ("volume", "volume measure", "VOLUME_MEASURE", 3, sum(|m| m.volume)),
+    ];
+    for (name, item, measure, power, value) in kinds {
+        let Some(value) = value else { continue };
+        let element = records.put("DERIVED_UNIT_ELEMENT", |v| {
+            v.id(context.length).real(f64::from(power));
+        });
+        let unit = records.put("DERIVED_UNIT", |v| {
+            v.ids(&[element]);
+        });
+        let item = records.put("MEASURE_REPRESENTATION_ITEM", |v| {
+            v.text(item).typed(measure, value / model.powi(power)).id(unit);
+        });
+        let representation = records.put("REPRESENTATION", |v| {
+            v.text(name).ids(&[item]).id(context.context);
+        });
+        let property = records.put("PROPERTY_DEFINITION", |v| {
+            v.text("geometric validation property").text(name).id(product);
+        });
+        records.put("PROPERTY_DEFINITION_REPRESENTATION", |v| {
+            v.id(property).id(representation);
+        });
+    }
+}

@@ -1,0 +1,196 @@
+//! Bodies as STEP entities: vertices, edges, loops, faces, shells and solids.
+//!
+//! ```text
+//!   solid ─ closed shell ─┐
+//!                         ├─ face ─ bound ─ loop ─ oriented edge ─ edge ─ 2 vertices
+//!   surface model ─ shell ┘   └─ surface                          └─ curve
+//! ```
+
+use std::sync::Arc;
+
+use super::curves::{self, Scale};
+use super::surfaces::{self, Ground};
+use super::text::{Id, Records};
+use crate::base::job;
+use crate::base::par;
+use crate::geometry::curve::Shape;
+use crate::geometry::{Curve, Kind};
+use crate::io::cad::compose::fitted;
+use crate::io::cad::damage::{Damage, damage};
+use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, Skin};
+use crate::network::Network;
+use crate::surface::Off;
+
+/// Faces that were declared as one thing.
+#[derive(Clone, Debug)]
+pub struct Faces {
+    /// The model that has them.
+    pub model: Arc<Model>,
+    /// The network of the model.
+    pub network: Arc<Network>,
+    /// The faces with their sides.
+    pub shell: Shell,
+    /// Skins that close are solids.
+    pub solid: bool,
+}
+
+/// What became of faces.
+#[derive(Debug, Default)]
+pub struct Made {
+    /// Solids.
+    pub solids: Vec<Id>,
+    /// Surface models.
+    pub sheets: Vec<Id>,
+    /// How far surfaces are from the model's at most, model units; whether all that is known of one are samples.
+    pub off: (f64, bool),
+}
+
+impl Faces {
+    /// Writes the faces under a name.
+    pub fn put(&self, records: &mut Records, name: &str, scale: &Scale) -> Result<Made, Damage> {
+        let body = self.model.body(&self.shell, &self.network, &scale.tolerance)?;
+        let mut writer = Writer { faces: self, body: &body, scale, edges: Vec::new(), made: Made::default() };
+        let faces = writer.faces(records)?;
+        let is_solid = |skin: &Skin| self.solid && skin.closed;
+        let named = |count: usize| if count == 0 { name.to_owned() } else { format!("{name}_{}", count + 1) };
+        for (k, skin) in body.skins.iter().enumerate().filter(|(_, s)| is_solid(s) && s.within.is_none()) {
+            let outer = shell(records, skin, &faces);
+            let voids: Vec<Id> = body
+                .skins
+                .iter()
+                .filter(|s| s.within == Some(k))
+                .map(|s| {
+                    let inner = shell(records, s, &faces);
+                    records.put("ORIENTED_CLOSED_SHELL", |v| {
+                        v.text("").word("*").id(inner).flag(true);
+                    })
+                })
+                .collect();
+            let own = named(writer.made.solids.len());
+            writer.made.solids.push(if voids.is_empty() {
+                records.put("MANIFOLD_SOLID_BREP", |v| {
+                    v.text(&own).id(outer);
+                })
+            } else {
+                records.put("BREP_WITH_VOIDS", |v| {
+                    v.text(&own).id(outer).ids(&voids);
+                })
+            });
+        }
+        let sheets: Vec<Id> = body.skins.iter().filter(|s| !is_solid(s)).map(|skin| shell(records, skin, &faces)).collect();
+        if !sheets.is_empty() {
+            writer.made.sheets.push(records.put("SHELL_BASED_SURFACE_MODEL", |v| {
+                v.text(name).ids(&sheets);
+            }));
+        }
+        Ok(writer.made)
+    }
+}
+
+/// The shell of a skin.
+fn shell(records: &mut Records, skin: &Skin, faces: &[Id]) -> Id {
+    let own: Vec<Id> = skin.faces.iter().map(|k| faces[*k]).collect();
+    records.put(if skin.closed { "CLOSED_SHELL" } else { "OPEN_SHELL" }, |v| {
+        v.text("").ids(&own);
+    })
+}
+
+struct Writer<'f> {
+    faces: &'f Faces,
+    body: &'f Body,
+    scale: &'f Scale,
+    /// The record of each edge.
+    edges: Vec<Option<Id>>,
+    made: Made,
+}
+
+impl Writer<'_> {
+    /// All faces, in the order of the body.
+    fn faces(&mut self, records: &mut Records) -> Result<Vec<Id>, Damage> {
+        let body = self.body;
+        self.edges = self.all_edges(records)?;
+        let grounds = par::try_map(body.faces.len(), |k| self.ground(&body.faces[k]))?;
+        let mut made = Vec::with_capacity(body.faces.len());
+        for (face, ground) in body.faces.iter().zip(&grounds) {
+            job::look();
+            if let Ground::Net(_, off) = ground {
+                self.made.off = (self.made.off.0.max(off.distance()), self.made.off.1 || matches!(off, Off::Sampled(_)));
+            }
+            made.push(self.face(records, face, ground)?);
+        }
+        Ok(made)
+    }
+
+    fn ground(&self, face: &BodyFace) -> Result<Ground, Damage> {
+        let model = &self.faces.model;
+        let surface = &model.surfaces[face.surface.index()].surface;
+        let found = surfaces::ground(surface, &model.patches[face.patch.index()], self.scale)?;
+        found.ok_or_else(|| damage("STEP has no place for a plane without a border"))
+    }
+
+    /// The edges that some face uses, with their vertices.
+    fn all_edges(&self, records: &mut Records) -> Result<Vec<Option<Id>>, Damage> {
+        let body = self.body;
+        let mut used = vec![false; body.edges.len()];
+        body.faces.iter().flat_map(|face| &face.loops).flatten().for_each(|(edge, _)| used[*edge] = true);
+        let curves = par::try_map(body.edges.len(), |k| if used[k] { self.curve(&body.edges[k]).map(Some) } else { Ok(None) })?;
+        let mut vertices: Vec<Option<Id>> = vec![None; body.vertices.len()];
+        let mut edges = Vec::with_capacity(body.edges.len());
+        for (edge, curve) in body.edges.iter().zip(curves) {
+            let Some(curve) = curve else {
+                edges.push(None);
+                continue;
+            };
+            let mut vertex = |k: usize| {
+                *vertices[k].get_or_insert_with(|| {
+                    let at = records.point(body.vertices[k] / self.scale.model);
+                    records.put("VERTEX_POINT", |v| {
+                        v.text("").id(at);
+                    })
+                })
+            };
+            let (from, to) = (vertex(edge.ends.0), vertex(edge.ends.1));
+            let geometry = curves::along(records, &curve, self.scale)?;
+            edges.push(Some(records.put("EDGE_CURVE", |v| {
+                v.text("").id(from).id(to).id(geometry).flag(true);
+            })));
+        }
+        Ok(edges)
+    }
+
+    /// The curve of an edge: the model's where it has one, else a spline within the tolerance of the line on the surface.
+    fn curve(&self, edge: &BodyEdge) -> Result<Curve, Damage> {
+        let Faces { model, network, .. } = self.faces;
+        if let Some(curve) = model.part_curve(&edge.part, network, &self.scale.tolerance)? {
+            return Ok(curve);
+        }
+        let track = model.track(edge.part.edge, network);
+        let found = fitted(&[edge.part.s.0, edge.part.s.1], &self.scale.tolerance, &|s| Ok(track.point(s)), &|p| p)?;
+        let origin = model.surfaces.first().map_or(crate::base::origin::Origin::NONE, |s| s.surface.origin());
+        Ok(Curve::new(Shape::Nurbs(Arc::new(found)), Kind::Spline, origin))
+    }
+
+    fn face(&self, records: &mut Records, face: &BodyFace, ground: &Ground) -> Result<Id, Damage> {
+        let (surface, along) = surfaces::put(records, ground, self.scale);
+        let mut bounds = Vec::with_capacity(face.loops.len());
+        for (k, around) in face.loops.iter().enumerate() {
+            let mut edges = Vec::with_capacity(around.len());
+            for (edge, against) in around {
+                let Some(edge) = self.edges[*edge] else { continue };
+                edges.push(records.put("ORIENTED_EDGE", |v| {
+                    v.text("").word("*").word("*").id(edge).flag(!against);
+                }));
+            }
+            let around = records.put("EDGE_LOOP", |v| {
+                v.text("").ids(&edges);
+            });
+            bounds.push(records.put(if k == 0 { "FACE_OUTER_BOUND" } else { "FACE_BOUND" }, |v| {
+                v.text("").id(around).flag(true);
+            }));
+        }
+        let name = &self.faces.model.surfaces[face.surface.index()].name;
+        Ok(records.put("ADVANCED_FACE", |v| {
+            v.text(name).ids(&bounds).id(surface).flag(along != face.other);
+        }))
+    }
+}

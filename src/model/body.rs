@@ -1,0 +1,207 @@
+//! Faces with the edges that they share, as boundary representations have them: every edge ends where another one begins, and a face
+//! has loops of edges, each with its direction.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use super::glue::root;
+use super::measure;
+use super::shared::EdgePart;
+use super::sides::Component;
+use super::topology::{Model, PatchId, Shell, SurfaceId};
+use crate::base::bbox::Box3;
+use crate::base::fault::Result;
+use crate::base::job;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::Curve;
+use crate::network::Network;
+use crate::surface::{Domain, Surface};
+
+/// An edge of a body.
+#[derive(Clone, Debug)]
+pub struct BodyEdge {
+    /// The part of an edge of the model that gives its geometry, in its own direction.
+    pub part: EdgePart,
+    /// First and last vertex, as places in the list of the body.
+    pub ends: (usize, usize),
+}
+
+/// One loop round a face, the face on its left seen against its normal: edges in order, `true` where it runs against one.
+pub type BodyLoop = Vec<(usize, bool)>;
+
+/// A smooth face of a body.
+#[derive(Clone, Debug)]
+pub struct BodyFace {
+    /// The patch that it is.
+    pub patch: PatchId,
+    /// Its surface.
+    pub surface: SurfaceId,
+    /// The body shows the other side of the surface.
+    pub other: bool,
+    /// The outer loop first.
+    pub loops: Vec<BodyLoop>,
+}
+
+/// Faces that hang together.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    /// Places of its faces in the list of the body.
+    pub faces: Vec<usize>,
+    /// Every edge is used twice, once each way.
+    pub closed: bool,
+    /// The closed skin, by its place in the list, round the material that this one bounds from inside.
+    pub within: Option<usize>,
+}
+
+/// Faces with their edges and vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Body {
+    /// Corners, model units.
+    pub vertices: Vec<DVec3>,
+    /// Edges.
+    pub edges: Vec<BodyEdge>,
+    /// Faces in the order of the surfaces.
+    pub faces: Vec<BodyFace>,
+    /// What hangs together, in the order of their first faces.
+    pub skins: Vec<Skin>,
+    /// Edges that more than two faces share.
+    pub branching: usize,
+}
+
+impl Model {
+    /// The faces of a shell with the edges they share, cut where an edge of one ends inside that of another one.
+    ///
+    /// Fails with E413 where it cannot be told whether one closed skin lies inside another one.
+    pub fn body(&self, shell: &Shell, network: &Network, tolerance: &Tolerance) -> Result<Body> {
+        let members: BTreeSet<SurfaceId> = shell.surfaces.iter().map(|s| s.0).collect();
+        let (edges, joins) = self.joins(&members, shell.near, network, tolerance);
+        let slivers = self.slivers(&members, (&edges, &joins.pieces), shell.near);
+        let mut body = Body { vertices: joins.pieces.junctions.clone(), ..Body::default() };
+        body.edges.extend(
+            joins
+                .pieces
+                .atoms
+                .iter()
+                .map(|atom| BodyEdge { part: EdgePart { edge: edges[atom.track], s: atom.s, against: false }, ends: atom.ends }),
+        );
+        for (surface, other) in &shell.surfaces {
+            for patch in self.patches_of(*surface).filter(|p| slivers.binary_search(p).is_err()) {
+                job::look();
+                let mut loops = Vec::new();
+                for sides in self.sides_by_loop(patch) {
+                    let mut around = BodyLoop::new();
+                    for (edge, against) in sides {
+                        let Ok(track) = edges.binary_search(&edge) else { continue };
+                        let uses = &joins.pieces.of_track[track];
+                        let step = |u: &super::atoms::Use| (u.atom, u.against != against);
+                        if against { around.extend(uses.iter().rev().map(step)) } else { around.extend(uses.iter().map(step)) }
+                    }
+                    if *other {
+                        around.reverse();
+                        around.iter_mut().for_each(|step| step.1 = !step.1);
+                    }
+                    if !around.is_empty() {
+                        loops.push(around);
+                    }
+                }
+                body.faces.push(BodyFace { patch, surface: *surface, other: *other, loops });
+            }
+        }
+        body.part_skins();
+        self.nest(&mut body, tolerance)?;
+        Ok(body)
+    }
+
+    /// Edges along the border of a patch, loop by loop, each with whether its loop runs against it.
+    fn sides_by_loop(&self, patch: PatchId) -> Vec<Vec<(super::topology::EdgeId, bool)>> {
+        let record = &self.patches[patch.index()];
+        let surface = &self.surfaces[record.surface.index()].surface;
+        let counts = if surface.domain() == Domain::Loop { surface.loops() } else { vec![record.sides.len()] };
+        let mut first = 0;
+        let of_loop = |n: usize| {
+            let range = first..first + n;
+            first += n;
+            let mut around = Vec::new();
+            for (k, side) in range.clone().zip(&record.sides[range]) {
+                if self.runs_back(record, k) {
+                    around.extend(side.edges.iter().rev().map(|(edge, against)| (*edge, !against)));
+                } else {
+                    around.extend(side.edges.iter().copied());
+                }
+            }
+            around
+        };
+        counts.into_iter().map(of_loop).collect()
+    }
+
+    /// The curve along an edge of a body; `None` for a line across a trimmed surface that follows neither u nor v.
+    pub fn part_curve(&self, part: &EdgePart, network: &Network, tolerance: &Tolerance) -> Result<Option<Curve>> {
+        let length = self.edges[part.edge.index()].length;
+        let Some(chain) = self.edge_chain(part.edge, network, tolerance)? else { return Ok(None) };
+        let whole = part.s.0 <= 0.0 && part.s.1 >= length;
+        let chain = if whole { chain } else { chain.slice(part.s.0 / length, (part.s.1 / length).min(1.0), tolerance)? };
+        let curve = chain.to_curve()?;
+        Ok(Some(if part.against { curve.reversed() } else { curve }))
+    }
+
+    /// Which closed skins bound material of others from inside.
+    fn nest(&self, body: &mut Body, tolerance: &Tolerance) -> Result<()> {
+        let closed: Vec<usize> = (0..body.skins.len()).filter(|k| body.skins[*k].closed).collect();
+        if closed.len() < 2 {
+            return Ok(());
+        }
+        let component = |k: usize| {
+            let mut faces: Vec<(SurfaceId, bool)> =
+                body.skins[k].faces.iter().map(|f| (body.faces[*f].surface, body.faces[*f].other)).collect();
+            faces.dedup();
+            Component { faces, closed: true, one_sided: None }
+        };
+        let components: BTreeMap<usize, Component> = closed.iter().map(|k| (*k, component(*k))).collect();
+        let shown = |c: &Component| {
+            c.faces.iter().map(|(id, other)| (self.surfaces[id.index()].surface.clone(), *other)).collect::<Vec<(Surface, bool)>>()
+        };
+        let inwards: Vec<usize> =
+            closed.iter().copied().filter(|k| measure::points_inwards(&shown(&components[k])) == Some(true)).collect();
+        let size = |k: usize| shown(&components[&k]).iter().fold(Box3::EMPTY, |all, (s, _)| all.union(s.hull())).diagonal();
+        for k in &inwards {
+            let mut holder: Option<(f64, usize)> = None;
+            for j in closed.iter().filter(|j| !inwards.contains(j)) {
+                if self.holds(&components[j], &components[k], tolerance)? {
+                    let found = (size(*j), *j);
+                    holder = Some(holder.map_or(found, |known| if found.0 < known.0 { found } else { known }));
+                }
+            }
+            body.skins[*k].within = holder.map(|h| h.1);
+        }
+        Ok(())
+    }
+}
+
+impl Body {
+    /// Parts the faces into what hangs together by edges that two of them share.
+    fn part_skins(&mut self) {
+        let mut users: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.edges.len()];
+        for (k, face) in self.faces.iter().enumerate() {
+            face.loops.iter().flatten().for_each(|(edge, against)| users[*edge].push((k, *against)));
+        }
+        let mut parent: Vec<usize> = (0..self.faces.len()).collect();
+        for pair in users.iter().filter(|u| u.len() == 2) {
+            let (a, b) = (root(&mut parent, pair[0].0), root(&mut parent, pair[1].0));
+            parent[a.max(b)] = a.min(b);
+        }
+        self.branching = users.iter().filter(|u| u.len() > 2).count();
+        let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
+        for k in 0..self.faces.len() {
+            let own = root(&mut parent, k);
+            skins.entry(own).or_insert_with(|| Skin { faces: Vec::new(), closed: true, within: None }).faces.push(k);
+        }
+        let is_inner = |users: &[(usize, bool)]| matches!(users, [a, b] if a.1 != b.1);
+        for (face, _) in users.iter().filter(|u| !is_inner(u)).flatten() {
+            if let Some(skin) = skins.get_mut(&root(&mut parent, *face)) {
+                skin.closed = false;
+            }
+        }
+        self.skins = skins.into_values().collect();
+    }
+}

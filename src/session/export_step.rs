@@ -1,0 +1,101 @@
+//! `export … to "x.step"`: what is written becomes faces with the edges they share.
+
+use super::export::{Written, no_mesh_settings, put, unit_of};
+use crate::base::fault::{FileFault, Say};
+use crate::base::origin::Origin;
+use crate::io::Files;
+use crate::io::step::write::{self, Faces, Measured, Scale, Schema, Setup, Shown, Thing};
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::plans::ExportSpec;
+use crate::lang::scene::{Scene, side_of};
+use crate::lang::value::{Dim, ModuleId, ShellValue, Value};
+use crate::model::{Shell, measure};
+use crate::surface::Surface;
+
+/// Points, curves, surfaces and shells as a STEP file.
+pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+    no_mesh_settings(spec)?;
+    let (unit, scale) = unit_of(cx, spec);
+    let tolerance = cx.tolerance()?;
+    let schema = spec.schema.as_ref().and_then(|(word, _)| Schema::of(word)).unwrap_or_default();
+    let setup = Setup { schema, unit, scale: Scale { model: scale.unwrap_or(1.0), tolerance } };
+    let surfaces: Vec<&Surface> = spec.things.iter().flat_map(|(value, _)| surfaces_of(value)).collect();
+    let scene = Scene::of(cx, ModuleId::MAIN, surfaces)?;
+    let mut things = Vec::with_capacity(spec.things.len());
+    for (value, origin) in &spec.things {
+        let (name, shown, measured) = match value {
+            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => (String::new(), Shown::Point(*p), Measured::default()),
+            Value::Curve(chain) => (cx.name(chain.origin()), Shown::Curve(chain.clone()), Measured::default()),
+            Value::Edge(home, edge) => {
+                let chain = super::plan::chain_of(cx, home, edge)?;
+                (super::plan::edge_name(cx, &chain, edge), Shown::Curve(chain), Measured::default())
+            }
+            Value::Surface(surface) => {
+                let measured = Measured { area: Some(measure::area(surface)), volume: None };
+                (cx.surface_name(surface), lone(&scene, surface, &setup)?, measured)
+            }
+            Value::Shell(shell) => {
+                let (shown, measured) = whole(&scene, shell, &setup)?;
+                (shell.name.to_string(), shown, measured)
+            }
+            other => {
+                return Err(unsupported(*origin, format!("STEP holds points, curves, surfaces and shells, not {}", other.ty().words())));
+            }
+        };
+        things.push(Thing { name, layers: layers(cx, value)?, shown, measured });
+    }
+    let file = spec.path.rsplit('/').next().unwrap_or(&spec.path);
+    let name = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
+    let sheet = write::sheet(&things, name, &setup).map_err(|what| unsupported(spec.path_origin, what))?;
+    put(spec, files, &mut |out| write::write(&sheet, file, &setup, out).map(|()| Vec::new()))
+}
+
+fn unsupported(of: Origin, what: String) -> Stop {
+    FileFault::Unsupported { of, what, help: None, edits: Vec::new() }.into()
+}
+
+/// The surfaces that a value is or holds.
+fn surfaces_of(value: &Value) -> Vec<&Surface> {
+    match value {
+        Value::Surface(surface) => vec![surface],
+        Value::Shell(shell) => shell.surfaces.iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A surface by itself: its patches share their edges with each other only.
+fn lone(scene: &Scene, surface: &Surface, setup: &Setup) -> Result<Shown, Stop> {
+    let (id, other) = scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
+    let near = scene.model.reach([id], None, &setup.scale.tolerance);
+    let shell = Shell { name: String::new(), origin: surface.origin(), surfaces: vec![(id, other)], near, closed: false, free: Vec::new() };
+    Ok(Shown::Faces(Box::new(Faces { model: scene.model.clone(), network: scene.network.clone(), shell, solid: false })))
+}
+
+/// A shell: a solid where it closes.
+fn whole(scene: &Scene, shell: &ShellValue, setup: &Setup) -> Result<(Shown, Measured), Stop> {
+    // What is to be said of it was said where it is declared.
+    let mut said = Vec::new();
+    let built = scene.shell(shell, &setup.scale.tolerance, &mut said)?;
+    let faces: Vec<(Surface, bool)> =
+        built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
+    let area = faces.iter().map(|(surface, _)| measure::area(surface)).sum();
+    let volume = built.closed.then(|| measure::solid(&faces).volume.abs());
+    let solid = built.closed;
+    let faces = Faces { model: scene.model.clone(), network: scene.network.clone(), shell: built, solid };
+    Ok((Shown::Faces(Box::new(faces)), Measured { area: Some(area), volume }))
+}
+
+/// The groups of the script that a value belongs to.
+fn layers(cx: &mut Cx, value: &Value) -> Result<Vec<String>, Stop> {
+    let same = |a: &Value, b: &Value| match (a, b) {
+        (Value::Surface(a), Value::Surface(b)) => side_of(a, b).is_some(),
+        (Value::Curve(a), Value::Curve(b)) => a.is(b),
+        (Value::Shell(a), Value::Shell(b)) => a.origin == b.origin && a.name == b.name,
+        (Value::Vector(a, x), Value::Vector(b, y)) => x == y && a == b,
+        (Value::Node(a), Value::Node(b)) => a == b,
+        _ => false,
+    };
+    let groups = cx.groups(ModuleId::MAIN)?;
+    let holds = |members: &[Value]| members.iter().any(|member| same(member, value));
+    Ok(groups.iter().filter(|group| holds(&group.value)).map(|group| group.name.to_string()).collect())
+}

@@ -1,0 +1,238 @@
+"""An independent kernel (OpenCASCADE) reads the STEP files that models write: python step_out.py LOFT WORK [NAME ...] prints a table, a row for
+each thing written: faces, how many of them are valid, the ratios of area and volume to those of the report, free edges there and here.
+
+Every example, every model of models/surfaces and models/step goes out whole: each surface by itself and each shell. A row is right when the
+other kernel finds the shape valid, as many faces as the report has patches, the area to `AREA`, a closed shell as a solid without free edges with its
+volume to `VOLUME`, and the name.
+"""
+import concurrent.futures
+import glob
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopExp import TopExp, TopExp_Explorer
+from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
+from OCP.TopoDS import TopoDS
+from OCP.BRep import BRep_Tool
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+# Shares by which areas and volumes may differ: quadrature of the other kernel.
+AREA = VOLUME = 1e-6
+LONGEST = 300
+
+
+def parts(shape, kind, avoiding=None):
+    explorer = TopExp_Explorer(shape, kind, avoiding) if avoiding is not None else TopExp_Explorer(shape, kind)
+    found = []
+    while explorer.More():
+        found.append(explorer.Current())
+        explorer.Next()
+    return found
+
+
+def area(shape):
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, properties, 1e-10)
+    return properties.Mass()
+
+
+def volume(shape):
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties, 1e-10)
+    return properties.Mass()
+
+
+def free_edges(shape):
+    """Edges that one face uses once."""
+    uses = TopTools_IndexedDataMapOfShapeListOfShape()
+    TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, uses)
+    free = 0
+    for k in range(1, uses.Extent() + 1):
+        edge = TopoDS.Edge_s(uses.FindKey(k))
+        if uses.FindFromIndex(k).Size() == 1 and not BRep_Tool.Degenerated_s(edge):
+            face = TopoDS.Face_s(uses.FindFromIndex(k).First())
+            free += not BRep_Tool.IsClosed_s(edge, face)
+    return free
+
+
+def read(path):
+    """The document of a file, in millimetres."""
+    Message.DefaultMessenger_s().ChangePrinters().Clear()
+    Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+    reader = STEPCAFControl_Reader()
+    Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", 1)
+    reader.SetNameMode(True)
+    reader.SetColorMode(True)
+    reader.SetLayerMode(True)
+    reader.SetPropsMode(True)
+    if reader.ReadFile(path) != IFSelect_RetDone:
+        raise AssertionError(f"{path} is not read")
+    document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
+    if not reader.Transfer(document):
+        raise AssertionError(f"{path} is not transferred")
+    return document
+
+
+def shapes_of(document):
+    """(name, shape) of every named thing: the roots and what stands below them."""
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    roots, found = TDF_LabelSequence(), []
+    tool.GetFreeShapes(roots)
+
+    def name_of(label):
+        name = TDataStd_Name()
+        return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
+
+    def walk(label):
+        found.append((name_of(label), tool.GetShape_s(label)))
+        below = TDF_LabelSequence()
+        if not tool.GetComponents_s(label, below):
+            tool.GetSubShapes_s(label, below)
+        for k in range(1, below.Length() + 1):
+            inner = below.Value(k)
+            refers = TDF_Label()
+            walk(refers if tool.GetReferredShape_s(inner, refers) else inner)
+
+    for k in range(1, roots.Length() + 1):
+        walk(roots.Value(k))
+    return found, [tool.GetShape_s(roots.Value(k)) for k in range(1, roots.Length() + 1)]
+
+
+def run(loft, folder, script, text):
+    path = os.path.join(folder, script)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    done = subprocess.run([loft, "run", path, "-o", folder, "--json"], capture_output=True, text=True, timeout=LONGEST)
+    return done.returncode, json.loads(done.stdout) if done.stdout.startswith("{") else {}, done.stdout[-1500:] + done.stderr[-1500:]
+
+
+def stripped(text):
+    """A model without its meshes, exports and pictures: what they say is not asked here."""
+    return text
+
+
+def rows_of(loft, work, model, schema="ap242", unit="mm"):
+    """Rows of one model: its surfaces and its shells, each in a file of its own, and all in one."""
+    name = os.path.splitext(os.path.basename(model))[0]
+    folder = os.path.join(work, name)
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    with open(model, encoding="utf-8") as file:
+        text = file.read()
+    for data in glob.glob(os.path.join(os.path.dirname(model), "data")):
+        shutil.copytree(data, os.path.join(folder, "data"))
+    for other in glob.glob(os.path.join(os.path.dirname(model), "*.loft")):
+        shutil.copy(other, folder)
+    done = subprocess.run([loft, "check", os.path.join(folder, os.path.basename(model)), "--json"], capture_output=True, text=True, timeout=LONGEST)
+    report = json.loads(done.stdout)
+    things = [("shell", s) for s in report["shells"]] + [("surface", s) for s in report["surfaces"]]
+    if not things:
+        return []
+    text = re.sub(r"(?m)^(export|picture|mesh) .*?(?=^\S|\Z)", "", text, flags=re.S) if False else text
+    exports = "".join(
+        f'\nexport {thing["name"]} to "one_{k}.step" {{ schema: {schema}  units: {unit} }}' for k, (_, thing) in enumerate(things)
+    )
+    code, made, said = run(loft, folder, f"{name}_out.loft", text + exports)
+    if code != 0:
+        return [({"thing": name, "why": f"ended with {code}: {said[-600:]}"}, False)]
+    size = {"mm": 1.0, "m": 1000.0, "cm": 10.0, "in": 25.4, "ft": 304.8, "um": 1e-3}[report["unit"] if "unit" in report else report["units"]]
+    patches = {s["name"]: s["patches"] for s in report["surfaces"]}
+    rows = []
+    for k, (kind, thing) in enumerate(things):
+        rows.append(row(os.path.join(folder, f"one_{k}.step"), f"{name}: {thing['name']}", kind, thing, size, patches))
+    return rows
+
+
+def row(path, label, kind, thing, size, patches):
+    cells = {"thing": label, "kind": kind, "faces": None, "area": None, "volume": None, "free": None, "why": ""}
+    try:
+        document = read(path)
+        named, roots = shapes_of(document)
+    except AssertionError as error:
+        return {**cells, "why": str(error)}, False
+    faces = [f for root in roots for f in parts(root, TopAbs_FACE)]
+    solids = [s for root in roots for s in parts(root, TopAbs_SOLID)]
+    why = []
+    cells["faces"] = len(faces)
+    wanted = thing["faces"] if kind == "shell" else thing["patches"]
+    if kind == "surface" and len(faces) != wanted:
+        why.append(f"{wanted} patches")
+    bad = sum(not BRepCheck_Analyzer(root).IsValid() for root in roots)
+    if bad:
+        why.append("not valid")
+    cells["area"] = sum(area(f) for f in faces) / (thing["area"] * size**2)
+    if abs(cells["area"] - 1) > AREA:
+        why.append("area")
+    cells["free"] = sum(free_edges(root) for root in roots)
+    if kind == "shell" and thing["closed"]:
+        if not solids:
+            why.append("no solid")
+        elif cells["free"]:
+            why.append("free edges")
+        else:
+            cells["volume"] = sum(volume(s) for s in solids) / (thing["volume"] * size**3)
+            if abs(cells["volume"] - 1) > VOLUME:
+                why.append("volume")
+    elif kind == "shell" and not cells["free"]:
+        why.append("no free edge")
+    if kind == "shell" and not any(n == thing["name"] for n, _ in named):
+        why.append(f"names {sorted({n for n, _ in named})[:4]}")
+    cells["why"] = ", ".join(why)
+    return cells, not why
+
+
+def shown(cells):
+    number = lambda x: "" if x is None else f"{x:.9f}"
+    return (
+        f"{cells['thing']:<34} {cells.get('kind', ''):<8} {cells.get('faces') or 0:>5} {number(cells.get('area')):>13} "
+        f"{number(cells.get('volume')):>13} {cells.get('free') if cells.get('free') is not None else '':>5} {cells['why'][:400]}"
+    ).rstrip()
+
+
+def models():
+    patterns = ["examples/*.loft", "tests/interop/models/surfaces/*.loft", "tests/interop/models/step/*.loft"]
+    return [path for pattern in patterns for path in sorted(glob.glob(os.path.join(ROOT, pattern)))]
+
+
+def table(loft, work, chosen=()):
+    """Prints all rows; the labels of those that are wrong, and how many there are in all."""
+    wrong, n = [], 0
+    print(f"{'thing':<34} {'kind':<8} {'faces':>5} {'area':>13} {'volume':>13} {'free':>5} cause", flush=True)
+    jobs = [m for m in models() if not chosen or os.path.splitext(os.path.basename(m))[0] in chosen]
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        for rows in pool.map(lambda m: rows_of(loft, work, m), jobs):
+            for cells, right in rows:
+                n += 1
+                print(shown(cells), flush=True)
+                if not right:
+                    wrong.append(cells["thing"])
+    return wrong, n
+
+
+def main():
+    loft, work = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    wrong, n = table(loft, work, sys.argv[3:])
+    print(f"{n - len(wrong)} of {n} right")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

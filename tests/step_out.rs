@@ -1,0 +1,142 @@
+//! STEP files that models write: references lead somewhere, faces share edges, names and units are kept, and the same model gives the same
+//! bytes.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// A box and a can with two cavities, a plate with a hole, a curve and a point.
+const MODEL: &str = r#"units mm
+curve rim = polyline([(0, 0, 0), (10, 0, 0), (10, 20, 0), (0, 20, 0)], closed: true)
+surface foot = plane(rim)
+surface head = move(foot, by: (0, 0, 30))
+surface walls = extrude(rim, by: (0, 0, 30))
+shell 벽 of foot, head, walls
+curve circle_a = circle(center: (50, 0, 0), radius: 5mm)
+surface can_wall = extrude(circle_a, by: (0, 0, 30))
+surface can_foot = plane(circle_a)
+surface can_head = move(can_foot, by: (0, 0, 30))
+surface bubble = revolve(arc((50, 0, 8), (50, 0, 12), through: (52, 0, 10)), axis: line((50, 0, 0), (50, 0, 1)))
+surface upper = move(bubble, by: (0, 0, 10))
+shell can of can_wall, can_foot, can_head, bubble, upper
+surface sail = ruled(spline([(80, 0, 0), (85, 3, 2), (90, 0, 0)]), line((80, 10, 0), (90, 10, 5)))
+surface plate = trim(sail, holes: project(circle(center: (85, 5, 0), radius: 1mm), onto: sail, along: (0, 0, 1)))
+group outer of 벽, circle_a
+export 벽, can, plate, circle_a, (1mm, 2mm, 3mm) to "all.step"
+export 벽 to "inch.stp" { units: inch  schema: ap214 }
+"#;
+
+/// Runs a model into a folder of its own; gives the files it wrote.
+fn run(name: &str, model: &str) -> BTreeMap<String, String> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("step_out_{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let script = folder.join("model.loft");
+    fs::write(&script, model).unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_loft")).arg("run").arg(&script).arg("-o").arg(&folder).output().unwrap();
+    assert!(done.status.success(), "{}{}", String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
+    let files = fs::read_dir(&folder).unwrap().map(|f| f.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e != "loft"));
+    files.map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(p).unwrap())).collect()
+}
+
+/// Records of a file by their numbers.
+fn records(text: &str) -> BTreeMap<u32, &str> {
+    let data = text.split("DATA;\n").nth(1).unwrap().split("ENDSEC;").next().unwrap();
+    let record = |line: &'_ str| {
+        let (id, rest) = line.strip_suffix(';').unwrap().split_once('=').unwrap();
+        (id[1..].parse().unwrap(), rest.len())
+    };
+    data.lines().map(|line| (record(line).0, &line[line.len() - 1 - record(line).1..line.len() - 1])).collect()
+}
+
+/// Numbers of the records that a record refers to, texts left out.
+fn references(record: &str) -> Vec<u32> {
+    let plain: String = record.split('\'').step_by(2).collect();
+    plain.split('#').skip(1).map(|rest| rest.chars().take_while(char::is_ascii_digit).collect::<String>().parse().unwrap()).collect()
+}
+
+fn of_type<'a>(all: &'a BTreeMap<u32, &'a str>, name: &str) -> Vec<(u32, &'a str)> {
+    let open = format!("{name}(");
+    all.iter().filter(|(_, r)| r.starts_with(&open)).map(|(id, r)| (*id, *r)).collect()
+}
+
+#[test]
+fn references_lead_to_earlier_records() {
+    for (name, text) in run("references", MODEL) {
+        assert!(text.is_ascii(), "{name}");
+        let all = records(&text);
+        for (id, record) in &all {
+            for other in references(record) {
+                assert!(other < *id && all.contains_key(&other), "{name}: #{id} refers to #{other}");
+            }
+            assert!(!record.contains("NaN") && !record.contains("inf"), "{name}: #{id}={record}");
+        }
+    }
+}
+
+/// Each edge of a closed shell is used once each way; faces close round their vertices.
+#[test]
+fn faces_share_edges() {
+    let files = run("edges", MODEL);
+    let all = records(&files["all.step"]);
+    let count = |name: &str| of_type(&all, name).len();
+    assert_eq!((count("MANIFOLD_SOLID_BREP"), count("BREP_WITH_VOIDS"), count("ORIENTED_CLOSED_SHELL")), (1, 1, 2));
+    assert_eq!((count("CLOSED_SHELL"), count("OPEN_SHELL"), count("SHELL_BASED_SURFACE_MODEL")), (4, 1, 1));
+    assert_eq!((count("PLANE"), count("CYLINDRICAL_SURFACE"), count("SPHERICAL_SURFACE"), count("GEOMETRIC_CURVE_SET")), (8, 1, 2, 2));
+    for (_, shell) in of_type(&all, "CLOSED_SHELL") {
+        let mut uses: BTreeMap<u32, Vec<bool>> = BTreeMap::new();
+        for face in references(shell) {
+            for bound in references(all[&face]).into_iter().filter(|b| all[b].starts_with("FACE_")) {
+                let around = references(all[&references(all[&bound])[0]]);
+                let step = |use_of: u32| {
+                    let forward = all[&use_of].ends_with(".T.)");
+                    let edge = references(all[&use_of])[0];
+                    let ends = references(all[&edge]);
+                    (edge, forward, if forward { (ends[0], ends[1]) } else { (ends[1], ends[0]) })
+                };
+                let steps: Vec<_> = around.into_iter().map(step).collect();
+                for (k, (edge, forward, ends)) in steps.iter().enumerate() {
+                    assert_eq!(ends.1, steps[(k + 1) % steps.len()].2.0, "the loop of face #{face} closes");
+                    uses.entry(*edge).or_default().push(*forward);
+                }
+            }
+        }
+        for (edge, mut uses) in uses {
+            uses.sort_unstable();
+            assert_eq!(uses, [false, true], "edge #{edge} of a closed shell");
+        }
+    }
+    let (_, plate) = of_type(&all, "ADVANCED_FACE").into_iter().find(|(_, r)| r.contains("'plate'")).unwrap();
+    assert_eq!(references(plate).len(), 3, "an outer and an inner bound on a surface: {plate}");
+}
+
+#[test]
+fn names_layers_units_and_measures_are_kept() {
+    let files = run("names", MODEL);
+    let all = records(&files["all.step"]);
+    let name = "'\\X2\\BCBD\\X0\\'";
+    assert!(of_type(&all, "MANIFOLD_SOLID_BREP")[0].1.contains(name));
+    let (_, layer) = of_type(&all, "PRESENTATION_LAYER_ASSIGNMENT")[0];
+    assert!(layer.contains("'outer'") && references(layer).len() == 2, "{layer}");
+    let measure = |all: &BTreeMap<u32, &str>, name: &str| -> f64 {
+        let (_, item) = of_type(all, "MEASURE_REPRESENTATION_ITEM").into_iter().find(|(_, r)| r.contains(name)).unwrap();
+        item.split("MEASURE(").nth(1).unwrap().split(')').next().unwrap().parse().unwrap()
+    };
+    let balls = 2.0 * 4.0 / 3.0 * std::f64::consts::PI * 8.0;
+    let wanted = 6000.0 + 750.0 * std::f64::consts::PI - balls;
+    assert!((measure(&all, "VOLUME_MEASURE") / wanted - 1.0).abs() < 1e-9);
+    let inch = records(&files["inch.stp"]);
+    assert!(inch.values().any(|r| r.contains("CONVERSION_BASED_UNIT('INCH'")));
+    assert!(files["inch.stp"].contains("FILE_SCHEMA(('AUTOMOTIVE_DESIGN"));
+    assert!((measure(&inch, "VOLUME_MEASURE") * 25.4_f64.powi(3) / 6000.0 - 1.0).abs() < 1e-9);
+    // A file of one thing is named for it.
+    assert!(of_type(&inch, "PRODUCT")[0].1.contains(name));
+}
+
+#[test]
+fn the_same_model_gives_the_same_bytes() {
+    assert_eq!(run("first", MODEL), run("second", MODEL));
+}
