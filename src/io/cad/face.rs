@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::base::Base;
-use super::natural::is_natural;
+use super::natural::{is_natural, matched};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::{NEAR_MISS, Tolerance};
 use crate::geometry::{Curve, Motion, closest};
@@ -62,6 +62,11 @@ impl Face {
 
     /// The part of a surface inside its loops.
     pub fn inside(base: &Base, surface: Surface, mut loops: Vec<Vec<Border>>, known: Known, tolerance: &Tolerance) -> Self {
+        if let ([outer], true) = (loops.as_slice(), known.has_outer)
+            && let Some(gap) = matched(base, &surface, outer, known.slack, tolerance)
+        {
+            return Self { against: known.against, inside: known.inside, gap, ..Self::whole(base, surface, tolerance) };
+        }
         let gap = gap(&surface, &loops);
         for border in &mut loops {
             cut_at_poles(&surface, border, NEAR_MISS * known.slack);

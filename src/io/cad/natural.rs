@@ -23,6 +23,39 @@ pub fn is_natural(base: &Base, surface: &Surface, outer: &[Border], room: f64, t
         && sides.iter().filter(|s| s.1).all(|(side, _)| places(side).all(|p| near(p, &curves)))
 }
 
+/// The largest distance of a loop from the sides of a surface where each of its curves is one side, run evenly; none where that is
+/// not so within `room`, a quick look that may miss.
+pub fn matched(base: &Base, surface: &Surface, outer: &[Border], room: f64, tolerance: &Tolerance) -> Option<f64> {
+    if surface.closed() != (false, false) {
+        return None;
+    }
+    let sides = sides(base, surface, tolerance)?;
+    let mut left: Vec<&Curve> = sides.iter().map(|s| &s.0).collect();
+    if left.len() != outer.len() {
+        return None;
+    }
+    let mut off = 0.0_f64;
+    for border in outer {
+        let found = left.iter().enumerate().find_map(|(k, side)| beside(&border.space, side, room).map(|off| (k, off)));
+        let (k, own) = found?;
+        left.swap_remove(k);
+        off = off.max(own);
+    }
+    Some(off)
+}
+
+/// The largest distance of two curves at equal shares of their parameters, in the better direction, where it is within `room`.
+fn beside(a: &Curve, b: &Curve, room: f64) -> Option<f64> {
+    let ahead = a.start().distance(b.start()) <= room && a.end().distance(b.end()) <= room;
+    let back = a.start().distance(b.end()) <= room && a.end().distance(b.start()) <= room;
+    if !ahead && !back {
+        return None;
+    }
+    let others: Vec<DVec3> = places(b).collect();
+    let off = places(a).enumerate().map(|(k, p)| p.distance(others[if ahead { k } else { SAMPLES - k }])).fold(0.0, f64::max);
+    (off <= room).then_some(off)
+}
+
 /// Sides that are no poles, each with `true` when it is free and not a seam.
 fn sides(base: &Base, surface: &Surface, tolerance: &Tolerance) -> Option<Vec<(Curve, bool)>> {
     let net = base.net(&crate::base::bbox::Box3::EMPTY, tolerance).ok()?;

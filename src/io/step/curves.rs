@@ -15,6 +15,8 @@ use crate::geometry::{Curve, Kind, build, closest};
 use crate::io::cad::carry::{check_reach, check_weights, ordered};
 use crate::io::cad::damage::{Damage, damage};
 
+/// What a piece of a curve takes from what may be copied.
+const PIECE: usize = 16;
 const TURN: f64 = std::f64::consts::TAU;
 
 /// A curve of the file.
@@ -34,7 +36,8 @@ impl Step<'_> {
         }
         let file = self.file;
         let row = file.parameters(k);
-        let inside = |Damage(why): Damage, k: u32, step: &Self| damage(format!("{}: {why}", step.said(k)));
+        // The outermost says where to look; a long row of them says nothing more.
+        let inside = |why: Damage, k: u32, step: &Self| if depth > 0 { why } else { damage(format!("{}: {}", step.said(k), why.0)) };
         let course = match file.name(k) {
             _ if file.is_complex(k) => self.complex(k, depth)?,
             b"LINE" => Course::Endless(Endless::Line(self.point(row.entity(1)?)?, self.vector(row.entity(2)?)?)),
@@ -130,10 +133,11 @@ impl Step<'_> {
         for segment in segments {
             let row = self.file.parameters(segment);
             let parent = row.entity(2)?;
-            let curve = self.bounded(parent, depth + 1).map_err(|Damage(why)| damage(format!("{}: {why}", self.said(parent))))?;
+            let curve = self.bounded(parent, depth + 1);
+            let curve = curve.map_err(|why| if depth > 0 { why } else { damage(format!("{}: {}", self.said(parent), why.0)) })?;
             let curve = if row.flag(1, true) { curve } else { curve.reversed() };
+            self.spend(PIECE * curve.composite().map_or(1, |c| c.pieces.len()))?;
             pieces.extend(curve.composite().map_or_else(|| vec![curve.clone()], |c| c.pieces.clone()));
-            self.spend(1)?;
         }
         ordered(&mut pieces, self.slack());
         match pieces.as_slice() {

@@ -310,19 +310,25 @@ impl<'b> Reader<'b> {
         }
     }
 
-    /// Goes to the next place behind a semicolon where an entity or the end of the section stands.
+    /// Goes to the next place behind a semicolon where an entity or the end of the section stands, or to a line that begins with one.
     fn behind(&mut self, from: usize) {
-        self.at = from.min(self.bytes.len());
-        while let Some(n) = position(b';', &self.bytes[self.at..]) {
+        self.at = (from + 1).min(self.bytes.len());
+        while let Some(n) = self.bytes[self.at..].iter().position(|c| matches!(c, b';' | b'\n' | b'\r')) {
+            let is_line = self.bytes[self.at + n] != b';';
             self.at += n + 1;
-            let after = self.at;
             self.skip();
-            if matches!(self.peek(), b'#' | b'E' | 0) {
+            if if is_line { self.is_head() } else { matches!(self.peek(), b'#' | b'E' | 0) } {
                 return;
             }
-            self.at = after;
         }
         self.at = self.bytes.len();
+    }
+
+    /// Whether `#1 =` stands here.
+    fn is_head(&self) -> bool {
+        let Some(rest) = self.bytes[self.at..].strip_prefix(b"#") else { return false };
+        let digits = rest.iter().take_while(|c| c.is_ascii_digit()).count();
+        digits > 0 && rest[digits..].trim_ascii_start().first() == Some(&b'=')
     }
 
     fn fail<T>(&self, what: impl Into<String>) -> Result<T, Wrong> {

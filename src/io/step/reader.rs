@@ -116,7 +116,9 @@ impl<'f> Step<'f> {
 
     /// Says something about an entity, at its line.
     pub fn warn(&mut self, k: u32, what: impl std::fmt::Display) {
-        let what = format!("{}: {what}", self.said(k));
+        let name = self.file.parameters(k).text(0);
+        let name = if name.is_empty() { name } else { format!(" '{name}'") };
+        let what = format!("{}{name}: {what}", self.said(k));
         self.warnings.push(Malformed::line(self.file.line(k), what));
     }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::reader::{NESTED, Step};
+use super::rows::Row;
 use crate::base::job;
 use crate::geometry::Curve;
 use crate::io::cad::damage::{Damage, damage};
@@ -81,7 +82,7 @@ const SILENT: &[&[u8]] = &[
 /// Kinds of things that are not read, with how often they stand in the file and where first.
 pub type Unread = BTreeMap<String, (u32, usize)>;
 
-impl Step<'_> {
+impl<'f> Step<'f> {
     /// What an item is made of; what cannot be read is left out with a warning.
     pub fn item(&mut self, k: u32, unread: &mut Unread) -> Item {
         let mut item = Item::default();
@@ -102,7 +103,7 @@ impl Step<'_> {
             b"MANIFOLD_SOLID_BREP" | b"FACETED_BREP" | b"BREP_WITH_VOIDS" => self.solid(k, item),
             _ if file.under(k, b"MANIFOLD_SOLID_BREP").is_some() => self.solid(k, item),
             b"SHELL_BASED_SURFACE_MODEL" | b"FACE_BASED_SURFACE_MODEL" => {
-                for shell in row.entities(1)? {
+                for shell in self.members(k, row.list(1)?) {
                     self.shell(shell, item, Sort::Shell);
                 }
                 Ok(())
@@ -112,7 +113,7 @@ impl Step<'_> {
                 Ok(())
             }
             b"GEOMETRIC_SET" | b"GEOMETRIC_CURVE_SET" => {
-                for member in row.entities(1)? {
+                for member in self.members(k, row.list(1)?) {
                     if let Err(Damage(why)) = self.member(member, item, unread, depth + 1) {
                         self.warn(member, format!("skipped: {why}"));
                     }
@@ -198,11 +199,23 @@ impl Step<'_> {
         Ok(())
     }
 
+    /// The entities of a list; what is none is said and left out.
+    fn members(&mut self, of: u32, list: Row<'_>) -> Vec<u32> {
+        let mut members = Vec::new();
+        for value in list.values() {
+            match value.entity() {
+                Ok(k) => members.push(k),
+                Err(Damage(why)) => self.warn(of, format!("skipped: one of its members: {why}")),
+            }
+        }
+        members
+    }
+
     fn shell(&mut self, k: u32, item: &mut Item, sort: Sort) {
         let from = item.now();
         match self.faces_of(k) {
             Ok((shell, faces, turned)) => {
-                for face in faces {
+                for face in self.members(shell, faces) {
                     job::look();
                     match self.face(face, turned) {
                         Ok(made) => item.faces.push((face, made, Some(shell))),
@@ -216,7 +229,7 @@ impl Step<'_> {
     }
 
     /// The shell that has the faces, the faces, and whether they look the other way.
-    fn faces_of(&self, k: u32) -> Result<(u32, Vec<u32>, bool), Damage> {
+    fn faces_of(&self, k: u32) -> Result<(u32, Row<'f>, bool), Damage> {
         let (mut k, mut turned) = (k, false);
         for _ in 0..NESTED {
             let row = self.file.parameters(k);
@@ -225,7 +238,7 @@ impl Step<'_> {
                     turned ^= !row.flag(3, true);
                     k = row.entity(2)?;
                 }
-                b"OPEN_SHELL" | b"CLOSED_SHELL" | b"CONNECTED_FACE_SET" => return Ok((k, row.entities(1)?, turned)),
+                b"OPEN_SHELL" | b"CLOSED_SHELL" | b"CONNECTED_FACE_SET" => return Ok((k, row.list(1)?, turned)),
                 _ => return Err(damage(format!("{} is no shell", self.said(k)))),
             }
         }

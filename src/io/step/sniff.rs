@@ -7,9 +7,10 @@ const HEAD: usize = 4096;
 
 /// Fails for what is no clear text of STEP, with what it is instead.
 pub fn check(bytes: &[u8]) -> Result<(), Malformed> {
-    let head = &bytes[..bytes.len().min(HEAD)];
+    let text = bytes.trim_ascii_start();
+    let head = &text[..text.len().min(HEAD)];
     let wrong = |what: &str| Err(Malformed::line(1, what));
-    if bytes.is_empty() {
+    if text.is_empty() {
         return wrong("the file is empty");
     }
     let zeros = head.iter().filter(|c| **c == 0).count();
@@ -19,7 +20,6 @@ pub fn check(bytes: &[u8]) -> Result<(), Malformed> {
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"\x1F\x8B") {
         return wrong("the file is compressed; unpack it first");
     }
-    let text = head.trim_ascii_start();
     if text.starts_with(b"<") {
         return wrong("the file is XML; STEP files that can be read are clear text, which begins with ISO-10303-21");
     }

@@ -1,0 +1,326 @@
+//! Each kind of entity is the curve, surface or body that it describes.
+
+use std::f64::consts::PI;
+
+use lofting::model::measure;
+
+use super::file::{FRAME, can, file, in_units};
+use super::{OPTIONS, areas, read};
+
+const POINTS: &str = "#10=CARTESIAN_POINT('',(0.,0.,0.));\n#11=CARTESIAN_POINT('',(1.,2.,0.));\n#12=CARTESIAN_POINT('',(3.,2.,0.));\n\
+                      #13=CARTESIAN_POINT('',(4.,0.,0.));\n";
+
+/// A curve or surface #100 with what it needs.
+fn of(entity: &str, others: &str) -> String {
+    file(&format!("{FRAME}{POINTS}{others}\n#100={entity};\n"), "#101").replace("#9000=", "#101=GEOMETRIC_SET('',(#100));\n#9000=")
+}
+
+/// Curves with their lengths.
+fn curves() -> Vec<(&'static str, String, f64)> {
+    let arc = |a: f64, b: f64| {
+        // ∫ √(1 + 4 t²) dt over the parabola (t², 2 t) with focal distance 1 is that of its derivative 2 √(t² + 1).
+        let f = |t: f64| t * (t * t + 1.0).sqrt() + t.asinh();
+        f(b) - f(a)
+    };
+    let simpson = |a: f64, b: f64, f: &dyn Fn(f64) -> f64| {
+        let n = 4000;
+        let h = (b - a) / f64::from(n);
+        (0..=n).map(|k| f(a + h * f64::from(k)) * if k == 0 || k == n { 1.0 } else { 2.0 + 2.0 * f64::from(k % 2) }).sum::<f64>() * h / 3.0
+    };
+    let cubic = |t: f64| {
+        let s = 1.0 - t;
+        let d = |p: [f64; 4]| 3.0 * ((p[1] - p[0]) * s * s + 2.0 * (p[2] - p[1]) * s * t + (p[3] - p[2]) * t * t);
+        d([0.0, 1.0, 3.0, 4.0]).hypot(d([0.0, 2.0, 2.0, 0.0]))
+    };
+    let bezier = simpson(0.0, 1.0, &cubic);
+    let trims = |a: &str, b: &str, sense: &str| format!("TRIMMED_CURVE('',#20,({a}),({b}),{sense},.PARAMETER.)");
+    let range = |a: f64, b: f64| trims(&format!("PARAMETER_VALUE({a:?})"), &format!("PARAMETER_VALUE({b:?})"), ".T.");
+    let circle = "#20=CIRCLE('',#4,2.);";
+    vec![
+        ("circle", of("CIRCLE('',#4,2.)", ""), 4.0 * PI),
+        ("trimmed circle", of(&range(0.5, 2.0), circle), 3.0),
+        ("trimmed over the start", of(&range(6.0, 1.0), circle), 2.0 * (2.0 * PI - 5.0)),
+        ("trimmed backwards", of(&trims("PARAMETER_VALUE(0.5)", "PARAMETER_VALUE(2.0)", ".F."), circle), 2.0 * (2.0 * PI - 1.5)),
+        (
+            "trimmed by points",
+            of(&trims("#21", "#22", ".T."), &format!("{circle}#21=CARTESIAN_POINT('',(2.,0.,0.));#22=CARTESIAN_POINT('',(0.,2.,0.));")),
+            PI,
+        ),
+        ("ellipse", of("ELLIPSE('',#4,3.,2.)", ""), simpson(0.0, 2.0 * PI, &|t| (3.0 * t.sin()).hypot(2.0 * t.cos()))),
+        ("hyperbola", of(&range(-0.5, 1.0), "#20=HYPERBOLA('',#4,2.,1.);"), simpson(-0.5, 1.0, &|t| (2.0 * t.sinh()).hypot(t.cosh()))),
+        ("parabola", of(&range(-1.0, 2.0), "#20=PARABOLA('',#4,1.);"), arc(-1.0, 2.0)),
+        ("line", of(&range(0.5, 2.0), "#20=LINE('',#10,#21);#21=VECTOR('',#3,3.);"), 4.5),
+        ("polyline", of("POLYLINE('',(#10,#11,#12,#13))", ""), 2.0 * 5.0_f64.sqrt() + 2.0),
+        ("bezier", of("BEZIER_CURVE('',3,(#10,#11,#12,#13),.UNSPECIFIED.,.F.,.F.)", ""), bezier),
+        ("quasi-uniform", of("QUASI_UNIFORM_CURVE('',3,(#10,#11,#12,#13),.UNSPECIFIED.,.F.,.F.)", ""), bezier),
+        (
+            "with knots",
+            of("B_SPLINE_CURVE_WITH_KNOTS('',3,(#10,#11,#12,#13),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,7.),.UNSPECIFIED.)", ""),
+            bezier,
+        ),
+        ("uniform", of("UNIFORM_CURVE('',1,(#10,#11,#12,#13),.UNSPECIFIED.,.F.,.F.)", ""), 2.0 * 5.0_f64.sqrt() + 2.0),
+        (
+            "rational",
+            of(
+                "(BOUNDED_CURVE() B_SPLINE_CURVE(2,(#21,#22,#23),.CIRCULAR_ARC.,.F.,.F.) B_SPLINE_CURVE_WITH_KNOTS((3,3),(0.,1.),.UNSPECIFIED.) \
+                 CURVE() GEOMETRIC_REPRESENTATION_ITEM() RATIONAL_B_SPLINE_CURVE((1.,0.70710678118654752,1.)) REPRESENTATION_ITEM(''))",
+                "#21=CARTESIAN_POINT('',(1.,0.,0.));#22=CARTESIAN_POINT('',(1.,1.,0.));#23=CARTESIAN_POINT('',(0.,1.,0.));",
+            ),
+            0.5 * PI,
+        ),
+        (
+            "composite",
+            of(
+                "COMPOSITE_CURVE('',(#21,#22),.F.)",
+                "#20=POLYLINE('',(#10,#11));#21=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#20);#23=POLYLINE('',(#12,#11));\
+                 #22=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.F.,#23);",
+            ),
+            5.0_f64.sqrt() + 2.0,
+        ),
+        ("on a surface", of("SURFACE_CURVE('',#20,(#21),.CURVE_3D.)", "#20=CIRCLE('',#4,1.);#21=PLANE('',#4);"), 2.0 * PI),
+    ]
+}
+
+/// A surface of one face that a vertex bounds, or that its parameters bound, with its area.
+fn surfaces() -> Vec<(&'static str, String, f64)> {
+    let closed = |entity: &str| {
+        let text = format!(
+            "{FRAME}{POINTS}#100={entity};\n#101=VERTEX_POINT('',#10);\n#102=VERTEX_LOOP('',#101);\n#103=FACE_BOUND('',#102,.T.);\n\
+             #104=ADVANCED_FACE('',(#103),#100,.T.);\n#105=CLOSED_SHELL('',(#104));\n#106=MANIFOLD_SOLID_BREP('',#105);\n"
+        );
+        file(&text, "#106")
+    };
+    let trimmed = |entity: &str, others: &str, [a, b, c, d]: [f64; 4]| {
+        of(&format!("RECTANGULAR_TRIMMED_SURFACE('',#20,{a:?},{b:?},{c:?},{d:?},.T.,.T.)"), &format!("{others}#20={entity};"))
+    };
+    let net = "((#10,#13),(#21,#22))";
+    let others = "#21=CARTESIAN_POINT('',(0.,0.,3.));#22=CARTESIAN_POINT('',(4.,0.,3.));";
+    let apple: f64 = {
+        // Turned about the axis at distance 1: the outer arc of a circle of radius 2, to ±120°.
+        let to = 2.0 * PI / 3.0;
+        2.0 * PI * 2.0 * (2.0 * to + 2.0 * 2.0 * to.sin())
+    };
+    vec![
+        ("sphere", closed("SPHERICAL_SURFACE('',#4,3.)"), 36.0 * PI),
+        ("torus", closed("TOROIDAL_SURFACE('',#4,5.,2.)"), 4.0 * PI * PI * 10.0),
+        ("apple", closed("DEGENERATE_TOROIDAL_SURFACE('',#4,1.,2.,.T.)"), apple),
+        ("plane part", trimmed("PLANE('',#4)", "", [1.0, 4.0, -1.0, 1.0]), 6.0),
+        ("cylinder part", trimmed("CYLINDRICAL_SURFACE('',#4,2.)", "", [0.5, 2.0, 0.0, 3.0]), 9.0),
+        ("cylinder over its seam", trimmed("CYLINDRICAL_SURFACE('',#4,2.)", "", [6.0, 1.0, 0.0, 3.0]), 6.0 * (2.0 * PI - 5.0)),
+        ("cone part", trimmed("CONICAL_SURFACE('',#4,2.,0.7853981633974483)", "", [0.0, 1.0, 0.0, 2.0]), 6.0 * 2.0_f64.sqrt()),
+        ("sphere part", trimmed("SPHERICAL_SURFACE('',#4,2.)", "", [0.0, 1.0, -0.5, 0.5]), 8.0 * 0.5_f64.sin()),
+        (
+            "extruded",
+            trimmed("SURFACE_OF_LINEAR_EXTRUSION('',#23,#24)", "#23=CIRCLE('',#4,2.);#24=VECTOR('',#2,2.);", [0.0, 1.5, 0.0, 3.0]),
+            18.0,
+        ),
+        (
+            "turned",
+            trimmed(
+                "SURFACE_OF_REVOLUTION('',#23,#25)",
+                "#23=LINE('',#24,#26);#24=CARTESIAN_POINT('',(2.,0.,0.));#26=VECTOR('',#2,1.);#25=AXIS1_PLACEMENT('',#1,#2);",
+                [0.0, 1.0, 0.0, 3.0],
+            ),
+            6.0,
+        ),
+        ("bezier patch", of(&format!("BEZIER_SURFACE('',1,1,{net},.UNSPECIFIED.,.F.,.F.,.F.)"), others), 12.0),
+        (
+            "spline patch",
+            of(
+                &format!("B_SPLINE_SURFACE_WITH_KNOTS('',1,1,{net},.UNSPECIFIED.,.F.,.F.,.F.,(2,2),(2,2),(0.,1.),(0.,2.),.UNSPECIFIED.)"),
+                others,
+            ),
+            12.0,
+        ),
+        (
+            "rational patch",
+            of(
+                &format!(
+                    "(BOUNDED_SURFACE() B_SPLINE_SURFACE(1,1,{net},.UNSPECIFIED.,.F.,.F.,.F.) \
+                     B_SPLINE_SURFACE_WITH_KNOTS((2,2),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.) GEOMETRIC_REPRESENTATION_ITEM() \
+                     RATIONAL_B_SPLINE_SURFACE(((1.,1.),(2.,2.))) REPRESENTATION_ITEM('') SURFACE())"
+                ),
+                others,
+            ),
+            12.0,
+        ),
+        (
+            "inside a circle",
+            of(
+                "CURVE_BOUNDED_SURFACE('',#20,(#21),.F.)",
+                "#20=PLANE('',#4);#21=BOUNDARY_CURVE('',(#22),.F.);#22=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#23);#23=CIRCLE('',#4,1.);",
+            ),
+            PI,
+        ),
+    ]
+}
+
+/// A tetrahedron of loops of points without surfaces.
+fn faceted() -> String {
+    let mut text = String::from(FRAME);
+    for (k, p) in ["0.,0.,0.", "1.,0.,0.", "0.,1.,0.", "0.,0.,1."].iter().enumerate() {
+        text += &format!("#{}=CARTESIAN_POINT('',({p}));\n", 10 + k);
+    }
+    for (k, [a, b, c]) in [[10, 12, 11], [10, 11, 13], [11, 12, 13], [12, 10, 13]].iter().enumerate() {
+        text += &format!("#{}=POLY_LOOP('',(#{a},#{b},#{c}));\n#{}=FACE_OUTER_BOUND('',#{},.T.);\n", 20 + k, 30 + k, 20 + k);
+        text += &format!("#{}=FACE('',(#{}));\n", 40 + k, 30 + k);
+    }
+    file(&(text + "#50=CLOSED_SHELL('',(#40,#41,#42,#43));\n#51=FACETED_BREP('corner',#50);\n"), "#51")
+}
+
+/// A ball with a smaller one as a void.
+fn hollow() -> String {
+    let ball = |from: u32, radius: f64| {
+        let n = |k: u32| from + k;
+        format!(
+            "#{}=SPHERICAL_SURFACE('',#4,{radius:?});\n#{}=VERTEX_POINT('',#1);\n#{}=VERTEX_LOOP('',#{});\n#{}=FACE_BOUND('',#{},.T.);\n\
+             #{}=ADVANCED_FACE('',(#{}),#{},.T.);\n#{}=CLOSED_SHELL('',(#{}));\n",
+            n(0),
+            n(1),
+            n(2),
+            n(1),
+            n(3),
+            n(2),
+            n(4),
+            n(3),
+            n(0),
+            n(5),
+            n(4)
+        )
+    };
+    let text = format!(
+        "{FRAME}{}{}#70=ORIENTED_CLOSED_SHELL('',*,#35,.F.);\n#71=BREP_WITH_VOIDS('shell',#25,(#70));\n",
+        ball(20, 3.0),
+        ball(30, 2.0)
+    );
+    file(&text, "#71")
+}
+
+/// The can twice by mapped items: once as it is, once lying on its side and moved.
+fn mapped() -> String {
+    let more = "#70=REPRESENTATION_MAP(#4,#72);\n#72=SHAPE_REPRESENTATION('',(#21),#9002);\n#73=MAPPED_ITEM('stands',#70,#4);\n\
+                #74=CARTESIAN_POINT('',(10.,0.,0.));\n#75=AXIS2_PLACEMENT_3D('',#74,#3,#2);\n#76=MAPPED_ITEM('lies',#70,#75);\n";
+    file(&(can(".T.") + more), "#73,#76")
+}
+
+/// The can with a colour of its own, a face with another, and a layer.
+fn painted() -> String {
+    let style = |k: u32, of: u32, color: &str| {
+        let n = |j: u32| k + j;
+        format!(
+            "#{}={color};\n#{}=FILL_AREA_STYLE_COLOUR('',#{});\n#{}=FILL_AREA_STYLE('',(#{}));\n#{}=SURFACE_STYLE_FILL_AREA(#{});\n\
+             #{}=SURFACE_SIDE_STYLE('',(#{}));\n#{}=SURFACE_STYLE_USAGE(.BOTH.,#{});\n#{}=PRESENTATION_STYLE_ASSIGNMENT((#{}));\n\
+             #{}=STYLED_ITEM('',(#{}),#{of});\n",
+            n(0),
+            n(1),
+            n(0),
+            n(2),
+            n(1),
+            n(3),
+            n(2),
+            n(4),
+            n(3),
+            n(5),
+            n(4),
+            n(6),
+            n(5),
+            n(7),
+            n(6)
+        )
+    };
+    let styles = style(100, 21, "COLOUR_RGB('grass',0.,1.,0.)") + &style(200, 53, "DRAUGHTING_PRE_DEFINED_COLOUR('red')");
+    file(&(can(".T.") + &styles + "#300=PRESENTATION_LAYER_ASSIGNMENT('lids','',(#43,#53));\n"), "#21")
+}
+
+/// All files that are made here.
+pub fn all() -> Vec<(&'static str, String)> {
+    let listed = curves().into_iter().chain(surfaces()).map(|(name, text, _)| (name, text));
+    let others =
+        [("can", file(&can(".T."), "#21")), ("faceted", faceted()), ("hollow", hollow()), ("mapped", mapped()), ("painted", painted())];
+    listed.chain(others).collect()
+}
+
+#[test]
+fn curves_are_as_long_as_they_are_described() {
+    for (name, text, length) in curves() {
+        let part = read(text.as_bytes()).unwrap();
+        assert_eq!(part.warnings, [], "{name}");
+        let found: Vec<f64> = part.curves.iter().map(|c| c.value.length()).collect();
+        assert!(found.len() == 1 && (found[0] / length - 1.0).abs() < 1e-9, "{name}: {found:?} {length}");
+    }
+}
+
+#[test]
+fn surfaces_are_as_large_as_they_are_described() {
+    for (name, text, area) in surfaces() {
+        let part = read(text.as_bytes()).unwrap();
+        assert_eq!(part.warnings, [], "{name}");
+        let found = areas(&part);
+        assert!(found.len() == 1 && (found[0] / area - 1.0).abs() < 1e-9, "{name}: {found:?} {area}");
+    }
+}
+
+#[test]
+fn faces_look_out_of_their_solid() {
+    let ball = surfaces().remove(0).1;
+    for (name, text, volume) in [
+        ("can", file(&can(".T."), "#21"), 20.0 * PI),
+        ("shell", file(&can(".T."), "#60"), 20.0 * PI),
+        ("turned shell", file(&can(".F."), "#60"), -20.0 * PI),
+        ("mapped", mapped(), 40.0 * PI),
+        ("faceted", faceted(), 1.0 / 6.0),
+        ("hollow", hollow(), 4.0 / 3.0 * PI * (27.0 - 8.0)),
+        ("ball", ball, 36.0 * PI),
+    ] {
+        let part = read(text.as_bytes()).unwrap();
+        assert_eq!(part.warnings, [], "{name}");
+        let faces: Vec<_> = part.built.iter().flatten().map(|s| (s.clone(), false)).collect();
+        let found = measure::solid(&faces).volume;
+        assert!((found / volume - 1.0).abs() < 1e-9, "{name}: {found} {volume}");
+    }
+}
+
+#[test]
+fn names_colours_layers_and_places_are_kept() {
+    let part = read(painted().as_bytes()).unwrap();
+    let groups: Vec<(&str, usize)> = part.groups.iter().map(|g| (g.name.as_str(), g.surfaces.len())).collect();
+    assert_eq!(groups, [("can", 3), ("lids", 2)]);
+    assert_eq!((part.solids.len(), part.shells[0].name.as_str()), (1, "skin"));
+    let colors: Vec<(&str, usize, [f64; 3])> = part.colors.iter().map(|(g, rgb)| (g.name.as_str(), g.surfaces.len(), *rgb)).collect();
+    assert_eq!(colors, [("grass", 2, [0.0, 1.0, 0.0]), ("red", 1, [1.0, 0.0, 0.0])]);
+    let part = read(mapped().as_bytes()).unwrap();
+    let groups: Vec<(&str, usize)> = part.groups.iter().map(|g| (g.name.as_str(), g.surfaces.len())).collect();
+    assert_eq!(groups, [("stands", 3), ("lies", 3)]);
+    let lies = part.groups[1].surfaces.iter().flat_map(|k| &part.built[*k]).map(lofting::surface::bbox);
+    let bounds = lies.reduce(|a, b| a.union(b)).unwrap();
+    assert!(bounds.min.distance(glam::DVec3::new(10.0, -2.0, -2.0)) < 1e-9, "{bounds:?}");
+    assert!(bounds.max.distance(glam::DVec3::new(15.0, 2.0, 2.0)) < 1e-9, "{bounds:?}");
+}
+
+#[test]
+fn lengths_and_angles_are_in_the_units_of_their_context() {
+    let text = |unit: &str| in_units(&can(".T."), "#21", unit);
+    let inch = "#9001=(CONVERSION_BASED_UNIT('INCH',#9005) LENGTH_UNIT() NAMED_UNIT(#9006));\n\
+                #9005=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9007);\n#9006=DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);\n\
+                #9007=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.));";
+    for (unit, scale, name) in [
+        ("#9001=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT($,.METRE.));", 1000.0, "M"),
+        ("#9001=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.CENTI.,.METRE.));", 10.0, "CM"),
+        (inch, 25.4, "IN"),
+    ] {
+        let part = read(text(unit).as_bytes()).unwrap();
+        assert_eq!((part.unit, &part.warnings[..]), (name, &[][..]));
+        let side = areas(&part)[0];
+        assert!((side / (20.0 * PI * scale * scale) - 1.0).abs() < 1e-9, "{name}: {side}");
+    }
+    // Degrees, for a cone and a trim.
+    let degrees = "#9003=(CONVERSION_BASED_UNIT('DEGREE',#9008) NAMED_UNIT(*) PLANE_ANGLE_UNIT());\n\
+                   #9008=PLANE_ANGLE_MEASURE_WITH_UNIT(PLANE_ANGLE_MEASURE(0.0174532925199433),#9009);\n\
+                   #9009=(NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.));";
+    let arc = curves().remove(1).1;
+    let arc = arc.replace("#9003=(NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.));", degrees);
+    let arc = arc.replace("PARAMETER_VALUE(0.5)", "PARAMETER_VALUE(90.)").replace("PARAMETER_VALUE(2.0)", "PARAMETER_VALUE(180.)");
+    let length = read(arc.as_bytes()).unwrap().curves[0].value.length();
+    assert!((length - PI).abs() < 1e-9, "{length}");
+    assert_eq!(OPTIONS.unit, "mm");
+}
