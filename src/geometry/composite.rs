@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use super::curve::Curve;
+use crate::base::tolerance::SLIVER;
 
 /// Pieces one after the other; piece `i` keeps its own parameter, moved so that it starts where the one before ends.
 #[derive(Clone, Debug)]
@@ -88,7 +89,15 @@ impl Composite {
     pub fn part(&self, t0: f64, t1: f64) -> Vec<Curve> {
         let (first, _) = self.locate(t0);
         let (last, _) = self.locate_before(t1);
-        (first..=last.max(first))
+        // What rounding left of a piece beside a joint is none.
+        let room = SLIVER * (self.breaks[self.pieces.len()] - self.breaks[0]);
+        let is_piece = |i: &usize| t1.min(self.breaks[i + 1]) - t0.max(self.breaks[*i]) > room;
+        let mut range: Vec<usize> = (first..=last.max(first)).filter(is_piece).collect();
+        if range.is_empty() {
+            range.push(first);
+        }
+        range
+            .into_iter()
             .map(|i| {
                 let (a, b) = (self.own(i, t0.max(self.breaks[i])), self.own(i, t1.min(self.breaks[i + 1])));
                 if (a, b) == self.pieces[i].domain() { self.pieces[i].clone() } else { self.pieces[i].part(a, b) }

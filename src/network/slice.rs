@@ -166,7 +166,13 @@ pub fn pieces(run: &Run) -> Vec<Curve> {
     let part = |a: f64, b: f64| {
         if a <= 0.0 && b >= length { run.curve.clone() } else { run.curve.part(run.curve.param_at_length(a), run.curve.param_at_length(b)) }
     };
-    let mut pieces = if hi > length && lo < length { vec![part(lo, length), part(0.0, hi - length)] } else { vec![part(lo, hi)] };
+    // What rounding left of a piece at the start of the curve is none.
+    let room = SLIVER * length;
+    let mut pieces = match (length - lo > room, hi - length > room) {
+        (true, true) => vec![part(lo, length), part(0.0, hi - length)],
+        (false, true) => vec![part((lo - length).max(0.0), hi - length)],
+        _ => vec![part(lo, hi.min(length))],
+    };
     if run.is_backward() {
         pieces.reverse();
         pieces = pieces.iter().map(Curve::reversed).collect();
