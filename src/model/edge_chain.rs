@@ -30,7 +30,13 @@ impl Model {
         let surface = &if trimmed { surface.untrimmed() } else { surface.clone() };
         let Some(curve) = surface.iso(line, surface.origin(), tolerance)? else { return Ok(None) };
         let chain = Chain::of_curve(&curve);
-        let length = |t: f64| Trace::new(surface, line.at(0.0), line.at(t)).length();
+        // Between kinks: a stretch that is run at another speed would be missed.
+        let (us, vs) = surface.kinks();
+        let kinks = if matches!(line, IsoLine::U(_)) { vs } else { us };
+        let length = |t: f64| {
+            let stops = [&[0.0], &kinks[..kinks.partition_point(|k| *k < t)], &[t]].concat();
+            stops.windows(2).map(|w| Trace::new(surface, line.at(w[0]), line.at(w[1])).length()).sum::<f64>()
+        };
         let whole = length(1.0);
         let between = |low: f64, high: f64| {
             let (low, high) = (if low <= 0.0 { 0.0 } else { length(low) / whole }, if high >= 1.0 { 1.0 } else { length(high) / whole });
