@@ -5,12 +5,15 @@ use glam::DVec3;
 use super::curves::{Scale, knots};
 use super::text::{Id, Records, Values};
 use crate::base::fault::Result;
-use crate::base::tolerance::PARALLEL;
+use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::nurbs::projected;
 use crate::io::cad::nets::trimmed_net;
 use crate::model::Patch;
 use crate::surface::elementary::{Elementary, Form};
 use crate::surface::{Domain, NurbsSurface, Off, Surface};
+
+/// Share of the tolerance that a net may be off, where that can be had.
+const FINE: f64 = 0.1;
 
 /// The surface of one face.
 #[derive(Clone, Debug)]
@@ -36,10 +39,13 @@ pub fn ground(surface: &Surface, patch: &Patch, scale: &Scale) -> Result<Option<
     {
         return Ok(Some(shaped(net, Off::Exact, scale)));
     }
-    let form = match surface.domain() {
-        Domain::Square if whole => surface.to_net(&scale.tolerance)?,
-        _ => surface.ground_net(&scale.tolerance)?,
+    let form = |tolerance: &Tolerance| match surface.domain() {
+        Domain::Square if whole => surface.to_net(tolerance),
+        _ => surface.ground_net(tolerance),
     };
+    // Edges are within the tolerance: the surface is to be nearer, so that areas and volumes are found again.
+    let fine = Tolerance { point: FINE * scale.tolerance.point, ..scale.tolerance };
+    let form = form(&fine).or_else(|_| form(&scale.tolerance))?;
     let Some(form) = form else { return Ok(None) };
     let cut = match surface.domain() {
         Domain::Square if !whole => trimmed_net(form.net.clone(), [patch.u.0, patch.u.1, patch.v.0, patch.v.1]).unwrap_or(form.net),
