@@ -52,6 +52,8 @@ pub const MEASURE_ROUNDING: f64 = 1e-8;
 pub const LEAST_SIZE: f64 = 1e-4;
 /// Relative error of a volume of which only the sign is wanted, where the body is not thin.
 pub const SIGN_ACCURACY: f64 = 1e-3;
+/// Share by which an area or a volume may differ from what a file states of it, and its centroid as a share of the size.
+pub const STATED: f64 = 1e-4;
 /// Below this barycentric distance from a corner a quotient 0/0 is replaced by its expansion.
 pub const POLE_REACH: f64 = 1e-6;
 /// Parameter distance from a pole at which its normal is averaged when the tangents there are parallel (math notes §7).

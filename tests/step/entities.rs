@@ -324,3 +324,30 @@ fn lengths_and_angles_are_in_the_units_of_their_context() {
     assert!((length - PI).abs() < 1e-9, "{length}");
     assert_eq!(OPTIONS.unit, "mm");
 }
+
+/// The can with an area, a volume and a centroid that the file states of its product.
+fn stated(area: f64, volume: f64, z: f64) -> String {
+    let more = format!(
+        "#800=PRODUCT('can','can','',());\n#801=PRODUCT_DEFINITION_FORMATION('','',#800);\n#802=PRODUCT_DEFINITION('','',#801,$);\n\
+         #803=PRODUCT_DEFINITION_SHAPE('','',#802);\n#804=SHAPE_DEFINITION_REPRESENTATION(#803,#9000);\n\
+         #810=DERIVED_UNIT_ELEMENT(#9001,2.);\n#811=DERIVED_UNIT((#810));\n#812=DERIVED_UNIT_ELEMENT(#9001,3.);\n#813=DERIVED_UNIT((#812));\n\
+         #820=MEASURE_REPRESENTATION_ITEM('surface area measure',AREA_MEASURE({area:?}),#811);\n\
+         #821=REPRESENTATION('surface area',(#820),#9002);\n\
+         #822=PROPERTY_DEFINITION('geometric validation property','surface area',#803);\n#823=PROPERTY_DEFINITION_REPRESENTATION(#822,#821);\n\
+         #830=MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE({volume:?}),#813);\n#831=REPRESENTATION('volume',(#830),#9002);\n\
+         #832=PROPERTY_DEFINITION('geometric validation property','volume',#803);\n#833=PROPERTY_DEFINITION_REPRESENTATION(#832,#831);\n\
+         #840=CARTESIAN_POINT('centre point',(0.,0.,{z:?}));\n#841=REPRESENTATION('centroid',(#840),#9002);\n\
+         #842=PROPERTY_DEFINITION('geometric validation property','centroid',#803);\n#843=PROPERTY_DEFINITION_REPRESENTATION(#842,#841);\n"
+    );
+    file(&(can(".T.") + &more), "#21")
+}
+
+#[test]
+fn figures_that_the_file_states_are_compared() {
+    let said = |text: String| read(text.as_bytes()).unwrap().warnings.into_iter().map(|w| w.what).collect::<Vec<String>>();
+    let (area, volume) = (28.0 * PI, 20.0 * PI);
+    assert_eq!(said(stated(area, volume, 2.5)), Vec::<String>::new());
+    assert_eq!(said(stated(1.25 * area, volume, 2.5)), ["#823 can: its area is 87.964594 mm², the file states 109.955743 mm² (-20.00 %)"]);
+    assert_eq!(said(stated(area, 0.5 * volume, 2.5)), ["#833 can: its volume is 62.831853 mm³, the file states 31.415927 mm³ (+100.00 %)"]);
+    assert_eq!(said(stated(area, volume, 3.0)), ["#843 can: its centroid is 0.500000 mm from where the file states it"]);
+}

@@ -11,7 +11,7 @@ use crate::network::Chain;
 use crate::surface::{Outlined, Side, Surface, outlined, trim};
 
 impl Part {
-    /// Makes [`Part::built`] of the faces; says which could not be made.
+    /// Makes [`Part::built`] of the faces; says which could not be made, and where the file states other figures of them.
     pub fn build(&mut self, origin: Origin, tolerance: &Tolerance) -> Vec<Malformed> {
         let mut skipped = Vec::new();
         self.built = Vec::with_capacity(self.surfaces.len());
@@ -25,6 +25,7 @@ impl Part {
                 }
             });
         }
+        skipped.append(&mut self.differences());
         skipped
     }
 }

@@ -11,3 +11,4 @@ pub mod interior;
 mod natural;
 pub mod nets;
 pub mod part;
+mod stated;

@@ -77,6 +77,32 @@ pub struct Group {
     pub surfaces: Vec<usize>,
 }
 
+/// What a file states of some of its faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stated {
+    /// Of [`Part::surfaces`].
+    pub surfaces: Vec<usize>,
+    /// How many copies of the same thing they are.
+    pub copies: usize,
+    /// What it states of one copy, model units.
+    pub figure: Figure,
+    /// What it is of, for messages.
+    pub name: String,
+    /// Line of the file where it stands.
+    pub line: u64,
+}
+
+/// A figure by which a file can be checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Figure {
+    /// Area of all faces.
+    Area(f64),
+    /// Volume inside them.
+    Volume(f64),
+    /// Centre of the volume; of the faces where there is none.
+    Centroid(DVec3),
+}
+
 /// What a CAD file holds, in file order and model units.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
@@ -96,10 +122,14 @@ pub struct Part {
     pub solids: Vec<Group>,
     /// What has the same colour, with red, green and blue from 0 to 1.
     pub colors: Vec<(Group, [f64; 3])>,
+    /// What the file states of its parts, to be compared.
+    pub stated: Vec<Stated>,
     /// What stands before the number of an entity in messages: `D` or `#`.
     pub mark: &'static str,
     /// The file's unit.
     pub unit: &'static str,
+    /// The model's unit.
+    pub model_unit: &'static str,
     /// What was repaired or skipped, by line.
     pub warnings: Vec<Malformed>,
 }

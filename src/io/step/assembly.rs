@@ -38,6 +38,8 @@ pub struct Instance {
     pub parent: Option<usize>,
     /// The entity that names it.
     pub entity: u32,
+    /// Its product definition.
+    pub product: Option<u32>,
 }
 
 /// All that is shown, in file order.
@@ -209,12 +211,12 @@ impl Walk<'_, '_> {
     }
 
     /// Adds an instance; none when there are too many.
-    fn instance(&mut self, name: String, parent: Option<usize>, entity: u32) -> Option<usize> {
+    fn instance(&mut self, name: String, parent: Option<usize>, entity: u32, product: Option<u32>) -> Option<usize> {
         if self.found.instances.len() >= limits::PART_INSTANCES {
             self.too_many(entity);
             return None;
         }
-        self.found.instances.push(Instance { name, parent, entity });
+        self.found.instances.push(Instance { name, parent, entity, product });
         Some(self.found.instances.len() - 1)
     }
 
@@ -236,7 +238,7 @@ impl Walk<'_, '_> {
         }
         let own = product_name(self.step.file, product);
         let name = if name.is_empty() || depth == 0 { own } else { name };
-        let Some(instance) = self.instance(name, parent, entity) else { return };
+        let Some(instance) = self.instance(name, parent, entity, Some(product)) else { return };
         let first = self.tables.shapes.get(&product).cloned().unwrap_or_default();
         for representation in self.tables.one_with(&first, &self.owned) {
             self.representation(representation, instance, motion, depth);
@@ -268,7 +270,7 @@ impl Walk<'_, '_> {
         if items.iter().all(|k| file.name(*k).starts_with(b"AXIS")) {
             return;
         }
-        if let Some(instance) = self.instance(name, None, representation) {
+        if let Some(instance) = self.instance(name, None, representation, None) {
             self.representation(representation, instance, motion, 0);
         }
     }
@@ -311,7 +313,7 @@ impl Walk<'_, '_> {
         match placed {
             Ok((of, placed)) => {
                 let name = row.text(0);
-                let Some(instance) = self.instance(name, Some(instance), item) else { return };
+                let Some(instance) = self.instance(name, Some(instance), item, None) else { return };
                 for representation in self.tables.one_with(&[of], &self.owned) {
                     self.representation(representation, instance, &placed.then(motion), depth + 1);
                 }

@@ -26,6 +26,7 @@ mod splines;
 mod strings;
 mod surfaces;
 mod units;
+mod validation;
 pub mod write;
 
 pub use part::{Opened, open};

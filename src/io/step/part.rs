@@ -10,6 +10,7 @@ use super::part21::{self, File};
 use super::reader::Step;
 use super::shapes::{Bundle, Item as Shape, Sort, Unread};
 use super::units::Units;
+use super::validation::{self, Given, Of};
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
 use crate::base::job;
@@ -17,7 +18,7 @@ use crate::base::limits;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Motion;
 use crate::io::cad::damage::Damage;
-use crate::io::cad::part::{Group, Item, Names, Options, Part, Place, Shades};
+use crate::io::cad::part::{Figure, Group, Item, Names, Options, Part, Place, Shades, Stated};
 
 /// A file read as far as its records and the places of its products, no geometry yet.
 #[derive(Debug)]
@@ -86,7 +87,7 @@ impl Opened<'_> {
         let maker = Maker {
             looks: Looks::of(&file),
             step,
-            part: Part { unit, mark: "#", ..Part::default() },
+            part: Part { unit, mark: "#", model_unit: options.unit, ..Part::default() },
             names: Names::default(),
             shades: Shades::default(),
             made: BTreeMap::new(),
@@ -130,6 +131,7 @@ impl Maker<'_> {
             *uses.entry(placed.item).or_insert(0) += 1;
             of_instance[placed.instance] += usize::from(is_body(self.step.file, placed.item));
         }
+        let all_uses = uses.clone();
         for placed in &assembly.placed {
             job::look();
             let left = uses.entry(placed.item).or_insert(1);
@@ -157,6 +159,8 @@ impl Maker<'_> {
                 shapes.insert(placed.item, (placed.units, shape));
             }
         }
+        self.inherit(assembly);
+        self.stated(assembly, &all_uses);
         self.instances(assembly);
         self.layers();
         for (word, (k, n)) in unread {
@@ -262,8 +266,8 @@ impl Maker<'_> {
         Item { name, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
     }
 
-    /// A group for each named product at its place, with the parts of it.
-    fn instances(&mut self, assembly: &Assembly) {
+    /// Gives each product what its parts have.
+    fn inherit(&mut self, assembly: &Assembly) {
         let mut budget = limits::PART_COPIES;
         for k in (0..assembly.instances.len()).rev() {
             let Some(parent) = assembly.instances[k].parent else { continue };
@@ -279,6 +283,10 @@ impl Maker<'_> {
             held.curves.extend(inner.curves);
             held.surfaces.extend(inner.surfaces);
         }
+    }
+
+    /// A group for each named product at its place, with the parts of it.
+    fn instances(&mut self, assembly: &Assembly) {
         for (k, instance) in assembly.instances.iter().enumerate() {
             let mut group = std::mem::take(&mut self.held[k]);
             let is_single = self.single[k].is_some_and(|body| {
@@ -293,6 +301,44 @@ impl Maker<'_> {
             }
             group.name = self.names.give(&name);
             self.part.groups.push(group);
+        }
+    }
+
+    /// What the file states of products and items that came in.
+    fn stated(&mut self, assembly: &Assembly, uses: &BTreeMap<u32, usize>) {
+        let file = self.step.file;
+        for (of, given, k) in validation::given(file) {
+            let (mut surfaces, copies, placed, name) = match &of {
+                Of::Product(product) => {
+                    let Some(at) = assembly.instances.iter().position(|i| i.product == Some(*product)) else { continue };
+                    let placed = assembly.placed.iter().find(|p| p.instance == at);
+                    (self.held[at].surfaces.clone(), 1, placed, assembly.instances[at].name.clone())
+                }
+                Of::Items(items) => {
+                    let made = items.iter().flat_map(|item| self.made.get(item).into_iter().flatten());
+                    let faces = made.filter_map(|at| if let Place::Surface(k) = at { Some(*k) } else { None }).collect();
+                    let copies = items.iter().filter_map(|item| uses.get(item)).copied().max().unwrap_or(1);
+                    let placed = assembly.placed.iter().find(|p| items.contains(&p.item));
+                    (faces, copies, placed, items.first().map_or(String::new(), |item| self.step.said(*item)))
+                }
+            };
+            surfaces.sort_unstable();
+            surfaces.dedup();
+            let units = placed.or(assembly.placed.first()).map_or(Units::NONE, |p| p.units);
+            self.step.measure_in(units);
+            // Model units in a millimetre of the file, in which the import may see another unit.
+            let length = self.step.scale / units.millimetres.unwrap_or(1.0);
+            let figure = match given {
+                Given::Area(x) => Figure::Area(x * length * length),
+                Given::Volume(x) => Figure::Volume(x * length * length * length),
+                // Where it stands is known of one copy only, and of one that has items of its own.
+                Given::Centroid(point) => match (self.step.point(point), placed) {
+                    (Ok(p), Some(placed)) if copies == 1 => Figure::Centroid(placed.motion.point(p)),
+                    _ => continue,
+                },
+            };
+            let name = format!("#{} {name}", file.id(k));
+            self.part.stated.push(Stated { surfaces, copies, figure, name, line: file.line(k) });
         }
     }
 

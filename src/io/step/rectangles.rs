@@ -5,7 +5,7 @@ use super::curves::Course;
 use super::reader::Step;
 use crate::base::bbox::Box3;
 use crate::base::math;
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{EPSILON, NUDGE};
 use crate::geometry::{Curve, Motion, build};
 use crate::io::cad::base::Base;
 use crate::io::cad::damage::{Damage, damage};
@@ -35,7 +35,10 @@ impl Step<'_> {
         let round = |a: f64, b: f64| {
             let (a, b) = (a * angle, b * angle);
             let sweep = if b > a { b - a } else { b - a + TURN };
-            (a, if sweep >= TURN * (1.0 - EPSILON) { a + TURN } else { a + sweep })
+            if !(sweep > 0.0 && sweep <= TURN * (1.0 + NUDGE)) {
+                return Err(damage(format!("its angles run from {a} to {b}, which is no part of a turn")));
+            }
+            Ok((a, if sweep >= TURN * (1.0 - EPSILON) { a + TURN } else { a + sweep }))
         };
         let whole = |angles: (f64, f64), axis: Axis, profile: Curve| Ok(Base::Turned { axis, profile, angles, first: None });
         match self.file.name(k) {
@@ -51,7 +54,7 @@ impl Step<'_> {
                 let radius = row.number(2)? * length;
                 let (v0, v1) = ordered(v0 * length, v1 * length);
                 let at = |v: f64| frame.at + frame.z * v + frame.x * (radius + slope * v);
-                whole(round(u0, u1), Axis { about: frame.at, direction: frame.z }, build::line(at(v0), at(v1), self.origin)?)
+                whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, build::line(at(v0), at(v1), self.origin)?)
             }
             b"SPHERICAL_SURFACE" | b"TOROIDAL_SURFACE" => {
                 let frame = self.frame(row.entity(1)?)?;
@@ -59,8 +62,8 @@ impl Step<'_> {
                 let (major, minor) = if is_sphere { (0.0, row.number(2)?) } else { (row.number(2)?, row.number(3)?) };
                 let (major, minor) = (major * length, minor * length);
                 let circle = Endless::Ellipse(frame.at + frame.x * major, frame.x * minor, frame.z * minor);
-                let (v0, v1) = if is_sphere { ordered(v0 * angle, v1 * angle) } else { round(v0, v1) };
-                whole(round(u0, u1), Axis { about: frame.at, direction: frame.z }, circle.part(v0, v1, self.origin)?)
+                let (v0, v1) = if is_sphere { ordered(v0 * angle, v1 * angle) } else { round(v0, v1)? };
+                whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, circle.part(v0, v1, self.origin)?)
             }
             b"SURFACE_OF_LINEAR_EXTRUSION" => {
                 let of = self.course(row.entity(1)?, 0)?;
@@ -72,7 +75,7 @@ impl Step<'_> {
             b"SURFACE_OF_REVOLUTION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let frame = self.frame(row.entity(2)?)?;
-                whole(round(u0, u1), Axis { about: frame.at, direction: frame.z }, self.over(&of, v0, v1)?)
+                whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, self.over(&of, v0, v1)?)
             }
             _ => match self.base(k, &Box3::EMPTY, 0)? {
                 Base::Net(net, [a, b, c, d]) if a.is_finite() => {

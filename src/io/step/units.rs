@@ -59,6 +59,11 @@ pub fn of_context(file: &File, context: u32, warn: &mut dyn FnMut(u32, String)) 
     units
 }
 
+/// Millimetres in a unit of length; none for another unit.
+pub fn unit_of_length(file: &File, unit: u32) -> Option<f64> {
+    size(file, unit, 0).ok().filter(|(kind, _)| *kind == Kind::Length).map(|(_, mm)| mm)
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     Length,
