@@ -73,6 +73,7 @@ fn references_lead_to_earlier_records() {
                 assert!(other < *id && all.contains_key(&other), "{name}: #{id} refers to #{other}");
             }
             assert!(!record.contains("NaN") && !record.contains("inf"), "{name}: #{id}={record}");
+            assert!(*record != "DIRECTION('',(0.,0.,0.))", "{name}: #{id} has no length");
         }
     }
 }

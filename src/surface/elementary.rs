@@ -136,9 +136,11 @@ fn carried(profile: &Curve, by: DVec3) -> Option<(Form, DVec3)> {
 fn turned(profile: &Curve, axis: Axis, tolerance: &Tolerance) -> Option<(Form, DVec3)> {
     let out = |p: DVec3| (p - axis.about).reject_from_normalized(axis.direction);
     let foot = |p: DVec3| axis.about + axis.direction * axis.direction.dot(p - axis.about);
-    let (start, end) = (profile.start(), profile.end());
-    let farther = if out(end).length() > out(start).length() { end } else { start };
-    let reference = out(farther).normalize_or_zero();
+    // Both ends of a sphere's profile lie on the axis.
+    let (from, to) = profile.domain();
+    let places = [profile.start(), profile.end(), profile.point(0.5 * (from + to))].map(out);
+    let farthest = places.into_iter().fold(DVec3::ZERO, |a, b| if b.length() > a.length() { b } else { a });
+    let reference = farthest.normalize_or_zero();
     // Whether a direction and a point lie in the half plane of the axis through the reference.
     let across = axis.direction.cross(reference);
     let in_plane = |p: DVec3| across.dot(p - axis.about).abs() <= tolerance.rounding;
