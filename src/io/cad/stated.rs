@@ -22,7 +22,7 @@ impl Part {
             let off = (found - given) / given;
             let said =
                 format!("{}: its {word} is {found:.6} {unit}, the file states {given:.6} {unit} ({:+.2} %)", stated.name, 100.0 * off);
-            (!(off.abs() <= STATED)).then(|| Malformed::line(stated.line, said))
+            (off.is_nan() || off.abs() > STATED).then(|| Malformed::line(stated.line, said))
         };
         let copies = stated.copies.max(1) as f64;
         match stated.figure {

@@ -96,7 +96,7 @@ pub fn read(bytes: &[u8]) -> Result<File<'_>, Malformed> {
     let (mut records, mut wrong) = (Vec::with_capacity(bytes.len() / 64), Vec::new());
     let mut again = READ_AGAIN * bytes.len();
     let (mut sections, mut ended) = (0, false);
-    while reader.to_data() {
+    while reader.enter_data() {
         sections += 1;
         ended = reader.section(&mut records, &mut wrong, &mut again);
     }
@@ -240,7 +240,7 @@ impl<'b> Reader<'b> {
     }
 
     /// Goes behind the head of the next DATA section.
-    fn to_data(&mut self) -> bool {
+    fn enter_data(&mut self) -> bool {
         while self.at < self.bytes.len() {
             job::look();
             self.skip();
@@ -272,7 +272,7 @@ impl<'b> Reader<'b> {
     /// The records up to ENDSEC; whether it was there.
     fn section(&mut self, records: &mut Vec<Record>, wrong: &mut Vec<Wrong>, again: &mut usize) -> bool {
         loop {
-            if records.len() % 1024 == 0 {
+            if records.len().is_multiple_of(1024) {
                 job::look();
             }
             self.skip();

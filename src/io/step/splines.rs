@@ -158,7 +158,7 @@ fn implied(form: Form, degree: usize, points: usize) -> Result<Vec<f64>, Damage>
         Form::Uniform => (0..all).map(|k| k as f64 - degree as f64).collect(),
         Form::QuasiUniform => (0..all).map(|k| k.saturating_sub(degree).min(spans) as f64).collect(),
         Form::Bezier => {
-            if (points - 1) % degree != 0 {
+            if !(points - 1).is_multiple_of(degree) {
                 return Err(damage(format!("{points} points are no Bézier pieces of degree {degree}")));
             }
             let pieces = (points - 1) / degree;
