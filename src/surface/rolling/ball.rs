@@ -93,6 +93,11 @@ impl Face {
         DVec2::new(turn(uv.x, to.x, closed.0), turn(uv.y, to.y, closed.1))
     }
 
+    /// The nearest point of the kept part.
+    pub fn nearest(&self, p: DVec3) -> DVec3 {
+        self.near.at(p).point
+    }
+
     /// Distance of a point from the kept part.
     pub fn distance(&self, p: DVec3) -> f64 {
         self.near.at(p).distance
@@ -242,11 +247,11 @@ impl Ball {
         if self.closed {
             all[STARTS] = all[0];
         }
-        let kept: Vec<bool> = all.iter().map(|s| self.holds(s)).collect();
+        let kept: Vec<bool> = all.iter().map(|s| self.holds(s) && self.leaves(s)).collect();
         // Towards the ends of an open edge it may leave the surfaces for good.
         let gone = |k: usize| if k < STARTS / 2 { kept[..k].iter().all(|x| !x) } else { kept[k..].iter().all(|x| !x) };
         let within = |k: usize| kept[k] || !self.closed && k != STARTS / 2 && gone(k);
-        match (0..=STARTS).find(|k| !within(*k) || !self.fits(&all[*k], radius, kept[*k])) {
+        match (0..=STARTS).find(|k| !within(*k) || !self.fits(&all[*k], radius)) {
             Some(k) => Err(self.starts[k].at),
             None => Ok(all),
         }
@@ -285,16 +290,17 @@ impl Ball {
         (0..2).all(|k| self.faces[k].distance(station.feet[k]) <= self.tolerance.point)
     }
 
-    /// Whether a ball reaches into no surface, its feet run forwards, and something is left of both surfaces beyond them.
-    fn fits(&self, station: &Station, radius: f64, kept: bool) -> bool {
-        let point = self.tolerance.point;
+    /// Whether something is left of both surfaces beyond where it touches them.
+    fn leaves(&self, station: &Station) -> bool {
+        let step = LEFT * self.tolerance.point;
+        self.at_end(station) || (0..2).all(|k| self.faces[k].runs_on(station.feet[k], self.away(station, k), step))
+    }
+
+    /// Whether a ball reaches into no surface, and its feet run forwards.
+    fn fits(&self, station: &Station, radius: f64) -> bool {
         (0..2).all(|k| {
-            let face = &self.faces[k];
-            let foot = station.feet[k];
             let forward = station.rates[k].dot(station.way) > NUDGE;
-            let clear = face.distance(station.center) >= radius - point;
-            let left = !kept || face.runs_on(foot, self.away(station, k), LEFT * point) || self.at_end(station);
-            forward && clear && left
+            forward && self.faces[k].distance(station.center) >= radius - self.tolerance.point
         })
     }
 
