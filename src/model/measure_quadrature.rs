@@ -8,6 +8,8 @@ use crate::surface::{Domain, Jet2, Surface};
 
 /// Orders of the rules tried one after the other on a cell.
 pub(super) const ORDERS: [usize; 4] = [4, 7, 11, 16];
+/// The same where the first division has many cells, each of which is little.
+const ORDERS_OF_MANY: [usize; 5] = [3, 5, 7, 11, 16];
 /// A cell is halved at most so often in each direction.
 pub(super) const DEEPEST: u32 = 12;
 /// Cells examined in all.
@@ -18,7 +20,7 @@ const SMOOTH: f64 = 0.25;
 const MANY: usize = 1 << 13;
 /// Cells that a rule looks at, at most, for each one that needs it.
 const SPARSE: usize = 4;
-/// Points evaluated at once in the first division: what a row and a column share is then evaluated once.
+/// Points evaluated at once in the first division: what a row and a column share is then evaluated once for all of them.
 const BATCH: usize = 1 << 15;
 
 /// Sums of N functions.
@@ -60,12 +62,13 @@ pub fn integral<const N: usize>(
     accuracy: f64,
     (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
 ) -> (Sums<N>, Sums<N>) {
-    let rules: Vec<Vec<(f64, f64)>> = ORDERS.iter().map(|&n| gauss_legendre(n)).collect();
     let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
     // A triangle's lines do not follow the square.
     let us = if surface.domain() == Domain::Triangle { Vec::new() } else { us };
     let (us, vs) = (spans(apart(us, kinks.0), within.0), spans(apart(vs, kinks.1), within.1));
     let open: Vec<Cell> = vs.iter().flat_map(|y| us.iter().map(|x| Cell { x: *x, y: *y, depth: 0 })).collect();
+    let orders = if open.len() > MANY { &ORDERS_OF_MANY[..] } else { &ORDERS[..] };
+    let rules: Vec<Vec<(f64, f64)>> = orders.iter().map(|&n| gauss_legendre(n)).collect();
     let share = accuracy / open.len() as f64;
     let first = products(surface, (&us, &vs), &rules[0], f);
     let second = products(surface, (&us, &vs), &rules[1], f);
@@ -212,21 +215,33 @@ fn products<const N: usize>(
     let on = |spans: &[(f64, f64)]| -> Vec<f64> {
         spans.iter().flat_map(|(a, b)| rule.iter().map(move |(x, _)| 0.5 * (a + b) + 0.5 * (b - a) * x)).collect()
     };
-    let columns = on(us);
-    let rows = (BATCH / (columns.len() * order).max(1)).clamp(1, vs.len());
-    let mut found = Vec::with_capacity(us.len() * vs.len());
-    for band in vs.chunks(rows) {
-        job::look();
-        let jets = surface.square_jets(&columns, &on(band));
-        for (j, y) in band.iter().enumerate() {
-            for (i, x) in us.iter().enumerate() {
-                let area = 0.25 * (x.1 - x.0) * (y.1 - y.0);
-                let at = |k: usize| &jets[(j * order + k / order) * columns.len() + i * order + k % order];
-                found.push(weighed((0..order * order).map(at), area, rule, f));
+    let (wide, high) = block(surface, (us.len(), vs.len()), BATCH / (order * order));
+    let mut found = vec![[0.0; N]; us.len() * vs.len()];
+    for (n, band) in vs.chunks(high).enumerate() {
+        let ys = on(band);
+        for (m, part) in us.chunks(wide).enumerate() {
+            job::look();
+            let xs = on(part);
+            let jets = surface.square_jets(&xs, &ys);
+            for (j, y) in band.iter().enumerate() {
+                for (i, x) in part.iter().enumerate() {
+                    let area = 0.25 * (x.1 - x.0) * (y.1 - y.0);
+                    let at = |k: usize| &jets[(j * order + k / order) * xs.len() + i * order + k % order];
+                    found[(n * high + j) * us.len() + m * wide + i] = weighed((0..order * order).map(at), area, rule, f);
+                }
             }
         }
     }
     found
+}
+
+/// Columns and rows of cells that are evaluated at once, about `most` cells: so many of each that the curves along both directions,
+/// each evaluated once for a block, are evaluated the fewest times in all.
+fn block(surface: &Surface, (us, vs): (usize, usize), most: usize) -> (usize, usize) {
+    let (along_u, along_v) = surface.curves_of_a_point();
+    let even = (most as f64 * along_u as f64 / along_v.max(1) as f64).sqrt() as usize;
+    let high = if along_v == 0 { vs } else { even.max(most / us.max(1)) }.clamp(1, vs.max(1).min(most.max(1)));
+    ((most / high).clamp(1, us.max(1)), high)
 }
 
 /// One rule on one cell.

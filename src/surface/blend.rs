@@ -131,8 +131,9 @@ impl Blend {
 
     /// Points of the tensor grid `us × vs`, u fastest. Every curve is evaluated once per row or column.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        let columns = Columns::new(self, us);
-        let rows = RowPoints::new(self, vs);
+        let rows: Vec<Weights> = vs.iter().map(|&v| self.v.weights(v, Lean::After)).collect();
+        let columns = Columns::new(self, us, &rows);
+        let rows = RowPoints::new(self, vs, rows);
         let width = us.len().max(1);
         par::chunks_mut(out, width * ROWS, |chunk, part| {
             for (line, k) in part.chunks_exact_mut(width).zip(chunk * ROWS..vs.len()) {
@@ -171,13 +172,13 @@ impl Blend {
     /// Jets of the tensor grid `us × vs`, u fastest, each with its own lean (see [`Blend::jet`]).
     pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
         let a: Vec<Weights> = us.iter().map(|&(u, lean)| self.u.weights(u, lean)).collect();
-        let along_u = self.along_u.iter().map(|g| us.iter().map(|&(u, lean)| g.jet(u, lean)).collect()).collect();
-        let along_u: Vec<Vec<Jet>> = all_terms(&self.v, along_u);
-        for &(v, lean) in vs {
-            let b = self.v.weights(v, lean);
+        let rows: Vec<Weights> = vs.iter().map(|&(v, lean)| self.v.weights(v, lean)).collect();
+        let curve = |j: usize| us.iter().map(|&(u, lean)| self.along_u[j].jet(u, lean)).collect();
+        let along_u: Vec<Vec<Jet>> = asked_terms(&self.v, self.along_u.len(), &rows, curve);
+        for (&(v, lean), b) in vs.iter().zip(&rows) {
             let along_v = self.along_v.iter().map(|f| vec![f.jet(v, lean)]).collect();
             let mut along_v: Vec<Vec<Jet>> = all_terms(&self.u, along_v);
-            along_v.iter_mut().enumerate().for_each(|(i, f)| self.less_nodes(i, &b, &mut f[0]));
+            along_v.iter_mut().enumerate().for_each(|(i, f)| self.less_nodes(i, b, &mut f[0]));
             for (c, a) in a.iter().enumerate() {
                 let mut row = Row::default();
                 if !along_v.is_empty() {
@@ -240,6 +241,9 @@ fn active_lines(axis: &Axis, cell: usize, curve: impl Fn(usize) -> Jet) -> [Jet;
     let mut lines = [Jet::default(); 4];
     let (first, second) = (&axis.slopes()[cell], &axis.slopes()[cell + 1]);
     for i in 0..axis.nodes.len() {
+        if first[i] == 0.0 && second[i] == 0.0 && i != cell && i != cell + 1 {
+            continue;
+        }
         let jet = curve(i);
         if i == cell {
             lines[0] = jet;
@@ -278,11 +282,32 @@ fn all_terms<T: Terms>(axis: &Axis, mut rows: Vec<Vec<T>>) -> Vec<Vec<T>> {
     if !rows.is_empty() {
         for slope in axis.slopes() {
             let mut sums = vec![T::default(); width];
-            for (row, &by) in rows.iter().zip(slope) {
+            for (row, &by) in rows.iter().zip(slope).filter(|(_, by)| **by != 0.0) {
                 row.iter().zip(&mut sums).for_each(|(x, sum)| x.add_times(by, sum));
             }
             rows.push(sums);
         }
+    }
+    rows
+}
+
+/// The same of the terms that some blending values ask for, from the `n` curves that these are sums of; the others are empty.
+fn asked_terms<T: Terms>(axis: &Axis, n: usize, weights: &[Weights], curve: impl Fn(usize) -> Vec<T>) -> Vec<Vec<T>> {
+    if axis.slopes().is_empty() || n == 0 {
+        return (0..n).map(curve).collect();
+    }
+    let mut asked = vec![false; axis.terms()];
+    weights.iter().flat_map(Weights::iter).for_each(|(term, _)| asked[term] = true);
+    let slopes = || axis.slopes().iter().zip(&asked[n..]);
+    let taken = |i: usize| asked[i] || slopes().any(|(slope, asked)| *asked && slope[i] != 0.0);
+    let mut rows: Vec<Vec<T>> = (0..n).map(|i| if taken(i) { curve(i) } else { Vec::new() }).collect();
+    let width = rows.iter().map(Vec::len).max().unwrap_or(0);
+    for (slope, asked) in slopes() {
+        let mut sums = if *asked { vec![T::default(); width] } else { Vec::new() };
+        for (row, &by) in rows.iter().zip(slope).filter(|(_, by)| **by != 0.0) {
+            row.iter().zip(&mut sums).for_each(|(x, sum)| x.add_times(by, sum));
+        }
+        rows.push(sums);
     }
     rows
 }
@@ -341,7 +366,7 @@ struct ColumnRun {
 }
 
 impl Columns {
-    fn new(blend: &Blend, us: &[f64]) -> Self {
+    fn new(blend: &Blend, us: &[f64], rows: &[Weights]) -> Self {
         let active = blend.u.active();
         let (mut weights, mut second, mut runs) = (Vec::new(), Vec::new(), Vec::<ColumnRun>::new());
         for (c, &u) in us.iter().enumerate() {
@@ -356,7 +381,7 @@ impl Columns {
                 weights.push(a);
             }
         }
-        let along_u = all_terms(&blend.v, blend.along_u.iter().map(|g| g.points(us)).collect());
+        let along_u = asked_terms(&blend.v, blend.along_u.len(), rows, |j| blend.along_u[j].points(us));
         Self { active, weights, second, runs, along_u }
     }
 }
@@ -368,11 +393,8 @@ struct RowPoints {
 }
 
 impl RowPoints {
-    fn new(blend: &Blend, vs: &[f64]) -> Self {
-        Self {
-            weights: vs.iter().map(|&v| blend.v.weights(v, Lean::After)).collect(),
-            along_v: all_terms(&blend.u, blend.along_v.iter().map(|f| f.points(vs)).collect()),
-        }
+    fn new(blend: &Blend, vs: &[f64], weights: Vec<Weights>) -> Self {
+        Self { weights, along_v: all_terms(&blend.u, blend.along_v.iter().map(|f| f.points(vs)).collect()) }
     }
 }
 

@@ -21,8 +21,10 @@ pub struct BlendStrip {
     terms: Vec<usize>,
     shares: usize,
     weights: Vec<([f64; 3], [Range; 3])>,
-    /// The curves along the strip, one per node of the other direction.
-    rails: Vec<Line>,
+    /// The curves along the strip, one per node of the other direction, made for the cells that ask for them.
+    rails: Vec<OnceLock<Line>>,
+    /// Where it begins and ends.
+    ends: (f64, f64),
     /// Slopes across them: sums of all curves, made for the cells that ask for them.
     slopes: Vec<OnceLock<Line>>,
 }
@@ -42,17 +44,20 @@ impl Blend {
         let idle = along_u && self.along_v().is_empty();
         let middle = axis.weights(0.5 * (x0 + x1), Lean::After);
         let weights = if idle { Vec::new() } else { middle.values().iter().copied().zip(axis.ranges(x0, x1)).collect::<Vec<_>>() };
-        let rails: Vec<Line> = rails.iter().map(|rail| rail.line(x0, x1)).collect();
+        let rails = vec![OnceLock::new(); rails.len()];
         let slopes = if rails.is_empty() { Vec::new() } else { vec![OnceLock::new(); across.slopes().len()] };
         let terms = if idle { Vec::new() } else { middle.iter().map(|(term, _)| term).collect() };
-        BlendStrip { terms, shares: axis.shares(), weights, rails, slopes }
+        BlendStrip { terms, shares: axis.shares(), weights, rails, ends: (x0, x1), slopes }
     }
 
     /// The curve or slope of a term along a strip (`along_u`: of u).
     fn term(&self, strip: &BlendStrip, along_u: bool, term: usize) -> Line {
-        let Some(slope) = term.checked_sub(strip.rails.len()) else { return strip.rails[term] };
+        let rails = if along_u { self.along_u() } else { self.along_v() };
+        let rail = |k: usize| *strip.rails[k].get_or_init(|| rails[k].line(strip.ends.0, strip.ends.1));
+        let Some(slope) = term.checked_sub(rails.len()) else { return rail(term) };
         let across = if along_u { self.axes().1 } else { self.axes().0 };
-        let sum = || Line::sum(across.slopes()[slope].iter().copied().zip(strip.rails.iter().copied()));
+        let felt = || across.slopes()[slope].iter().enumerate().filter(|(_, by)| **by != 0.0);
+        let sum = || Line::sum(felt().map(|(k, by)| (*by, rail(k))));
         *strip.slopes[slope].get_or_init(sum)
     }
 

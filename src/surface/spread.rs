@@ -115,6 +115,11 @@ impl Surface {
         matches!(self.parts().shape, Shape::Sweep(_))
     }
 
+    /// How many curves a point is made of that depend on u alone, and on v alone: on a grid each is evaluated once a column or a row.
+    pub fn curves_of_a_point(&self) -> (usize, usize) {
+        if let Shape::Blend(blend) = &self.parts().shape { (blend.along_u().len(), blend.along_v().len()) } else { (1, 1) }
+    }
+
     /// What depends on u alone.
     pub fn strip_u(&self, u0: f64, u1: f64) -> Strip {
         let swapped = self.parts().flipped && self.domain() == Domain::Triangle;

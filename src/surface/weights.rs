@@ -65,6 +65,10 @@ pub struct Weights {
     many: Vec<[f64; 3]>,
 }
 
+/// Share of the largest number of a slope's row that no sum feels any more: numbers halve at least from node to node, so what is far
+/// away is none of the slope's curves.
+const UNFELT: f64 = f64::EPSILON / 256.0;
+
 /// Up to so many blending values live without an allocation.
 const FEW: usize = 6;
 
@@ -105,7 +109,11 @@ impl Weights {
 impl Axis {
     /// An axis with what its rule needs to be evaluated.
     pub fn new(nodes: Vec<f64>, rule: Rule) -> Self {
-        let slopes = if rule.is_spline() { cardinal::slopes(&nodes, rule == Rule::Periodic) } else { Vec::new() };
+        let mut slopes = if rule.is_spline() { cardinal::slopes(&nodes, rule == Rule::Periodic) } else { Vec::new() };
+        for row in &mut slopes {
+            let least = row.iter().fold(0.0, |most: f64, x| most.max(x.abs())) * UNFELT;
+            row.iter_mut().filter(|x| x.abs() <= least).for_each(|x| *x = 0.0);
+        }
         Self { nodes, rule, slopes }
     }
 
