@@ -18,6 +18,7 @@ import members
 import orders
 import read_back
 import solve
+import step_out
 import surfaces
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -131,6 +132,9 @@ def main():
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
     wrong, n = cad_in.table(loft, os.path.join(work, "cad"))
+    tally.passed += n - len(wrong)
+    tally.failed += len(wrong)
+    wrong, n = step_out.table(loft, os.path.join(work, "step_out"))
     tally.passed += n - len(wrong)
     tally.failed += len(wrong)
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
