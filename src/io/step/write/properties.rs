@@ -3,6 +3,7 @@
 use super::product::Context;
 use super::text::{Id, Records};
 use super::{Setup, Thing};
+use crate::base::math::powi;
 
 /// Area and volume, model units.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,7 +31,7 @@ pub fn put(records: &mut Records, things: &[Thing], (product, context): (Id, Con
             v.ids(&[element]);
         });
         let item = records.put("MEASURE_REPRESENTATION_ITEM", |v| {
-            v.text(item).typed(measure, value / model.powi(power)).id(unit);
+            v.text(item).typed(measure, value / powi(model, power)).id(unit);
         });
         let representation = records.put("REPRESENTATION", |v| {
             v.text(name).ids(&[item]).id(context.context);
