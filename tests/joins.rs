@@ -126,7 +126,7 @@ fn tower(numbers: &mut Random, n: usize) -> Vec<Surface> {
 
 #[test]
 fn seams_of_closed_borders_may_lie_anywhere() {
-    let mut numbers = Random(0x5ea_0);
+    let mut numbers = Random(0x5ea0);
     for case in 0..60 {
         let parts = tower(&mut numbers, 2 + case % 3);
         let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();

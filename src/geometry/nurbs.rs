@@ -7,13 +7,15 @@ use super::motion::Motion;
 use crate::base::bbox::Box3;
 use crate::base::solve::Linear;
 
-/// Highest degree; evaluation works on arrays of this size.
-pub const MAX_DEGREE: usize = 9;
+/// Highest degree.
+pub const MAX_DEGREE: usize = 25;
+/// Up to this degree evaluation works on small arrays: most curves and surfaces are below it.
+pub const COMMON_DEGREE: usize = 9;
 
 /// C(t) = Σ wᵢ Pᵢ Nᵢ(t) / Σ wᵢ Nᵢ(t).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nurbs {
-    /// Degree, 1…9.
+    /// Degree, 1…25.
     pub degree: usize,
     /// Knots, not decreasing, `poles.len() + degree + 1` of them.
     pub knots: Vec<f64>,
@@ -125,18 +127,23 @@ impl Nurbs {
 
     /// Point and derivatives of the polynomial piece of span `k`, also outside it.
     pub fn jet_in(&self, k: usize, t: f64) -> Jet {
+        if self.degree <= COMMON_DEGREE { self.jet_on::<{ COMMON_DEGREE + 1 }>(k, t) } else { self.jet_on::<{ MAX_DEGREE + 1 }>(k, t) }
+    }
+
+    /// The same by arrays of N poles, more than the degree.
+    fn jet_on<const N: usize>(&self, k: usize, t: f64) -> Jet {
         let p = self.degree;
         let (poles, x) = (&self.poles[k - p..=k], &self.knots[k + 1 - p..=k + p]);
         if self.polynomial {
             let w = 1.0 / poles[0].w;
-            let mut d = [DVec3::ZERO; MAX_DEGREE + 1];
+            let mut d = [DVec3::ZERO; N];
             for (d, q) in d.iter_mut().zip(poles) {
                 *d = q.truncate();
             }
             let [p, d1, d2] = de_boor(&mut d[..=p], x, t);
             return if w == 1.0 { Jet { p, d1, d2 } } else { Jet { p: p * w, d1: d1 * w, d2: d2 * w } };
         }
-        let mut d = [DVec4::ZERO; MAX_DEGREE + 1];
+        let mut d = [DVec4::ZERO; N];
         d[..=p].copy_from_slice(poles);
         let [a, d1, d2] = de_boor(&mut d[..=p], x, t);
         let w = 1.0 / a.w;

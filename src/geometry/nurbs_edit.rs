@@ -96,7 +96,7 @@ impl Nurbs {
         pieces
     }
 
-    /// The same curve with its degree raised by `by`, to at most 9.
+    /// The same curve with its degree raised by `by`, to at most 25.
     pub fn elevated(&self, by: usize) -> Self {
         let mut curve = self.clone();
         for _ in 0..by {

@@ -15,7 +15,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::bounds::binomial;
 use crate::geometry::curve::Shape as CurveShape;
-use crate::geometry::nurbs::{MAX_DEGREE, projected};
+use crate::geometry::nurbs::{COMMON_DEGREE, projected};
 use crate::geometry::nurbs_edit::Bezier;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
@@ -65,7 +65,7 @@ fn over_plane(frame: &Frame, piece: &Bezier) -> Nurbs {
 
 fn over_net(net: &NurbsSurface, pieces: Vec<Bezier>) -> Option<Vec<Nurbs>> {
     let degree = pieces.first()?.poles.len() - 1;
-    if degree * (net.degree.0 + net.degree.1) > MAX_DEGREE {
+    if degree * (net.degree.0 + net.degree.1) > COMMON_DEGREE {
         return None;
     }
     let mut parted = pieces;

@@ -8,7 +8,7 @@ use super::rail::Lean;
 use super::spread::Spread;
 use crate::base::range::{Range, Ranges};
 use crate::base::tolerance::EPSILON;
-use crate::geometry::nurbs::{MAX_DEGREE, projected};
+use crate::geometry::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected};
 
 /// The Bézier points over an interval inside one span, as sums of the active poles.
 #[derive(Clone, Debug)]
@@ -40,6 +40,23 @@ fn shares(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> [f64; MAX_
             }
         }
         out[own] = d[p];
+    }
+    out
+}
+
+/// The same in a number of steps that grows with the square of the degree: level by level, all active poles at once.
+fn shares_by_levels(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> [f64; MAX_DEGREE + 1] {
+    let mut out = [0.0; MAX_DEGREE + 1];
+    out[0] = 1.0;
+    for (r, t) in (1..=p).zip(arguments) {
+        let mut next = [0.0; MAX_DEGREE + 1];
+        for (j, value) in out.iter().enumerate().take(r) {
+            let i = span + 1 + j - r;
+            let share = value / (knots[i + r] - knots[i]);
+            next[j] += (knots[i + r] - t) * share;
+            next[j + 1] += (t - knots[i]) * share;
+        }
+        out = next;
     }
     out
 }
@@ -80,7 +97,7 @@ impl NurbsSurface {
         let point = |k: usize| {
             let mut arguments = [x0; MAX_DEGREE];
             arguments[..k].fill(x1);
-            shares(knots, p, span, &arguments[..p])
+            if p <= COMMON_DEGREE { shares(knots, p, span, &arguments[..p]) } else { shares_by_levels(knots, p, span, &arguments[..p]) }
         };
         NetStrip { first: span - p, width: x1 - x0, shares: (0..=p).map(point).collect() }
     }
@@ -124,16 +141,22 @@ impl NurbsSurface {
     /// Bézier points over a rectangle, rows along u.
     pub(super) fn piece(&self, u: &NetStrip, v: &NetStrip) -> Net {
         let (p, q) = self.degree;
-        let mut all = [DVec4::ZERO; POINTS];
+        let mut all = vec![DVec4::ZERO; (p + 1) * (q + 1)];
         self.piece_into(u, v, &mut all);
-        all[..(p + 1) * (q + 1)].chunks_exact(p + 1).map(<[DVec4]>::to_vec).collect()
+        all.chunks_exact(p + 1).map(<[DVec4]>::to_vec).collect()
     }
 
     /// The same into one list, row after row.
-    pub(super) fn piece_into(&self, u: &NetStrip, v: &NetStrip, into: &mut [DVec4; POINTS]) {
+    pub(super) fn piece_into(&self, u: &NetStrip, v: &NetStrip, into: &mut [DVec4]) {
         let (p, q) = self.degree;
         let n = p + 1;
-        let mut rows = [DVec4::ZERO; POINTS];
+        let (mut few, mut many) = ([DVec4::ZERO; POINTS], Vec::new());
+        let rows: &mut [DVec4] = if n * (q + 1) <= POINTS {
+            &mut few
+        } else {
+            many.resize(n * (q + 1), DVec4::ZERO);
+            &mut many
+        };
         for j in 0..=q {
             let row = &self.poles[(v.first + j) * self.counts.0 + u.first..][..n];
             for (k, share) in u.shares.iter().enumerate() {
@@ -148,5 +171,21 @@ impl NurbsSurface {
     }
 }
 
-/// Most points of a piece of a net.
-pub(super) const POINTS: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
+/// Most points of a piece of a net of the degrees that most surfaces keep to.
+pub(super) const POINTS: usize = (COMMON_DEGREE + 1) * (COMMON_DEGREE + 1);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_the_same_by_levels() {
+        for p in 1..=9 {
+            let knots: Vec<f64> = (0..3 * p + 4).map(|k| (k * k + 9 * k) as f64 / 50.0).collect();
+            let span = p + 2;
+            let arguments: Vec<f64> = (0..p).map(|k| knots[span] + (knots[span + 1] - knots[span]) * k as f64 / p as f64).collect();
+            let (a, b) = (shares(&knots, p, span, &arguments), shares_by_levels(&knots, p, span, &arguments));
+            assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-12), "{p}: {a:?} {b:?}");
+        }
+    }
+}

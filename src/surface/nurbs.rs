@@ -13,7 +13,7 @@ use crate::base::fault::{CurveFault, Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::{EPSILON, Tolerance};
-use crate::geometry::nurbs::{MAX_DEGREE, projected, weighted};
+use crate::geometry::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected, weighted};
 use crate::geometry::{Motion, Nurbs};
 
 /// S(u, v) = Σ w_ij P_ij N_i(u) M_j(v) / Σ w_ij N_i(u) M_j(v) over 0 ≤ u, v ≤ 1.
@@ -35,25 +35,29 @@ crate::content!(NurbsSurface { degree, knots, poles, counts });
 const ROWS: usize = 16;
 
 /// Values and two derivatives of the basis functions that do not vanish on one span.
-struct Basis {
+struct Basis<const N: usize> {
     first: usize,
     n: usize,
-    values: [[f64; 3]; MAX_DEGREE + 1],
+    values: [[f64; 3]; N],
 }
 
-impl Basis {
+/// Functions of one span up to the degree that most surfaces keep to, and up to any.
+const COMMON: usize = COMMON_DEGREE + 1;
+const MOST: usize = MAX_DEGREE + 1;
+
+impl<const N: usize> Basis<N> {
     fn values(&self) -> &[[f64; 3]] {
         &self.values[..self.n]
     }
 }
 
 /// The basis at a parameter [Piegl & Tiller 1997, A2.2 and eq. 2.9].
-fn basis(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis {
+fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis<N> {
     let (low, high) = (degree, knots.len() - degree - 2);
     let inner = &knots[low + 1..=high];
     let reached = |k: &f64| if lean == Lean::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
     let span = low + inner.partition_point(reached);
-    let mut values = [[0.0; 3]; MAX_DEGREE + 1];
+    let mut values = [[0.0; 3]; N];
     let round = &knots[span + 1 - degree..=span + degree];
     // Loops of known length are unrolled.
     match degree {
@@ -65,17 +69,24 @@ fn basis(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis {
         6 => fill::<7>(round, t, &mut values),
         7 => fill::<8>(round, t, &mut values),
         8 => fill::<9>(round, t, &mut values),
-        _ => fill::<{ MAX_DEGREE + 1 }>(round, t, &mut values),
+        9 => fill::<10>(round, t, &mut values),
+        _ => fill_to::<MOST>(degree, round, t, &mut values),
     }
     Basis { first: span - degree, n: degree + 1, values }
 }
 
 /// The N functions of degree N − 1 with two derivatives, by the 2 (N − 1) knots round the span.
-fn fill<const N: usize>(knots: &[f64], t: f64, values: &mut [[f64; 3]; MAX_DEGREE + 1]) {
-    let degree = N - 1;
+#[inline]
+fn fill<const N: usize>(knots: &[f64], t: f64, values: &mut [[f64; 3]]) {
+    fill_to::<N>(N - 1, knots, t, values);
+}
+
+/// The functions of a degree below N with two derivatives.
+#[inline]
+fn fill_to<const N: usize>(degree: usize, knots: &[f64], t: f64, values: &mut [[f64; 3]]) {
     let mut rows = [[0.0; N]; N];
     rows[0][0] = 1.0;
-    for p in 1..N {
+    for p in 1..=degree {
         let below = rows[p - 1];
         for (r, &value) in below.iter().enumerate().take(p) {
             // N_{i,p-1} with i = r − p + degree (of these knots) feeds N_{i-1,p} and N_{i,p}.
@@ -98,7 +109,7 @@ fn fill<const N: usize>(knots: &[f64], t: f64, values: &mut [[f64; 3]; MAX_DEGRE
     };
     let first = lower(degree, &rows[degree - 1]);
     let second = if degree >= 2 { lower(degree, &lower(degree - 1, &rows[degree - 2])) } else { [0.0; N] };
-    for r in 0..N {
+    for r in 0..=degree {
         values[r] = [rows[degree][r], first[r], second[r]];
     }
 }
@@ -141,8 +152,17 @@ impl NurbsSurface {
 
     /// Point and derivatives, from the given sides where they jump.
     pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
-        let a = basis(&self.knots.0, self.degree.0, u, lean.0);
-        let b = basis(&self.knots.1, self.degree.1, v, lean.1);
+        if self.is_common() { self.jet_on::<COMMON>(u, v, lean) } else { self.jet_on::<MOST>(u, v, lean) }
+    }
+
+    /// Whether evaluation keeps to small arrays.
+    fn is_common(&self) -> bool {
+        self.degree.0.max(self.degree.1) <= COMMON_DEGREE
+    }
+
+    fn jet_on<const N: usize>(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+        let a: Basis<N> = basis(&self.knots.0, self.degree.0, u, lean.0);
+        let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, lean.1);
         let mut sums = [DVec4::ZERO; 6];
         for (j, y) in b.values().iter().enumerate() {
             let row = &self.poles[(b.first + j) * self.counts.0 + a.first..][..a.n];
@@ -159,7 +179,7 @@ impl NurbsSurface {
 
     /// The line of constant u (`at_u`) or v: the net contracted.
     pub fn iso(&self, at_u: bool, at: f64) -> Nurbs {
-        let sum = |a: &Basis, pole: &dyn Fn(usize) -> DVec4| {
+        let sum = |a: &Basis<MOST>, pole: &dyn Fn(usize) -> DVec4| {
             a.values().iter().enumerate().fold(DVec4::ZERO, |sum, (k, x)| sum + pole(a.first + k) * x[0])
         };
         if at_u {
@@ -175,12 +195,16 @@ impl NurbsSurface {
 
     /// Points of the tensor grid, u fastest: the net is contracted once per row.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        let columns: Vec<Basis> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, Lean::After)).collect();
+        if self.is_common() { self.grid_on::<COMMON>(us, vs, out) } else { self.grid_on::<MOST>(us, vs, out) }
+    }
+
+    fn grid_on<const N: usize>(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
+        let columns: Vec<Basis<N>> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, Lean::After)).collect();
         let width = us.len().max(1);
         par::chunks_mut(out, width * ROWS, |chunk, part| {
             let mut row = vec![DVec4::ZERO; self.counts.0];
             for (line, &v) in part.chunks_exact_mut(width).zip(&vs[(chunk * ROWS).min(vs.len())..]) {
-                let b = basis(&self.knots.1, self.degree.1, v, Lean::After);
+                let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, Lean::After);
                 for (i, q) in row.iter_mut().enumerate() {
                     *q = b.values().iter().enumerate().fold(DVec4::ZERO, |sum, (j, y)| sum + self.pole(i, b.first + j) * y[0]);
                 }
@@ -301,7 +325,7 @@ pub struct Net<'a> {
 
 /// Bézier surface: degree = number of points − 1 each way.
 ///
-/// Fails with E402 below 2×2 points, E306 for rows of different length or a degree above 9, E407 for a weight.
+/// Fails with E402 below 2×2 points, E306 for rows of different length or a degree above 25, E407 for a weight.
 pub fn bezier(net: &Net, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let (counts, poles) = checked(net, origin)?;
     let degree = (counts.0 - 1, counts.1 - 1);

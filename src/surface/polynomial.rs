@@ -11,7 +11,7 @@ use crate::geometry::bounds::binomial;
 
 /// The patch with these coefficients as a Bézier surface, the same but for rounding: `a[i][j]` belongs to uⁱ vʲ.
 ///
-/// b_i = Σ_{k≤i} C(i, k) / C(n, k) a_k in both directions. E306 for rows of different length, no row or a degree above 9.
+/// b_i = Σ_{k≤i} C(i, k) / C(n, k) a_k in both directions. E306 for rows of different length, no row or a degree above 25.
 pub fn polynomial(a: &[Vec<DVec3>], origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     nurbs::bezier(&Net { rows: &polynomial_net(a)?, weights: None }, origin, tolerance)
 }

@@ -17,7 +17,7 @@ use super::shape::Shape;
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
 use crate::geometry::bounds::binomial;
-use crate::geometry::nurbs::projected;
+use crate::geometry::nurbs::{COMMON_DEGREE, projected};
 
 /// Boxes along each side of a span for which third derivatives are bounded apart.
 const BOXES: usize = 3;
@@ -121,7 +121,9 @@ impl Surface {
     /// The net made ready; `None` for surfaces that are none.
     pub fn quick(&self) -> Option<Quick> {
         match &self.parts().shape {
-            Shape::Nurbs(net) => Some(Quick { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) }),
+            Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= COMMON_DEGREE => {
+                Some(Quick { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) })
+            }
             _ => None,
         }
     }

@@ -44,14 +44,9 @@ AREA = VOLUME = 1e-6
 # Seconds for one file.
 LONGEST = 120
 # Parts that are known not to come in whole, and what the program says of each; one that comes in right has to be taken out of here.
-DEGREE, OFFSET = "degrees are 1 to 9", "offsets of curved surfaces are not read"
+OFFSET = "offsets of curved surfaces are not read"
 KNOWN = {
-    "knob": DEGREE,
-    "loft_circles": DEGREE,
-    "loft_ruled": DEGREE,
     "offset_sheet": OFFSET,
-    "pipe": DEGREE,
-    "thread": DEGREE,
 }
 
 MODEL = """units mm
