@@ -253,3 +253,23 @@ fn lints_stay_on() {
         assert!(manifest.contains(lint), "Cargo.toml lost the lint {lint}");
     }
 }
+
+/// A golden that holds a failed check would keep a wrong answer; only those about failing do.
+#[test]
+fn goldens_hold_no_failed_checks() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut folders = vec![root.join("examples"), root.join("tests/golden"), root.join("tests/acceptance")];
+    let mut failed = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path()) {
+            if path.is_dir() && path.file_name().is_some_and(|name| name != "broken") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "golden") {
+                let text = fs::read_to_string(&path).unwrap();
+                let fails = |line: &str| line.starts_with("check ") && line.ends_with("  fail");
+                failed.extend(text.lines().filter(|line| fails(line)).map(|line| format!("{}: {line}", path.display())));
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}

@@ -44,14 +44,12 @@ JUDGE = "the other kernel measures a surface of several rational pieces wrong; t
 SMALL = "small faces between curves that are within the tolerance"
 THIN = "a thin wall between surfaces that are within the tolerance"
 VOLUME_ONLY = "the areas of a thin wall agree, its volume does not: the cause is not found"
-OWN = "a check of the model itself fails"
 KNOWN = {
     "bottle: glass": VOLUME_ONLY,
     "fender: fender": GAPS,
     "gap_meshes: wave": GAPS,
     "glued: roof": GAPS,
     "near_tolerance: beside": NEAR,
-    "rings": OWN,
     "round: bite": SMALL,
     "round: lids[2]": SMALL,
     "shell_walls: casing": THIN,
