@@ -62,9 +62,9 @@ pub fn adds_up(whole: &Surface, cuts: &[Chain], parts: &[f64], tolerance: &Toler
     /// Area about a vertex, in squares of the distance within which ends are one vertex, and share of the whole.
     const ROOM: (f64, f64) = (4.0, 1e3 * MEASURE_ACCURACY);
     let ((own, error), sum) = (area_within(whole), parts.iter().sum::<f64>());
-    let vertex = (TOLD_APART * tolerance.point).powi(2);
+    let vertex = TOLD_APART * tolerance.point;
     let vertices = (whole.n_sides() + 2 * (cuts.len() + parts.len())) as f64;
-    if whole.domain() == Domain::Unbounded || (sum - own).abs() <= ROOM.0 * vertices * vertex + ROOM.1 * own + error {
+    if whole.domain() == Domain::Unbounded || (sum - own).abs() <= ROOM.0 * vertices * vertex * vertex + ROOM.1 * own + error {
         return Ok(());
     }
     let cuts = cuts.iter().map(Chain::origin).collect();
