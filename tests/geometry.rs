@@ -677,7 +677,7 @@ mod mistakes {
         check(build::arc_center(three[0], three[1], 0.0, DVec3::Z, NONE), "E411", &["angle"]);
         check(build::arc_center(three[0], three[1], 7.0, DVec3::Z, NONE), "E412", &["401.0705°", "360deg"]);
         check(build::circle(three[0], -1.0, DVec3::Z, NONE), "E306", &["radius", "-1"]);
-        check(build::bezier(&[at(0.0, 0.0); 11], None, NONE), "E306", &["11", "bspline"]);
+        check(build::bezier(&[at(0.0, 0.0); 27], None, NONE), "E306", &["27", "bspline"]);
     }
 
     #[test]
