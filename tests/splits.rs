@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
-use lofting::base::fault::{Fault, Result as Made};
+use lofting::base::fault::{CutFault, Fault, Result as Made};
 use lofting::base::math::sin_cos;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
@@ -378,4 +378,17 @@ fn planes_beside_seams_poles_and_tangents_part_a_surface() {
         prop_assert!(!sides.contains(&(true, true)), "a part on both sides, of {}: {what:?}", parts.len());
         Ok(())
     });
+}
+
+#[test]
+fn parts_that_are_not_the_surface_are_refused() {
+    let tolerance = tolerance();
+    let tube = swept(circle(DVec3::ZERO, 1.0, DVec3::Z, Origin::NONE));
+    let whole = measure::area(&tube);
+    let cut = [chain(circle(DVec3::Z, 1.0, DVec3::Z, Origin::NONE))];
+    measure::adds_up(&tube, &cut, &[0.25 * whole, 0.75 * whole], &tolerance).unwrap();
+    for parts in [&[0.25 * whole, 0.74 * whole][..], &[whole, 1e-4 * whole], &[0.5 * whole], &[]] {
+        let fault = measure::adds_up(&tube, &cut, parts, &tolerance).unwrap_err();
+        assert!(matches!(&fault, Fault::Cut(f) if matches!(**f, CutFault::PartsNotWhole { .. })), "{parts:?}: {fault:?}");
+    }
 }

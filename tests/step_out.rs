@@ -141,3 +141,19 @@ fn names_layers_units_and_measures_are_kept() {
 fn the_same_model_gives_the_same_bytes() {
     assert_eq!(run("first", MODEL), run("second", MODEL));
 }
+
+#[test]
+fn corners_of_curves_that_miss_each_other_are_one_vertex() {
+    let model = r#"units mm
+let south = line((0, 0, 0), (400, 0, 0))
+let north = line((0, 300, 0), (400, 300, 0.4))
+let west = line(south.start, north.start)
+let east = line(south.end, (400, 300, 0))
+surface patch = gordon(profiles: [south, north], guides: [west, east], tolerance: 0.5mm)
+export patch to "patch.step"
+"#;
+    let files = run("corners", model);
+    let records = records(&files["patch.step"]);
+    let of = |kind: &str| records.values().filter(|r| r.starts_with(kind)).count();
+    assert_eq!((of("VERTEX_POINT"), of("EDGE_CURVE")), (4, 4));
+}

@@ -108,6 +108,7 @@ impl Model {
                 body.faces.push(BodyFace { patch, surface: *surface, other: *other, loops });
             }
         }
+        body.join_corners();
         body.part_skins();
         self.nest(&mut body, tolerance)?;
         Ok(body)
@@ -179,6 +180,45 @@ impl Model {
 }
 
 impl Body {
+    /// Whether each edge of a loop begins at the vertex where the one before it ends.
+    pub fn is_closed(&self, around: &BodyLoop) -> bool {
+        let ends = |k: usize| self.ends(around[k].0, around[k].1);
+        (0..around.len()).all(|k| ends(k).1 == ends((k + 1) % around.len()).0)
+    }
+
+    /// Makes one vertex of the ends of consecutive edges that are apart, as on surfaces through curves that miss each other. They stay
+    /// apart where one of the two edges is not more than twice as long as the gap.
+    fn join_corners(&mut self) {
+        let mut parent: Vec<usize> = (0..self.vertices.len()).collect();
+        let length = |edge: usize| self.edges[edge].part.s.1 - self.edges[edge].part.s.0;
+        for around in self.faces.iter().flat_map(|face| &face.loops) {
+            for k in 0..around.len() {
+                let (step, next) = (around[k], around[(k + 1) % around.len()]);
+                let (a, b) = (self.ends(step.0, step.1).1, self.ends(next.0, next.1).0);
+                if a != b && 2.0 * self.vertices[a].distance(self.vertices[b]) < length(step.0).min(length(next.0)) {
+                    let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+                    parent[a.max(b)] = a.min(b);
+                }
+            }
+        }
+        let roots: Vec<usize> = (0..parent.len()).map(|k| root(&mut parent, k)).collect();
+        let mut sums = vec![(DVec3::ZERO, 0.0); roots.len()];
+        for (to, point) in roots.iter().zip(&self.vertices) {
+            sums[*to].0 += *point;
+            sums[*to].1 += 1.0;
+        }
+        for (k, to) in roots.iter().enumerate().filter(|(k, to)| sums[**to].1 > 1.0 || *k != **to) {
+            self.vertices[k] = sums[*to].0 / sums[*to].1;
+        }
+        self.edges.iter_mut().for_each(|edge| edge.ends = (roots[edge.ends.0], roots[edge.ends.1]));
+    }
+
+    /// First and last vertex of an edge, run in its direction or against it.
+    fn ends(&self, edge: usize, against: bool) -> (usize, usize) {
+        let (first, last) = self.edges[edge].ends;
+        if against { (last, first) } else { (first, last) }
+    }
+
     /// Parts the faces into what hangs together by edges that two of them share.
     fn part_skins(&mut self) {
         let mut users: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.edges.len()];

@@ -13,7 +13,6 @@ use super::cells::Cells;
 use super::closest::Nearest;
 use super::core::{Domain, Side, Surface};
 use super::divide::{dividing, walks};
-
 use super::plane;
 use super::pull::Course;
 use super::strands::{Meets, Piece};

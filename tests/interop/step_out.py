@@ -26,11 +26,14 @@ from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopExp import TopExp, TopExp_Explorer
+from OCP.TopExp import TopExp
 from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 from OCP.TopoDS import TopoDS
 from OCP.BRep import BRep_Tool
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+from cad_in import area
+from surfaces import parts
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -63,21 +66,6 @@ KNOWN = {
 }
 # Goldens of surfaces that go out: sweeps, skins, walls, corners.
 SURFACES = ["gap_meshes", "joined_turned", "net_reports", "round_corners", "shell_walls", "skin_ends", "sweeps", "walls"]
-
-
-def parts(shape, kind, avoiding=None):
-    explorer = TopExp_Explorer(shape, kind, avoiding) if avoiding is not None else TopExp_Explorer(shape, kind)
-    found = []
-    while explorer.More():
-        found.append(explorer.Current())
-        explorer.Next()
-    return found
-
-
-def area(shape):
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, properties, 1e-10)
-    return properties.Mass()
 
 
 def volume(shape):

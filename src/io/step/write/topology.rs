@@ -173,10 +173,13 @@ impl Writer<'_> {
     fn face(&self, records: &mut Records, face: &BodyFace, ground: &Ground) -> Result<Id, Damage> {
         let (surface, along) = surfaces::put(records, ground, self.scale);
         let mut bounds = Vec::with_capacity(face.loops.len());
+        if face.loops.is_empty() || face.loops.iter().any(|around| !self.body.is_closed(around)) {
+            return Err(damage("the edges round one of its faces do not close"));
+        }
         for (k, around) in face.loops.iter().enumerate() {
             let mut edges = Vec::with_capacity(around.len());
             for (edge, against) in around {
-                let Some(edge) = self.edges[*edge] else { continue };
+                let edge = self.edges[*edge].ok_or_else(|| damage("an edge of one of its faces has no curve"))?;
                 edges.push(records.put("ORIENTED_EDGE", |v| {
                     v.text("").word("*").word("*").id(edge).flag(!against);
                 }));
