@@ -56,7 +56,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("surface", 22_800),
     ("model", 6_150),
     ("mesh", 22_700),
-    ("io", 13_600),
+    ("io", 13_760),
     ("draw", 3_000),
     ("lang", 27_800),
     ("session", 11_500),

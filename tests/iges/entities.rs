@@ -248,6 +248,28 @@ fn borders_are_read_in_every_form() {
     assert!(uv.start().distance(DVec3::new(0.75, 0.5, 0.0)) < 1e-15);
 }
 
+/// Offsets of a quarter of a cylinder of radius 2 and height 3: outwards, against it, outwards by less than nothing, and of a ball.
+fn offsets(f: &mut File) {
+    for (side, distance) in [("1.,1.,0.", "1."), ("-1.,-1.,0.", "1."), ("1.,1.,0.", "-1.")] {
+        let arc = f.part(100, 0, "0.,0.,0.,2.,0.,0.,2.");
+        let wall = f.part(122, 0, &format!("{arc},2.,0.,3."));
+        f.free(140, 0, &format!("{side},{distance},{wall}"));
+    }
+    let center = f.part(116, 0, "0.,0.,0.,0");
+    let ball = f.part(196, 0, &format!("{center},2."));
+    f.free(140, 0, &format!("-1.,0.,0.,1.,{ball}"));
+}
+
+#[test]
+fn offsets_are_on_the_side_that_is_told() {
+    let part = part(offsets);
+    assert_eq!(part.warnings, []);
+    for (k, known) in [4.5 * PI, 1.5 * PI, 1.5 * PI, 36.0 * PI].into_iter().enumerate() {
+        let found = lofting::model::measure::area(&part.built[k][0]);
+        assert!((found / known - 1.0).abs() < 1e-9, "surface {k}: {found} {known}");
+    }
+}
+
 /// A cube of 2 as a solid by its border.
 fn cube(f: &mut File) {
     let corners: Vec<[i32; 3]> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|c| 2 * c)).collect();

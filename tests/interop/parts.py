@@ -29,7 +29,16 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeWedge,
 )
 from OCP.GC import GC_MakeArcOfCircle
-from OCP.Geom import Geom_BezierSurface, Geom_Circle, Geom_CylindricalSurface, Geom_OffsetSurface, Geom_SphericalSurface, Geom_ToroidalSurface
+from OCP.Geom import (
+    Geom_BezierSurface,
+    Geom_Circle,
+    Geom_CylindricalSurface,
+    Geom_OffsetSurface,
+    Geom_SphericalSurface,
+    Geom_SurfaceOfLinearExtrusion,
+    Geom_SurfaceOfRevolution,
+    Geom_ToroidalSurface,
+)
 from OCP.Geom2d import Geom2d_Line
 from OCP.GeomAPI import GeomAPI_PointsToBSpline, GeomAPI_PointsToBSplineSurface
 from OCP.GeomAbs import GeomAbs_Arc
@@ -285,6 +294,37 @@ def offset_sheet():
     return whole(Geom_OffsetSurface(GeomAPI_PointsToBSplineSurface(_hills()).Surface(), 2.0))
 
 
+def beside(surface, distance, *bounds):
+    return whole(Geom_OffsetSurface(surface, distance), *bounds)
+
+
+def offset_hole(distance):
+    """A hole through the offset of a surface that bends both ways."""
+    return cut(beside(GeomAPI_PointsToBSplineSurface(_hills()).Surface(), distance), prism(face(circle(8, at(20, 20, -20))), 0, 0, 40))
+
+
+def offset_turned(distance):
+    """Round a spline that turns about z: half of it."""
+    side = Geom_SurfaceOfRevolution(_side(), gp_Ax1(O, Z))
+    return beside(side, distance, 0.3, 2.8, 0.1, 0.9)
+
+
+def offset_swept(distance):
+    return beside(Geom_SurfaceOfLinearExtrusion(_side(), Y), distance, 0.1, 0.9, -5.0, 12.0)
+
+
+def net_of(shape):
+    """The spline of the first face of a shape."""
+    return BRep_Tool.Surface_s(faces(as_splines(shape))[0])
+
+
+def _side():
+    list_ = TColgp_Array1OfPnt(1, 4)
+    for k, p in enumerate([(10, 0, 0), (16, 0, 12), (8, 0, 26), (12, 0, 40)]):
+        list_.SetValue(k + 1, gp_Pnt(*p))
+    return GeomAPI_PointsToBSpline(list_).Curve()
+
+
 def _hills():
     points = TColgp_Array2OfPnt(1, 6, 1, 6)
     for i in range(6):
@@ -418,6 +458,18 @@ PARTS = [
     ("hills", hilly),
     ("hills_hole", hilly_cut),
     ("offset_sheet", offset_sheet),
+    ("offset_below", lambda: beside(GeomAPI_PointsToBSplineSurface(_hills()).Surface(), -2.0)),
+    ("offset_turned_over", lambda: offset_sheet().Reversed()),
+    ("offset_hole", lambda: offset_hole(1.5)),
+    ("offset_hole_below", lambda: offset_hole(-1.5)),
+    ("offset_revolved", lambda: offset_turned(1.0)),
+    ("offset_revolved_in", lambda: offset_turned(-1.0)),
+    ("offset_swept", lambda: offset_swept(1.0)),
+    ("offset_swept_in", lambda: offset_swept(-1.0)),
+    ("offset_ball", lambda: beside(Geom_SphericalSurface(gp_Ax3(O, Z), 12.0), 1.5, 0.3, 2.0, -0.5, 0.9)),
+    ("offset_ring", lambda: beside(Geom_ToroidalSurface(gp_Ax3(O, Z), 20.0, 6.0), -1.5, 0.3, 2.0, -0.5, 0.9)),
+    ("offset_net_ring", lambda: beside(net_of(ring(20, 6)), -1.5, 0.1, 0.7, 0.2, 0.6)),
+    ("offset_net_ring_all", lambda: beside(net_of(ring(20, 6)), 1.5)),
     ("offset_box", lambda: offset(box(20, 15, 10), 3.0)),
     ("shelled_box", lambda: shelled(box(30, 20, 15), [5], -2.0)),
     ("shelled_rod", lambda: shelled(rod(10, 30), [1], -1.5)),
@@ -442,8 +494,22 @@ def around(a, b):
     return 2 * math.pi * total / x
 
 
+def beside_length(distance, start=0.1, end=0.9, steps=100_000):
+    """Length of the offset of `_side` in its plane: the sum of its chords."""
+    curve, places = _side(), []
+    for k in range(steps + 1):
+        p, d = gp_Pnt(), gp_Vec()
+        curve.D1(start + (end - start) * k / steps, p, d)
+        normal = d.Crossed(gp_Vec(0, 1, 0)).Normalized()
+        places.append((p.X() + distance * normal.X(), p.Z() + distance * normal.Z()))
+    return sum(math.dist(a, b) for a, b in zip(places, places[1:]))
+
+
 # Areas that are known exactly where the other kernel measures badly.
 EXACT = {
+    "offset_swept": [17 * beside_length(1.0)],
+    "offset_swept_in": [17 * beside_length(-1.0)],
+    "offset_net_ring_all": [4 * math.pi**2 * 20 * 7.5],
     "elliptic_rod": [20 * around(12, 7)],
     "elliptic_tilted": [math.sqrt(350) * around(12, 7)],
     "elliptic_tube": [20 * around(12, 7), 20 * around(9, 4)],

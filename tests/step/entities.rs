@@ -123,6 +123,26 @@ fn surfaces() -> Vec<(&'static str, String, f64)> {
             ),
             6.0,
         ),
+        ("sphere inside", closed("OFFSET_SURFACE('',#120,-1.,.F.);\n#120=SPHERICAL_SURFACE('',#4,3.)"), 16.0 * PI),
+        ("torus around", closed("OFFSET_SURFACE('',#120,0.5,.F.);\n#120=TOROIDAL_SURFACE('',#4,5.,2.)"), 4.0 * PI * PI * 12.5),
+        (
+            "beside an extruded one",
+            of(
+                "OFFSET_SURFACE('',#19,0.5,.F.)",
+                "#19=RECTANGULAR_TRIMMED_SURFACE('',#20,0.,1.5,0.,3.,.T.,.T.);#20=SURFACE_OF_LINEAR_EXTRUSION('',#23,#24);\
+                 #23=CIRCLE('',#4,2.);#24=VECTOR('',#2,2.);",
+            ),
+            22.5,
+        ),
+        (
+            "beside a turned one",
+            of(
+                "OFFSET_SURFACE('',#19,-0.5,.F.)",
+                "#19=RECTANGULAR_TRIMMED_SURFACE('',#20,0.,1.,0.,3.,.T.,.T.);#20=SURFACE_OF_REVOLUTION('',#23,#25);\
+                 #23=LINE('',#24,#26);#24=CARTESIAN_POINT('',(2.,0.,0.));#26=VECTOR('',#2,1.);#25=AXIS1_PLACEMENT('',#1,#2);",
+            ),
+            4.5,
+        ),
         ("bezier patch", of(&format!("BEZIER_SURFACE('',1,1,{net},.UNSPECIFIED.,.F.,.F.,.F.)"), others), 12.0),
         (
             "spline patch",

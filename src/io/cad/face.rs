@@ -138,7 +138,7 @@ fn cut_at_poles(surface: &Surface, border: &mut Vec<Border>, room: f64) {
 const SAMPLES: usize = 8;
 
 /// Largest distance of the curves from the surface, and of the end of each from the start of the next one in its loop.
-fn gap(surface: &Surface, loops: &[Vec<Border>]) -> f64 {
+pub fn gap(surface: &Surface, loops: &[Vec<Border>]) -> f64 {
     let nearest = Nearest::new(surface);
     let foot = |p: DVec3| match surface.flat_uv(p) {
         Some((u, v)) => p.distance(surface.point(u, v)),

@@ -2,6 +2,7 @@
 //! offers them by name. Readers of a format make [`face::Face`]s and put them into a [`part::Part`].
 
 pub mod base;
+mod beside;
 mod build;
 pub mod carry;
 pub mod compose;

@@ -73,6 +73,7 @@ impl Book {
             loops.push(made.borders);
             outlines.push(made.outline);
         }
+        let base = self.sided(surface, base, &loops)?;
         let surface = base.surface(&face::reach(&loops), self.origin, &self.tolerance)?;
         let inside = if has_outer { inside(&base, &outlines) } else { None };
         self.settle(d, &base, &surface, &mut loops);

@@ -5,12 +5,14 @@ use glam::{DVec3, DVec4};
 use super::book::{Book, NESTED};
 use super::curves::{Place, bernstein};
 use super::entities::{Data, NetData, Pointer};
+use crate::base::bbox::Box3;
 use crate::base::math;
-use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL};
+use crate::base::tolerance::{EPSILON, NEAR_MISS, NUDGE, PARALLEL};
 use crate::geometry::nurbs::weighted;
 use crate::io::cad::base::Base;
 use crate::io::cad::carry::check_weights;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::face::{self, Border};
 use crate::io::cad::nets::trimmed_net;
 use crate::surface::NurbsSurface;
 use crate::surface::revolve::Axis;
@@ -75,14 +77,7 @@ impl Book {
                 }
                 Ok(Base::Swept { profile, by })
             }
-            Data::OffsetSurface { indicator, distance, base } => match self.base(*base, depth + 1)? {
-                Base::Plane(at, u, v) => {
-                    let normal = u.cross(v);
-                    let side = if normal.dot(*indicator) < 0.0 { -normal } else { normal };
-                    Ok(Base::Plane(at + side * (distance * scale), u, v))
-                }
-                _ => Err(damage("offsets of curved surfaces are not read")),
-            },
+            Data::OffsetSurface { indicator, distance, base } => self.beside(d, *indicator, distance * scale, *base, depth),
             Data::PlaneSurface { at, normal, reference } => {
                 let (at, normal) = (self.point(*at)?, self.direction(*normal)?);
                 let first = self.reference(*reference, normal)?;
@@ -97,6 +92,59 @@ impl Book {
             Data::Damaged => Err(damage(format!("{} is damaged", self.said(d)))),
             Data::Busy => Err(damage(format!("{} is made of itself", self.said(d)))),
             _ => Err(damage(format!("{} is no surface", self.said(d)))),
+        }
+    }
+
+    /// The offset of a surface; `side` says on which side a distance above 0 is, in the middle of its parameters.
+    fn beside(&mut self, d: Pointer, side: DVec3, distance: f64, of: Pointer, depth: usize) -> Result<Base, Damage> {
+        let base = self.base(of, depth + 1)?;
+        let upright = base.upright(&Box3::EMPTY, self.origin, &self.tolerance)?;
+        let distance = if upright.dot(side) < 0.0 { -distance } else { distance };
+        if let Data::Round { kind: kind @ (196 | 198), at, axis, sizes: [a, b], reference } = *self.data(of)? {
+            // The normals of spheres and tubes look away from their middle.
+            let grown = |size: f64| size + distance / self.scale;
+            let sizes = if kind == 196 { [grown(a), b] } else { [a, grown(b)] };
+            if sizes[usize::from(kind == 198)] <= 0.0 {
+                return Err(damage("its offset turns it inside out"));
+            }
+            let matrix = self.placement(self.entry(of).map_or(0, |e| e.transform))?;
+            let base = self.base_of(of, &Data::Round { kind, at, axis, sizes, reference }, depth + 1)?;
+            return matrix.map_or(Ok(base.clone()), |m| base.carried(&m, &self.tolerance));
+        }
+        let (base, folds) = base.beside(distance, &Box3::EMPTY, self.origin, &self.tolerance)?;
+        if folds {
+            self.warn(d, "it turns back over itself where its surface bends tighter than its distance");
+        }
+        Ok(base)
+    }
+
+    /// The base of a face on an offset: on its other side where only there it has the borders.
+    pub(super) fn sided(&mut self, d: Pointer, base: Base, loops: &[Vec<Border>]) -> Result<Base, Damage> {
+        let k = self.place(d)?;
+        let Data::OffsetSurface { indicator, .. } = self.decoded[k].data else { return Ok(base) };
+        let reach = face::reach(loops);
+        let off = |book: &Self, base: &Base| Ok::<f64, Damage>(face::gap(&base.surface(&reach, book.origin, &book.tolerance)?, loops));
+        let here = off(self, &base)?;
+        if here <= NEAR_MISS * self.slack() {
+            return Ok(base);
+        }
+        self.turn(k, -indicator);
+        let other = self.base(d, 0);
+        match other {
+            Ok(other) if off(self, &other)? < here * NUDGE.sqrt() => {
+                self.warn(d, "its borders are on its other side, which counts");
+                Ok(other)
+            }
+            _ => {
+                self.turn(k, indicator);
+                Ok(base)
+            }
+        }
+    }
+
+    fn turn(&mut self, k: usize, side: DVec3) {
+        if let Data::OffsetSurface { indicator, .. } = &mut self.decoded[k].data {
+            *indicator = side;
         }
     }
 

@@ -19,12 +19,18 @@ impl Step<'_> {
     /// The part of a surface between two u and two v.
     pub fn rectangle(&mut self, k: u32) -> Result<Face, Damage> {
         let row = self.file.parameters(k);
-        let [u0, u1, v0, v1] = [row.number(2)?, row.number(3)?, row.number(4)?, row.number(5)?];
-        let base = self.between_parameters(row.entity(1)?, [u0, u1, v0, v1])?;
+        let base = self.within_parameters(k)?;
         let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
         let mut face = Face::whole(&base, surface, &self.tolerance);
         face.flipped = row.flag(6, true) != row.flag(7, true);
         Ok(face)
+    }
+
+    /// The surface between its parameters, with its own normals.
+    pub fn within_parameters(&mut self, k: u32) -> Result<Base, Damage> {
+        let row = self.file.parameters(k);
+        let [u0, u1, v0, v1] = [row.number(2)?, row.number(3)?, row.number(4)?, row.number(5)?];
+        self.between_parameters(row.entity(1)?, [u0, u1, v0, v1])
     }
 
     fn between_parameters(&mut self, k: u32, [u0, u1, v0, v1]: [f64; 4]) -> Result<Base, Damage> {

@@ -70,15 +70,48 @@ impl Step<'_> {
                 let frame = self.frame(row.entity(2)?)?;
                 self.revolved(&of, &axis(&frame), reach)
             }
-            b"OFFSET_SURFACE" => {
-                let base = self.base(row.entity(1)?, reach, depth + 1)?;
-                offset(base, length(self, 2)?)
-            }
+            b"OFFSET_SURFACE" => self.beside(k, reach, depth),
             b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
                 Err(damage(format!("{} stands where a whole surface should", self.said(k))))
             }
             _ => Err(damage(format!("{} is no surface that can be read", self.said(k)))),
         }
+    }
+
+    /// The offset of a surface, along the normals of the file.
+    fn beside(&mut self, k: u32, reach: &Box3, depth: usize) -> Result<Base, Damage> {
+        let row = self.file.parameters(k);
+        let (of, distance) = (row.entity(1)?, row.number(2)? * self.scale);
+        let inner = self.file.parameters(of);
+        let grown = |radius: f64| if radius > 0.0 { Ok(radius) } else { Err(damage("its offset turns it inside out")) };
+        match self.file.name(of) {
+            b"SPHERICAL_SURFACE" => {
+                let frame = self.frame(inner.entity(1)?)?;
+                let radius = grown(inner.number(2)? * self.scale + distance)?;
+                return Base::sphere(&axis(&frame), radius, frame.x, self.origin, &self.tolerance);
+            }
+            b"TOROIDAL_SURFACE" => {
+                let frame = self.frame(inner.entity(1)?)?;
+                let minor = grown(inner.number(3)? * self.scale + distance)?;
+                return self.torus(&frame, [inner.number(2)? * self.scale, minor], true);
+            }
+            _ => {}
+        }
+        if self.file.name(of) == b"RECTANGULAR_TRIMMED_SURFACE" && inner.flag(6, true) != inner.flag(7, true) {
+            return Err(damage(format!("{} is turned over by one of its senses", self.said(of))));
+        }
+        let around = if reach.is_empty() { *reach } else { Box3 { min: reach.min - DVec3::splat(distance.abs()), max: reach.max + DVec3::splat(distance.abs()) } };
+        let base = match self.file.name(of) {
+            b"RECTANGULAR_TRIMMED_SURFACE" => self.within_parameters(of)?,
+            _ => self.base(of, &around, depth + 1)?,
+        };
+        // The net of an extruded surface has the direction first, the file the curve.
+        let distance = if matches!(base, Base::Swept { .. }) { -distance } else { distance };
+        let (base, folds) = base.beside(distance, &around, self.origin, &self.tolerance)?;
+        if folds {
+            self.warn(k, "it turns back over itself where its surface bends tighter than its distance");
+        }
+        Ok(base)
     }
 
     fn net(&mut self, k: u32) -> Result<Base, Damage> {
@@ -187,22 +220,6 @@ fn is_knotless(name: &[u8]) -> bool {
 
 fn axis(frame: &Frame) -> Axis {
     Axis { about: frame.at, direction: frame.z }
-}
-
-/// The offset of an elementary surface, along its normal.
-fn offset(base: Base, by: f64) -> Result<Base, Damage> {
-    match base {
-        Base::Plane(at, u, v) => Ok(Base::Plane(at + u.cross(v) * by, u, v)),
-        Base::Unbounded { axis, radius, slope, reference } => {
-            let radius = radius + by * (1.0 + slope * slope).sqrt();
-            if radius > 0.0 {
-                Ok(Base::Unbounded { axis, radius, slope, reference })
-            } else {
-                Err(damage("its offset turns it inside out"))
-            }
-        }
-        _ => Err(damage("offsets of curved surfaces are not read")),
-    }
 }
 
 /// The corners of a box.
