@@ -747,3 +747,16 @@ fn files_are_written_and_read_in_any_unit() {
         assert_eq!(folder.loft(&["check", "read.loft"]).status, 0, "{word}");
     }
 }
+
+/// A surface that cannot be made stops the meshes of others: each is named.
+#[test]
+fn meshes_that_wait_for_a_broken_surface_are_named() {
+    let script = "curve a = line((0, 0), (10, 0))\ncurve b = line((0, 10), (10, 10, 3))\nsurface good = ruled(a, b)\n\
+                  surface bad = plane(a, b)\nmesh fine of good { size: 1mm }\nmesh coarse of bad { size: 1mm }\n";
+    let folder = Folder::new("waiting").with("a.loft", script);
+    let run = folder.loft(&["run", "a.loft"]);
+    assert_eq!(run.status, 1);
+    for note in ["nothing that depends on `bad` was built: coarse (1 mesh)\n", "not meshed either, as the model is not whole: fine\n"] {
+        assert!(run.err.contains(note), "{note} in\n{}", run.err);
+    }
+}

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::cx::{Cx, SAID_JUST_NOW, Stop};
 use super::diag::{self, Diagnostic};
 use super::eval::Code;
-use super::module::{State, bound};
+use super::module::{Stage, State, bound};
 use super::plans::{CheckResult, ExportSpec, PictureSpec, ReportTable};
 use super::stages;
 use super::syntax::ast::{DeclarationKind, ExprId, Keyword, Span};
@@ -186,7 +186,7 @@ impl Cx<'_> {
         let rest = std::mem::take(&mut self.sink);
         self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
         self.idle_tolerances();
-        let skipped = self.skipped();
+        let (skipped, unmeshed) = (self.skipped(), self.unmeshed());
         let mut filed = std::mem::take(&mut self.machine.filed);
         self.tell_meant(&mut filed);
         let mut out: Vec<Diagnostic> = Vec::with_capacity(filed.len());
@@ -195,9 +195,9 @@ impl Cx<'_> {
             if let Some(owner) = owner
                 && diagnostic.severity() == Severity::Error
                 && noted.insert(owner)
-                && let Some(members) = skipped.get(&owner)
             {
-                diagnostic.notes.push(self.not_built(owner, members));
+                diagnostic.notes.extend(skipped.get(&owner).map(|members| self.not_built(owner, members)));
+                diagnostic.notes.extend(unmeshed.get(&owner).map(|names| not_meshed(names)));
             }
             match out.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
                 Some(found) => found.fold(diagnostic, self.whole),
@@ -235,6 +235,19 @@ impl Cx<'_> {
                     continue;
                 }
                 out.entry((*cm, *cd)).or_default().push((ModuleId::at(m), i as u32));
+            }
+        }
+        out
+    }
+
+    /// For each failed declaration the meshes of other things that were not made because of it.
+    fn unmeshed(&self) -> BTreeMap<(ModuleId, u32), Vec<String>> {
+        let mut out: BTreeMap<(ModuleId, u32), Vec<String>> = BTreeMap::new();
+        for module in &self.machine.modules {
+            for (spec, stage) in module.meshes.iter().zip(&module.mesh_stages) {
+                if let Stage::Skipped(m, d) = stage {
+                    out.entry((*m, *d)).or_default().push(spec.name.to_string());
+                }
             }
         }
         out
@@ -325,4 +338,10 @@ fn in_order<T: Clone>(found: &[(u32, T)]) -> Vec<T> {
     let mut found: Vec<&(u32, T)> = found.iter().collect();
     found.sort_by_key(|f| f.0);
     found.into_iter().map(|f| f.1.clone()).collect()
+}
+
+/// "not meshed either, as the model is not whole: fine, coarse".
+fn not_meshed(names: &[String]) -> String {
+    let more = if names.len() > NAMES_LISTED { ", …" } else { "" };
+    format!("not meshed either, as the model is not whole: {}{more}", names[..names.len().min(NAMES_LISTED)].join(", "))
 }

@@ -100,7 +100,11 @@ impl Step<'_> {
         if self.file.name(of) == b"RECTANGULAR_TRIMMED_SURFACE" && inner.flag(6, true) != inner.flag(7, true) {
             return Err(damage(format!("{} is turned over by one of its senses", self.said(of))));
         }
-        let around = if reach.is_empty() { *reach } else { Box3 { min: reach.min - DVec3::splat(distance.abs()), max: reach.max + DVec3::splat(distance.abs()) } };
+        let around = if reach.is_empty() {
+            *reach
+        } else {
+            Box3 { min: reach.min - DVec3::splat(distance.abs()), max: reach.max + DVec3::splat(distance.abs()) }
+        };
         let base = match self.file.name(of) {
             b"RECTANGULAR_TRIMMED_SURFACE" => self.within_parameters(of)?,
             _ => self.base(of, &around, depth + 1)?,
