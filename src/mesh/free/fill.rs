@@ -61,6 +61,11 @@ pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f
                 if !is_left(at[i], at[j], at[k]) {
                     continue;
                 }
+                // What the parts beside it cost alone is too much.
+                let least = a.0.load.max(b.0.load);
+                if best[i * n + k].is_some_and(|(known, _)| known.load < ALIKE * least) {
+                    continue;
+                }
                 let error = load([i, j, k]);
                 if error > most {
                     continue;

@@ -17,7 +17,7 @@ use super::build::Trouble;
 use super::fill::{Filling, fill};
 use super::ground::Ground;
 use super::isoline::Cells;
-use super::loads::{self, Load};
+use super::loads::{self, Load, Normals};
 use super::outline::Outline;
 use super::sheet::Sheet;
 use super::tree::Class;
@@ -90,7 +90,7 @@ pub fn lay(ask: &Ask, job: &Job) -> Result<Tried<Laid>> {
     segments.extend((0..at.len()).filter(|n| alone[*n]).map(|n| [at[n]; 2]));
     let kinks = if ask.limits.chord.is_some() { kinks(ask.sheet) } else { Default::default() };
     let cells = Cells::new(&segments, outline.loops.len(), kinks);
-    let mut work = Work { ask, at, cells, known: BTreeMap::new(), fillings: BTreeMap::new(), worst: None };
+    let mut work = Work { ask, at, cells, known: BTreeMap::new(), fillings: BTreeMap::new(), normals: Normals::default(), worst: None };
     let mut again = work.settle(vec![0]);
     for _ in 0..ROUNDS {
         job.go_on()?;
@@ -123,6 +123,7 @@ struct Work<'a> {
     known: BTreeMap<(u64, u64), DVec3>,
     /// By cell.
     fillings: BTreeMap<u32, Known>,
+    normals: Normals,
     /// The worst triangle seen in the last round.
     worst: Option<(Load, DVec3)>,
 }
@@ -204,7 +205,8 @@ impl Work<'_> {
             let p: Vec<DVec3> = nodes.iter().map(|n| web.p[*n as usize]).collect();
             if self.fillings.get(&k).is_none_or(|(known, _)| *known != p) {
                 let at: Vec<DVec2> = round.iter().map(|c| corners.all[*c].at).collect();
-                let load = |c: [usize; 3]| loads::load_of_long(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits).worst();
+                let load =
+                    |c: [usize; 3]| loads::load_of_long(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits, &self.normals).worst();
                 let filling = fill(&at, &p, f64::INFINITY, &load);
                 self.fillings.insert(k, (p, filling));
             }

@@ -1,5 +1,7 @@
 //! How far the triangles of a free face are from the limits of their mesh.
 
+use std::cell::RefCell;
+
 use glam::{DVec2, DVec3};
 
 use super::bound;
@@ -58,19 +60,55 @@ impl Loads {
     }
 }
 
+/// Normals of the surface at the nodes of a web, each found once for a node at the same place.
+#[derive(Default)]
+pub struct Normals {
+    seen: RefCell<Vec<(DVec2, DVec3)>>,
+}
+
+impl Normals {
+    fn of_all(&self, sheet: &Sheet, web: &Web, nodes: [u32; 3]) -> [DVec3; 3] {
+        let mut seen = self.seen.borrow_mut();
+        if seen.len() < web.xy.len() {
+            seen.resize(web.xy.len(), (DVec2::INFINITY, DVec3::ZERO));
+        }
+        nodes.map(|n| {
+            let (xy, known) = (web.xy[n as usize], &mut seen[n as usize]);
+            if known.0 != xy {
+                *known = (xy, sheet.spot(xy).normal());
+            }
+            known.1
+        })
+    }
+}
+
 /// The bounds of three nodes as a triangle that may be long against the limits.
-pub fn load_of_long(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+pub fn load_of_long(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits, normals: &Normals) -> Load {
+    let lean = lean_of(normals.of_all(sheet, web, corners), corners.map(|n| web.p[n as usize]));
+    load_of_leaning(sheet, web, corners, limits, lean)
+}
+
+/// The worse of the two, infinite where the triangle lies upside down at one of its corners.
+pub fn load_of_upright(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits, normals: &Normals) -> f64 {
+    let lean = lean_of(normals.of_all(sheet, web, corners), corners.map(|n| web.p[n as usize]));
+    if lean < 0.0 { f64::INFINITY } else { load_of_leaning(sheet, web, corners, limits, lean).worst() }
+}
+
+fn load_of_leaning(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits, lean: f64) -> Load {
     let c = corners.map(|n| n as usize);
-    let xy = c.map(|n| web.xy[n]);
-    let load = leaning(load(sheet, web, corners, None, limits), lean(sheet, xy, c.map(|n| web.p[n])));
+    let load = leaning(load(sheet, web, corners, None, limits), lean);
     let fixed = corners.iter().any(|n| *n < web.fixed);
-    if fixed { load } else { capped(sheet, xy, load, limits) }
+    if fixed { load } else { capped(sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n])), load, limits) }
 }
 
 /// No place of the surface over a triangle is farther from it than the surface there reaches: all there is to say at a tip, where
 /// nothing bounds its bend.
-fn capped(sheet: &Sheet, xy: [DVec2; 3], load: Load, limits: &Limits) -> Load {
+fn capped(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), load: Load, limits: &Limits) -> Load {
     let Some(limit) = limits.chord.filter(|_| load.chord > 1.0) else { return load };
+    // The surface reaches at least from corner to corner.
+    if load.chord.is_finite() && (0..3).any(|k| p[k].distance(p[(k + 1) % 3]) > limit) {
+        return load;
+    }
     let at = xy.map(|xy| DVec2::from(sheet.uv(xy)));
     let (low, high) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
     if !(low.cmpge(DVec2::ZERO).all() && high.cmple(DVec2::ONE).all()) {
@@ -79,12 +117,6 @@ fn capped(sheet: &Sheet, xy: [DVec2; 3], load: Load, limits: &Limits) -> Load {
     let spread = sheet.surface().spread((low.x, high.x), (low.y, high.y));
     let reach = spread.du.reach() * (high.x - low.x) + spread.dv.reach() * (high.y - low.y);
     if reach.is_finite() { Load { chord: load.chord.min(reach / limit), ..load } } else { load }
-}
-
-/// Whether a triangle lies upside down at one of its corners.
-pub fn is_overturned(sheet: &Sheet, web: &Web, corners: [u32; 3]) -> bool {
-    let c = corners.map(|n| n as usize);
-    lean(sheet, c.map(|n| web.xy[n]), c.map(|n| web.p[n])) < 0.0
 }
 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
@@ -96,15 +128,17 @@ const STEEP: f64 = 0.97;
 /// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
 /// triangle that stands on edge: near to what is over it along its own normal, and its sides far from the surface all the same.
 fn lean(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
+    lean_of(xy.map(|xy| sheet.spot(xy).normal()), p)
+}
+
+/// The same by the normals of the surface at the corners.
+fn lean_of(own: [DVec3; 3], p: [DVec3; 3]) -> f64 {
     // Two corners in a pole, or three on a line, have no normal but by rounding.
     let square = p[0].distance_squared(p[1]).max(p[1].distance_squared(p[2])).max(p[2].distance_squared(p[0]));
     let up = (p[1] - p[0]).cross(p[2] - p[0]);
     let normal = if up.length() > PARALLEL * square { up.normalize_or_zero() } else { DVec3::ZERO };
-    let cosine = |xy: DVec2| {
-        let own = sheet.spot(xy).normal();
-        if own == DVec3::ZERO || normal == DVec3::ZERO { 1.0 } else { own.dot(normal) }
-    };
-    xy.into_iter().map(cosine).fold(1.0, f64::min)
+    let cosine = |own: DVec3| if own == DVec3::ZERO || normal == DVec3::ZERO { 1.0 } else { own.dot(normal) };
+    own.into_iter().map(cosine).fold(1.0, f64::min)
 }
 
 /// What is a height over the triangle is further from its sides the more it leans.
@@ -147,7 +181,7 @@ fn over_sides(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
 
 /// The same of three places of the chart with their points, by parts.
 pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
-    capped(sheet, xy, leaning(of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p)), limits)
+    capped(sheet, (xy, p), leaning(of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p)), limits)
 }
 
 /// Points are up to `beside` off the surface.

@@ -69,8 +69,33 @@ struct Thinning<'a> {
     loads: Vec<([u32; 3], f64)>,
     /// Costs as their bits, which are in order for what is not negative, and nodes.
     heap: BinaryHeap<Reverse<(u64, u32)>>,
+    changes: Changes,
     ring: Ring,
     patch: Patch,
+}
+
+/// When the triangles at each node changed last: what was tried in vain is tried again only where something is different.
+#[derive(Default)]
+struct Changes {
+    /// Changes so far.
+    now: usize,
+    /// By node: the change after which its triangles are as they are.
+    of_node: Vec<usize>,
+    /// Changes before the last pass over all pairs, and over all edges, began; `None` before the first one.
+    joined: Option<usize>,
+    flipped: Option<usize>,
+}
+
+impl Changes {
+    fn mark(&mut self, nodes: &[u32]) {
+        self.now += 1;
+        nodes.iter().for_each(|n| self.of_node[*n as usize] = self.now);
+    }
+
+    /// Whether the triangles at some of these nodes changed since a pass began.
+    fn since(&self, pass: Option<usize>, nodes: &[u32]) -> bool {
+        pass.is_none_or(|before| nodes.iter().any(|n| self.of_node[*n as usize] > before))
+    }
 }
 
 impl Thinner<'_> {
@@ -84,6 +109,7 @@ impl Thinner<'_> {
             known: vec![Known::Nothing; n],
             loads: Vec::new(),
             heap: (first..n as u32).map(|node| Reverse((0, node))).collect(),
+            changes: Changes { of_node: vec![0; n], ..Changes::default() },
             ring: Ring::default(),
             patch: Patch::default(),
         };
@@ -122,6 +148,7 @@ impl Thinning<'_> {
                 }
             }
             self.web.refill(&self.patch, &filling.triangles);
+            self.changes.mark(&self.patch.rim);
             for n in self.patch.rim.clone() {
                 // Those that stay do so for what is round them now as well, but for a flip.
                 if self.known[n as usize] != Known::Stays {
@@ -161,11 +188,13 @@ impl Thinning<'_> {
     /// Makes one node of two neighbours where some place between them keeps the limits; how many went.
     fn join(&mut self, job: &Job) -> Result<usize> {
         let mut gone = 0_usize;
+        let last = self.changes.joined.replace(self.changes.now);
         for t in 0..self.web.tri.len() as u32 {
             for k in 0..3 {
                 let c = self.web.tri[t as usize];
                 let (a, b) = (c[(k + 1) % 3], c[(k + 2) % 3]);
-                if self.web.alive(t) && self.web.fixed <= a && a < b && self.join_one(a, b) {
+                let is_open = self.web.alive(t) && self.web.fixed <= a && a < b && self.changes.since(last, &[a, b]);
+                if is_open && self.join_one(a, b) {
                     gone += 1;
                     break;
                 }
@@ -208,6 +237,8 @@ impl Thinning<'_> {
                 load.0 = [0; 3];
             }
         }
+        self.changes.mark(&self.patch.rim);
+        self.changes.mark(&[a]);
         for n in self.patch.rim.iter().copied().chain([a]).filter(|n| *n >= self.web.fixed) {
             self.known[n as usize] = Known::Nothing;
             self.heap.push(Reverse((0, n)));
@@ -250,6 +281,7 @@ impl Thinning<'_> {
     /// Flips edges where the bounds of the two triangles get smaller; nodes beside them get another try.
     fn flip(&mut self) {
         let mut left = 4 * self.web.tri.len();
+        let last = self.changes.flipped.replace(self.changes.now);
         let mut open: Vec<u32> = (0..self.web.tri.len() as u32).filter(|t| self.web.alive(*t)).collect();
         while let Some(t) = open.pop() {
             for k in 0..3 {
@@ -260,7 +292,7 @@ impl Thinning<'_> {
                 let c = self.web.tri[t as usize];
                 let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
                 let Some(tip) = self.web.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { continue };
-                if !(self.ask.allowed)(self.web, a, tip) {
+                if !self.changes.since(last, &[a, b, d, tip]) || !(self.ask.allowed)(self.web, a, tip) {
                     continue;
                 }
                 let (one, two) = (self.load(t), self.load(other));
@@ -273,6 +305,7 @@ impl Thinning<'_> {
                 self.web.flip(t, k);
                 self.loads[t as usize] = (self.web.tri[t as usize], first);
                 self.loads[other as usize] = (self.web.tri[other as usize], second);
+                self.changes.mark(&[a, b, d, tip]);
                 for n in [a, b, d, tip] {
                     if n >= self.web.fixed && self.known[n as usize] == Known::Stays {
                         self.known[n as usize] = Known::Nothing;
@@ -282,6 +315,9 @@ impl Thinning<'_> {
                 open.extend([t, other]);
                 break;
             }
+        }
+        if left == 0 {
+            self.changes.flipped = last;
         }
     }
 }

@@ -51,11 +51,9 @@ impl Fit<'_> {
     /// border runs along one of them.
     pub(super) fn raise(&self, web: &mut Web) {
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
-        let twins = self.outline.twins();
+        let (twins, normals) = (self.outline.twins(), loads::Normals::default());
         web.raise(SHARP, &|web, [a, b], both| {
-            let keeps = |c: &[u32; 3]| {
-                loads::load_of_long(self.sheet, web, *c, limits).worst() <= 1.0 && !loads::is_overturned(self.sheet, web, *c)
-            };
+            let keeps = |c: &[u32; 3]| loads::load_of_upright(self.sheet, web, *c, limits, &normals) <= 1.0;
             !web.joined_elsewhere(&twins, a, b) && both.iter().all(keeps)
         });
     }
@@ -64,9 +62,8 @@ impl Fit<'_> {
     pub(super) fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
         allow(THINNED * web.tri.len() as u64, &mut 0);
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
-        let bound = |web: &Web, c: [u32; 3]| {
-            if loads::is_overturned(self.sheet, web, c) { f64::INFINITY } else { loads::load_of_long(self.sheet, web, c, limits).worst() }
-        };
+        let normals = loads::Normals::default();
+        let bound = |web: &Web, c: [u32; 3]| loads::load_of_upright(self.sheet, web, c, limits, &normals);
         let twins = self.outline.twins();
         let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b) && !web.joined_elsewhere(&twins, a, b);
         let point = |xy: DVec2| self.sheet.spot(xy).p;

@@ -53,7 +53,7 @@ impl Work<'_> {
             if sure.contains(&sorted(c)) || flat && !wraps {
                 continue;
             }
-            let load = loads::load_of_long(self.ask.sheet, web, c, self.ask.limits);
+            let load = loads::load_of_long(self.ask.sheet, web, c, self.ask.limits, &self.normals);
             let long = wraps || self.too_long(web, (c, all.given[t]));
             if load.worst() <= 1.0 && !long {
                 continue;
