@@ -16,7 +16,7 @@ use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
 use crate::network::Network;
-use crate::surface::{Domain, Surface};
+use crate::surface::{Domain, Side, Surface};
 
 /// An edge of a body.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct BodyEdge {
     pub part: EdgePart,
     /// First and last vertex, as places in the list of the body.
     pub ends: (usize, usize),
+    /// The patch of which it is a seam put together from several edges of the model.
+    pub seam: Option<PatchId>,
 }
 
 /// One loop round a face, the face on its left seen against its normal: edges in order, `true` where it runs against one.
@@ -83,7 +85,7 @@ impl Model {
                 .pieces
                 .atoms
                 .iter()
-                .map(|atom| BodyEdge { part: EdgePart { edge: edges[atom.track], s: atom.s, against: false }, ends: atom.ends }),
+                .map(|atom| BodyEdge { part: EdgePart { edge: edges[atom.track], s: atom.s, against: false }, ends: atom.ends, seam: None }),
         );
         for (surface, other) in &shell.surfaces {
             for patch in self.patches_of(*surface).filter(|p| slivers.binary_search(p).is_err()) {
@@ -109,6 +111,7 @@ impl Model {
             }
         }
         body.join_corners();
+        body.join_seams(tolerance);
         body.part_skins();
         self.nest(&mut body, tolerance)?;
         Ok(body)
@@ -134,6 +137,22 @@ impl Model {
             around
         };
         counts.into_iter().map(of_loop).collect()
+    }
+
+    /// The line of a surface along which a seam of it runs, from one point to another; `None` where no side of it ends there.
+    pub fn seam_curve(&self, patch: PatchId, ends: (DVec3, DVec3), tolerance: &Tolerance) -> Result<Option<Curve>> {
+        let surface = &self.surfaces[self.patches[patch.index()].surface.index()].surface;
+        for side in (0..surface.n_sides()).map(|k| surface.side(k)) {
+            let Side::Chain { chain, from, to } = side else { continue };
+            let curve = chain.slice(from.min(to), from.max(to), tolerance)?.to_curve()?;
+            let near = |a: DVec3, b: DVec3| a.distance(b) <= tolerance.point;
+            match [(curve.start(), curve.end()), (curve.end(), curve.start())].map(|(a, b)| near(a, ends.0) && near(b, ends.1)) {
+                [true, false] => return Ok(Some(curve)),
+                [false, true] => return Ok(Some(curve.reversed())),
+                _ => {}
+            }
+        }
+        Ok(None)
     }
 
     /// The curve along an edge of a body; `None` for a line across a trimmed surface that follows neither u nor v.
@@ -211,6 +230,47 @@ impl Body {
             self.vertices[k] = sums[*to].0 / sums[*to].1;
         }
         self.edges.iter_mut().for_each(|edge| edge.ends = (roots[edge.ends.0], roots[edge.ends.1]));
+    }
+
+    /// Makes one edge of consecutive ones between which nothing else ends, where only one face uses them, there and back: a seam between
+    /// two poles is then one edge, however many curves of the model part it.
+    fn join_seams(&mut self, tolerance: &Tolerance) {
+        let mut users: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.edges.len()];
+        for (k, face) in self.faces.iter().enumerate() {
+            face.loops.iter().flatten().for_each(|(edge, against)| users[*edge].push((k, *against)));
+        }
+        let mut at: Vec<Vec<usize>> = vec![Vec::new(); self.vertices.len()];
+        for (k, edge) in self.edges.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()) {
+            at[edge.ends.0].push(k);
+            at[edge.ends.1].push(k);
+        }
+        let seam = |k: usize| matches!(users[k].as_slice(), [a, b] if a.0 == b.0 && a.1 != b.1).then(|| users[k][0].0);
+        let follows = |a: usize, b: usize| {
+            let (before, after) = (&self.edges[a].part, &self.edges[b].part);
+            let goes_on = before.edge == after.edge && (after.s.0 - before.s.1).abs() <= tolerance.point;
+            a != b && self.edges[a].ends.1 == self.edges[b].ends.0 && goes_on && seam(a).is_some() && seam(a) == seam(b)
+        };
+        let mut next = vec![None; self.edges.len()];
+        let mut has_one_before = vec![false; self.edges.len()];
+        for pair in &at {
+            let [a, b] = *pair.as_slice() else { continue };
+            for (a, b) in [(a, b), (b, a)].into_iter().filter(|(a, b)| follows(*a, *b)) {
+                (next[a], has_one_before[b]) = (Some(b), true);
+            }
+        }
+        let mut gone = vec![false; self.edges.len()];
+        for first in (0..self.edges.len()).filter(|k| next[*k].is_some() && !has_one_before[*k]) {
+            let mut last = first;
+            while let Some(k) = next[last] {
+                gone[k] = true;
+                last = k;
+            }
+            let (s, end) = (self.edges[last].part.s.1, self.edges[last].ends.1);
+            let patch = users[first].first().map(|(face, _)| self.faces[*face].patch);
+            let edge = &mut self.edges[first];
+            (edge.part.s.1, edge.ends.1, edge.seam) = (s, end, patch);
+        }
+        self.faces.iter_mut().flat_map(|face| &mut face.loops).for_each(|around| around.retain(|step| !gone[step.0]));
     }
 
     /// First and last vertex of an edge, run in its direction or against it.

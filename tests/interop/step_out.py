@@ -47,7 +47,6 @@ JUDGE = "the other kernel measures a surface of several rational pieces wrong; t
 SMALL = "small faces between curves that are within the tolerance"
 THIN = "a thin wall between surfaces that are within the tolerance"
 VOLUME_ONLY = "the areas of a thin wall agree, its volume does not: the cause is not found"
-SEAM = "a seam that curves of the model part into several edges between two poles: the other kernel finds no area"
 POLE = "a pole as wide as the tolerance"
 KNOWN = {
     "bottle: glass": VOLUME_ONLY,
@@ -57,7 +56,6 @@ KNOWN = {
     "near_tolerance: beside": NEAR,
     "round: bite": SMALL,
     "round: lids[2]": SMALL,
-    "shallow_crossings: ball": SEAM,
     "shallow_crossings: octant": POLE,
     "shell_walls: casing": THIN,
     "walls: bottle": JUDGE,

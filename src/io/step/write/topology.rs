@@ -161,6 +161,12 @@ impl Writer<'_> {
     /// The curve of an edge: the model's where it has one, else a spline within the tolerance of the line on the surface.
     fn curve(&self, edge: &BodyEdge) -> Result<Curve, Damage> {
         let Faces { model, network, .. } = self.faces;
+        let ends = (self.body.vertices[edge.ends.0], self.body.vertices[edge.ends.1]);
+        if let Some(patch) = edge.seam
+            && let Some(curve) = model.seam_curve(patch, ends, &self.scale.tolerance)?
+        {
+            return Ok(curve);
+        }
         if let Some(curve) = model.part_curve(&edge.part, network, &self.scale.tolerance)? {
             return Ok(curve);
         }
