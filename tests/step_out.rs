@@ -36,7 +36,7 @@ fn run(name: &str, model: &str) -> BTreeMap<String, String> {
     fs::create_dir_all(&folder).unwrap();
     let script = folder.join("model.loft");
     fs::write(&script, model).unwrap();
-    let done = Command::new(env!("CARGO_BIN_EXE_loft")).arg("run").arg(&script).arg("-o").arg(&folder).output().unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_loft")).arg("run").arg(&script).arg("-o").arg(&folder).arg("--allow").arg(env!("CARGO_TARGET_TMPDIR")).output().unwrap();
     assert!(done.status.success(), "{}{}", String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
     let files = fs::read_dir(&folder).unwrap().map(|f| f.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e != "loft"));
     files.map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(p).unwrap())).collect()
@@ -156,4 +156,65 @@ export patch to "patch.step"
     let records = records(&files["patch.step"]);
     let of = |kind: &str| records.values().filter(|r| r.starts_with(kind)).count();
     assert_eq!((of("VERTEX_POINT"), of("EDGE_CURVE")), (4, 4));
+}
+
+/// A square with a colour, as another program writes it.
+const COLOURED: &str = "ISO-10303-21;
+HEADER;
+FILE_DESCRIPTION((''),'2;1');
+FILE_NAME('','',(''),(''),'','','');
+FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));
+ENDSEC;
+DATA;
+#1=CARTESIAN_POINT('',(0.,0.,0.));
+#2=DIRECTION('',(0.,0.,1.));
+#3=DIRECTION('',(1.,0.,0.));
+#4=AXIS2_PLACEMENT_3D('',#1,#2,#3);
+#5=PLANE('',#4);
+#6=RECTANGULAR_TRIMMED_SURFACE('lid',#5,0.,2.,0.,2.,.T.,.T.);
+#7=RECTANGULAR_TRIMMED_SURFACE('bare',#5,3.,4.,0.,2.,.T.,.T.);
+#8=GEOMETRIC_SET('',(#6,#7));
+#10=COLOUR_RGB('',0.25,0.5,1.);
+#11=FILL_AREA_STYLE_COLOUR('',#10);
+#12=FILL_AREA_STYLE('',(#11));
+#13=SURFACE_STYLE_FILL_AREA(#12);
+#14=SURFACE_SIDE_STYLE('',(#13));
+#15=SURFACE_STYLE_USAGE(.BOTH.,#14);
+#16=PRESENTATION_STYLE_ASSIGNMENT((#15));
+#17=STYLED_ITEM('',(#16),#6);
+#20=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
+#21=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#20))REPRESENTATION_CONTEXT('',''));
+#22=SHAPE_REPRESENTATION('',(#4,#8),#21);
+ENDSEC;
+END-ISO-10303-21;
+";
+
+#[test]
+fn colours_of_imported_faces_go_out_again() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("coloured");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("part.step"), COLOURED).unwrap();
+    let model = |file: &str| format!("units mm\nimport \"{}\" as part\n", folder.join(file).display());
+    let out = "surface lid = part[\"lid\"]\nsurface bare = part[\"bare\"]\nexport lid, bare to \"out.step\"\nexport lid, bare to \"out.igs\"\n";
+    let files = run("colours", &format!("{}{out}", model("part.step")));
+    assert_eq!(files["out.step"].matches("STYLED_ITEM").count(), 1);
+    assert!(files["out.step"].contains("COLOUR_RGB('',0.25,0.5,1.)"));
+    assert!(files["out.igs"].contains("314,25.,50.,100.;"));
+    for name in ["out.step", "out.igs"] {
+        fs::write(folder.join(name), &files[name]).unwrap();
+        let check = "check \"one colour\": len(part.colors) == 1 and len(part.colors[0].surfaces) == 1 and part.colors[0].rgb[1] == 0.5\n";
+        run(&format!("colours_{name}"), &format!("{}{check}", model(name)));
+    }
+}
+
+#[test]
+fn a_parted_seam_is_one_edge() {
+    let model = "units mm
+surface ball = revolve(arc((0, 0, -10), (0, 0, 10), through: (10, 0, 0)))
+curve mark = arc(center: (0, 0, 0), start: (10, 0, 0), angle: 90deg, normal: (0, -1, 0))
+export ball to \"ball.step\"
+";
+    let files = run("seam", model);
+    assert_eq!(files["ball.step"].matches("EDGE_CURVE").count(), 1);
+    assert_eq!(files["ball.step"].matches("ORIENTED_EDGE").count(), 2);
 }

@@ -276,6 +276,11 @@ impl<'w> Cx<'w> {
         super::stages::groups(self, module)
     }
 
+    /// The colours that imported CAD files of a script give, each with the curves and surfaces that have it.
+    pub fn colors(&self, module: ModuleId) -> Vec<([f64; 3], Vec<Value>)> {
+        super::import_part::colors(self, module)
+    }
+
     /// The declared shells of a script.
     pub fn shells(&mut self, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
         super::stages::shells(self, module)

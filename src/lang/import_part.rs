@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use super::cx::{Cx, Stop};
 use super::imports::File;
+use super::stages::each_member;
+use super::syntax::ast::Keyword;
 use super::units::{self, MILLIMETRE};
-use super::value::{Record, Value};
+use super::value::{ModuleId, Record, Value};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::part::{Group, Options, Part};
@@ -96,4 +98,25 @@ impl Cx<'_> {
         let (keys, values) = fields.into_iter().map(|(key, value)| (self.names.intern(key), value)).unzip();
         Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false }))
     }
+}
+
+/// Red, green and blue of each colour of the imported files of a script, with the curves and surfaces that have it.
+pub(super) fn colors(cx: &Cx, module: ModuleId) -> Vec<([f64; 3], Vec<Value>)> {
+    let list = |record: &Record, key: &str| match cx.names.find(key).and_then(|key| record.get(key)) {
+        Some(Value::List(items)) => items.to_vec(),
+        _ => Vec::new(),
+    };
+    let mut found = Vec::new();
+    each_member(cx.machine.at(module), &cx.names, &[Keyword::Import], &mut |_, _, _, _, value| {
+        let Value::Record(part) = value else { return };
+        for group in list(part, "colors") {
+            let Value::Record(group) = group else { continue };
+            let rgb: Vec<f64> =
+                list(&group, "rgb").iter().filter_map(|x| if let Value::Number(x) = x { Some(x.value) } else { None }).collect();
+            if let [red, green, blue] = rgb[..] {
+                found.push(([red, green, blue], [list(&group, "curves"), list(&group, "surfaces")].concat()));
+            }
+        }
+    });
+    found
 }

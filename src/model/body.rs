@@ -111,7 +111,7 @@ impl Model {
             }
         }
         body.join_corners();
-        body.join_seams(tolerance);
+        body.join_seams(self, tolerance);
         body.part_skins();
         self.nest(&mut body, tolerance)?;
         Ok(body)
@@ -233,8 +233,12 @@ impl Body {
     }
 
     /// Makes one edge of consecutive ones between which nothing else ends, where only one face uses them, there and back: a seam between
-    /// two poles is then one edge, however many curves of the model part it.
-    fn join_seams(&mut self, tolerance: &Tolerance) {
+    /// two poles is then one edge, however many curves of the model part it. Surfaces of several pieces keep the edges of each.
+    fn join_seams(&mut self, model: &Model, tolerance: &Tolerance) {
+        let in_one_piece = |face: &BodyFace| {
+            let (us, vs) = model.surfaces[face.surface.index()].surface.breaks();
+            us.is_empty() && vs.is_empty()
+        };
         let mut users: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.edges.len()];
         for (k, face) in self.faces.iter().enumerate() {
             face.loops.iter().flatten().for_each(|(edge, against)| users[*edge].push((k, *against)));
@@ -248,7 +252,8 @@ impl Body {
         let follows = |a: usize, b: usize| {
             let (before, after) = (&self.edges[a].part, &self.edges[b].part);
             let goes_on = before.edge == after.edge && (after.s.0 - before.s.1).abs() <= tolerance.point;
-            a != b && self.edges[a].ends.1 == self.edges[b].ends.0 && goes_on && seam(a).is_some() && seam(a) == seam(b)
+            let one = a != b && self.edges[a].ends.1 == self.edges[b].ends.0 && goes_on && seam(a) == seam(b);
+            one && seam(a).is_some_and(|face| in_one_piece(&self.faces[face]))
         };
         let mut next = vec![None; self.edges.len()];
         let mut has_one_before = vec![false; self.edges.len()];

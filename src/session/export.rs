@@ -18,6 +18,7 @@ use crate::io::table::{self, Cell, Table};
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::ExportSpec;
+use crate::lang::scene::side_of;
 use crate::lang::value::{Dim, ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
@@ -80,6 +81,35 @@ pub(super) type Written = (u64, Vec<Loss>);
 fn unsupported(of: Origin, what: String) -> Stop {
     let help = Some("export meshes, curves, or a list of records".to_owned());
     FileFault::Unsupported { of, what, help, edits: Vec::new() }.into()
+}
+
+/// Colours of what imported CAD files give one, for files that hold them.
+pub(super) struct Colors(Vec<([f64; 3], Vec<Value>)>);
+
+impl Colors {
+    pub fn of(cx: &Cx) -> Self {
+        Self(cx.colors(ModuleId::MAIN))
+    }
+
+    fn first(&self, is: impl Fn(&Value) -> bool) -> Option<[f64; 3]> {
+        self.0.iter().find(|(_, things)| things.iter().any(&is)).map(|(rgb, _)| *rgb)
+    }
+
+    /// That of a surface, on either side.
+    pub fn of_surface(&self, surface: &Surface) -> Option<[f64; 3]> {
+        const PROBE: (f64, f64) = (0.31, 0.23);
+        let at = surface.point(PROBE.0, PROBE.1);
+        // A declared surface is the imported one under another origin.
+        let passes = |known: &Surface| known.point(PROBE.0, PROBE.1) == at || known.point(PROBE.0, 1.0 - PROBE.1) == at;
+        let same = |known: &Surface| known.is(surface) || passes(known) && side_of(&known.with_origin(surface.origin()), surface).is_some();
+        self.first(|value| matches!(value, Value::Surface(known) if same(known)))
+    }
+
+    /// That of a curve.
+    pub fn of_curve(&self, chain: &Chain) -> Option<[f64; 3]> {
+        let ends = |c: &Chain| (c.start(), c.end(), c.point(0.5), c.length());
+        self.first(|value| matches!(value, Value::Curve(known) if known.is(chain) || ends(known) == ends(chain)))
+    }
 }
 
 /// Writes through `fill`; a failure names the path.
@@ -215,7 +245,15 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
     no_mesh_settings(spec)?;
     let (unit, scale) = unit_of(cx, spec);
     let tolerance = cx.tolerance()?;
-    let one = |cx: &Cx, of: Origin, shown: Shown| Thing { name: cx.name(of), group: String::new(), shown };
+    let colors = Colors::of(cx);
+    let one = |cx: &Cx, of: Origin, shown: Shown| {
+        let color = match &shown {
+            Shown::Point(_) => None,
+            Shown::Curve(chain) => colors.of_curve(chain),
+            Shown::Surface(surface) => colors.of_surface(surface),
+        };
+        Thing { name: cx.name(of), group: String::new(), color, shown }
+    };
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
         match value {
@@ -226,7 +264,7 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
             Value::Edge(home, edge) => {
                 let chain = super::plan::chain_of(cx, home, edge)?;
                 let name = super::plan::edge_name(cx, &chain, edge);
-                things.push(Thing { name, group: String::new(), shown: Shown::Curve(chain) });
+                things.push(Thing { name, ..one(cx, *origin, Shown::Curve(chain)) });
             }
             Value::Surface(surface) => things.push(one(cx, surface.origin(), Shown::Surface(surface.clone()))),
             Value::Shell(shell) => {

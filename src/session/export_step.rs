@@ -1,6 +1,6 @@
 //! `export … to "x.step"`: what is written becomes faces with the edges they share.
 
-use super::export::{Written, no_mesh_settings, put, unit_of};
+use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
 use crate::base::fault::{FileFault, Say};
 use crate::base::origin::Origin;
 use crate::io::Files;
@@ -21,6 +21,7 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let setup = Setup { schema, unit, scale: Scale { model: scale.unwrap_or(1.0), tolerance } };
     let surfaces: Vec<&Surface> = spec.things.iter().flat_map(|(value, _)| surfaces_of(value)).collect();
     let scene = Scene::of(cx, ModuleId::MAIN, surfaces)?;
+    let colors = Colors::of(cx);
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
         let (name, shown, measured) = match value {
@@ -32,17 +33,18 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             }
             Value::Surface(surface) => {
                 let measured = Measured { area: Some(measure::area(surface)), volume: None };
-                (cx.surface_name(surface), lone(&scene, surface, &setup)?, measured)
+                (cx.surface_name(surface), lone(&scene, surface, (&setup, &colors))?, measured)
             }
             Value::Shell(shell) => {
-                let (shown, measured) = whole(&scene, shell, &setup)?;
+                let (shown, measured) = whole(&scene, shell, (&setup, &colors))?;
                 (shell.name.to_string(), shown, measured)
             }
             other => {
                 return Err(unsupported(*origin, format!("STEP holds points, curves, surfaces and shells, not {}", other.ty().words())));
             }
         };
-        things.push(Thing { name, layers: layers(cx, value)?, shown, measured });
+        let color = if let Value::Curve(chain) = value { colors.of_curve(chain) } else { None };
+        things.push(Thing { name, layers: layers(cx, value)?, shown, color, measured });
     }
     let file = spec.path.rsplit('/').next().unwrap_or(&spec.path);
     let name = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
@@ -64,15 +66,16 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 /// A surface by itself: its patches share their edges with each other only.
-fn lone(scene: &Scene, surface: &Surface, setup: &Setup) -> Result<Shown, Stop> {
+fn lone(scene: &Scene, surface: &Surface, (setup, colors): (&Setup, &Colors)) -> Result<Shown, Stop> {
     let (id, other) = scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
     let near = scene.model.reach([id], None, &setup.scale.tolerance);
     let shell = Shell { name: String::new(), origin: surface.origin(), surfaces: vec![(id, other)], near, closed: false, free: Vec::new() };
-    Ok(Shown::Faces(Box::new(Faces { model: scene.model.clone(), network: scene.network.clone(), shell, solid: false })))
+    let colors = colors.of_surface(surface).map(|rgb| (id, rgb)).into_iter().collect();
+    Ok(Shown::Faces(Box::new(Faces { model: scene.model.clone(), network: scene.network.clone(), shell, solid: false, colors })))
 }
 
 /// A shell: a solid where it closes.
-fn whole(scene: &Scene, shell: &ShellValue, setup: &Setup) -> Result<(Shown, Measured), Stop> {
+fn whole(scene: &Scene, shell: &ShellValue, (setup, colors): (&Setup, &Colors)) -> Result<(Shown, Measured), Stop> {
     // What is to be said of it was said where it is declared.
     let mut said = Vec::new();
     let built = scene.shell(shell, &setup.scale.tolerance, &mut said)?;
@@ -81,7 +84,9 @@ fn whole(scene: &Scene, shell: &ShellValue, setup: &Setup) -> Result<(Shown, Mea
     let area = faces.iter().map(|(surface, _)| measure::area(surface)).sum();
     let volume = built.closed.then(|| measure::solid(&faces).volume.abs());
     let solid = built.closed;
-    let faces = Faces { model: scene.model.clone(), network: scene.network.clone(), shell: built, solid };
+    let of_face = |surface: &Surface| Some((scene.find(surface)?.0, colors.of_surface(surface)?));
+    let colors = shell.surfaces.iter().filter_map(of_face).collect();
+    let faces = Faces { model: scene.model.clone(), network: scene.network.clone(), shell: built, solid, colors };
     Ok((Shown::Faces(Box::new(faces)), Measured { area: Some(area), volume }))
 }
 

@@ -37,7 +37,7 @@ fn back(things: &[Thing], unit: &'static str, model: f64) -> Part {
 }
 
 fn thing(name: &str, group: &str, shown: Shown) -> Thing {
-    Thing { name: name.to_owned(), group: group.to_owned(), shown }
+    Thing { name: name.to_owned(), group: group.to_owned(), color: None, shown }
 }
 
 fn curves() -> Vec<Curve> {

@@ -131,6 +131,8 @@ pub struct Sheet {
     names: BTreeMap<String, String>,
     /// Lines for people at the start of the file.
     remarks: Vec<String>,
+    /// Colours with the pointers to them.
+    colors: Vec<([f64; 3], u32)>,
 }
 
 impl Sheet {
@@ -177,8 +179,14 @@ impl Sheet {
         }
     }
 
-    /// Gives an entity the colour at a pointer.
-    pub fn paint(&mut self, d: u32, color: u32) {
+    /// Gives an entity a colour of red, green and blue from 0 to 1; equal ones stand once in the file.
+    pub fn paint(&mut self, d: u32, rgb: [f64; 3]) {
+        let known = self.colors.iter().find(|known| known.0 == rgb).map(|known| known.1);
+        let color = known.unwrap_or_else(|| {
+            let color = self.add(314, 0, Role::Definition, Values::new().reals(rgb.map(|share| 100.0 * share)));
+            self.colors.push((rgb, color));
+            color
+        });
         if let Some(entity) = self.at(d) {
             entity.color = -i64::from(color);
         }

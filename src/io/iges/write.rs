@@ -51,6 +51,8 @@ pub struct Thing {
     pub name: String,
     /// The shell or group it belongs to, empty for none.
     pub group: String,
+    /// Red, green and blue from 0 to 1, where it has a colour.
+    pub color: Option<[f64; 3]>,
     /// What it is.
     pub shown: Shown,
 }
@@ -85,6 +87,9 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
         let d = made.map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
         if !thing.name.is_empty() {
             maker.sheet.name(d, &thing.name);
+        }
+        if let Some(rgb) = thing.color {
+            maker.sheet.paint(d, rgb);
         }
         if thing.group.is_empty() {
             continue;

@@ -6,9 +6,11 @@
 //! | surface, open shell | `SHELL_BASED_SURFACE_MODEL` of faces that share edges |
 //! | closed shell | `MANIFOLD_SOLID_BREP`, with cavities `BREP_WITH_VOIDS` |
 //! | group | `PRESENTATION_LAYER_ASSIGNMENT` |
+//! | colour of a face or curve | `STYLED_ITEM` |
 //! | tolerance | `UNCERTAINTY_MEASURE_WITH_UNIT` |
 
 mod curves;
+mod looks;
 mod product;
 mod properties;
 mod surfaces;
@@ -27,6 +29,7 @@ pub use topology::Faces;
 use crate::base::job;
 use crate::io::cad::damage::Damage;
 use crate::network::Chain;
+use looks::Painted;
 use text::{Id, Records};
 
 /// One thing to write.
@@ -49,6 +52,8 @@ pub struct Thing {
     pub layers: Vec<String>,
     /// What it is.
     pub shown: Shown,
+    /// Red, green and blue from 0 to 1 of a curve that has a colour.
+    pub color: Option<[f64; 3]>,
     /// Area and volume that a reader can compare.
     pub measured: Measured,
 }
@@ -83,6 +88,7 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
     let (mut solids, mut sheets, mut wires) = (Vec::new(), Vec::new(), Vec::new());
     let mut layers: Vec<(&str, Vec<Id>)> = Vec::new();
     let mut off = (0.0_f64, false);
+    let mut painted = Vec::new();
     for thing in things {
         job::look();
         let own = put(&mut records, thing, setup)
@@ -98,6 +104,7 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
         solids.extend(own.solids);
         sheets.extend(own.sheets);
         wires.extend(own.wires);
+        painted.extend(own.painted);
     }
     let all = [solids.as_slice(), &sheets, &wires].concat();
     let kind = match [solids.is_empty(), sheets.is_empty(), wires.is_empty()] {
@@ -112,6 +119,7 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
             v.text(layer).text("").ids(&members);
         });
     }
+    looks::put(&mut records, &painted, context);
     properties::put(&mut records, things, (product, context), setup);
     let remark = (off.0 > 0.0).then(|| {
         let how = if off.1 { ", as sampled" } else { "" };
@@ -127,6 +135,7 @@ struct Put {
     sheets: Vec<Id>,
     wires: Vec<Id>,
     off: (f64, bool),
+    painted: Vec<Painted>,
 }
 
 fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damage> {
@@ -134,7 +143,7 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     let geometry = match &thing.shown {
         Shown::Faces(faces) => {
             let made = faces.put(records, &thing.name, scale)?;
-            return Ok(Put { solids: made.solids, sheets: made.sheets, off: made.off, ..Put::default() });
+            return Ok(Put { solids: made.solids, sheets: made.sheets, off: made.off, painted: made.painted, ..Put::default() });
         }
         Shown::Point(p) => records.point(*p / scale.model),
         Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, &thing.name, scale)?,
@@ -142,7 +151,8 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     let set = records.put("GEOMETRIC_CURVE_SET", |v| {
         v.text(&thing.name).ids(&[geometry]);
     });
-    Ok(Put { wires: vec![set], ..Put::default() })
+    let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true });
+    Ok(Put { wires: vec![set], painted: painted.into_iter().collect(), ..Put::default() })
 }
 
 /// Writes a file; `name` stands in its head.

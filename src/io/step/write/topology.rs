@@ -6,9 +6,11 @@
 //!   surface model ─ shell ┘   └─ surface                          └─ curve
 //! ```
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::curves::{self, Scale};
+use super::looks::Painted;
 use super::surfaces::{self, Ground};
 use super::text::{Id, Records};
 use crate::base::job;
@@ -17,7 +19,7 @@ use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::compose::fitted;
 use crate::io::cad::damage::{Damage, damage};
-use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, Skin};
+use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, Skin, SurfaceId};
 use crate::network::Network;
 use crate::surface::Off;
 
@@ -32,6 +34,8 @@ pub struct Faces {
     pub shell: Shell,
     /// Skins that close are solids.
     pub solid: bool,
+    /// Red, green and blue from 0 to 1 of surfaces that have a colour.
+    pub colors: BTreeMap<SurfaceId, [f64; 3]>,
 }
 
 /// What became of faces.
@@ -43,6 +47,8 @@ pub struct Made {
     pub sheets: Vec<Id>,
     /// How far surfaces are from the model's at most, model units; whether all that is known of one are samples.
     pub off: (f64, bool),
+    /// Faces with their colours.
+    pub painted: Vec<Painted>,
 }
 
 impl Faces {
@@ -116,7 +122,10 @@ impl Writer<'_> {
             if let Ground::Net(_, off) = ground {
                 self.made.off = (self.made.off.0.max(off.distance()), self.made.off.1 || matches!(off, Off::Sampled(_)));
             }
-            made.push(self.face(records, face, ground)?);
+            let item = self.face(records, face, ground)?;
+            let rgb = self.faces.colors.get(&face.surface).copied();
+            self.made.painted.extend(rgb.map(|rgb| Painted { item, rgb, curve: false }));
+            made.push(item);
         }
         Ok(made)
     }

@@ -1,0 +1,74 @@
+//! Colours of faces and curves.
+
+use super::product::Context;
+use super::text::{Id, Records, Values};
+
+/// Width of coloured curves, units of the file.
+const WIDTH: f64 = 0.1;
+
+/// Something with red, green and blue from 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Painted {
+    /// The face or curve.
+    pub item: Id,
+    /// Its colour.
+    pub rgb: [f64; 3],
+    /// It is a curve.
+    pub curve: bool,
+}
+
+/// Writes the styles of all that has a colour; equal ones stand once.
+pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
+    let mut styles: Vec<([f64; 3], bool, Id)> = Vec::new();
+    let mut styled = Vec::with_capacity(painted.len());
+    for Painted { item, rgb, curve } in painted {
+        let known = styles.iter().find(|known| known.0 == *rgb && known.1 == *curve).map(|known| known.2);
+        let style = known.unwrap_or_else(|| {
+            let style = style(records, *rgb, *curve);
+            styles.push((*rgb, *curve, style));
+            style
+        });
+        styled.push(records.put("STYLED_ITEM", |v| {
+            v.text("color").ids(&[style]).id(*item);
+        }));
+    }
+    if !styled.is_empty() {
+        records.put("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION", |v| {
+            v.text("").ids(&styled).id(context.context);
+        });
+    }
+}
+
+fn style(records: &mut Records, rgb: [f64; 3], curve: bool) -> Id {
+    let color = records.put("COLOUR_RGB", |v| {
+        rgb.into_iter().fold(v.text(""), Values::real);
+    });
+    let mut one = |name: &str, fill: &dyn Fn(&mut Values)| records.put(name, |v| fill(v));
+    let look = if curve {
+        let font = one("DRAUGHTING_PRE_DEFINED_CURVE_FONT", &|v| {
+            v.text("continuous");
+        });
+        one("CURVE_STYLE", &|v| {
+            v.text("").id(font).typed("POSITIVE_LENGTH_MEASURE", WIDTH).id(color);
+        })
+    } else {
+        let fill = one("FILL_AREA_STYLE_COLOUR", &|v| {
+            v.text("").id(color);
+        });
+        let area = one("FILL_AREA_STYLE", &|v| {
+            v.text("").ids(&[fill]);
+        });
+        let area = one("SURFACE_STYLE_FILL_AREA", &|v| {
+            v.id(area);
+        });
+        let side = one("SURFACE_SIDE_STYLE", &|v| {
+            v.text("").ids(&[area]);
+        });
+        one("SURFACE_STYLE_USAGE", &|v| {
+            v.word(".BOTH.").id(side);
+        })
+    };
+    one("PRESENTATION_STYLE_ASSIGNMENT", &|v| {
+        v.ids(&[look]);
+    })
+}
