@@ -115,6 +115,11 @@ impl Cx<'_> {
     /// A list; where a list of things is wanted one thing is a list of one.
     fn fit_things(&mut self, value: &Value, of: Ty, module: ModuleId) -> Result<Option<Value>, Misfit> {
         let one = |v: Value| Some(Value::list(vec![v]));
+        // A part stands for its faces where things are wanted that it is none of.
+        if let (Some(part), true) = (value.part(), of.is_thing() && of != Ty::Any && !accepts(of, value)) {
+            let faces = part.list();
+            return Ok(Some(self.fit_list(&faces, of, module)?.unwrap_or(faces)));
+        }
         match (of.is_thing(), value.len().is_some()) {
             // A row of a table is a record and a list.
             (true, true) if !matches!(value, Value::Record(_)) => self.fit_list(value, of, module),
@@ -151,6 +156,11 @@ impl Cx<'_> {
             let (fitted, nested) = match fits {
                 Ok(fitted) => (fitted, false),
                 Err(Misfit::Stop(stop)) => return Err(Misfit::Stop(stop)),
+                Err(_) if of.is_thing() && item.part().is_some() => {
+                    let faces = item.part().map_or(Value::None, |part| part.list());
+                    let inner = self.fit_list(&faces, of, module).map_err(|m| member(i, item, m))?;
+                    (Some(inner.unwrap_or(faces)), true)
+                }
                 Err(_) if of.is_thing() && item.len().is_some() && !is_coordinates(item, of) => {
                     let inner = self.fit_list(item, of, module).map_err(|m| member(i, item, m))?;
                     (Some(inner.unwrap_or_else(|| item.clone())), true)
@@ -397,6 +407,9 @@ fn zero_dim(ty: Ty) -> Option<Dim> {
 
 /// Types that a value has or has not, without conversion.
 fn plain(ty: Ty, value: &Value) -> bool {
+    if ty == Ty::Part {
+        return value.part().is_some();
+    }
     matches!(
         (ty, value),
         (Ty::Bool, Value::Bool(_))

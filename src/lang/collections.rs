@@ -232,7 +232,7 @@ impl Cx<'_> {
             if !matches!(keyword, Keyword::Shell | Keyword::Mesh) {
                 self.say_empty(code, thing, &value, word);
             }
-            let flat = self.flattened(code, thing, value)?;
+            let flat = self.opened(code, thing, value, keyword)?;
             for value in flat {
                 if fits(&value) {
                     // A bare tuple is a point here.
@@ -254,6 +254,33 @@ impl Cx<'_> {
             }
         }
         gather.done().map(|()| out)
+    }
+
+    /// Nested lists flattened, and parts as what they are made of: bodies as shells for what keeps them apart, else faces.
+    fn opened(&mut self, code: Code<'_>, thing: ExprId, value: Value, keyword: Keyword) -> Result<Vec<Value>, Stop> {
+        let flat = self.flattened(code, thing, value)?;
+        if flat.iter().all(|value| value.part().is_none()) {
+            return Ok(flat);
+        }
+        let mut open = Vec::new();
+        for value in flat {
+            let Some(part) = value.part() else {
+                open.push(value);
+                continue;
+            };
+            match keyword {
+                Keyword::Mesh => open.extend(part.things()),
+                Keyword::Picture | Keyword::Export => {
+                    open.extend(part.things());
+                    for key in ["curves", "points"] {
+                        let list = self.names.find(key).and_then(|key| if let Value::Record(r) = &value { r.get(key) } else { None });
+                        flatten_into(list.cloned().unwrap_or_else(|| Value::list(Vec::new())), &mut open);
+                    }
+                }
+                _ => open.extend(part.faces.iter().cloned().map(Value::Surface)),
+            }
+        }
+        Ok(open)
     }
 
     /// W728 where a selection is empty: the whole expression, or one that is written inside a list.

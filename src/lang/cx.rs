@@ -245,7 +245,7 @@ impl<'w> Cx<'w> {
     /// A record value.
     pub fn record(&mut self, fields: impl IntoIterator<Item = (&'static str, Value)>) -> Value {
         let (keys, values) = fields.into_iter().map(|(k, v)| (self.names.intern(k), v)).unzip::<_, _, Vec<_>, Vec<_>>();
-        Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false }))
+        Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false, part: None }))
     }
 
     /// The network of a script; evaluates all its curves first.

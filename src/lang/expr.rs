@@ -150,7 +150,7 @@ impl Cx<'_> {
             values.extend(gather.take(self.eval(code, *value)));
         }
         gather.done()?;
-        Ok(Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false })))
+        Ok(Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false, part: None })))
     }
 
     /// `(a, b)` and `(a, b, c)`: one length among them makes them lengths.

@@ -27,6 +27,11 @@ impl Say for Cx<'_> {
             None => true,
             Some(expr) => matches!(&declaration.kind, DeclarationKind::Value { value, .. } if *value == expr),
         };
+        if let (DeclarationKind::Load { bound, .. }, [face, NO_MEMBER]) = (&declaration.kind, outer.member)
+            && face != NO_MEMBER
+        {
+            return format!("{}.faces[{face}]", self.names.text(bound.name));
+        }
         if is_root && let Some(b) = bound(declaration) {
             return member_name(self.names.text(b.name), outer.member);
         }

@@ -1,16 +1,19 @@
 //! `import "part.igs" as part`, `import "part.step" as part`: points, curves, surfaces and groups of a CAD file as values.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::cx::{Cx, Stop};
 use super::imports::File;
 use super::stages::each_member;
 use super::syntax::ast::Keyword;
+use super::origins::{NO_MEMBER, Place};
+use super::part::{Body, PartFile, PartValue, Said};
 use super::units::{self, MILLIMETRE};
 use super::value::{ModuleId, Record, Value};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
-use crate::io::cad::part::{Group, Options, Part};
+use crate::io::cad::part::{Group, Options, Part, Unusable};
 use crate::io::{iges, step};
 use crate::network::Chain;
 use crate::surface::Surface;
@@ -44,10 +47,11 @@ impl Cx<'_> {
         let mut warnings = std::mem::take(&mut part.warnings);
         warnings.append(&mut part.build(file.origin, &tolerance));
         self.repaired(file, warnings);
-        Ok(self.part(&part))
+        Ok(self.part(file, &part))
     }
 
-    fn part(&mut self, part: &Part) -> Value {
+    fn part(&mut self, file: &File, part: &Part) -> Value {
+        let faces = Faces::of(self, file, part);
         let row = |points: &[glam::DVec3]| match points {
             [one] => Value::point(*one),
             row => Value::list(row.iter().map(|p| Value::point(*p)).collect()),
@@ -55,39 +59,34 @@ impl Cx<'_> {
         let all: Vec<Value> = part.points.iter().flat_map(|row| &row.value).map(|p| Value::point(*p)).collect();
         let points: Vec<Value> = part.points.iter().map(|item| row(&item.value)).collect();
         let curves: Vec<Value> = part.curves.iter().map(|item| Value::Curve(Chain::of_curve(&item.value))).collect();
-        // A face is one surface, or none, or a list of several.
-        let faces = |list: &[Surface]| list.iter().cloned().map(Value::Surface).collect::<Vec<Value>>();
         let pick = |list: &[Value], places: &[usize]| Value::list(places.iter().filter_map(|k| list.get(*k)).cloned().collect());
-        let pick_faces = |places: &[usize]| Value::list(places.iter().filter_map(|k| part.built.get(*k)).flat_map(|f| faces(f)).collect());
-        let mut record_of = |group: &Group, color: Option<[f64; 3]>| {
+        let mut record_of = |kind: &str, k: usize, group: &Group, color: Option<[f64; 3]>| {
+            let own = faces.group(format!("{}.{kind}[{k}]", faces.name), &group.surfaces, kind);
             let mut fields = vec![
                 ("name", Value::text(&group.name)),
                 ("points", pick(&points, &group.points)),
                 ("curves", pick(&curves, &group.curves)),
-                ("surfaces", pick_faces(&group.surfaces)),
+                ("surfaces", own.list()),
             ];
-            if let Some(rgb) = color {
-                fields.push(("rgb", Value::list(rgb.map(Value::number).to_vec())));
-            }
-            self.record(fields)
+            fields.extend(color.map(|rgb| ("rgb", Value::list(rgb.map(Value::number).to_vec()))));
+            self.record_of_part(fields, own)
         };
-        let groups: Vec<Value> = part.groups.iter().map(|group| record_of(group, None)).collect();
-        let shells: Vec<Value> = part.shells.iter().map(|group| record_of(group, None)).collect();
-        let solids: Vec<Value> = part.solids.iter().map(|group| record_of(group, None)).collect();
-        let colors: Vec<Value> = part.colors.iter().map(|(group, rgb)| record_of(group, Some(*rgb))).collect();
+        let mut records_of = |kind: &str, groups: &[Group]| -> Vec<Value> {
+            groups.iter().enumerate().map(|(k, group)| record_of(kind, k, group, None)).collect()
+        };
+        let groups = records_of("groups", &part.groups);
+        let shells = records_of("shells", &part.shells);
+        let solids = records_of("solids", &part.solids);
+        let colors = part.colors.iter().enumerate().map(|(k, (group, rgb))| record_of("colors", k, group, Some(*rgb))).collect();
         let names = part.points.iter().map(|i| &i.name).zip(&points);
         let names = names.chain(part.curves.iter().map(|i| &i.name).zip(&curves));
-        let of_face = |list: &Vec<Surface>| match faces(list) {
-            one if one.len() == 1 => one.into_iter().next(),
-            several => (!several.is_empty()).then(|| Value::list(several)),
-        };
-        let surfaces: Vec<Value> = part.built.iter().map(|list| of_face(list).unwrap_or(Value::None)).collect();
+        let surfaces: Vec<Value> = faces.places.iter().map(|places| faces.value(places)).collect();
         let names = names.chain(part.surfaces.iter().map(|i| &i.name).zip(&surfaces));
         let names = names.chain(part.groups.iter().map(|g| &g.name).zip(&groups));
         let lists = [
             ("points", Value::list(all)),
             ("curves", Value::list(curves.clone())),
-            ("surfaces", Value::list(part.built.iter().flat_map(|f| faces(f)).collect())),
+            ("surfaces", Value::list(faces.all.iter().cloned().map(Value::Surface).collect())),
             ("groups", Value::list(groups.clone())),
             ("shells", Value::list(shells)),
             ("solids", Value::list(solids)),
@@ -95,8 +94,108 @@ impl Cx<'_> {
         ];
         let named = names.filter(|(_, value)| !matches!(value, Value::None)).map(|(name, value)| (name.as_str(), value.clone()));
         let fields: Vec<(&str, Value)> = lists.into_iter().chain(named).collect();
-        let (keys, values) = fields.into_iter().map(|(key, value)| (self.names.intern(key), value)).unzip();
-        Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false }))
+        self.record_of_part(fields, faces.whole(part))
+    }
+
+    fn record_of_part(&mut self, fields: Vec<(&str, Value)>, part: PartValue) -> Value {
+        let (keys, values) = fields.into_iter().map(|(key, value)| (self.names.intern(key), value)).unzip::<_, _, Vec<_>, Vec<_>>();
+        Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false, part: Some(Arc::new(part)) }))
+    }
+}
+
+/// The surfaces made of a part, numbered one after the other.
+struct Faces {
+    /// The script's name for the part.
+    name: String,
+    file: Arc<PartFile>,
+    /// All of them, each with an origin of its own.
+    all: Vec<Surface>,
+    /// For each face of the file those made of it.
+    places: Vec<Range<usize>>,
+    /// Faces of which none was made, by their place.
+    unusable: Vec<(Option<usize>, Unusable)>,
+}
+
+impl Faces {
+    fn of(cx: &mut Cx, file: &File, part: &Part) -> Self {
+        let (mut all, mut places, mut said) = (Vec::new(), Vec::new(), Vec::new());
+        let mut colors: Vec<Option<&str>> = vec![None; part.surfaces.len()];
+        for (group, _) in &part.colors {
+            group.surfaces.iter().for_each(|k| colors[*k] = Some(&group.name));
+        }
+        let place = cx.origins.place(file.origin);
+        for ((item, built), color) in part.surfaces.iter().zip(&part.built).zip(colors) {
+            let first = all.len();
+            for surface in built {
+                let member = [all.len() as u32, NO_MEMBER];
+                let origin = place.map_or(file.origin, |place| cx.origins.add(Place { member, ..place }));
+                all.push(surface.with_origin(origin));
+                let color = color.zip(item.color).map(|(name, rgb)| (name.into(), rgb));
+                said.push(Said { name: item.name.as_str().into(), color, entity: format!("{}{}", part.mark, item.id).into() });
+            }
+            places.push(first..all.len());
+        }
+        let name = place.map_or_else(String::new, |place| cx.declaration_name(place.module, place.declaration));
+        let unusable: Vec<(Option<usize>, Unusable)> = part.unusable.iter().map(|face| (face.face, face.clone())).collect();
+        let total = part.surfaces.len() + unusable.iter().filter(|(face, _)| face.is_none()).count();
+        let file = PartFile { path: file.path.into(), origin: file.origin, module: cx.module(), said, total };
+        Self { name, file: Arc::new(file), all, places, unusable }
+    }
+
+    /// What was made of one face: a surface, several, or nothing.
+    fn value(&self, places: &Range<usize>) -> Value {
+        let mut made: Vec<Value> = self.all[places.clone()].iter().cloned().map(Value::Surface).collect();
+        match made.len() {
+            0 => Value::None,
+            1 => made.swap_remove(0),
+            _ => Value::list(made),
+        }
+    }
+
+    /// Places of surfaces made of faces of the file.
+    fn flat(&self, faces: &[usize]) -> Vec<usize> {
+        faces.iter().filter_map(|k| self.places.get(*k)).cloned().flatten().collect()
+    }
+
+    /// A body or group; its own faces are numbered anew.
+    fn group(&self, name: String, faces: &[usize], kind: &str) -> PartValue {
+        let flat = self.flat(faces);
+        let name: Arc<str> = name.into();
+        let is_body = matches!(kind, "solids" | "shells") && !flat.is_empty();
+        let body = Body { name: name.clone(), faces: (0..flat.len()).collect(), solid: kind == "solids" };
+        // Of one that came to nothing when it was read nobody knows where it belongs.
+        let unusable = self.unusable.iter().filter(|(face, _)| face.is_none_or(|k| faces.contains(&k)));
+        PartValue {
+            name,
+            file: self.file.clone(),
+            faces: flat.iter().map(|k| self.all[*k].clone()).collect(),
+            bodies: if is_body { vec![body] } else { Vec::new() },
+            unusable: unusable.map(|(_, face)| face.clone()).collect(),
+        }
+    }
+
+    /// All of it: solids, then shells that belong to none.
+    fn whole(&self, part: &Part) -> PartValue {
+        let mut taken = vec![false; self.all.len()];
+        let mut bodies = Vec::new();
+        let solids = part.solids.iter().enumerate().map(|(k, group)| (k, group, true));
+        let shells = part.shells.iter().enumerate().map(|(k, group)| (k, group, false));
+        for (k, group, solid) in solids.chain(shells) {
+            let faces: Vec<usize> = self.flat(&group.surfaces);
+            if faces.is_empty() || faces.iter().any(|face| taken[*face]) {
+                continue;
+            }
+            faces.iter().for_each(|face| taken[*face] = true);
+            let name = format!("{}.{}[{k}]", self.name, if solid { "solids" } else { "shells" }).into();
+            bodies.push(Body { name, faces, solid });
+        }
+        PartValue {
+            name: self.name.as_str().into(),
+            file: self.file.clone(),
+            faces: self.all.clone(),
+            bodies,
+            unusable: self.unusable.iter().map(|(_, face)| face.clone()).collect(),
+        }
     }
 }
 

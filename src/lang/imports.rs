@@ -31,7 +31,7 @@ const TABLES: &[&str] = &["csv", "dat", "txt"];
 
 /// One file being imported.
 pub(super) struct File<'f> {
-    path: &'f str,
+    pub path: &'f str,
     pub origin: Origin,
     pub unit: Option<LengthUnit>,
     header: Option<bool>,
@@ -134,7 +134,7 @@ impl Cx<'_> {
             Json::List(items) => Value::list(items.into_iter().map(|i| self.json(i)).collect()),
             Json::Record(fields) => {
                 let (keys, values) = fields.into_iter().map(|(k, v)| (self.names.intern(&k), self.json(v))).unzip();
-                Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false }))
+                Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false, part: None }))
             }
         }
     }
@@ -196,7 +196,7 @@ impl Cx<'_> {
         let has_header = table.header.is_some();
         let row = |cells: Vec<Cell>| {
             let values: Vec<Value> = cells.into_iter().map(cell).collect();
-            if has_header { Value::Record(Arc::new(Record { keys: Arc::clone(&keys), values, row: true })) } else { Value::list(values) }
+            if has_header { Value::Record(Arc::new(Record { keys: Arc::clone(&keys), values, row: true, part: None })) } else { Value::list(values) }
         };
         let rows: Vec<Value> = table.rows.into_iter().map(row).collect();
         // A header of stations is numbers as well as names.

@@ -37,6 +37,7 @@ mod operators;
 pub mod origins;
 mod outputs;
 mod params;
+pub mod part;
 mod pictures;
 mod places;
 pub mod plans;

@@ -71,6 +71,8 @@ pub enum Ty {
     Range,
     /// An imported table.
     Table,
+    /// An imported part, or a body or group of it.
+    Part,
     /// A module.
     Module,
     /// The network of a script.
@@ -118,6 +120,7 @@ impl Ty {
             Self::Record => "a record".into(),
             Self::Range => "a range".into(),
             Self::Table => "a table".into(),
+            Self::Part => "a part".into(),
             Self::Module => "a module".into(),
             Self::Network => "the network".into(),
             Self::List(Self::Any) => "a list".into(),
@@ -318,6 +321,7 @@ impl Value {
             Self::Text(_) => Ty::Text,
             Self::Word(_) => Ty::Word,
             Self::List(_) => Ty::List(&Ty::Any),
+            Self::Record(r) if r.part.is_some() => Ty::Part,
             Self::Record(_) => Ty::Record,
             Self::Curve(_) => Ty::Curve,
             Self::Node(_) => Ty::Node,

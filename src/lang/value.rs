@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::names::Name;
+use super::part::PartValue;
 use super::table::Table;
 use crate::base::origin::Origin;
 use crate::mesh::Mesh;
@@ -152,6 +153,8 @@ pub struct Record {
     pub values: Vec<Value>,
     /// Whether it may be indexed and walked like a list (a row of a table with a header).
     pub row: bool,
+    /// The imported part, body or group that it is the record of.
+    pub part: Option<Arc<PartValue>>,
 }
 
 impl Record {

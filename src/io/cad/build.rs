@@ -2,7 +2,7 @@
 
 use super::damage::Damage;
 use super::face::{Border, Face};
-use super::part::Part;
+use super::part::{Part, Unusable};
 use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::origin::Origin;
@@ -11,22 +11,21 @@ use crate::network::Chain;
 use crate::surface::{Outlined, Side, Surface, outlined, trim};
 
 impl Part {
-    /// Makes [`Part::built`] of the faces; says which could not be made, and where the file states other figures of them.
+    /// Makes [`Part::built`] of the faces, and [`Part::unusable`] of those that fail; says where the file states other figures of them.
     pub fn build(&mut self, origin: Origin, tolerance: &Tolerance) -> Vec<Malformed> {
-        let mut skipped = Vec::new();
         self.built = Vec::with_capacity(self.surfaces.len());
-        for item in &self.surfaces {
+        for (k, item) in self.surfaces.iter().enumerate() {
             job::look();
             self.built.push(match item.value.surfaces(origin, tolerance) {
                 Ok(surfaces) => surfaces,
                 Err(Damage(why)) => {
-                    skipped.push(Malformed::line(item.line, format!("{} at {}{}: skipped: {why}", item.name, self.mark, item.id)));
+                    let entity = format!("{} at {}{}", item.name, self.mark, item.id);
+                    self.unusable.push(Unusable { face: Some(k), entity, line: item.line, cause: why });
                     Vec::new()
                 }
             });
         }
-        skipped.append(&mut self.differences());
-        skipped
+        self.differences()
     }
 }
 

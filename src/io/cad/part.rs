@@ -24,7 +24,10 @@ pub struct Options {
 }
 
 /// Names that the lists of a part have themselves.
-const RESERVED: &[&str] = &["points", "curves", "surfaces", "groups", "shells", "solids", "colors", "unit"];
+const RESERVED: &[&str] = &[
+    "points", "curves", "surfaces", "groups", "shells", "solids", "colors", "unit", "name", "faces", "area", "volume", "bbox", "centroid",
+    "planes", "cylinders", "cones", "spheres", "tori", "others",
+];
 
 /// Names given so far, and how often each was wanted.
 #[derive(Clone, Debug)]
@@ -103,6 +106,19 @@ pub enum Figure {
     Centroid(DVec3),
 }
 
+/// A face of the file of which there is no surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unusable {
+    /// Of [`Part::surfaces`], where it came as far.
+    pub face: Option<usize>,
+    /// Its name and number: `roof at #36`.
+    pub entity: String,
+    /// Line of the file where it stands.
+    pub line: u64,
+    /// Why, in words.
+    pub cause: String,
+}
+
 /// What a CAD file holds, in file order and model units.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
@@ -124,6 +140,8 @@ pub struct Part {
     pub colors: Vec<(Group, [f64; 3])>,
     /// What the file states of its parts, to be compared.
     pub stated: Vec<Stated>,
+    /// Faces of which nothing could be made; complete after [`Part::build`].
+    pub unusable: Vec<Unusable>,
     /// What stands before the number of an entity in messages: `D` or `#`.
     pub mark: &'static str,
     /// The file's unit.

@@ -17,8 +17,10 @@ use crate::base::limits;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::damage::Damage;
 use crate::io::cad::face::Face;
-use crate::io::cad::part::{Group, Item, Names, Options, Part, Place as Made, Shades};
+use crate::io::cad::part::{Group, Item, Names, Options, Part, Place as Made, Shades, Unusable};
 
+/// Kinds of entities that hold faces.
+const FACES: &[u32] = &[186, 510, 514];
 /// Kinds of entities that surfaces are.
 const SURFACES: &[u32] = &[108, 114, 118, 120, 122, 128, 140, 143, 144, 190, 192, 194, 196, 198];
 /// Kinds of entities that curves are.
@@ -141,6 +143,9 @@ impl Maker {
             }
             match (kind, &self.book.decoded[k].data) {
                 (_, Data::Group(_) | Data::Shell(_) | Data::Solid { .. }) => groups.push(d),
+                (_, Data::Damaged) if SURFACES.contains(&kind) || FACES.contains(&kind) => {
+                    self.unusable(d, "its parameters cannot be read".to_owned());
+                }
                 (_, Data::Damaged) => {}
                 (_, Data::Point(p)) => {
                     let points = vec![*p];
@@ -225,8 +230,13 @@ impl Maker {
                 let item = self.item(d, "surface", self.part.surfaces.len(), face);
                 self.part.surfaces.push(item);
             }
-            Err(Damage(why)) => self.skipped(d, &why),
+            Err(Damage(why)) => self.unusable(d, why),
         }
+    }
+
+    /// Leaves out a face.
+    fn unusable(&mut self, d: Pointer, cause: String) {
+        self.part.unusable.push(Unusable { face: None, entity: self.book.said(d), line: self.book.line(d), cause });
     }
 
     fn skipped(&mut self, d: Pointer, why: &str) {

@@ -170,6 +170,7 @@ impl Maker<'_> {
         }
         self.gaps();
         self.part.warnings = std::mem::take(&mut self.step.warnings);
+        self.part.unusable = std::mem::take(&mut self.step.unusable);
         self.part
     }
 

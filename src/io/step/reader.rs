@@ -13,7 +13,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::{Curve, Motion};
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::part::Options;
+use crate::io::cad::part::{Options, Unusable};
 
 /// Curves, surfaces and other things that are made of things of their kind.
 pub const NESTED: usize = 32;
@@ -61,6 +61,8 @@ pub struct Step<'f> {
     pub scale: f64,
     /// What was repaired or skipped.
     pub warnings: Vec<Malformed>,
+    /// Faces, and what holds faces, of which nothing could be made.
+    pub unusable: Vec<Unusable>,
     /// What may still be copied.
     left: usize,
     /// Curves of edges made so far, in the units of now.
@@ -78,6 +80,7 @@ impl<'f> Step<'f> {
             units: Units::NONE,
             scale: options.file.unwrap_or(1.0) / options.model,
             warnings: Vec::new(),
+            unusable: Vec::new(),
             left: limits::PART_COPIES + COPIES_PER_BYTE * file.bytes.len(),
             edges: BTreeMap::new(),
         }
@@ -120,6 +123,14 @@ impl<'f> Step<'f> {
         let name = if name.is_empty() { name } else { format!(" '{name}'") };
         let what = format!("{}{name}: {what}", self.said(k));
         self.warnings.push(Malformed::line(self.file.line(k), what));
+    }
+
+    /// Leaves out a face, or what holds faces.
+    pub fn unusable(&mut self, k: u32, cause: String) {
+        let name = self.file.parameters(k).text(0);
+        let name = if name.is_empty() { name } else { format!(" '{name}'") };
+        let entity = format!("{}{name}", self.said(k));
+        self.unusable.push(Unusable { face: None, entity, line: self.file.line(k), cause });
     }
 
     /// A length of the model in words, roughly.

@@ -87,9 +87,20 @@ impl<'f> Step<'f> {
     pub fn item(&mut self, k: u32, unread: &mut Unread) -> Item {
         let mut item = Item::default();
         if let Err(Damage(why)) = self.add(k, &mut item, unread, 0) {
-            self.warn(k, format!("skipped: {why}"));
+            self.left_out(k, why);
         }
         item
+    }
+
+    /// Leaves out an item; faces and what holds them are counted.
+    fn left_out(&mut self, k: u32, why: String) {
+        const FACES: [&[u8]; 4] = [b"FACE", b"SURFACE", b"SHELL", b"BREP"];
+        let holds = |name: &[u8]| FACES.iter().any(|word| name.windows(word.len()).any(|w| w == *word));
+        if self.file.names(k).any(holds) {
+            self.unusable(k, why);
+        } else {
+            self.warn(k, format!("skipped: {why}"));
+        }
     }
 
     fn add(&mut self, k: u32, item: &mut Item, unread: &mut Unread, depth: usize) -> Result<(), Damage> {
@@ -115,7 +126,7 @@ impl<'f> Step<'f> {
             b"GEOMETRIC_SET" | b"GEOMETRIC_CURVE_SET" => {
                 for member in self.members(k, row.list(1)?) {
                     if let Err(Damage(why)) = self.member(member, item, unread, depth + 1) {
-                        self.warn(member, format!("skipped: {why}"));
+                        self.left_out(member, why);
                     }
                 }
                 item.bundle(Sort::Set, k, from);
@@ -219,12 +230,12 @@ impl<'f> Step<'f> {
                     job::look();
                     match self.face(face, turned) {
                         Ok(made) => item.faces.push((face, made, Some(shell))),
-                        Err(Damage(why)) => self.warn(face, format!("skipped: {why}")),
+                        Err(Damage(why)) => self.unusable(face, why),
                     }
                 }
                 item.bundle(sort, shell, from);
             }
-            Err(Damage(why)) => self.warn(k, format!("skipped: {why}")),
+            Err(Damage(why)) => self.unusable(k, why),
         }
     }
 

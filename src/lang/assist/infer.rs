@@ -267,9 +267,11 @@ fn of_file(path: &str) -> Shape {
             let lists = Shape::list(many(Ty::Point));
             record(&[points, ("polylines", lists.clone()), ("polygons", lists), ("groups", Shape::Unknown), ("mesh", Shape::Is(Ty::Mesh))])
         }
-        "igs" | "iges" | "stp" | "step" => {
+        "igs" | "iges" | "stp" | "step" | "p21" => {
             let group = record(&[("name", Shape::Is(Ty::Text)), points.clone(), curves.clone(), surfaces.clone()]);
-            record(&[points, curves, surfaces, ("groups", Shape::list(group.clone())), ("colors", Shape::list(group))])
+            let groups = ["groups", "shells", "solids", "colors"].map(|key| (key, Shape::list(group.clone())));
+            let lists: Vec<(&str, Shape)> = [points, curves, surfaces].into_iter().chain(groups).collect();
+            record(&lists)
         }
         _ => Shape::Unknown,
     }
@@ -282,7 +284,10 @@ fn of_builtin(name: &str, first: &Shape) -> Shape {
     }
     let point = || Shape::Is(Ty::Point);
     match name {
-        "box" => Shape::Record([("min", point()), ("max", point()), ("size", point())].map(|(key, shape)| (key.to_owned(), shape)).into()),
+        "box" => {
+            let keys = [("min", point()), ("max", point()), ("size", point()), ("diagonal", of_dim(Dim::LENGTH))];
+            Shape::Record(keys.map(|(key, shape)| (key.to_owned(), shape)).into())
+        }
         "nearest" if matches!(first, Shape::List(_)) => first.member(),
         "nearest" if first.is(Ty::Curve) => point(),
         "flatten" => match first.member() {

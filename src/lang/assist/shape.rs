@@ -140,6 +140,7 @@ impl Shape {
             (Ty::Measure | Ty::Number, Self::Is(Ty::Measure)) => true,
             (Ty::Measure, _) => self.dim().is_some(),
             (Ty::Number, _) => self.dim() == Some(Dim::NONE),
+            (Ty::Part, Self::Record(keys)) => is_part(keys),
             (Ty::Record, Self::Record(_)) | (Ty::Table, Self::Table(_)) | (Ty::Module, Self::Module(_)) => true,
             (ty, _) => self.is(ty),
         }
@@ -155,6 +156,7 @@ impl Shape {
             (Ty::List(of) | Ty::Rest(of), Self::List(is)) => is.fits(*of) || of.is_thing() && is.fits(ty),
             (Ty::List(_), Self::Table(_)) => true,
             (Ty::List(Ty::Any | Ty::Count | Ty::Whole | Ty::Number), Self::Is(Ty::Range)) => true,
+            (Ty::List(of) | Ty::Rest(of), Self::Record(keys)) if is_part(keys) => self.fits(*of) || Self::Is(Ty::Surface).fits(*of),
             (Ty::List(of) | Ty::Rest(of), _) => of.is_thing() && self.fits(*of),
             (_, Self::List(_)) => false,
             (Ty::Number | Ty::Count | Ty::Whole | Ty::Quantity(_) | Ty::Measure | Ty::Station, Self::Is(Ty::Measure)) => true,
@@ -166,10 +168,16 @@ impl Shape {
             (Ty::Axis, Self::Is(Ty::Curve | Ty::Link)) => true,
             (Ty::Point | Ty::Node | Ty::Vector | Ty::Direction | Ty::Axis, Self::Is(is)) => is_place(*is),
             (Ty::Curve, Self::Is(Ty::Link)) => true,
+            (Ty::Part, Self::Record(keys)) => is_part(keys),
             (Ty::Record, Self::Record(_)) | (Ty::Table, Self::Table(_)) | (Ty::Module, Self::Module(_)) => true,
             (ty, _) => self.is(ty),
         }
     }
+}
+
+/// Whether a record has the keys of an imported part.
+fn is_part(keys: &[(String, Shape)]) -> bool {
+    ["points", "curves", "surfaces"].iter().all(|wanted| keys.iter().any(|(key, _)| key == wanted))
 }
 
 fn is_place(ty: Ty) -> bool {

@@ -17,14 +17,14 @@ use crate::network::Chain;
 use crate::surface::{Surface, curve_bbox};
 use crate::{builtins, fields};
 
-/// `{min, max, size}` of a box.
-fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
+/// `{min, max, size, diagonal}` of a box.
+pub(super) fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
     let (min, max) = if bounds.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (bounds.min, bounds.max) };
-    cx.record([("min", Value::point(min)), ("max", Value::point(max)), ("size", Value::point(max - min))])
+    cx.record([("min", Value::point(min)), ("max", Value::point(max)), ("size", Value::point(max - min)), ("diagonal", Value::length((max - min).length()))])
 }
 
 /// What a closed shell encloses; an open one encloses nothing.
-fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
+pub(super) fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
     let (module, tolerance) = (cx.module(), cx.tolerance()?);
     let scene = Scene::of(cx, module, &shell.surfaces)?;
     let built = scene.shell(shell, &tolerance, &mut Vec::new())?;
@@ -39,7 +39,7 @@ fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
 }
 
 builtins! {
-    /// The box along the axes between two corners: `{min, max, size}`.
+    /// The box along the axes between two corners: `{min, max, size, diagonal}`.
     ///
     /// ```loft
     /// units m
@@ -83,13 +83,13 @@ fields! {
         Err(Stop::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
         Err(other) => Err(other),
     };
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
     fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, curve_bbox(&of)));
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
     fn bbox(of: Surface) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&[of])));
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
     fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&of.surfaces)));
-    /// The smallest box along the axes that holds all nodes: `{min, max, size}`.
+    /// The smallest box along the axes that holds all nodes: `{min, max, size, diagonal}`.
     fn bbox(of: Arc<MeshValue>) -> Value = |cx, of| {
         let mesh = cx.mesh(&of)?;
         Ok(record_of(cx, Box3::of(mesh.nodes.iter().copied())))

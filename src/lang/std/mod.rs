@@ -22,6 +22,7 @@ pub(in crate::lang) mod mesh;
 mod nets;
 mod network;
 mod numbers;
+mod parts;
 mod roundings;
 mod rows;
 mod scatters;
@@ -117,11 +118,12 @@ pub const BUILTINS: &[&[Builtin]] = &[
     joins::BUILTINS,
     mesh::BUILTINS,
     measures::BUILTINS,
+    parts::BUILTINS,
 ];
 
 /// All tables of fields.
 pub const FIELDS: &[&[Builtin]] =
-    &[vectors::FIELDS, data::FIELDS, network::FIELDS, mesh::FIELDS, topology::FIELDS, sweeps::FIELDS, joins::FIELDS, measures::FIELDS];
+    &[vectors::FIELDS, data::FIELDS, network::FIELDS, mesh::FIELDS, topology::FIELDS, sweeps::FIELDS, joins::FIELDS, measures::FIELDS, parts::FIELDS];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {
