@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use lofting::base::bbox::Box3;
+use lofting::base::fault::Malformed;
 use lofting::base::origin::Origin;
 use lofting::base::quadrature::gauss_legendre;
 use lofting::base::tolerance::Tolerance;
@@ -42,6 +43,8 @@ fn read(bytes: &[u8], options: &Options) -> Result<Part, String> {
     let mut part = opened.part(tolerance);
     let mut notes = part.build(Origin::NONE, &tolerance);
     part.warnings.append(&mut notes);
+    let left_out = part.unusable.drain(..).map(|face| Malformed::line(face.line, format!("{}: skipped: {}", face.entity, face.cause)));
+    part.warnings.extend(left_out);
     Ok(part)
 }
 
@@ -165,7 +168,7 @@ fn borders_lie_on_their_surfaces_and_close() {
         let bytes = std::fs::read(folder(&format!("iges-{name}"))).unwrap();
         let part = read(&bytes, &OPTIONS).unwrap();
         for face in part.surfaces.iter().map(|s| &s.value) {
-            assert!(face.gap <= gap, "{name}: {}", face.gap);
+            assert!(face.off.distance <= gap, "{name}: {}", face.off.distance);
             for loop_of in face.outer.iter().chain(&face.holes) {
                 for (k, border) in loop_of.iter().enumerate() {
                     let next = &loop_of[(k + 1) % loop_of.len()];

@@ -22,6 +22,7 @@ use std::time::Instant;
 
 use file::{can, file};
 use lofting::base::bbox::Box3;
+use lofting::base::fault::Malformed;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::io::cad::part::{Options, Part};
@@ -39,6 +40,8 @@ fn read(bytes: &[u8]) -> Result<Part, String> {
     let mut part = opened.part(tolerance);
     let mut notes = part.build(Origin::NONE, &tolerance);
     part.warnings.append(&mut notes);
+    let left_out = part.unusable.drain(..).map(|face| Malformed::line(face.line, format!("{}: skipped: {}", face.entity, face.cause)));
+    part.warnings.extend(left_out);
     Ok(part)
 }
 

@@ -19,6 +19,8 @@ pub struct Tolerance {
 
 crate::content!(Tolerance { point, rounding, angle, parameter });
 
+/// Sine of the angle by which normals may differ from those of the simple form that a surface is taken for.
+pub const FLAT: f64 = 1e-6;
 /// Relative accuracy of a stored arc length (math.md section 4).
 pub const LENGTH_ACCURACY: f64 = 1e-13;
 /// Absolute error that a stretch of a stored arc length may always have, model length units (math notes §4).

@@ -192,6 +192,7 @@ codes! {
     now "E722", "no-row", "surfaces that are to be one do not follow one another";
     now "W724", "sharp-elements", "a mesh has elements with sharp angles";
     now "W725", "too-small-for-mesh", "something is too small for a mesh";
+    now "W726", "faces-unusable", "faces of a file could not be used";
     now "W728", "empty-selection", "a selection is empty";
     now "W729", "holds-of-nothing", "a check holds of nothing";
     now "E801", "cannot-read", "a file cannot be read";
@@ -210,6 +211,7 @@ codes! {
     now "E901", "check-failed", "a check failed";
     now "E902", "golden-differs", "a golden differs";
     now "E903", "raised", "the script itself says that something is wrong";
+    now "E904", "incomplete-part", "what is exported lacks faces of its file";
     now "E999", "bug", "a bug in loft";
 }
 

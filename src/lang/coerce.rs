@@ -68,6 +68,8 @@ impl Cx<'_> {
                 Dim::NONE => Err(Misfit::Bare),
                 _ => Err(Misfit::Kind),
             },
+            (Ty::Size, Value::Number(q)) if q.percent => Ok(None),
+            (Ty::Size, v) => self.fit(v, Ty::Quantity(Dim::LENGTH), module),
             (Ty::Measure, Value::Number(_)) => Ok(None),
             (Ty::Station, Value::Number(q)) => ok(q.dim.is_none() || q.dim == Dim::LENGTH),
             (Ty::Choice(words), Value::Word(w)) => {
@@ -400,6 +402,7 @@ pub(super) fn axis_of_word(word: &str) -> Option<&'static str> {
 fn zero_dim(ty: Ty) -> Option<Dim> {
     match ty {
         Ty::Quantity(dim) => Some(dim),
+        Ty::Size => Some(Dim::LENGTH),
         Ty::Optional(of) => zero_dim(*of),
         _ => None,
     }

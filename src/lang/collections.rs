@@ -10,11 +10,14 @@ use super::faults::member_name;
 use super::later;
 use super::lookalikes;
 use super::module::bound;
+use super::origins::NO_MEMBER;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::room::flat_len;
 use super::settings::{self, Setting};
+use super::shares::Meshed;
 use super::std::imprint::pieces;
 use super::syntax::ast::{self, ClauseWord, Declaration, Expr, ExprId, For, Keyword, MeshClause, Span};
+use super::types::Ty;
 use super::units;
 use super::value::{MeshValue, ShellValue, Value};
 use crate::base::fault::ValueFault;
@@ -22,10 +25,12 @@ use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::base::text::article;
 use crate::mesh::{Elements, Method};
+use crate::surface::Surface;
 
 /// A setting as resolved: its key, its value, the expression that says it.
 pub(super) struct Resolved {
     pub key: &'static str,
+    pub ty: Ty,
     pub value: Value,
     pub origin: Origin,
 }
@@ -46,7 +51,7 @@ pub(super) fn number(value: &Value) -> Option<f64> {
     }
 }
 
-fn truth(value: &Value) -> Option<bool> {
+pub(super) fn truth(value: &Value) -> Option<bool> {
     if let Value::Bool(b) = value { Some(*b) } else { None }
 }
 
@@ -94,6 +99,7 @@ impl Cx<'_> {
             let name: Arc<str> = member_name(&name, member).into();
             let origin = cx.own_origin(code, member);
             let mut gather = Gather::default();
+            let thing_exprs = things;
             let things = gather.take(cx.things(code, things, keyword));
             match keyword {
                 Keyword::Shell => {
@@ -102,6 +108,7 @@ impl Cx<'_> {
                     let settings = settings.unwrap_or_default();
                     let mut snap = said(&settings, "snap", number);
                     let flip = said(&settings, "flip", truth).is_some_and(|said| said.0);
+                    let skins = cx.skins(code, thing_exprs)?;
                     let asked = said(&settings, "imprint", truth).filter(|said| said.0);
                     let mut imprint = asked.map(|said| said.1);
                     let things = things.unwrap_or_default();
@@ -117,6 +124,22 @@ impl Cx<'_> {
                             _ => return Err(Stop::Bug("a shell of something else")),
                         }
                     }
+                    if skins.len() > 1 {
+                        let mut shells = Vec::with_capacity(skins.len());
+                        for (k, mut surfaces) in skins.into_iter().enumerate() {
+                            let mut member = member;
+                            let free = member.iter().position(|m| *m == NO_MEMBER).unwrap_or(1);
+                            member[free] = k as u32;
+                            let origin = cx.own_origin(code, member);
+                            if let Some((_, origin)) = asked {
+                                surfaces = pieces(cx, surfaces, origin)?;
+                            }
+                            let name = format!("{name}[{k}]").into();
+                            let shell = ShellValue { name, module: code.module, origin, surfaces, snap, imprint, flip };
+                            shells.push(Value::Shell(Arc::new(shell)));
+                        }
+                        return Ok(Value::list(shells));
+                    }
                     if let Some((_, origin)) = asked {
                         surfaces = pieces(cx, surfaces, origin)?;
                     }
@@ -125,14 +148,20 @@ impl Cx<'_> {
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));
                     let (on, others): (Vec<&MeshClause>, Vec<_>) = clauses.iter().partition(|c| c.word == ClauseWord::On);
-                    let rules: Vec<RuleSpec> = on.into_iter().filter_map(|c| gather.take(cx.rule(code, c))).collect();
-                    let refines: Vec<RefineSpec> = others.into_iter().filter_map(|c| gather.take(cx.refine(code, c))).collect();
+                    // Without things there is a fault already, or they are asked for again.
+                    let diagonal = if things.is_none() { Some(1.0) } else { None };
+                    let things = things.unwrap_or_default();
+                    let mut meshed = Meshed { things: &things, diagonal };
+                    let rules: Vec<RuleSpec> = on.into_iter().filter_map(|c| gather.take(cx.rule(code, c, &mut meshed))).collect();
+                    let refines: Vec<RefineSpec> =
+                        others.into_iter().filter_map(|c| gather.take(cx.refine(code, c, &mut meshed))).collect();
                     gather.done()?;
-                    let settings = settings.unwrap_or_default();
+                    let mut settings = settings.unwrap_or_default();
+                    cx.shares(code, &mut settings, &mut meshed)?;
                     meshes.push(MeshSpec {
                         name,
                         origin,
-                        things: things.unwrap_or_default(),
+                        things,
                         size: said(&settings, "size", number),
                         chord_error: said(&settings, "chord_error", number),
                         angle_error: said(&settings, "angle_error", |v| number(v).map(units::radians)),
@@ -256,6 +285,16 @@ impl Cx<'_> {
         gather.done().map(|()| out)
     }
 
+    /// The skins of a part that a shell alone is of: several become a shell each.
+    fn skins(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Vec<Surface>>, Stop> {
+        let [thing] = things else { return Ok(Vec::new()) };
+        if !matches!(code.expr(*thing), Expr::Name(_) | Expr::Field { .. } | Expr::Index { .. }) {
+            return Ok(Vec::new());
+        }
+        let value = self.eval(code, *thing)?;
+        Ok(value.part().map_or_else(Vec::new, |part| part.skins()))
+    }
+
     /// Nested lists flattened, and parts as what they are made of: bodies as shells for what keeps them apart, else faces.
     fn opened(&mut self, code: Code<'_>, thing: ExprId, value: Value, keyword: Keyword) -> Result<Vec<Value>, Stop> {
         let flat = self.flattened(code, thing, value)?;
@@ -328,7 +367,7 @@ impl Cx<'_> {
             let value = value.and_then(|v| self.in_range(code, &key, v, setting.value));
             if let Some(value) = gather.take(value) {
                 let origin = self.origin_at(setting.value);
-                out.push(Resolved { key: known.key, value, origin });
+                out.push(Resolved { key: known.key, ty: known.ty, value, origin });
             }
         }
         gather.done().map(|()| out)
@@ -336,6 +375,11 @@ impl Cx<'_> {
 
     fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
         let Some(x) = number(&value) else { return Ok(value) };
+        if x > 1.0 && matches!(&value, Value::Number(q) if q.percent) && !matches!(key, "bias" | "growth") {
+            let found = self.show(&value);
+            let text = format!("`{key}` is at most 100% of the diagonal of what is meshed, got {found}");
+            return Err(self.error(code, "E306", text, code.span(id), found).came_from(code).stop());
+        }
         let (least, most) = (f64::from(limits::PICTURE_LEAST), f64::from(limits::PICTURE_SIDE));
         if matches!(key, "width" | "height") && !(least..=most).contains(&x) {
             return Err(self.out_of_page(code, key, &value, id));
@@ -364,11 +408,12 @@ impl Cx<'_> {
     }
 
     /// `on things { … }`.
-    fn rule(&mut self, code: Code<'_>, clause: &MeshClause) -> Result<RuleSpec, Stop> {
+    fn rule(&mut self, code: Code<'_>, clause: &MeshClause, meshed: &mut Meshed<'_>) -> Result<RuleSpec, Stop> {
         let mut gather = Gather::default();
         let things = gather.take(self.rule_things(code, &clause.things)).unwrap_or_default();
-        let settings = gather.take(self.settings(code, "on", settings::ON, &clause.settings)).unwrap_or_default();
+        let mut settings = gather.take(self.settings(code, "on", settings::ON, &clause.settings)).unwrap_or_default();
         gather.done()?;
+        self.shares(code, &mut settings, meshed)?;
         let origin = match clause.things.first() {
             Some(thing) => self.origin_at(*thing),
             None => Origin::NONE,

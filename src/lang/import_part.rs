@@ -12,7 +12,9 @@ use super::part::{Body, PartFile, PartValue, Said};
 use super::units::{self, MILLIMETRE};
 use super::value::{ModuleId, Record, Value};
 use crate::base::bbox::Box3;
+use crate::base::fault::{FileFault, Malformed};
 use crate::base::tolerance::Tolerance;
+use crate::io::cad::healing::Repair;
 use crate::io::cad::part::{Group, Options, Part, Unusable};
 use crate::io::{iges, step};
 use crate::network::Chain;
@@ -46,12 +48,23 @@ impl Cx<'_> {
         self.steps(part.points.len() + part.curves.len() + part.surfaces.len())?;
         let mut warnings = std::mem::take(&mut part.warnings);
         warnings.append(&mut part.build(file.origin, &tolerance));
+        if self.whole {
+            let told = |repair: &Repair| Malformed::line(repair.line, repair.told(part.model_unit));
+            warnings.extend(part.repairs.iter().map(told));
+        }
+        let notes = warnings.clone();
         self.repaired(file, warnings);
-        Ok(self.part(file, &part))
+        let value = self.part(file, &part, notes);
+        if !part.unusable.is_empty() {
+            let faces = part.unusable.iter().map(|face| Malformed::line(face.line, format!("{}: {}", face.entity, face.cause))).collect();
+            let (path, total, share) = (file.path.to_owned(), part.n_faces(), part.share_missing());
+            self.say(&FileFault::Unusable { of: file.origin, path, total, faces, share, whole: self.whole }.into());
+        }
+        Ok(value)
     }
 
-    fn part(&mut self, file: &File, part: &Part) -> Value {
-        let faces = Faces::of(self, file, part);
+    fn part(&mut self, file: &File, part: &Part, notes: Vec<Malformed>) -> Value {
+        let faces = Faces::of(self, file, part, notes);
         let row = |points: &[glam::DVec3]| match points {
             [one] => Value::point(*one),
             row => Value::list(row.iter().map(|p| Value::point(*p)).collect()),
@@ -117,7 +130,7 @@ struct Faces {
 }
 
 impl Faces {
-    fn of(cx: &mut Cx, file: &File, part: &Part) -> Self {
+    fn of(cx: &mut Cx, file: &File, part: &Part, notes: Vec<Malformed>) -> Self {
         let (mut all, mut places, mut said) = (Vec::new(), Vec::new(), Vec::new());
         let mut colors: Vec<Option<&str>> = vec![None; part.surfaces.len()];
         for (group, _) in &part.colors {
@@ -137,8 +150,15 @@ impl Faces {
         }
         let name = place.map_or_else(String::new, |place| cx.declaration_name(place.module, place.declaration));
         let unusable: Vec<(Option<usize>, Unusable)> = part.unusable.iter().map(|face| (face.face, face.clone())).collect();
-        let total = part.surfaces.len() + unusable.iter().filter(|(face, _)| face.is_none()).count();
-        let file = PartFile { path: file.path.into(), origin: file.origin, module: cx.module(), said, total };
+        let file = PartFile {
+            path: file.path.into(),
+            origin: place.map_or(file.origin, |place| cx.origins.add(Place { member: [NO_MEMBER; 2], expr: None, ..place })),
+            module: cx.module(),
+            said,
+            total: part.n_faces(),
+            repairs: part.repairs.clone(),
+            notes,
+        };
         Self { name, file: Arc::new(file), all, places, unusable }
     }
 

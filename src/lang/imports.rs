@@ -196,7 +196,11 @@ impl Cx<'_> {
         let has_header = table.header.is_some();
         let row = |cells: Vec<Cell>| {
             let values: Vec<Value> = cells.into_iter().map(cell).collect();
-            if has_header { Value::Record(Arc::new(Record { keys: Arc::clone(&keys), values, row: true, part: None })) } else { Value::list(values) }
+            if has_header {
+                Value::Record(Arc::new(Record { keys: Arc::clone(&keys), values, row: true, part: None }))
+            } else {
+                Value::list(values)
+            }
         };
         let rows: Vec<Value> = table.rows.into_iter().map(row).collect();
         // A header of stations is numbers as well as names.

@@ -176,7 +176,11 @@ impl Cx<'_> {
 /// Whether a value has members.
 fn is_entity(value: &Value) -> bool {
     use Value::{Curve, Edge, Link, Mesh, Network, Patch, Plane, Shell, Surface, Vertex};
-    matches!(value, Curve(_) | Link(..) | Edge(..) | Vertex(..) | Patch(..) | Surface(_) | Shell(_) | Mesh(_) | Plane(_) | Network(_))
+    value.part().is_some()
+        || matches!(
+            value,
+            Curve(_) | Link(..) | Edge(..) | Vertex(..) | Patch(..) | Surface(_) | Shell(_) | Mesh(_) | Plane(_) | Network(_)
+        )
 }
 
 /// Whether a value is a place, whose members are its coordinates.
@@ -196,6 +200,12 @@ fn what(value: &Value) -> Vec<Member> {
                 members.push(text("flow", &flow));
             }
             members
+        }
+        Value::Record(_) => {
+            let part = value.part();
+            let bodies = part.map(|part| ("bodies".to_owned(), Value::number(part.bodies.len() as f64)));
+            let unusable = part.map(|part| ("unusable".to_owned(), Value::number(part.unusable.len() as f64)));
+            bodies.into_iter().chain(unusable).collect()
         }
         Value::Plane(plane) => {
             vec![("at".to_owned(), Value::point(plane.at)), ("normal".to_owned(), Value::Vector(plane.normal, Dim::NONE))]

@@ -49,6 +49,7 @@ pub mod run;
 pub mod scene;
 pub mod scopes;
 pub mod settings;
+mod shares;
 mod show;
 mod snap_rounds;
 mod snapping;

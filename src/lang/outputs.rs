@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::collections::find;
+use super::collections::{find, said, truth};
 use super::cx::{Cx, Stop};
 use super::diag::Diagnostic;
 use super::eval::{Code, Gather};
@@ -97,7 +97,9 @@ impl Cx<'_> {
         let units = word("units").and_then(|(w, origin)| units::file_unit(&w).map(|u| (u, origin)));
         let things = things.unwrap_or_default();
         let elements = find(&settings, "element").map_or_else(Vec::new, |said| self.elements(code, written, &said.value, said.origin));
-        Ok(ExportSpec { things, path, path_origin, encoding: word("encoding"), elements, schema: word("schema"), units, origin })
+        let incomplete = said(&settings, "incomplete", truth).is_some_and(|said| said.0);
+        let (encoding, schema) = (word("encoding"), word("schema"));
+        Ok(ExportSpec { things, path, path_origin, encoding, elements, schema, incomplete, units, origin })
     }
 
     /// The words of `element:`; those of a list written out have their own places.

@@ -1,14 +1,18 @@
 //! An imported part as a value: its faces, the bodies that they make, and what of the file could not be used.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::coerce::flatten_into;
 use super::cx::Cx;
 use super::module::State;
 use super::origins::{NO_MEMBER, Place};
+use super::symbols::counted;
 use super::types::{FromValue, Ty};
 use super::value::{ModuleId, ShellValue, Value};
+use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
+
+use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::Unusable;
 use crate::surface::Surface;
 
@@ -47,6 +51,10 @@ pub struct PartFile {
     pub said: Vec<Said>,
     /// How many faces the file has.
     pub total: usize,
+    /// What was repaired.
+    pub repairs: Vec<Repair>,
+    /// What else was said of the file.
+    pub notes: Vec<Malformed>,
 }
 
 /// A part, or a body or group of it.
@@ -102,6 +110,40 @@ impl PartValue {
         if solids.is_empty() { self.skins().into_iter().map(|skin| self.shell_of(self.name.clone(), skin)).collect() } else { solids }
     }
 
+    /// What came in, what was repaired by which rule and what could not be used, a line each.
+    pub fn told(&self, cx: &Cx<'_>) -> Vec<String> {
+        let file = &self.file;
+        let mut lines = vec![format!(
+            "  {} from \"{}\", {}",
+            counted(self.faces.len(), "surface", "surfaces"),
+            file.path,
+            counted(self.bodies.len(), "body", "bodies")
+        )];
+        let whole = self.faces.len() == file.said.len();
+        for body in &self.bodies {
+            let kind = if body.solid { "solid" } else { "shell" };
+            lines.push(format!("  {}: {kind} of {}", body.name, counted(body.faces.len(), "surface", "surfaces")));
+        }
+        if !self.unusable.is_empty() {
+            lines.push(format!("  {} of {} in the file could not be used:", self.unusable.len(), counted(file.total, "face", "faces")));
+            lines.extend(self.unusable.iter().map(|face| format!("    line {}: {}: {}", face.line, face.entity, face.cause)));
+        }
+        if whole {
+            for rule in [Rule::Border, Rule::Ends] {
+                let all: Vec<&Repair> = file.repairs.iter().filter(|repair| repair.rule == rule).collect();
+                if !all.is_empty() {
+                    lines.push(format!("  {}: {}", rule.words(), counted(all.len(), "time", "times")));
+                    lines.extend(all.iter().map(|repair| format!("    line {}: {}", repair.line, repair.told(cx.unit().name))));
+                }
+            }
+            if !file.notes.is_empty() {
+                lines.push("  also said of the file:".to_owned());
+                lines.extend(file.notes.iter().map(|note| format!("    line {}: {}", note.line, note.what)));
+            }
+        }
+        lines
+    }
+
     /// Its faces as a list.
     pub fn list(&self) -> Value {
         Value::list(self.faces.iter().cloned().map(Value::Surface).collect())
@@ -115,20 +157,6 @@ impl Value {
             Self::Record(record) => record.part.as_ref(),
             _ => None,
         }
-    }
-
-    /// Flattened, with each part as what it is made of.
-    pub(super) fn with_parts_open(self, open: impl Fn(&Self, &PartValue) -> Vec<Self>) -> Vec<Self> {
-        let mut flat = Vec::new();
-        flatten_into(self, &mut flat);
-        if flat.iter().all(|value| value.part().is_none()) {
-            return flat;
-        }
-        let opened = |value: Self| match value.part() {
-            Some(part) => open(&value, part),
-            None => vec![value],
-        };
-        flat.into_iter().flat_map(opened).collect()
     }
 }
 
@@ -151,5 +179,24 @@ impl Cx<'_> {
     /// What a file says of a face that was imported.
     pub fn said_of(&self, face: &Surface) -> Option<&Said> {
         self.part_of(face).and_then(|(part, face)| part.file.said.get(face))
+    }
+
+    /// A part, or a body of one, that lacks faces while all others of it are among these surfaces.
+    pub fn lacking(&self, surfaces: &[Surface]) -> Option<Arc<PartValue>> {
+        let held: BTreeSet<Origin> = surfaces.iter().map(Surface::origin).collect();
+        let all_of = |part: &&Arc<PartValue>| {
+            !part.unusable.is_empty() && !part.faces.is_empty() && part.faces.iter().all(|face| held.contains(&face.origin()))
+        };
+        let states = self.machine.modules.iter().flat_map(|module| &module.states);
+        let imports = states.filter_map(|state| if let State::Done(Value::Record(record)) = state { Some(record) } else { None });
+        for record in imports.filter(|record| record.part.as_ref().is_some_and(|part| !part.unusable.is_empty())) {
+            let bodies =
+                record.values.iter().filter_map(|v| if let Value::List(items) = v { Some(items) } else { None }).flat_map(|v| v.iter());
+            let found = record.part.iter().chain(bodies.filter_map(Value::part)).find(all_of);
+            if let Some(part) = found {
+                return Some(part.clone());
+            }
+        }
+        None
     }
 }

@@ -6,6 +6,7 @@ use super::cx::{Cx, Stop};
 use super::eval::{Code, Gather};
 use super::plans::RefineSpec;
 use super::settings;
+use super::shares::Meshed;
 use super::syntax::ast::{ClauseWord, ExprId, Keyword, MeshClause, Span};
 use super::types::Ty;
 use super::value::Value;
@@ -14,7 +15,7 @@ use crate::base::origin::Origin;
 
 impl Cx<'_> {
     /// `near points, curves { … }` or `in box { … }`.
-    pub(super) fn refine(&mut self, code: Code<'_>, clause: &MeshClause) -> Result<RefineSpec, Stop> {
+    pub(super) fn refine(&mut self, code: Code<'_>, clause: &MeshClause, meshed: &mut Meshed<'_>) -> Result<RefineSpec, Stop> {
         let mut gather = Gather::default();
         let (word, table) = if clause.word == ClauseWord::Near { ("near", settings::NEAR) } else { ("in", settings::IN) };
         let (mut things, mut boxes) = (Vec::new(), Vec::new());
@@ -25,7 +26,8 @@ impl Cx<'_> {
         }
         let settings = gather.take(self.settings(code, word, table, &clause.settings));
         gather.done()?;
-        let settings = settings.unwrap_or_default();
+        let mut settings = settings.unwrap_or_default();
+        self.shares(code, &mut settings, meshed)?;
         let Some(size) = said(&settings, "size", number) else {
             let span = Span { start: clause.span.start, end: clause.span.start + word.len() as u32 };
             let draft = self.error(code, "E301", format!("`{word}` needs `size`"), span, "`size` is missing");

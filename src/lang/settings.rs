@@ -44,6 +44,8 @@ pub struct Setting {
 }
 
 const LENGTH: Ty = Ty::Quantity(Dim::LENGTH);
+/// A length, or a share of the diagonal of what is meshed.
+const SIZE: Ty = Ty::Size;
 
 /// `mesh m of … { … }`.
 pub const MESH: &[Setting] = &[
@@ -52,16 +54,21 @@ pub const MESH: &[Setting] = &[
         docs: "Longest edge wanted: kept on borders and curves, by 5 % at most exceeded inside a free face. Nodes of free faces, and those \
                of borders that only free faces share, are 0.8 of it apart.",
         default: "a 20th of the diagonal of what is meshed",
-        ty: LENGTH,
+        ty: SIZE,
     },
-    Setting { key: "chord_error", docs: "Largest distance between mesh and surface.", default: "", ty: LENGTH },
+    Setting {
+        key: "chord_error",
+        docs: "Largest distance between mesh and surface; as all lengths of a mesh it may be a share of the diagonal of the box around what is meshed: `0.01%`.",
+        default: "",
+        ty: SIZE,
+    },
     Setting { key: "angle_error", docs: "Largest turn of the normal across an element.", default: "", ty: Ty::Quantity(Dim::ANGLE) },
     Setting {
         key: "min_size",
         docs: "Floor of the size, also of what `chord_error` and `angle_error` ask for; a written one that keeps them from being met, or that \
                a size is below, is an error. Written counts and short edges of the model stand below it.",
         default: "a hundredth of the size, which written sizes and limits go below",
-        ty: LENGTH,
+        ty: SIZE,
     },
     Setting {
         key: "growth",
@@ -104,7 +111,7 @@ pub const MESH: &[Setting] = &[
 /// `on things { … }` inside a mesh.
 pub const ON: &[Setting] = &[
     Setting { key: "count", docs: "Steps over the whole length of a curve.", default: "", ty: Ty::Count },
-    Setting { key: "size", docs: "Target edge length here.", default: "", ty: LENGTH },
+    Setting { key: "size", docs: "Target edge length here.", default: "", ty: SIZE },
     Setting { key: "bias", docs: "Last step over first step along the curve.", default: "", ty: Ty::Number },
     Setting { key: "elements", docs: "Kind of elements of these faces.", default: "", ty: Ty::Choice(ELEMENTS) },
     Setting {
@@ -122,13 +129,13 @@ pub const NEAR: &[Setting] = &[
         docs: "Target edge length up to the radius; further out it grows as `growth` says. It only refines: where several sizes are asked \
                for the smallest counts. A mapped face takes the least size on it for all its rows, and a written `count` stays.",
         default: "",
-        ty: LENGTH,
+        ty: SIZE,
     },
-    Setting { key: "radius", docs: "How far around the size holds.", default: "0", ty: LENGTH },
+    Setting { key: "radius", docs: "How far around the size holds.", default: "0", ty: SIZE },
 ];
 
 /// `in box(a, b) { … }` inside a mesh.
-pub const IN: &[Setting] = &[Setting { key: "size", docs: "Target edge length in the box, as with `near`.", default: "", ty: LENGTH }];
+pub const IN: &[Setting] = &[Setting { key: "size", docs: "Target edge length in the box, as with `near`.", default: "", ty: SIZE }];
 
 /// `shell s of … { … }`.
 pub const SHELL: &[Setting] = &[
@@ -162,6 +169,12 @@ pub const EXPORT: &[Setting] = &[
         docs: "Element name of a deck, or a list with one for each kind of element that the mesh has: `[S8R, B32]`.",
         default: "by format",
         ty: Ty::OneOf(&[Ty::Choice(DECK_ELEMENTS), Ty::List(&Ty::Choice(DECK_ELEMENTS))]),
+    },
+    Setting {
+        key: "incomplete",
+        docs: "What lacks faces of an imported file that could not be used is written all the same; without it that is E904.",
+        default: "false",
+        ty: Ty::Bool,
     },
     Setting { key: "schema", docs: "Application protocol of a STEP file.", default: "ap242", ty: Ty::Choice(SCHEMAS) },
     Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS) },

@@ -46,6 +46,7 @@ impl Cx<'_> {
                 }
                 format!("[{}]", parts.join(", "))
             }
+            Value::Record(r) if r.part.is_some() => r.part.as_ref().map_or_else(String::new, |part| part.name.to_string()),
             Value::Record(r) => {
                 let parts: Vec<String> =
                     r.keys.iter().zip(&r.values).map(|(k, v)| format!("{}: {}", self.names.text(*k), inside(v))).collect();

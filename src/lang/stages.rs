@@ -75,6 +75,8 @@ pub(super) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], 
         }
         let (State::Done(value), Some(b)) = (&module.states[i], bound(declaration)) else { continue };
         let levels = match &declaration.kind {
+            // A shell of a part with several bodies is one of each.
+            DeclarationKind::Collection { family, .. } if declaration.keyword == Keyword::Shell => family.len() + 1,
             DeclarationKind::Value { family, .. } | DeclarationKind::Collection { family, .. } => family.len(),
             _ => 0,
         };

@@ -109,6 +109,14 @@ impl Cx<'_> {
                 let alike = items.iter().all(|i| i.ty() == ty);
                 if alike && is_entity(&items[0]) { format!("{} × {}", items.len(), noun(ty)) } else { self.clipped(value) }
             }
+            Value::Record(record) if record.part.is_some() => match &record.part {
+                Some(part) => {
+                    let faces = counted(part.faces.len(), "surface", "surfaces");
+                    let area = self.measured(measure::sheet(&part.faces).area, Dim::AREA);
+                    format!("{faces}, {}, {area}", counted(part.bodies.len(), "body", "bodies"))
+                }
+                None => String::new(),
+            },
             Value::Table(table) => {
                 let rows = counted(table.rows.len(), "row", "rows");
                 let names: Vec<&str> = table.keys.iter().map(|k| self.names.text(*k)).collect();
@@ -198,7 +206,7 @@ pub fn about_mesh(mesh: &Mesh) -> String {
     parts.join(", ")
 }
 
-fn counted(n: usize, one: &str, many: &str) -> String {
+pub(super) fn counted(n: usize, one: &str, many: &str) -> String {
     if n == 1 { format!("1 {one}") } else { format!("{n} {many}") }
 }
 

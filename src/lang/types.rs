@@ -27,6 +27,8 @@ pub enum Ty {
     Whole,
     /// A number of this dimension; a bare number is taken in model units where it is a power of a length.
     Quantity(Dim),
+    /// A length, or a share in percent.
+    Size,
     /// A number of any dimension.
     Measure,
     /// A fraction or percentage (bare), or a length.
@@ -98,6 +100,7 @@ impl Ty {
             Self::Count => "a count".into(),
             Self::Whole => "a whole number".into(),
             Self::Quantity(dim) => dim_words(dim),
+            Self::Size => "a length".into(),
             Self::Measure => "a number or quantity".into(),
             Self::Station => "a fraction or a length".into(),
             Self::Text => "a text".into(),
@@ -140,6 +143,7 @@ impl Ty {
             Self::Any => "any".into(),
             Self::Whole => "whole number".into(),
             Self::Quantity(dim) => dim_name(dim).map_or_else(|| units::unit_text(dim, units::MILLIMETRE), str::to_owned),
+            Self::Size => "length or %".into(),
             Self::Measure => "quantity".into(),
             Self::Station => "fraction|length".into(),
             Self::Choice(words) => words.join("|"),

@@ -19,7 +19,7 @@ use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, form
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::ExportSpec;
 use crate::lang::scene::side_of;
-use crate::lang::value::{Dim, ModuleId, Record, Value};
+use crate::lang::value::{Dim, MeshValue, ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
 
@@ -42,6 +42,7 @@ fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRo
         return Err(unsupported(*origin, format!("{} cannot be exported", first.ty().words())));
     };
     no_schema(spec)?;
+    complete(cx, spec)?;
     let (bytes, losses) = match (extension(&spec.path).as_str(), sort) {
         ("igs" | "iges", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => cad(cx, spec, files)?,
         ("step" | "stp", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => super::export_step::step(cx, spec, files)?,
@@ -60,6 +61,31 @@ fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRo
         }
     }
     Ok(row)
+}
+
+/// E904 where what is written lacks faces of a file, unless the export says that it may.
+fn complete(cx: &Cx, spec: &ExportSpec) -> Result<(), Stop> {
+    if spec.incomplete {
+        return Ok(());
+    }
+    let mut surfaces: Vec<Surface> = Vec::new();
+    for (thing, _) in &spec.things {
+        match thing {
+            Value::Surface(surface) => surfaces.push(surface.clone()),
+            Value::Shell(shell) => surfaces.extend(shell.surfaces.iter().cloned()),
+            Value::Mesh(mesh) => {
+                if let MeshValue::Declared { module, index } = &**mesh
+                    && let Some(mesh) = cx.meshes(*module).get(*index as usize)
+                {
+                    surfaces.extend(mesh.things.iter().flat_map(|(value, _)| super::plan::surfaces_of(value)).cloned());
+                }
+            }
+            _ => {}
+        }
+    }
+    let Some(part) = cx.lacking(&surfaces) else { return Ok(()) };
+    let of = spec.things.first().map_or(spec.origin, |thing| thing.1);
+    Err(FileFault::Incomplete { of, output: spec.origin, part: part.name.to_string(), missing: part.unusable.len() }.into())
 }
 
 /// What sort of thing a value is for a file; `None` for what goes into none.

@@ -166,7 +166,7 @@ fn rule_on(spec: &RuleSpec, target: Target) -> Rule {
 }
 
 /// The surfaces that a value is or holds.
-fn surfaces_of(value: &Value) -> Vec<&Surface> {
+pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
     match value {
         Value::Surface(surface) => vec![surface],
         Value::Shell(shell) => shell.surfaces.iter().collect(),

@@ -30,6 +30,7 @@ mod iso_fit;
 mod joined;
 mod line;
 mod lone;
+pub mod looks;
 mod loops;
 pub mod meet;
 mod mixed;

@@ -234,7 +234,7 @@ fn borders_are_read_in_every_form() {
         let border = face.holes.first().or(face.outer.as_ref()).unwrap();
         let length: f64 = border.iter().map(|b| b.space.length()).sum();
         assert!((length / (2.0 * PI) - 1.0).abs() < 1e-6, "face {k}: {length}");
-        assert!(face.gap < 1e-6, "face {k}: {}", face.gap);
+        assert!(face.off.distance < 1e-6, "face {k}: {}", face.off.distance);
         let z = if k == 6 { 4.0 } else { 1.0 };
         assert!(border.iter().all(|b| (b.space.start().z - z).abs() < 1e-12), "face {k}");
         assert_eq!(border[0].uv.is_some(), k < 2, "face {k}");
@@ -321,7 +321,7 @@ fn a_solid_gives_its_faces_as_a_group() {
     assert_eq!((part.groups[0].name.as_str(), part.groups[0].surfaces.len()), ("solid1", 6));
     for (k, face) in part.surfaces.iter().map(|s| &s.value).enumerate() {
         assert_eq!((face.outer.as_ref().unwrap().len(), face.flipped, face.base.domain()), (4, k % 2 == 0, Domain::Unbounded));
-        assert!(face.gap < 1e-12, "{}", face.gap);
+        assert!(face.off.distance < 1e-12, "{}", face.off.distance);
     }
     let total: f64 = part.built.iter().flatten().map(lofting::model::measure::area).sum();
     assert!((total - 24.0).abs() < 1e-12, "{total}");

@@ -150,7 +150,7 @@ fn a_plane_inside_a_loop_is_a_trimmed_surface() {
     let part = back(&[thing("deck", "", Shown::Surface(face))], "mm", 1.0);
     let found = &part.surfaces[0].value;
     let outer = found.outer.as_ref().unwrap();
-    assert!(found.gap < 1e-13 && outer.iter().all(|b| b.uv.is_some()), "{}", found.gap);
+    assert!(found.off.distance < 1e-13 && outer.iter().all(|b| b.uv.is_some()), "{}", found.off.distance);
     let length: f64 = outer.iter().map(|b| b.space.length()).sum();
     assert!((length - border.length()).abs() < 1e-12);
 }

@@ -160,6 +160,32 @@ pub enum FileFault {
         /// Where and what.
         at: Malformed,
     },
+    /// W726: faces of a file are missing.
+    Unusable {
+        /// The import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// How many faces the file has.
+        total: usize,
+        /// Each that could not be used, with the cause.
+        faces: Vec<Malformed>,
+        /// Their share of the area, where it is known.
+        share: Option<f64>,
+        /// All are listed.
+        whole: bool,
+    },
+    /// E904: what is written lacks faces of a file.
+    Incomplete {
+        /// What is written.
+        of: Origin,
+        /// The output.
+        output: Origin,
+        /// The part as the script names it.
+        part: String,
+        /// How many faces are missing.
+        missing: usize,
+    },
     /// E811: larger than what is read.
     TooLarge {
         /// The import.
@@ -176,9 +202,12 @@ pub enum FileFault {
 impl Describe for FileFault {
     fn describe(&self, _: &dyn Say) -> Report {
         match self {
-            Self::CannotRead { .. } | Self::Outside { .. } | Self::Malformed { .. } | Self::Repaired { .. } | Self::TooLarge { .. } => {
-                self.describe_reading()
-            }
+            Self::CannotRead { .. }
+            | Self::Outside { .. }
+            | Self::Malformed { .. }
+            | Self::Repaired { .. }
+            | Self::Unusable { .. }
+            | Self::TooLarge { .. } => self.describe_reading(),
             Self::ImportCycle { of, ring } => {
                 Report::new("E809", format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the ring")
             }
@@ -214,6 +243,7 @@ impl FileFault {
             Self::Repaired { of, path, at } => {
                 Report::new("W810", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
             }
+            Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, (path, *total), (faces, *share), *whole),
             Self::TooLarge { of, path, bytes, limit } => {
                 Report::new("E811", format!("\"{path}\" has {}, more than the {} that are read", mebibytes(*bytes), mebibytes(*limit)))
                     .at(*of, "named here")
@@ -257,11 +287,37 @@ impl FileFault {
             Self::TooMuchWork { of, path } => Report::new("E217", format!("\"{path}\" takes more work than it may"))
                 .at(*of, "to be written here")
                 .help("fewer or simpler things in one file, and points that are not far off by mistake"),
+            Self::Incomplete { of, output, part, missing } => {
+                let faces = if *missing == 1 { "a face".to_owned() } else { format!("{missing} faces") };
+                Report::new("E904", format!("this would be written with holes: `{part}` lacks {faces} that could not be used"))
+                    .at(*of, "incomplete")
+                    .help("`incomplete: true` in the export writes it all the same")
+                    .edit(Subject::Entity(*output), Edit::Set("incomplete", "true".to_owned()))
+            }
             Self::CannotWrite { of, path, why } => {
                 Report::new("E808", format!("cannot write \"{path}\": {why}")).at(*of, "to be written here")
             }
             _ => Report::new("E801", "cannot read a file"),
         }
+    }
+}
+
+/// Unusable faces that are named on a screen.
+const FACES_TOLD: usize = 10;
+
+/// W726: how many faces are missing, how much that is, and a line for each.
+fn unusable(of: Origin, (path, total): (&str, usize), (faces, share): (&[Malformed], Option<f64>), whole: bool) -> Report {
+    let count = if total == 1 { "the only face".to_owned() } else { format!("{} of {total} faces", faces.len()) };
+    let share = match share {
+        Some(share) => format!("{:.0} % of the area", 100.0 * share),
+        None => "what share of the area that is, the file does not tell".to_owned(),
+    };
+    let report = Report::new("W726", format!("{count} of \"{path}\" could not be used ({share})")).at(of, "imported here");
+    let told = if whole { faces.len() } else { faces.len().min(FACES_TOLD) };
+    let report = faces.iter().take(told).fold(report, |r, face| r.note(format!("line {}: {}", face.line, face.what)));
+    match faces.len() - told {
+        0 => report,
+        more => report.note(format!("and {more} more, which `loft explain` lists with the name of the part")),
     }
 }
 

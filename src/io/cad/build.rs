@@ -2,11 +2,12 @@
 
 use super::damage::Damage;
 use super::face::{Border, Face};
-use super::part::{Part, Unusable};
+use super::part::{Figure, Part, Unusable};
 use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::model::measure;
 use crate::network::Chain;
 use crate::surface::{Outlined, Side, Surface, outlined, trim};
 
@@ -27,12 +28,24 @@ impl Part {
         }
         self.differences()
     }
+
+    /// Share of the area that the faces without a surface have, from 0 to 1, where the file states the area of all.
+    pub fn share_missing(&self) -> Option<f64> {
+        let made: Vec<usize> = (0..self.built.len()).filter(|k| !self.built[*k].is_empty()).collect();
+        let whole = self.stated.iter().find_map(|stated| match stated.figure {
+            Figure::Area(area) if stated.copies == 1 && made.iter().all(|k| stated.surfaces.contains(k)) => Some(area),
+            _ => None,
+        })?;
+        let found: f64 = self.built.iter().flatten().map(measure::area).sum();
+        let share = 1.0 - found / whole;
+        (0.0..1.0).contains(&share).then_some(share)
+    }
 }
 
 impl Face {
     /// The surface values, one for each outer loop; borders may be as far off as the file has them.
     pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>, Damage> {
-        let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.gap), ..*tolerance };
+        let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
         if self.outer.is_none() && self.holes.is_empty() {
             return Ok(vec![self.turned(self.base.clone())]);
         }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::base::Base;
+use super::healing::{Off, Rule};
 use super::natural::{is_natural, matched};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::{NEAR_MISS, Tolerance};
@@ -37,7 +38,7 @@ pub struct Face {
     /// A point inside its loops by their (u, v), where the file has all of them.
     pub inside: Option<DVec3>,
     /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
-    pub gap: f64,
+    pub off: Off,
 }
 
 /// What is known of a face beside its surface and the curves of its loops.
@@ -57,7 +58,7 @@ impl Face {
     /// All of a surface.
     pub fn whole(base: &Base, surface: Surface, tolerance: &Tolerance) -> Self {
         let (flat, against) = (base.is_flat(tolerance), base.is_against());
-        Self { base: surface, outer: None, holes: Vec::new(), flipped: false, flat, against, inside: None, gap: 0.0 }
+        Self { base: surface, outer: None, holes: Vec::new(), flipped: false, flat, against, inside: None, off: Off::NONE }
     }
 
     /// The part of a surface inside its loops.
@@ -65,14 +66,15 @@ impl Face {
         if let ([outer], true) = (loops.as_slice(), known.has_outer)
             && let Some(gap) = matched(base, &surface, outer, known.slack, tolerance)
         {
-            return Self { against: known.against, inside: known.inside, gap, ..Self::whole(base, surface, tolerance) };
+            let off = Off { distance: gap, place: outer[0].space.start(), rule: Rule::Border };
+            return Self { against: known.against, inside: known.inside, off, ..Self::whole(base, surface, tolerance) };
         }
-        let gap = gap(&surface, &loops);
+        let off = off(&surface, &loops);
         for border in &mut loops {
             cut_at_poles(&surface, border, NEAR_MISS * known.slack);
         }
         let mut loops = loops.into_iter();
-        let room = known.slack.max(2.0 * gap);
+        let room = known.slack.max(2.0 * off.distance);
         let outer = if known.has_outer { loops.next() } else { None };
         // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
         let tells = surface.closed() != (false, false) && loops.len() > 0;
@@ -85,7 +87,7 @@ impl Face {
             flat: base.is_flat(tolerance),
             against: known.against,
             inside: known.inside,
-            gap,
+            off,
         }
     }
 }
@@ -104,7 +106,7 @@ impl Face {
             flipped: self.flipped != motion.mirrors(),
             against: self.against != motion.mirrors(),
             inside: self.inside.map(|p| motion.point(p)),
-            gap: self.gap * motion.scale(),
+            off: Off { distance: self.off.distance * motion.scale(), place: motion.point(self.off.place), ..self.off },
             ..*self
         }
     }
@@ -138,20 +140,22 @@ fn cut_at_poles(surface: &Surface, border: &mut Vec<Border>, room: f64) {
 const SAMPLES: usize = 8;
 
 /// Largest distance of the curves from the surface, and of the end of each from the start of the next one in its loop.
-pub fn gap(surface: &Surface, loops: &[Vec<Border>]) -> f64 {
+pub fn off(surface: &Surface, loops: &[Vec<Border>]) -> Off {
     let nearest = Nearest::new(surface);
     let foot = |p: DVec3| match surface.flat_uv(p) {
         Some((u, v)) => p.distance(surface.point(u, v)),
         None => nearest.at(p).distance,
     };
-    let mut widest = 0.0_f64;
+    let mut widest = Off::NONE;
     for border in loops {
         for (k, curve) in border.iter().enumerate() {
             let (a, b) = curve.space.domain();
             for i in 0..=SAMPLES {
-                widest = widest.max(foot(curve.space.point(a + (b - a) * i as f64 / SAMPLES as f64)));
+                let at = curve.space.point(a + (b - a) * i as f64 / SAMPLES as f64);
+                widest = widest.or(foot(at), at, Rule::Border);
             }
-            widest = widest.max(curve.space.end().distance(border[(k + 1) % border.len()].space.start()));
+            let end = curve.space.end();
+            widest = widest.or(end.distance(border[(k + 1) % border.len()].space.start()), end, Rule::Ends);
         }
     }
     widest

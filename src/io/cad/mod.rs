@@ -8,6 +8,7 @@ pub mod carry;
 pub mod compose;
 pub mod damage;
 pub mod face;
+pub mod healing;
 pub mod interior;
 mod natural;
 pub mod nets;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::face::Face;
+use super::healing::Repair;
 use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::geometry::Curve;
@@ -25,8 +26,26 @@ pub struct Options {
 
 /// Names that the lists of a part have themselves.
 const RESERVED: &[&str] = &[
-    "points", "curves", "surfaces", "groups", "shells", "solids", "colors", "unit", "name", "faces", "area", "volume", "bbox", "centroid",
-    "planes", "cylinders", "cones", "spheres", "tori", "others",
+    "points",
+    "curves",
+    "surfaces",
+    "groups",
+    "shells",
+    "solids",
+    "colors",
+    "unit",
+    "name",
+    "faces",
+    "area",
+    "volume",
+    "bbox",
+    "centroid",
+    "planes",
+    "cylinders",
+    "cones",
+    "spheres",
+    "tori",
+    "others",
 ];
 
 /// Names given so far, and how often each was wanted.
@@ -140,6 +159,8 @@ pub struct Part {
     pub colors: Vec<(Group, [f64; 3])>,
     /// What the file states of its parts, to be compared.
     pub stated: Vec<Stated>,
+    /// What was repaired, face by face.
+    pub repairs: Vec<Repair>,
     /// Faces of which nothing could be made; complete after [`Part::build`].
     pub unusable: Vec<Unusable>,
     /// What stands before the number of an entity in messages: `D` or `#`.
@@ -161,6 +182,13 @@ pub enum Place {
     Curve(usize),
     /// In [`Part::surfaces`].
     Surface(usize),
+}
+
+impl Part {
+    /// How many faces the file has, those included of which nothing could be made.
+    pub fn n_faces(&self) -> usize {
+        self.surfaces.len() + self.unusable.iter().filter(|face| face.face.is_none()).count()
+    }
 }
 
 impl Group {

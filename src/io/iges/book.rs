@@ -36,7 +36,7 @@ pub struct Book {
     /// Unit of the file in words.
     pub unit: &'static str,
     /// Unit of the model in words.
-    model_unit: &'static str,
+    pub model_unit: &'static str,
     /// Of the model.
     pub tolerance: Tolerance,
     /// What the file calls one point, model units.

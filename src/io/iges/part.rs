@@ -114,7 +114,7 @@ impl Opened {
     /// Makes curves and surfaces of the entities.
     pub fn part(mut self, tolerance: Tolerance) -> Part {
         self.book.tolerance = tolerance;
-        let part = Part { unit: self.book.unit, mark: "D", ..Part::default() };
+        let part = Part { unit: self.book.unit, model_unit: self.book.model_unit, mark: "D", ..Part::default() };
         Maker { book: self.book, part, made: BTreeMap::new(), names: Names::default(), shades: Shades::default() }.run()
     }
 }
@@ -353,12 +353,10 @@ impl Maker {
     /// Says once by how much borders are off.
     fn gaps(&mut self) {
         let slack = self.book.slack();
-        let off = self.part.surfaces.iter().filter(|s| s.value.gap > slack);
-        let n = off.clone().count();
-        if let Some(worst) = off.max_by(|a, b| a.value.gap.total_cmp(&b.value.gap)) {
-            let (d, gap) = (worst.id as Pointer, worst.value.gap);
-            let others = if n == 1 { String::new() } else { format!(", as the borders of {} more faces are by less", n - 1) };
-            let gap = self.book.length(gap);
+        let book = &self.book;
+        if let Some((worst, n)) = self.part.list_repairs(slack, |item| book.said(item.id as Pointer)) {
+            let others = if n == 0 { String::new() } else { format!(", as the borders of {n} more faces are by less") };
+            let (d, gap) = (self.part.surfaces[worst.face].id as Pointer, self.book.length(worst.distance));
             self.book.warn(d, format!("its borders are up to {gap} off its surface or each other{others}"));
         }
     }

@@ -123,7 +123,8 @@ impl Book {
         let k = self.place(d)?;
         let Data::OffsetSurface { indicator, .. } = self.decoded[k].data else { return Ok(base) };
         let reach = face::reach(loops);
-        let off = |book: &Self, base: &Base| Ok::<f64, Damage>(face::gap(&base.surface(&reach, book.origin, &book.tolerance)?, loops));
+        let off =
+            |book: &Self, base: &Base| Ok::<f64, Damage>(face::off(&base.surface(&reach, book.origin, &book.tolerance)?, loops).distance);
         let here = off(self, &base)?;
         if here <= NEAR_MISS * self.slack() {
             return Ok(base);

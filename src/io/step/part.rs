@@ -364,14 +364,11 @@ impl Maker<'_> {
 
     /// Says once by how much borders are off.
     fn gaps(&mut self) {
-        let off = self.part.surfaces.iter().filter(|s| s.value.gap > self.slack);
-        let n = off.clone().count();
-        if let Some(worst) = off.max_by(|a, b| a.value.gap.total_cmp(&b.value.gap)) {
-            let (name, id, line) = (worst.name.clone(), worst.id, worst.line);
-            let others = if n == 1 { String::new() } else { format!(", as the borders of {} more faces are by less", n - 1) };
-            let gap = self.step.length(worst.value.gap);
-            let what = format!("#{id} {name}: its borders are up to {gap} off its surface or each other{others}");
-            self.step.warnings.push(Malformed::line(line, what));
+        if let Some((worst, n)) = self.part.list_repairs(self.slack, |item| format!("#{} {}", item.id, item.name)) {
+            let others = if n == 0 { String::new() } else { format!(", as the borders of {n} more faces are by less") };
+            let gap = self.step.length(worst.distance);
+            let what = format!("{}: its borders are up to {gap} off its surface or each other{others}", worst.entity);
+            self.step.warnings.push(Malformed::line(worst.line, what));
         }
     }
 }

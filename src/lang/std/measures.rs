@@ -20,7 +20,12 @@ use crate::{builtins, fields};
 /// `{min, max, size, diagonal}` of a box.
 pub(super) fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
     let (min, max) = if bounds.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (bounds.min, bounds.max) };
-    cx.record([("min", Value::point(min)), ("max", Value::point(max)), ("size", Value::point(max - min)), ("diagonal", Value::length((max - min).length()))])
+    cx.record([
+        ("min", Value::point(min)),
+        ("max", Value::point(max)),
+        ("size", Value::point(max - min)),
+        ("diagonal", Value::length((max - min).length())),
+    ])
 }
 
 /// What a closed shell encloses; an open one encloses nothing.

@@ -34,6 +34,8 @@ mod transforms;
 mod vectors;
 mod walls;
 
+pub(super) use topology::curve_of;
+
 /// A parameter of a function.
 #[derive(Debug)]
 pub struct Param {
@@ -122,8 +124,17 @@ pub const BUILTINS: &[&[Builtin]] = &[
 ];
 
 /// All tables of fields.
-pub const FIELDS: &[&[Builtin]] =
-    &[vectors::FIELDS, data::FIELDS, network::FIELDS, mesh::FIELDS, topology::FIELDS, sweeps::FIELDS, joins::FIELDS, measures::FIELDS, parts::FIELDS];
+pub const FIELDS: &[&[Builtin]] = &[
+    vectors::FIELDS,
+    data::FIELDS,
+    network::FIELDS,
+    mesh::FIELDS,
+    topology::FIELDS,
+    sweeps::FIELDS,
+    joins::FIELDS,
+    measures::FIELDS,
+    parts::FIELDS,
+];
 
 /// All functions.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {

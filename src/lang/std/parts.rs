@@ -13,17 +13,16 @@ use crate::lang::types::{Area, Length, Point, Volume};
 use crate::lang::value::Value;
 use crate::model::measure;
 use crate::surface::Surface;
-use crate::surface::elementary::Form;
+use crate::surface::looks::Looks;
 use crate::{builtins, fields};
 
 /// Those of some faces whose form is wanted.
-fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<&Form>) -> bool) -> Result<Vec<Surface>, Stop> {
+fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<Looks>) -> bool) -> Result<Vec<Surface>, Stop> {
     let tolerance = cx.tolerance()?;
     let mut found = Vec::new();
     for face in faces {
         cx.steps(1)?;
-        let form = face.elementary((0.0, 1.0), &tolerance).map(|found| found.form);
-        if wanted(form.as_ref()) {
+        if wanted(face.looks(&tolerance)) {
             found.push(face);
         }
     }
@@ -65,7 +64,7 @@ fn nothing() -> Stop {
 builtins! {
     /// Those faces that are planes.
     ///
-    /// Of an import they are told by the form that the file gives them: a plane that is written as a spline surface is among `others`.
+    /// The form counts, within the tolerance, and not how the face is written: a spline surface that is flat is a plane.
     /// ```loft
     /// curve base = circle(center: (0, 0, 0), radius: 5mm)
     /// surface wall = extrude(base, by: (0, 0, 20mm))
@@ -75,7 +74,7 @@ builtins! {
     fn planes(
         /// Surfaces, or a part.
         faces: Vec<Surface>,
-    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Form::Plane { .. })));
+    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Plane { .. })));
 
     /// Those faces that are round cylinders, all or those of one radius.
     ///
@@ -91,7 +90,7 @@ builtins! {
         radius: Option<Length>,
     ) -> Vec<Surface> = |cx, faces, radius| {
         let fits = fits(cx, radius)?;
-        of_form(cx, faces, |form| matches!(form, Some(Form::Cylinder { radius, .. }) if fits(*radius)))
+        of_form(cx, faces, |form| matches!(form, Some(Looks::Cylinder { radius, .. }) if fits(radius)))
     };
 
     /// Those faces that are round cones.
@@ -104,7 +103,7 @@ builtins! {
     fn cones(
         /// Surfaces, or a part.
         faces: Vec<Surface>,
-    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Form::Cone { .. })));
+    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Cone { .. })));
 
     /// Those faces that are of spheres, all or those of one radius.
     ///
@@ -121,7 +120,7 @@ builtins! {
         radius: Option<Length>,
     ) -> Vec<Surface> = |cx, faces, radius| {
         let fits = fits(cx, radius)?;
-        of_form(cx, faces, |form| matches!(form, Some(Form::Sphere { radius, .. }) if fits(*radius)))
+        of_form(cx, faces, |form| matches!(form, Some(Looks::Sphere { radius, .. }) if fits(radius)))
     };
 
     /// Those faces that are of ring tori, all or those whose tube has one radius, as fillets of round edges do.
@@ -138,7 +137,7 @@ builtins! {
         radius: Option<Length>,
     ) -> Vec<Surface> = |cx, faces, radius| {
         let fits = fits(cx, radius)?;
-        of_form(cx, faces, |form| matches!(form, Some(Form::Torus { minor, .. }) if fits(*minor)))
+        of_form(cx, faces, |form| matches!(form, Some(Looks::Torus { minor, .. }) if fits(minor)))
     };
 
     /// Those faces that are none of planes, cylinders, cones, spheres and ring tori.

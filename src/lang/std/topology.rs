@@ -142,7 +142,7 @@ fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
 }
 
 /// The modeling curve along an edge.
-fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
+pub(in crate::lang) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
     let tolerance = cx.tolerance()?;
     let scene = Scene { model: cx.model(&edge.0)?, network: cx.network(edge.0.module)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };

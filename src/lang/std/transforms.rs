@@ -21,7 +21,7 @@ const MOVABLE: &str = "a point, curve, surface, shell or mesh, or a list of them
 pub struct Movable(Value);
 
 impl FromValue for Movable {
-    const TY: Ty = Ty::OneOf(&[Ty::Point, Ty::Curve, Ty::Surface, Ty::Shell, Ty::Mesh, Ty::Plane, Ty::List(&Ty::Any)]);
+    const TY: Ty = Ty::OneOf(&[Ty::Point, Ty::Curve, Ty::Surface, Ty::Shell, Ty::Mesh, Ty::Plane, Ty::Part, Ty::List(&Ty::Any)]);
     fn from_value(value: Value) -> Option<Self> {
         Some(Self(value))
     }
@@ -34,7 +34,6 @@ fn carried(cx: &mut Cx, value: &Value, motion: &Motion) -> Result<Value, Stop> {
         Value::Node(p) | Value::Vector(p, Dim::LENGTH | Dim::NONE) => Value::point(motion.point(*p)),
         // A curve of its own: the runs of the old one stay links of the old curves.
         Value::Curve(chain) => Value::Curve(Chain::of_curve(&chain.to_curve()?.moved(motion).with_origin(origin))),
-        Value::Surface(surface) => Value::Surface(surface.moved(motion).with_origin(origin)),
         Value::Shell(shell) => {
             let surfaces = shell.surfaces.iter().map(|s| s.moved(motion).with_origin(cx.origin())).collect();
             Value::Shell(Arc::new(ShellValue { origin, surfaces, ..(**shell).clone() }))
@@ -45,6 +44,21 @@ fn carried(cx: &mut Cx, value: &Value, motion: &Motion) -> Result<Value, Stop> {
             Value::Plane(Arc::new(Plane { at: motion.point(plane.at), normal }))
         }
         Value::Vertex(home, vertex) => Value::point(motion.point(cx.model(home)?.vertices[vertex.index()].point)),
+        // Faces keep their names, and what lacks some goes on lacking them.
+        Value::Record(record) if record.part.is_some() => {
+            let things = value.part().map_or_else(Vec::new, |part| part.things());
+            let carried = |thing: &Value| match thing {
+                Value::Shell(shell) => {
+                    let surfaces = shell.surfaces.iter().map(|s| s.moved(motion)).collect();
+                    Value::Shell(Arc::new(ShellValue { origin, surfaces, ..(**shell).clone() }))
+                }
+                Value::Surface(surface) => Value::Surface(surface.moved(motion)),
+                other => other.clone(),
+            };
+            Value::list(things.iter().map(carried).collect())
+        }
+        Value::Surface(surface) if cx.said_of(surface).is_some() => Value::Surface(surface.moved(motion)),
+        Value::Surface(surface) => Value::Surface(surface.moved(motion).with_origin(origin)),
         Value::List(items) => Value::list(items.iter().map(|item| carried(cx, item, motion)).collect::<Result<_, _>>()?),
         other => {
             return Err(ValueFault::WrongKind { argument: "of", wanted: MOVABLE, found: other.ty().words() }.into());

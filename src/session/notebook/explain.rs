@@ -81,6 +81,9 @@ fn of_mesh(note: &str, what: &str) -> bool {
 
 /// What the network knows of a value.
 fn about(cx: &mut Cx<'_>, value: &Value, out: &mut Vec<String>) {
+    if let Some(part) = value.part() {
+        return out.extend(part.told(cx));
+    }
     let Ok(Sound { network, .. }) = cx.sound(ModuleId::MAIN) else { return };
     let Some(tolerance) = cx.tolerance_used() else { return };
     match value {

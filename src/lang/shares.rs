@@ -1,0 +1,57 @@
+//! `size: 1%`: lengths of a mesh as shares of the diagonal of the box around what is meshed.
+
+use super::collections::Resolved;
+use super::cx::{Cx, Stop};
+use super::eval::Code;
+use super::syntax::ast::Span;
+use super::types::Ty;
+use super::value::{Quantity, Value};
+use crate::base::bbox::Box3;
+use crate::base::origin::Origin;
+use crate::model::measure;
+use crate::surface::{Surface, curve_bbox};
+
+/// The things of a mesh, and the diagonal of the box around them once it was asked for.
+pub(super) struct Meshed<'t> {
+    pub things: &'t [(Value, Origin)],
+    pub diagonal: Option<f64>,
+}
+
+impl Cx<'_> {
+    /// Shares among settings as the lengths that they are.
+    pub(super) fn shares(&mut self, code: Code<'_>, settings: &mut [Resolved], meshed: &mut Meshed<'_>) -> Result<(), Stop> {
+        for setting in settings.iter_mut().filter(|setting| setting.ty == Ty::Size) {
+            let Value::Number(Quantity { value, percent: true, .. }) = setting.value else { continue };
+            let diagonal = match meshed.diagonal {
+                Some(diagonal) => diagonal,
+                None => self.box_around(meshed.things)?.diagonal(),
+            };
+            meshed.diagonal = Some(diagonal);
+            if diagonal <= 0.0 || diagonal.is_nan() {
+                let span = self.span_of(setting.origin).map_or_else(Span::default, |s| s.1);
+                let text = format!("`{}` is a share of what is meshed, which has no extent", setting.key);
+                return Err(self.error(code, "E306", text, span, "a share of nothing").stop());
+            }
+            setting.value = Value::length(value * diagonal);
+        }
+        Ok(())
+    }
+
+    /// The smallest box along the axes around all things of a mesh.
+    fn box_around(&mut self, things: &[(Value, Origin)]) -> Result<Box3, Stop> {
+        let (mut around, mut surfaces) = (Box3::EMPTY, Vec::<Surface>::new());
+        for (thing, _) in things {
+            match thing {
+                Value::Surface(surface) => surfaces.push(surface.clone()),
+                Value::Shell(shell) => surfaces.extend(shell.surfaces.iter().cloned()),
+                Value::Curve(_) | Value::Link(..) => around = around.union(curve_bbox(&self.as_chain(thing.clone())?)),
+                Value::Edge(home, edge) => {
+                    let curve = super::std::curve_of(self, super::std::kinds::EdgeOf(home.clone(), edge.clone()))?;
+                    around = around.union(curve_bbox(&curve));
+                }
+                place => around = around.with(self.as_vector(place.clone())?.0),
+            }
+        }
+        Ok(if surfaces.is_empty() { around } else { around.union(measure::bounds(&surfaces)) })
+    }
+}
