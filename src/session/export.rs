@@ -85,7 +85,14 @@ fn complete(cx: &Cx, spec: &ExportSpec) -> Result<(), Stop> {
     }
     let Some(part) = cx.lacking(&surfaces) else { return Ok(()) };
     let of = spec.things.first().map_or(spec.origin, |thing| thing.1);
-    Err(FileFault::Incomplete { of, output: spec.origin, part: part.name.to_string(), missing: part.unusable.len() }.into())
+    Err(FileFault::Incomplete {
+        of,
+        output: spec.origin,
+        path: spec.path.clone(),
+        part: part.name.to_string(),
+        missing: part.unusable.len(),
+    }
+    .into())
 }
 
 /// What sort of thing a value is for a file; `None` for what goes into none.

@@ -181,6 +181,8 @@ pub enum FileFault {
         of: Origin,
         /// The output.
         output: Origin,
+        /// As written.
+        path: String,
         /// The part as the script names it.
         part: String,
         /// How many faces are missing.
@@ -287,12 +289,14 @@ impl FileFault {
             Self::TooMuchWork { of, path } => Report::new("E217", format!("\"{path}\" takes more work than it may"))
                 .at(*of, "to be written here")
                 .help("fewer or simpler things in one file, and points that are not far off by mistake"),
-            Self::Incomplete { of, output, part, missing } => {
+            Self::Incomplete { of, output, path, part, missing } => {
+                let path = format!("\"{path}\"");
+                let edit = Edit::Instead { put: format!("{path} {{ incomplete: true }}"), of: path };
                 let faces = if *missing == 1 { "a face".to_owned() } else { format!("{missing} faces") };
                 Report::new("E904", format!("this would be written with holes: `{part}` lacks {faces} that could not be used"))
                     .at(*of, "incomplete")
                     .help("`incomplete: true` in the export writes it all the same")
-                    .edit(Subject::Entity(*output), Edit::Set("incomplete", "true".to_owned()))
+                    .edit(Subject::Entity(*output), edit)
             }
             Self::CannotWrite { of, path, why } => {
                 Report::new("E808", format!("cannot write \"{path}\": {why}")).at(*of, "to be written here")
