@@ -36,7 +36,15 @@ fn run(name: &str, model: &str) -> BTreeMap<String, String> {
     fs::create_dir_all(&folder).unwrap();
     let script = folder.join("model.loft");
     fs::write(&script, model).unwrap();
-    let done = Command::new(env!("CARGO_BIN_EXE_loft")).arg("run").arg(&script).arg("-o").arg(&folder).arg("--allow").arg(env!("CARGO_TARGET_TMPDIR")).output().unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_loft"))
+        .arg("run")
+        .arg(&script)
+        .arg("-o")
+        .arg(&folder)
+        .arg("--allow")
+        .arg(env!("CARGO_TARGET_TMPDIR"))
+        .output()
+        .unwrap();
     assert!(done.status.success(), "{}{}", String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
     let files = fs::read_dir(&folder).unwrap().map(|f| f.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e != "loft"));
     files.map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(p).unwrap())).collect()
@@ -195,7 +203,8 @@ fn colours_of_imported_faces_go_out_again() {
     fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join("part.step"), COLOURED).unwrap();
     let model = |file: &str| format!("units mm\nimport \"{}\" as part\n", folder.join(file).display());
-    let out = "surface lid = part[\"lid\"]\nsurface bare = part[\"bare\"]\nexport lid, bare to \"out.step\"\nexport lid, bare to \"out.igs\"\n";
+    let out =
+        "surface lid = part[\"lid\"]\nsurface bare = part[\"bare\"]\nexport lid, bare to \"out.step\"\nexport lid, bare to \"out.igs\"\n";
     let files = run("colours", &format!("{}{out}", model("part.step")));
     assert_eq!(files["out.step"].matches("STYLED_ITEM").count(), 1);
     assert!(files["out.step"].contains("COLOUR_RGB('',0.25,0.5,1.)"));

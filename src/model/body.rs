@@ -80,13 +80,11 @@ impl Model {
         let (edges, joins) = self.joins(&members, shell.near, network, tolerance);
         let slivers = self.slivers(&members, (&edges, &joins.pieces), shell.near);
         let mut body = Body { vertices: joins.pieces.junctions.clone(), ..Body::default() };
-        body.edges.extend(
-            joins
-                .pieces
-                .atoms
-                .iter()
-                .map(|atom| BodyEdge { part: EdgePart { edge: edges[atom.track], s: atom.s, against: false }, ends: atom.ends, seam: None }),
-        );
+        body.edges.extend(joins.pieces.atoms.iter().map(|atom| BodyEdge {
+            part: EdgePart { edge: edges[atom.track], s: atom.s, against: false },
+            ends: atom.ends,
+            seam: None,
+        }));
         for (surface, other) in &shell.surfaces {
             for patch in self.patches_of(*surface).filter(|p| slivers.binary_search(p).is_err()) {
                 job::look();
