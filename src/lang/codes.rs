@@ -164,6 +164,7 @@ codes! {
     now "E666", "imprint-overlap", "faces that are to be joined cover each other";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
     now "W668", "points-steep", "scattered points rise very steeply";
+    now "W669", "surface-crosses-itself", "a surface crosses itself";
     now "E670", "offset-not-smooth", "the normals of a surface jump where it is moved along them";
     now "E671", "wall-edge", "the walls of two faces do not meet at their edge";
     now "E672", "set-in-part", "a set would hold a part of a curve";

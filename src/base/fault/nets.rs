@@ -69,6 +69,17 @@ pub enum NetFault {
         /// Spans of the skin through all sections.
         given: usize,
     },
+    /// N677: a B-spline stands for a surface that is none.
+    AsNet {
+        /// The B-spline.
+        net: Origin,
+        /// The surface.
+        surface: Origin,
+        /// How far it is off at most.
+        off: f64,
+        /// Whether that is proved; else it is the most at sampled places.
+        proved: bool,
+    },
     /// E643: a curve meets the other family in an order of its own.
     Order {
         /// The curve.
@@ -154,6 +165,12 @@ impl Describe for NetFault {
                 1 => format!("one span across; {given} would go through all sections"),
                 n => format!("{n} spans across; {given} would go through all sections"),
             }),
+            Self::AsNet { net, surface, off, proved } => Report::new("N677", {
+                let (net, surface, off) = (say.quoted(*net, "the net"), say.quoted(*surface, "its surface"), say.length(*off));
+                let bound = if *proved { "nowhere" } else { "at no sampled place" };
+                format!("{net} is {bound} farther than {off} from {surface}")
+            })
+            .at(*net, "a B-spline in its place"),
             Self::Order { curve, guide, a, b, first, second } => Report::new(
                 "E643",
                 format!(

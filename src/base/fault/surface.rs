@@ -101,6 +101,15 @@ pub enum SurfaceFault {
         /// Angle between the normal there and that of the neighbouring sample.
         turn: f64,
     },
+    /// W669: a surface crosses itself, or two faces made together cross.
+    CrossesItself {
+        /// The surface.
+        surface: Origin,
+        /// Where, u and v of both places; none of two faces.
+        uv: Option<((f64, f64), (f64, f64))>,
+        /// Where in space.
+        at: DVec3,
+    },
     /// N608: the Lagrange map may swing out between its curves.
     TransfiniteOscillation {
         /// The surface.
@@ -428,7 +437,7 @@ fn describe_flow(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
     })
 }
 
-/// W606–N608, E611, W614, E62x, W651, E655: one surface.
+/// W606–N608, E611, W614, E62x, W651, E655, W669: one surface.
 fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
     use SurfaceFault as F;
     let uv = |(u, v): (f64, f64)| format!("u {}, v {}", decimals(u, 3), decimals(v, 3));
@@ -450,6 +459,16 @@ fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         )
         .at(*surface, "the map runs back over itself there")
         .help("add a curve across the fold, or divide the surface in two"),
+        F::CrossesItself { surface, uv: places, at } => {
+            let (name, at) = (say.quoted(*surface, "this surface"), say.point(*at));
+            let message = match places {
+                Some((a, b)) => format!("{name} crosses itself at {at}: {} and {} are one place", uv(*a), uv(*b)),
+                None => format!("{name} crosses itself at {at}: two of its faces cross there"),
+            };
+            Report::new("W669", message)
+                .at(*surface, "passes through itself there")
+                .help("a mesh of it has no nodes on the line of crossing: move the curves apart, or make parts that meet along that line")
+        }
         F::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(
             "N608",
             format!(
@@ -758,6 +777,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         | F::FamilyCrosses { .. }
         | F::PatchSingular { .. }
         | F::PatchFolded { .. }
+        | F::CrossesItself { .. }
         | F::TransfiniteOscillation { .. }
         | F::EndTrimmed { .. }
         | F::LoopSelfIntersects { .. }

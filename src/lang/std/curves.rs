@@ -344,7 +344,7 @@ builtins! {
     ///
     /// A surface that is a B-spline stays what it is, and so do extrusions, revolutions and parallel sweeps of such curves. Nets,
     /// skins and other sweeps become splines of degree 3 or 5 that are nowhere farther from the surface than `tolerance:`, with few
-    /// control points; `s.net_size` and `s.net_degree` are those of the result. IGES files hold the same.
+    /// control points; N677 says how far at most. `s.net_size` and `s.net_degree` are those of the result. IGES files hold the same.
     /// ```loft
     /// curve quarter = nurbs([(1m, 0), (1m, 1m), (0, 1m)], weights: [1, sqrt(0.5), 1], knots: [0, 0, 0, 1, 1, 1], degree: 2)
     /// surface vase = skin([for i in 0..4: circle(center: (0, 0, i * 1m), radius: 1m + 300mm * sin(i * 60deg))])
@@ -388,7 +388,8 @@ builtins! {
                     let (found, range) = (near.point.to_string(), "above 0".to_owned());
                     return Err(ValueFault::OutsideRange { argument: "tolerance", found, range }.into());
                 }
-                Ok(Value::Surface(finished(cx, surface.as_net(origin, &near)?, &[])?))
+                let (made, note) = surface.as_net(origin, &near)?;
+                Ok(Value::Surface(finished(cx, made, note.as_slice())?))
             }
         }
     };

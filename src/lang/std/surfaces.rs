@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::curves::unit;
 use super::kinds::{Cutter, Trimmed};
 use super::transforms::axis_line;
-use crate::base::fault::{Fault, LoopFault, ValueFault};
+use crate::base::fault::{Fault, LoopFault, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
 use crate::lang::cx::{Cx, Stop};
@@ -16,6 +16,7 @@ use crate::lang::value::{Plane, Value};
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow, FlowKind};
 use crate::surface::coons::{self, Grid, Method, Settings};
+use crate::surface::meet::crossing;
 use crate::surface::nurbs::{self, Net};
 use crate::surface::{Domain, Reparam, Surface, Way, carried, extrude, interpolate, plane, revolve, ruled as surface_between};
 
@@ -135,8 +136,23 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> 
 pub(super) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Stop> {
     notes.iter().for_each(|note| cx.say(note));
     let tolerance = cx.tolerance()?;
-    surface.review(&tolerance).iter().for_each(|warning| cx.say(warning));
+    let found = surface.review(&tolerance);
+    found.iter().for_each(|warning| cx.say(warning));
+    tell_crossing(cx, &[notes, &found].concat(), std::slice::from_ref(&surface), &tolerance);
     Ok(surface)
+}
+
+/// W669 where faces made together cross themselves or each other; nothing where it is said already that they fold over.
+pub(super) fn tell_crossing(cx: &mut Cx, said: &[Fault], faces: &[Surface], tolerance: &Tolerance) {
+    const FOLDS: [&str; 4] = ["W606", "W607", "W639", "W664"];
+    if said.iter().any(|fault| FOLDS.contains(&fault.code().0)) {
+        return;
+    }
+    if let Some(found) = crossing(faces, tolerance) {
+        let uv = (found.faces.0 == found.faces.1).then_some(found.uv);
+        let surface = cx.origin();
+        cx.say(&SurfaceFault::CrossesItself { surface, uv, at: found.at }.into());
+    }
 }
 
 /// Where a part of a surface stands among others: its centre in whole tolerances, which rounding does not change, and its area.

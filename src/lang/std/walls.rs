@@ -1,6 +1,7 @@
 //! Walls: faces with a thickness.
 
 use super::kinds::SurfaceOrShell;
+use super::surfaces::tell_crossing;
 use crate::base::fault::{Fault, Say, ValueFault};
 use crate::lang::types::Length;
 use crate::model::measure::points_inwards;
@@ -80,6 +81,7 @@ builtins! {
             }
         };
         notes.iter().for_each(|note| cx.say(note));
+        tell_crossing(cx, &notes, &made, &tolerance);
         Ok(made)
     };
 }

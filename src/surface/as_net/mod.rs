@@ -15,7 +15,7 @@ use super::revolve::Axis;
 use super::shape::Shape;
 use super::sweep::{Path, Sweep};
 use super::{extrude, revolve};
-use crate::base::fault::{CurveFault, Result, SurfaceFault};
+use crate::base::fault::{CurveFault, Fault, NetFault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use strips::Fit;
@@ -73,13 +73,21 @@ impl Surface {
         self.mapped(tolerance, false).map(Some)
     }
 
-    /// The surface that its B-spline form is, within `tolerance.point`.
+    /// The surface that its B-spline form is, within `tolerance.point`, and N677 with how far it is off where it is not exact.
     ///
     /// Fails with E676 for a surface without one net, a plane without a map or a trimmed one, and like [`Surface::to_net`].
-    pub fn as_net(&self, origin: Origin, tolerance: &Tolerance) -> Result<Self> {
+    pub fn as_net(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Self, Option<Fault>)> {
         let trimmed = self.parts().trim.is_some();
         match self.to_net(tolerance)? {
-            Some(form) if !trimmed => Ok(form.net.surface(SurfaceKind::Nurbs, origin, tolerance)),
+            Some(form) if !trimmed => {
+                let told = |off, proved| NetFault::AsNet { net: origin, surface: self.origin(), off, proved }.into();
+                let note = match form.off {
+                    Off::Exact => None,
+                    Off::Bounded(off) => Some(told(off, true)),
+                    Off::Sampled(off) => Some(told(off, false)),
+                };
+                Ok((form.net.surface(SurfaceKind::Nurbs, origin, tolerance), note))
+            }
             _ => Err(SurfaceFault::NoNet { surface: self.origin(), trimmed }.into()),
         }
     }

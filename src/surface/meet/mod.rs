@@ -3,6 +3,7 @@
 
 mod curve;
 mod fit;
+mod itself;
 mod join;
 mod march;
 mod pair;
@@ -23,6 +24,7 @@ use crate::surface::core::{Domain, Surface};
 use crate::surface::with_loops;
 use curve::{Contact, Touch, contacts};
 use sheet::{Patch, Sheet, grounded, patches};
+pub use itself::{Crossing, crossing};
 pub use surfaces::{Common, with_surfaces, with_surfaces_once};
 
 /// A meeting of a curve and a surface.

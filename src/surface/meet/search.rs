@@ -157,7 +157,7 @@ impl Search<'_> {
 }
 
 /// The place on the line through another one that is farthest inside two cells, when it is in both.
-fn inside(pair: &Pair, x: &Cell, y: &Cell, spot: Spot) -> Option<Spot> {
+pub(super) fn inside(pair: &Pair, x: &Cell, y: &Cell, spot: Spot) -> Option<Spot> {
     let (a, b) = pair.ahead(&spot, spot.way)?;
     let (da, db) = (a - spot.a, b - spot.b);
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -180,7 +180,7 @@ fn inside(pair: &Pair, x: &Cell, y: &Cell, spot: Spot) -> Option<Spot> {
 }
 
 /// Whether two cells are further apart than a distance.
-fn apart(x: &Cell, y: &Cell, point: f64) -> bool {
+pub(super) fn apart(x: &Cell, y: &Cell, point: f64) -> bool {
     if !x.bounds.touches(&y.bounds, point) {
         return true;
     }
@@ -191,7 +191,7 @@ fn apart(x: &Cell, y: &Cell, point: f64) -> bool {
 }
 
 /// Whether no two tangent planes are parallel, and all common directions are on one side of a plane.
-fn crosses(x: &Cell, y: &Cell) -> bool {
+pub(super) fn crosses(x: &Cell, y: &Cell) -> bool {
     let way = x.normal.cross(y.normal).normalize_or_zero();
     way != DVec3::ZERO && x.normals.cross(&y.normals).along(way).low > 0.0
 }

@@ -135,7 +135,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    fn new(patch: &Patch, u: (f64, f64), v: (f64, f64)) -> Self {
+    pub fn new(patch: &Patch, u: (f64, f64), v: (f64, f64)) -> Self {
         let spread = patch.surface.spread(u, v);
         let normals = spread.du.cross(&spread.dv);
         let mid = spread.mid.du.cross(spread.mid.dv);
