@@ -47,13 +47,13 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
 /// results and what goldens hold of every thing, `draw` an alphabet, `mesh` proofs of its limits, what it takes over, how places of
 /// borders are followed, what a map is foreseen to give and the check of every mesh,
-/// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves and each other and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
+/// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves, each other and themselves, and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, the forms of other languages it knows, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 8_500),
     ("geometry", 5_550),
     ("network", 3_800),
-    ("surface", 22_950),
+    ("surface", 23_250),
     ("model", 6_250),
     ("mesh", 22_700),
     ("io", 14_000),

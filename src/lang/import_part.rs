@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::cx::{Cx, Stop};
 use super::imports::File;
-use super::stages::each_member;
-use super::syntax::ast::Keyword;
 use super::origins::{NO_MEMBER, Place};
 use super::part::{Body, PartFile, PartValue, Said};
+use super::stages::each_member;
+use super::syntax::ast::Keyword;
 use super::units::{self, MILLIMETRE};
 use super::value::{ModuleId, Record, Value};
 use crate::base::bbox::Box3;

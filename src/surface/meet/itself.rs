@@ -212,6 +212,9 @@ impl<'a> Search<'a> {
             return Some(halves);
         }
         let (face, patch) = (self.parts[k].face, self.parts[k].patch);
+        // Bounds of a net of many curves ask all of them.
+        let (across, along) = self.faces[face].curves_of_a_point();
+        self.looked_at += across + along;
         let cell = &self.parts[k].cell;
         let (u, v) = (cell.u, cell.v);
         let along_u =

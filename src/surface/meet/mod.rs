@@ -23,8 +23,8 @@ use crate::surface::closest::Nearest;
 use crate::surface::core::{Domain, Surface};
 use crate::surface::with_loops;
 use curve::{Contact, Touch, contacts};
-use sheet::{Patch, Sheet, grounded, patches};
 pub use itself::{Crossing, crossing};
+use sheet::{Patch, Sheet, grounded, patches};
 pub use surfaces::{Common, with_surfaces, with_surfaces_once};
 
 /// A meeting of a curve and a surface.
