@@ -74,7 +74,7 @@ builtins! {
     fn planes(
         /// Surfaces, or a part.
         faces: Vec<Surface>,
-    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Plane { .. })));
+    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Plane)));
 
     /// Those faces that are round cylinders, all or those of one radius.
     ///
@@ -103,7 +103,7 @@ builtins! {
     fn cones(
         /// Surfaces, or a part.
         faces: Vec<Surface>,
-    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Cone { .. })));
+    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Cone)));
 
     /// Those faces that are of spheres, all or those of one radius.
     ///
