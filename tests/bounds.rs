@@ -15,6 +15,7 @@ use lofting::geometry::build::{arc_through, circle, ellipse, helix, line, offset
 use lofting::geometry::{Curve, Ends, Motion, Spline, spread};
 use lofting::mesh::chart::{Chart, Shape};
 use lofting::mesh::faces::Frame;
+use lofting::mesh::free::bound::chord;
 use lofting::mesh::{Elements, FaceRange, Input, Mesh, Method as MeshMethod, Plan, build as mesh_of};
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
@@ -384,13 +385,47 @@ fn nets_made_ready_are_the_nets_and_their_bends_are_bounded() {
         }
         assert!(answered > 200, "{answered}");
     }
-    // Where first derivatives may jump nothing is said.
-    let corner = uneven_net(3, 3).quick().unwrap();
+}
+
+/// The net of a turned line has knots as often as its degree between arcs, and first derivatives that do not jump there; a net whose
+/// first derivatives jump is farther off a triangle than second derivatives say, and never farther than the bound says with them.
+#[test]
+fn jumps_of_first_derivatives_are_bounded() {
+    let axis = Axis { about: p(0.0, 0.0, 0.0), direction: DVec3::Z };
+    let rows = |radii: [f64; 2]| line(p(radii[0], 0.0, 0.0), p(radii[1], 0.0, 3.0), Origin::NONE).unwrap().to_nurbs(&tolerance()).unwrap();
+    for radii in [[2.0, 2.0], [1.0, 4.0]] {
+        let turned = revolve::net(&rows(radii), &axis, std::f64::consts::TAU).surface(SurfaceKind::Revolve, Origin::NONE, &tolerance());
+        let quick = turned.quick().unwrap();
+        let bends = quick.bends((glam::DVec2::new(0.24, 0.4), glam::DVec2::new(0.26, 0.5)), DVec3::X).unwrap();
+        assert!(bends.jump.abs() < 1e-9 && bends.mid.iter().chain(&bends.slack).all(|x| x.is_finite()), "{bends:?}");
+    }
+    let surface = uneven_net(3, 3);
+    let quick = surface.quick().unwrap();
     let knot = 1.0 / 3.0;
-    let over = |half: f64| (glam::DVec2::new(knot - half, 0.1), glam::DVec2::new(knot + half, 0.11));
-    assert!(corner.bends(over(0.01), DVec3::Z).is_none());
-    let beside = (glam::DVec2::new(knot, 0.1), glam::DVec2::new(knot + 0.02, 0.11));
-    assert!(corner.bends(beside, DVec3::Z).is_some());
+    let mut jumps = 0;
+    for k in 0..200_u32 {
+        let part = |n: u32, of: u32| f64::from(k * n % of) / f64::from(of);
+        let (half, across) = (0.001 + 0.03 * part(7, 31), 0.001 + 0.05 * part(11, 37));
+        let low = glam::DVec2::new(knot - half * part(5, 29), 0.9 * part(13, 41));
+        let high = low + glam::DVec2::new(half, across);
+        let at = [low, glam::DVec2::new(high.x, low.y + part(3, 17) * across), glam::DVec2::new(low.x + part(2, 19) * half, high.y)];
+        let corner = at.map(|at| surface.point(at.x, at.y));
+        let normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalize();
+        let bound = chord((&surface, Some(&quick)), at, corner, f64::INFINITY);
+        jumps += usize::from(quick.bends((low, high), normal).unwrap().jump > 0.0);
+        for (i, j) in (0..=12_u32).flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0))) {
+            let at = at[0] * (1.0 - i - j) + at[1] * i + at[2] * j;
+            let off = (surface.point(at.x, at.y) - corner[0]).dot(normal).abs();
+            assert!(off <= bound * (1.0 + 1e-9) + 1e-12, "{off} against {bound}");
+        }
+    }
+    assert!(jumps > 100, "{jumps}");
+    // Never far more than there is: halving a triangle beside the knot lowers the bound.
+    let of = |size: f64| {
+        let at = [(-0.4, 0.0), (0.6, 0.1), (-0.1, 1.0)].map(|(x, y)| glam::DVec2::new(knot + x * size, 0.4 + y * size));
+        chord((&surface, Some(&quick)), at, at.map(|at| surface.point(at.x, at.y)), f64::INFINITY)
+    };
+    assert!(of(0.01) < 0.6 * of(0.02), "{} {}", of(0.01), of(0.02));
 }
 
 /// A mesh of one surface under a chord error alone.

@@ -301,7 +301,7 @@ impl Field<'_> {
         let square = |r: &Ranges| r.reach();
         if twice <= EPSILON * (a.length_squared() + b.length_squared()) {
             let slack = second.each_ref().map(square);
-            let error = over_sides(&Bends { mid: [0.0; 3], slack }, uv, width);
+            let error = over_sides(&Bends { mid: [0.0; 3], slack, jump: 0.0 }, uv, width);
             return Bound { error, bends: [slack[0] * width.x * width.x, slack[2] * width.y * width.y] };
         }
         let flat = Flat::new(uv, (a, b), twice, &second);
@@ -388,10 +388,10 @@ impl Flat {
         let e = a.normalize_or_zero();
         let f = normal.cross(e);
         let up = second.each_ref().map(|r| r.along(normal));
-        let bends = Bends { mid: up.map(|r| 0.5 * (r.low + r.high)), slack: up.map(|r| 0.5 * (r.high - r.low)) };
+        let bends = Bends { mid: up.map(|r| 0.5 * (r.low + r.high)), slack: up.map(|r| 0.5 * (r.high - r.low)), jump: 0.0 };
         let aside = second.each_ref().map(|r| DVec2::new(r.along(e).reach(), r.along(f).reach()).length());
         let height = over_sides(&bends, uv, width);
-        let along = over_sides(&Bends { mid: [0.0; 3], slack: aside }, uv, width);
+        let along = over_sides(&Bends { mid: [0.0; 3], slack: aside, jump: 0.0 }, uv, width);
         let whole = DVec2::new(height, along).length();
         let mut flat = Self { normal, low, high, shift: DVec2::INFINITY, shifted: f64::INFINITY, whole, bends };
         // Slopes along a side vanish somewhere on it, and change by second derivatives over the widened box.

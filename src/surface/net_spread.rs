@@ -61,6 +61,9 @@ fn shares_by_levels(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> 
     out
 }
 
+/// Jump of a first derivative, as a share of it, up to which it is rounding of the poles in a file.
+const SAME_SLOPE: f64 = 1e-10;
+
 type Net = Vec<Vec<DVec4>>;
 
 /// Differences along u (within rows) times `f`.
@@ -80,13 +83,48 @@ fn hull(net: &Net) -> (Ranges, Range) {
 }
 
 impl NurbsSurface {
-    /// Inner knots, and whether the net may have a corner at one of them.
-    pub fn knot_lines(&self, in_u: bool) -> (Vec<f64>, bool) {
-        let (knots, degree) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
+    /// Inner knots, and whether first derivatives jump at one of them between two values.
+    pub fn knot_lines(&self, in_u: bool, (x0, x1): (f64, f64)) -> (Vec<f64>, bool) {
         let (us, vs) = self.breaks();
         let lines = if in_u { us } else { vs };
-        let corner = lines.iter().any(|x| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count() >= degree);
+        let corner = lines.iter().any(|x| *x > x0 + EPSILON && *x < x1 - EPSILON && self.has_corner(in_u, *x));
         (lines, corner)
+    }
+
+    /// Whether the first derivative across an inner knot jumps there, by more than rounding. It may at knots as often as the
+    /// degree, and does not where the jump of the homogeneous derivative is one multiple of the points all along the knot, as
+    /// between arcs of a circle.
+    pub fn has_corner(&self, in_u: bool, x: f64) -> bool {
+        let (knots, degree) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
+        let before = knots.iter().filter(|k| **k < x - EPSILON).count();
+        let after = knots.iter().filter(|k| **k > x + EPSILON).count();
+        let often = knots.len() - before - after;
+        if often < degree || before == 0 || after == 0 || often > degree {
+            return often >= degree;
+        }
+        // The column of poles on the knot, with those to either side.
+        let column = before - 1;
+        let (from, to) = (degree as f64 / (x - knots[before - 1]), degree as f64 / (knots[before + often] - x));
+        let (nu, nv) = self.counts;
+        let origin = projected(self.pole_of(in_u, column, 0));
+        let local = |q: DVec4| (q.truncate() - origin * q.w).extend(q.w);
+        let n = if in_u { nv } else { nu };
+        let rows = (0..n).map(|j| [column - 1, column, column + 1].map(|i| local(self.pole_of(in_u, i, j))));
+        let slopes = |[a, b, c]: [DVec4; 3]| (b, (b - a) * from, (c - b) * to);
+        let (b, left, right) = slopes([column - 1, column, column + 1].map(|i| local(self.pole_of(in_u, i, 0))));
+        let share = (right.w - left.w) / b.w;
+        let (most, scale) = rows.map(slopes).fold((0.0_f64, 0.0_f64), |(most, scale), (b, left, right)| {
+            // Weights count by the reach of the points.
+            let size = |q: DVec4| q.truncate().length() + q.w.abs() * b.truncate().length();
+            (most.max(size(right - left - b * share)), scale.max(size(left)).max(size(right)))
+        });
+        most > SAME_SLOPE * scale
+    }
+
+    /// The homogeneous pole in a column across a direction and a row along it.
+    fn pole_of(&self, in_u: bool, i: usize, j: usize) -> DVec4 {
+        let (i, j) = if in_u { (i, j) } else { (j, i) };
+        self.poles[j * self.counts.0 + i]
     }
 
     /// The Bézier points of one direction between two values inside one span.

@@ -19,6 +19,8 @@ use crate::base::work;
 use crate::geometry::bounds::binomial;
 use crate::geometry::nurbs::{COMMON_DEGREE, projected};
 
+/// How far beside a knot the span before it is looked at.
+const BESIDE: f64 = 1e-13;
 /// Boxes along each side of a span for which third derivatives are bounded apart.
 const BOXES: usize = 3;
 
@@ -39,9 +41,9 @@ struct Powers {
     powers: Vec<DVec4>,
     /// Over [`BOXES`]² boxes a span; found when they are asked for.
     thirds: OnceLock<Vec<Third>>,
-    /// Knots at which second derivatives may jump, not first ones.
+    /// Knots at which second derivatives may jump.
     rough: (Vec<f64>, Vec<f64>),
-    /// Knots at which first derivatives may jump.
+    /// Those of them at which first derivatives jump.
     corners: (Vec<f64>, Vec<f64>),
 }
 
@@ -102,6 +104,8 @@ pub struct Bends {
     pub mid: [f64; 3],
     /// How far they may be from there.
     pub slack: [f64; 3],
+    /// How far jumps of first derivatives inside move the surface away from what second ones say, model units.
+    pub jump: f64,
 }
 
 impl Bends {
@@ -113,7 +117,7 @@ impl Bends {
             (0.5 * (low + high), 0.5 * (high - low))
         };
         let ranges = [0, 1, 2].map(range);
-        Self { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1) }
+        Self { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1), jump: self.jump.max(other.jump) }
     }
 }
 
@@ -162,17 +166,15 @@ impl Powers {
             let often = |x: &f64| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count();
             stops[1..stops.len() - 1].iter().copied().filter(|x| wanted(often(x))).collect()
         };
-        let both = |wanted: &dyn Fn(usize, usize) -> bool| {
-            let (p, q) = net.degree;
-            let u = repeated(&stops.0, &net.knots.0, &|often| wanted(often, p));
-            (u, repeated(&stops.1, &net.knots.1, &|often| wanted(often, q)))
-        };
+        let rough = |stops: &[f64], knots: &[f64], degree: usize| repeated(stops, knots, &|often| often + 1 >= degree);
+        let rough = (rough(&stops.0, &net.knots.0, net.degree.0), rough(&stops.1, &net.knots.1, net.degree.1));
+        let corners = |in_u: bool, rough: &[f64]| rough.iter().copied().filter(|x| net.has_corner(in_u, *x)).collect();
         Self {
             degree: net.degree,
             powers: powers.collect(),
             thirds: OnceLock::new(),
-            rough: both(&|often, degree| often + 1 == degree),
-            corners: both(&|often, degree| often >= degree),
+            corners: (corners(true, &rough.0), corners(false, &rough.1)),
+            rough,
             stops: (Stops::new(stops.0), Stops::new(stops.1)),
         }
     }
@@ -273,7 +275,7 @@ impl Quick {
         quotient(&sums)
     }
 
-    /// Second derivatives along a unit vector over a box of (u, v); `None` where first ones jump inside.
+    /// Second derivatives along a unit vector over a box of (u, v), and what jumps of first ones inside add; `None` over a seam.
     pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
         work::spend(4);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -282,9 +284,6 @@ impl Quick {
         let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
         let (low, high) = (DVec2::new(u, v) - half, DVec2::new(u, v) + half);
         if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
-            return None;
-        }
-        if crossed(&self.net.corners.0, low.x, high.x).next().is_some() || crossed(&self.net.corners.1, low.y, high.y).next().is_some() {
             return None;
         }
         let mut whole: Option<Bends> = None;
@@ -298,12 +297,58 @@ impl Quick {
             }
             from.y = y;
         }
-        whole
+        let jump = self.jump((low, high), along);
+        whole.map(|whole| Bends { jump, ..whole })
+    }
+
+    /// How far jumps of first derivatives in a box of the net's own parameters move the surface along a unit vector away from
+    /// what second derivatives say of it between any three places in the box. `docs/notes/bounds.md` has the formula.
+    fn jump(&self, (low, high): (DVec2, DVec2), along: DVec3) -> f64 {
+        let net = &self.net;
+        let own = |lines: &[f64], (a, b): (f64, f64), at: &dyn Fn(f64) -> f64| {
+            crossed(lines, a, b).map(|c| at(c) * (c - a) * (b - c) / (b - a)).sum::<f64>()
+        };
+        let (wide, high_up) = ((low.x, high.x), (low.y, high.y));
+        own(&net.corners.0, wide, &|c| self.jump_along(true, c, high_up, along))
+            + own(&net.corners.1, high_up, &|c| self.jump_along(false, c, wide, along))
+    }
+
+    /// The largest jump of the first derivative across a knot, along a unit vector, between two places of the knot's line.
+    fn jump_along(&self, in_u: bool, c: f64, (low, high): (f64, f64), along: DVec3) -> f64 {
+        let net = &self.net;
+        let place = |x: f64, y: f64| if in_u { (x, y) } else { (y, x) };
+        let slopes = |jet: &Jet2| if in_u { (jet.du, jet.duv) } else { (jet.dv, jet.duv) };
+        let mut from = low;
+        let mut most = 0.0_f64;
+        // The jump is smooth between knots of the line alone.
+        let rough = if in_u { &net.rough.1 } else { &net.rough.0 };
+        for to in crossed(rough, low, high).chain([high]) {
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            let beside = |x: f64| {
+                let (u, v) = place(x, middle);
+                slopes(&self.surface.outer(self.own_jet(u, v)))
+            };
+            let (before, after) = (beside(c - BESIDE), beside(c));
+            let ends = [place(c - BESIDE, from), place(c + BESIDE, to)].map(|(u, v)| DVec2::new(u, v));
+            let third = self.most_thirds((ends[0], ends[1]), along)[if in_u { 2 } else { 1 }];
+            let jump = (after.0 - before.0).dot(along).abs() + half * (after.1 - before.1).dot(along).abs() + half * half * third;
+            most = most.max(jump);
+            from = to;
+        }
+        most
     }
 
     /// The same over a box of the net's own parameters in which second derivatives do not jump.
     fn smooth(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Bends {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let most = self.most_thirds((low, high), along);
+        let jet = self.surface.outer(self.own_jet(middle.x, middle.y));
+        let slack = [0, 1, 2].map(|k| most[k] * half.x + most[k + 1] * half.y);
+        Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack, jump: 0.0 }
+    }
+
+    /// Bounds of the third derivatives along a unit vector over a box of the net's own parameters: ∂uuu, ∂uuv, ∂uvv, ∂vvv.
+    fn most_thirds(&self, (low, high): (DVec2, DVec2), along: DVec3) -> [f64; 4] {
         let range = |stops: &Stops, a: f64, b: f64| {
             let ((i, s, _), (j, t, _)) = (stops.place(a), stops.place(b));
             let boxed = |k: usize, s: f64| k * BOXES + ((s.max(0.0) * BOXES as f64) as usize).min(BOXES - 1);
@@ -320,9 +365,7 @@ impl Quick {
                 }
             }
         }
-        let jet = self.surface.outer(self.own_jet(middle.x, middle.y));
-        let slack = [0, 1, 2].map(|k| most[k] * half.x + most[k + 1] * half.y);
-        Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack }
+        most
     }
 
     fn span(&self, i: usize, j: usize) -> &[DVec4] {

@@ -198,7 +198,7 @@ impl Shape {
     fn strip(&self, along_u: bool, x0: f64, x1: f64) -> Strip {
         let (lines, jumps) = match self {
             Self::Blend(s) => (s.rule_changes(along_u), false),
-            Self::Nurbs(s) => s.knot_lines(along_u),
+            Self::Nurbs(s) => s.knot_lines(along_u, (x0, x1)),
             Self::Joined(s) => s.changes(along_u),
             Self::Framed(s) if along_u => s.changes(x0, x1),
             _ => (Vec::new(), false),

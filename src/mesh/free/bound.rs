@@ -28,7 +28,7 @@ fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), n
         return None;
     }
     let along = all.map(|r| r.along(normal));
-    Some(Bends { mid: along.map(|r| 0.5 * (r.low + r.high)), slack: along.map(|r| 0.5 * (r.high - r.low)) })
+    Some(Bends { mid: along.map(|r| 0.5 * (r.low + r.high)), slack: along.map(|r| 0.5 * (r.high - r.low)), jump: 0.0 })
 }
 
 /// Bounds over any box: where the surface closes, parameters go on over the seam.
@@ -131,7 +131,7 @@ fn off_line(surface: &Surface, uv: [DVec2; 3]) -> f64 {
     if all.iter().any(Ranges::is_vast) {
         return f64::INFINITY;
     }
-    over_sides(&Bends { mid: [0.0; 3], slack: all.map(|r| r.reach()) }, uv, high - low)
+    over_sides(&Bends { mid: [0.0; 3], slack: all.map(|r| r.reach()), jump: 0.0 }, uv, high - low)
 }
 
 /// How far the surface over a triangle of (u, v) is from a plane along its normal, by the heights of the corners where they
@@ -149,7 +149,7 @@ const TOO_FAR: f64 = 8.0;
 
 /// Second derivatives over the box of a triangle, `width` wide, along its sides in the order of the corners opposite: in the
 /// middle, and how far they may be from there.
-fn forms(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> [(f64, f64); 3] {
+fn forms(Bends { mid, slack, .. }: &Bends, uv: [DVec2; 3], width: DVec2) -> [(f64, f64); 3] {
     // 2 |x y| ≤ a x² + y² / a, with a that makes both alike over the box.
     let a = if width.x > 0.0 && width.y > 0.0 { width.y / width.x } else { 1.0 };
     let (ru, rv) = (slack[0] + slack[1] * a, slack[2] + slack[1] / a);
@@ -163,14 +163,14 @@ fn forms(Bends { mid, slack }: &Bends, uv: [DVec2; 3], width: DVec2) -> [(f64, f
 /// The bound of a triangle by second derivatives over its box, `width` wide.
 pub fn over_sides(bends: &Bends, uv: [DVec2; 3], width: DVec2) -> f64 {
     let forms = forms(bends, uv, width);
-    0.5 * most(forms.map(|(m, r)| m + r)).max(most(forms.map(|(m, r)| r - m)))
+    bends.jump + 0.5 * most(forms.map(|(m, r)| m + r)).max(most(forms.map(|(m, r)| r - m)))
 }
 
 /// The same where the corners are so far above the plane.
 fn over_corners(above: [f64; 3], bends: &Bends, uv: [DVec2; 3], width: DVec2) -> f64 {
     let forms = forms(bends, uv, width);
     let highest = highest(above, forms.map(|(m, r)| 0.5 * (r - m)));
-    highest.max(self::highest(above.map(|f| -f), forms.map(|(m, r)| 0.5 * (r + m))))
+    bends.jump + highest.max(self::highest(above.map(|f| -f), forms.map(|(m, r)| 0.5 * (r + m))))
 }
 
 /// The most that Σ a λi + Σ c λi λj can be for barycentric λ, `c` in the order of the sides opposite the corners.
