@@ -5,6 +5,8 @@
 //! over a seam too, because a way from one to the other leads through both with neither parameter turning back. Whatever cannot be told
 //! so is halved; parts that are apart are left, and of the others a place in both of them is a crossing.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3};
 
 use super::pair::Pair;
@@ -15,9 +17,10 @@ use crate::base::job;
 use crate::base::range::Ranges;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::surface::core::{Domain, Side, Surface};
+use crate::surface::spread::Strip;
 
 /// Pairs that are looked at, at most, and what a place that is solved for counts.
-const MOST_PAIRS: usize = 40_000;
+const MOST_PAIRS: usize = 12_000;
 const SOLVED: usize = 4;
 /// Parts that begin, at most: faces with more creases are not looked through.
 const MOST_PARTS: usize = 2_000;
@@ -61,6 +64,7 @@ struct Search<'a> {
     faces: &'a [Surface],
     patches: Vec<Patch>,
     breaks: Vec<(Vec<f64>, Vec<f64>)>,
+    strips: Strips,
     parts: Vec<Part>,
     roots: Vec<usize>,
     poles: Vec<DVec3>,
@@ -80,6 +84,7 @@ impl<'a> Search<'a> {
             faces,
             patches: Vec::new(),
             breaks: faces.iter().map(Surface::breaks).collect(),
+            strips: Strips::default(),
             parts: Vec::new(),
             roots: Vec::new(),
             poles: Vec::new(),
@@ -98,7 +103,7 @@ impl<'a> Search<'a> {
             }
             search.poles.extend((0..surface.n_sides()).filter_map(|k| if let Side::Pole(p) = surface.side(k) { Some(p) } else { None }));
             for patch in patches(surface) {
-                let cell = Cell::new(&patch, patch.u, patch.v);
+                let cell = search.strips.cell(face, surface, patch.u, patch.v);
                 search.patches.push(patch);
                 search.roots.push(search.parts.len());
                 search.parts.push(Part { face, patch: search.patches.len() - 1, cell, halves: None });
@@ -212,9 +217,6 @@ impl<'a> Search<'a> {
             return Some(halves);
         }
         let (face, patch) = (self.parts[k].face, self.parts[k].patch);
-        // Bounds of a net of many curves ask all of them.
-        let (across, along) = self.faces[face].curves_of_a_point();
-        self.looked_at += across + along;
         let cell = &self.parts[k].cell;
         let (u, v) = (cell.u, cell.v);
         let along_u =
@@ -222,14 +224,16 @@ impl<'a> Search<'a> {
         let breaks = &self.breaks[face];
         let (ends, breaks) = if along_u { (u, &breaks.0) } else { (v, &breaks.1) };
         let middle = middle(ends, breaks)?;
-        let patch_of = &self.patches[patch];
-        let (first, second) = if along_u {
-            (Cell::new(patch_of, (u.0, middle), v), Cell::new(patch_of, (middle, u.1), v))
-        } else {
-            (Cell::new(patch_of, u, (v.0, middle)), Cell::new(patch_of, u, (middle, v.1)))
-        };
+        let ends = if along_u { [((u.0, middle), v), ((middle, u.1), v)] } else { [(u, (v.0, middle)), (u, (middle, v.1))] };
         let at = self.parts.len();
-        self.parts.extend([first, second].map(|cell| Part { face, patch, cell, halves: None }));
+        for (u, v) in ends {
+            // Bounds of a net of many curves ask all of them, once for all parts between two values.
+            let before = self.strips.len();
+            let cell = self.strips.cell(face, &self.patches[patch].surface, u, v);
+            let (across, along) = self.faces[face].curves_of_a_point();
+            self.looked_at += (self.strips.len() - before) * (across + along);
+            self.parts.push(Part { face, patch, cell, halves: None });
+        }
         self.parts[k].halves = Some((at, at + 1));
         self.parts[k].halves
     }
@@ -253,6 +257,25 @@ impl<'a> Search<'a> {
             })
         };
         self.poles.iter().all(|pole| pole.distance(p) > reach) && within(a, x) && within(b, y) && (a != b || apart())
+    }
+}
+
+/// What is known of the faces between two values of u, or of v: the same for all parts between them.
+#[derive(Default)]
+struct Strips(BTreeMap<(usize, bool, u64, u64), Strip>);
+
+impl Strips {
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// A rectangle of a face.
+    fn cell(&mut self, face: usize, surface: &Surface, u: (f64, f64), v: (f64, f64)) -> Cell {
+        let key = |in_u: bool, ends: (f64, f64)| (face, in_u, ends.0.to_bits(), ends.1.to_bits());
+        let (a, b) = (key(true, u), key(false, v));
+        self.0.entry(a).or_insert_with(|| surface.strip_u(u.0, u.1));
+        self.0.entry(b).or_insert_with(|| surface.strip_v(v.0, v.1));
+        Cell::of(surface.spread_of(&self.0[&a], &self.0[&b]), u, v)
     }
 }
 

@@ -136,7 +136,11 @@ pub(super) struct Cell {
 
 impl Cell {
     pub fn new(patch: &Patch, u: (f64, f64), v: (f64, f64)) -> Self {
-        let spread = patch.surface.spread(u, v);
+        Self::of(patch.surface.spread(u, v), u, v)
+    }
+
+    /// From bounds over the rectangle.
+    pub fn of(spread: Spread, u: (f64, f64), v: (f64, f64)) -> Self {
         let normals = spread.du.cross(&spread.dv);
         let mid = spread.mid.du.cross(spread.mid.dv);
         let scale = spread.mid.du.length() * spread.mid.dv.length();
