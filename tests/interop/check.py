@@ -17,6 +17,7 @@ import cad_in
 import members
 import orders
 import read_back
+import rounded
 import solve
 import step_out
 import surfaces
@@ -131,6 +132,7 @@ def main():
     for model in sorted(glob.glob(os.path.join(HERE, "models", "surfaces", "*.loft"))):
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
+    tally.check("roundings and walls by OpenCASCADE", lambda: rounded.check(lambda *a: run_loft(loft, *a), work))
     wrong, n = cad_in.table(loft, os.path.join(work, "cad"))
     tally.passed += n - len(wrong)
     tally.failed += len(wrong)

@@ -18,6 +18,9 @@ use crate::surface::with_loops;
 const STARTS: usize = 16;
 /// Steps in which the radius grows to the one that is asked for.
 const GROWTH: usize = 8;
+/// Balls round a closed edge at most, and the cosine of the largest turn of the centre's way from one to the next.
+const MOST_AROUND: usize = 1024;
+const TURN: f64 = 0.75;
 /// A surface counts as running on in a direction when a step that way leaves it by no more than this share of the step.
 const RUNS_ON: f64 = 0.05;
 /// Steps by which directions are tried, as a share of the edge's length.
@@ -239,6 +242,16 @@ impl Ball {
 
     /// The balls of a radius at places along the edge; where there is none, the place.
     pub fn stations(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
+        let found = self.beside_starts(radius);
+        let even = |all: &[Station]| all.windows(2).all(|w| w[0].way.dot(w[1].way) >= TURN);
+        if self.closed && !found.as_ref().is_ok_and(|all| even(all)) {
+            return self.around(radius);
+        }
+        found
+    }
+
+    /// The same in planes across the edge at equal steps.
+    fn beside_starts(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
         let mut all = Vec::with_capacity(self.starts.len());
         for start in &self.starts {
             crate::base::job::look();
@@ -255,6 +268,38 @@ impl Ball {
             Some(k) => Err(self.starts[k].at),
             None => Ok(all),
         }
+    }
+
+    /// The balls of a radius along a closed edge, the last one the first: from one of them on in the direction of its centre's way. A
+    /// large ball's centre runs on a small closed curve, and not past the places of the edge one after the other.
+    fn around(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
+        let beside = |p: DVec3| self.edge.closest(p).1;
+        let first = self.starts[..STARTS].iter().find_map(|start| self.grown(start, radius)).ok_or(self.starts[0].at)?;
+        let longest = self.edge.length() / STARTS as f64;
+        let (mut step, mut all) = (longest, vec![first]);
+        while all.len() < MOST_AROUND {
+            crate::base::job::look();
+            let last = all[all.len() - 1];
+            if !(self.holds(&last) && self.leaves(&last) && self.fits(&last, radius)) {
+                return Err(beside(last.center));
+            }
+            let back = first.center - last.center;
+            if back.dot(last.way) > 0.0 && back.length() <= step && first.way.dot(last.way) >= TURN {
+                all.push(first);
+                return Ok(all);
+            }
+            let guess = Guess { uv: last.uv, points: [0, 1].map(|k: usize| last.feet[k] + last.rates[k] * step) };
+            let next = self.station(radius, (last.center + last.way * step, last.way), &guess);
+            match next.filter(|next| next.way.dot(last.way) >= TURN && next.center.distance(last.center) <= 2.0 * step) {
+                Some(next) => {
+                    all.push(next);
+                    step = (2.0 * step).min(longest);
+                }
+                None if step <= self.tolerance.point => break,
+                None => step *= 0.5,
+            }
+        }
+        Err(beside(all[all.len() - 1].center))
     }
 
     /// The ball beside a place of the edge, grown step by step.

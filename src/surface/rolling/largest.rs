@@ -10,15 +10,23 @@ const SMALLER: usize = 24;
 /// Halvings between a radius that fits and one that does not.
 const BETWEEN: usize = 32;
 
-/// The balls of a radius at places along the edge; E673 with the largest radius where they do not fit.
-pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin) -> Result<Vec<Station>> {
-    let found = ball.stations(radius).map(|mut all| {
-        if !ball.closed {
-            ball.run_out(radius, &mut all);
-        }
-        all
-    });
-    found.map_err(|at| {
+/// Halvings in search of one with which surfaces can be made, where the largest ball that fits makes none; each makes them.
+const MADE: usize = 8;
+/// Share of a radius that is told, at the least: three digits of it, rounded down.
+const TOLD: f64 = 1.0 - 1.0 / 1024.0;
+
+/// The balls of a radius at places along the edge; E673 with the largest radius where they do not fit: one with which `is_made`
+/// says that the rounding can be made.
+pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl Fn(Vec<Station>, f64) -> bool) -> Result<Vec<Station>> {
+    let of = |radius: f64| {
+        ball.stations(radius).map(|mut all| {
+            if !ball.closed {
+                ball.run_out(radius, &mut all);
+            }
+            all
+        })
+    };
+    of(radius).map_err(|at| {
         let mut fits = radius;
         for _ in 0..SMALLER {
             fits *= 0.5;
@@ -33,6 +41,18 @@ pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin) -> Result<Vec<S
         for _ in 0..BETWEEN {
             let middle = 0.5 * (low + high);
             if ball.stations(middle).is_ok() { low = middle } else { high = middle }
+        }
+        let makes = |radius: f64| of(radius).is_ok_and(|all| is_made(all, radius));
+        if !makes(low * TOLD) {
+            let (mut made, mut not) = (0.0, low * TOLD);
+            for _ in 0..MADE {
+                let middle = 0.5 * (made + not);
+                if makes(middle) { made = middle } else { not = middle }
+            }
+            low = made;
+        }
+        if low == 0.0 {
+            return ball.fault(NoBlend::NoRadius { at });
         }
         let (a, b) = (ball.origins[0], ball.origins[1]);
         Fault::from(BlendFault::TooLarge { blend: origin, a, b, radius, largest: low, at })

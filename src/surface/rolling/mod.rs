@@ -35,10 +35,13 @@ use crate::network::Chain;
 pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     let edge = edge(a, b, origin, tolerance)?;
     let ball = Ball::new([a, b], edge, keep, tolerance)?;
-    let stations = largest::stations(&ball, radius, origin)?;
-    let roll = ended(&ball, rolled(&ball, radius, stations, origin)?, origin)?;
-    let side = |k: usize| cut_back(&ball, k, &roll.contacts[k], origin);
-    Ok(vec![side(0)?.cut_from(std::slice::from_ref(a)), roll.surface, side(1)?.cut_from(std::slice::from_ref(b))])
+    let made = |stations, radius: f64| -> Result<Vec<Surface>> {
+        let roll = ended(&ball, rolled(&ball, radius, stations, origin)?, origin)?;
+        let side = |k: usize| cut_back(&ball, k, &roll.contacts[k], origin);
+        Ok(vec![side(0)?.cut_from(std::slice::from_ref(a)), roll.surface, side(1)?.cut_from(std::slice::from_ref(b))])
+    };
+    let stations = largest::stations(&ball, radius, origin, |stations, radius| made(stations, radius).is_ok())?;
+    made(stations, radius)
 }
 
 /// The one curve in which two surfaces meet; it may have no corners.
