@@ -24,7 +24,9 @@ use lofting::surface::coons::{Grid, Method, Settings, build};
 use lofting::surface::gordon::{CurveNet, Named as NamedNet, gordon};
 use lofting::surface::nurbs::{Net, bezier, nurbs};
 use lofting::surface::revolve::Axis;
-use lofting::surface::{Domain, Lean, Map, Rail, Reparam, Surface, SurfaceKind, bbox, closest, extrude, plane, revolve, ruled};
+use lofting::surface::{
+    Domain, Lean, Map, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, extrude, plane, revolve, ruled, trim,
+};
 use serde_json::Value;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
@@ -300,6 +302,75 @@ fn boxes_hold_the_surface_and_touch_it() {
     }
     let spike = nurbs(&Net { rows: &rows, weights: None }, (3, 3), (None, None), Origin::NONE, &tolerance()).unwrap();
     assert!((bbox(&spike).max.z - 2.0 / 3.0).abs() < 1e-5, "{:?}", bbox(&spike));
+}
+
+/// Ovals in the parameters cut parts out of all kinds of surfaces; what lies inside them is told by their equations.
+#[test]
+fn boxes_of_trimmed_surfaces_hold_them_and_touch_them() {
+    let t = tolerance();
+    let mut made = 0;
+    for (name, surface) in zoo() {
+        // The ring is a flat one that folds over itself: a curve on it has no one place in the parameters.
+        if !matches!(surface.domain(), Domain::Square | Domain::Triangle) || name == "revolve ring" {
+            continue;
+        }
+        for k in 0..2_u32 {
+            let share = |n: u32| f64::from((k * 7 + n * 5) % 11) / 10.0;
+            let (a, b) = (0.08 + 0.12 * share(1), 0.08 + 0.12 * share(2));
+            let center =
+                if surface.domain() == Domain::Triangle { p(0.3, 0.3, 0.0) } else { p(0.25 + 0.5 * share(3), 0.25 + 0.5 * share(4), 0.0) };
+            let place = |angle: f64| (center.x + a * angle.cos(), center.y + b * angle.sin());
+            let oval = Chain::of_curve(&ellipse(center, DVec3::X * a, DVec3::Y * b, 0.0, std::f64::consts::TAU, Origin::NONE).unwrap());
+            let Ok(curve) = carried(&surface, &oval, Way::Parameters, Origin::NONE, &t) else { continue };
+            let curve = Chain::of_curve(&curve);
+            for hole in [false, true] {
+                let (outer, holes) = if hole { (vec![], vec![vec![curve.clone()]]) } else { (vec![curve.clone()], vec![]) };
+                let Ok(part) = trim(&surface, &outer, &holes, Origin::NONE, &t) else { continue };
+                let (found, n) = (bbox(&part), 60);
+                let mut dense = lofting::base::bbox::Box3::EMPTY;
+                for (i, j) in (0..=n).flat_map(|j| (0..=n).map(move |i| (f64::from(i) / f64::from(n), f64::from(j) / f64::from(n)))) {
+                    // A fine grid over the oval, or over all of the surface.
+                    let (u, v) =
+                        if hole { surface.from_square(i, j) } else { (center.x + a * (2.0 * i - 1.0), center.y + b * (2.0 * j - 1.0)) };
+                    let inside = ((u - center.x) / a).powi(2) + ((v - center.y) / b).powi(2) <= 1.0;
+                    if inside != hole {
+                        dense = dense.with(surface.point(u, v));
+                    }
+                }
+                for i in 0..600 {
+                    let (u, v) = place(f64::from(i) * std::f64::consts::TAU / 600.0);
+                    dense = dense.with(surface.point(u, v));
+                }
+                let (room, gap) = (2e-6 * found.diagonal() + 1e-6, 5e-3 * found.diagonal());
+                let out = (dense.max - found.max).max(found.min - dense.min).max_element();
+                let loose = (found.max - dense.max).max(dense.min - found.min).max_element();
+                assert!(out <= room && loose <= gap, "{name} {k} hole {hole}: {out} out, {loose} loose");
+                made += 1;
+            }
+        }
+    }
+    assert!(made > 80, "{made}");
+}
+
+/// Caps of a ball and rings cut off by planes, by the formulas of circles.
+#[test]
+fn boxes_of_caps_are_those_of_the_formulas() {
+    let t = tolerance();
+    let half = arc(p(0., 0., -1.), p(1., 0., 0.), p(0., 0., 1.));
+    let ball = revolve::revolve(&half, &Axis { about: DVec3::ZERO, direction: DVec3::Z }, std::f64::consts::TAU, Origin::NONE, &t).unwrap();
+    for k in 0..60_u32 {
+        let share = |n: u32| f64::from((k * 17 + n * 29) % 61) / 61.0 - 0.5;
+        let (n, d) = (p(share(1), share(2), share(3) + 0.01).normalize(), 1.6 * share(4));
+        let rim = Chain::of_curve(&circle(n * d, (1.0 - d * d).sqrt(), n, Origin::NONE).unwrap());
+        let cap = divide(&ball, &[rim], n, Origin::NONE, &t).unwrap_or_else(|e| panic!("{k}: {e:?}"));
+        let found = bbox(&cap);
+        let high =
+            |axis: DVec3| if n.dot(axis) >= d { 1.0 } else { d * n.dot(axis) + ((1.0 - d * d) * (1.0 - n.dot(axis).powi(2))).sqrt() };
+        let max = p(high(DVec3::X), high(DVec3::Y), high(DVec3::Z));
+        let min = -p(high(-DVec3::X), high(-DVec3::Y), high(-DVec3::Z));
+        let off = (found.max - max).abs().max((found.min - min).abs()).max_element();
+        assert!(off <= 4e-6, "{k}: {off}");
+    }
 }
 
 /// Facts found in the tests of the library verb; `data/peer-facts/README.md` tells more.

@@ -16,7 +16,13 @@ const MOST: usize = 20_000;
 /// Turning points between samples are found by bisection of the slope; bounds of the derivatives over ever shorter
 /// stretches then show that nothing lies further out, or find what does.
 pub fn curve_bbox(chain: &Chain) -> Box3 {
-    let stops = stations(&chain_breaks(chain));
+    curve_bbox_between(chain, 0.0, 1.0)
+}
+
+/// The same of what of a curve lies between two fractions of it.
+pub(super) fn curve_bbox_between(chain: &Chain, from: f64, to: f64) -> Box3 {
+    let inner = stations(&chain_breaks(chain)).into_iter().filter(|f| *f > from && *f < to);
+    let stops: Vec<f64> = [from].into_iter().chain(inner).chain([to]).collect();
     let mut bounds = Box3::of(stops.iter().map(|&f| chain.point(f)));
     for w in stops.windows(2) {
         for axis in 0..3 {

@@ -6,6 +6,7 @@ use super::core::{Domain, Side, Surface};
 use super::curve_extent::curve_bbox;
 use super::descent::{Local, descend};
 use super::samples::stations;
+use super::trimmed_extent::trimmed_bbox;
 use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::{BOX, EPSILON};
@@ -13,8 +14,7 @@ use crate::base::tolerance::{BOX, EPSILON};
 /// The smallest box along the axes that holds the surface: no point of it stands out by more than [`BOX`] of the diagonal.
 ///
 /// A descent from the extreme samples finds extreme points; bounds of the surface over ever smaller rectangles then show
-/// that nothing lies further out, or find what does. Faces without a map and trimmed
-/// ones take the boxes of their sides and, where they bend, the extreme points inside, which rest on samples.
+/// that nothing lies further out, or find what does. What a trimmed one has inside its borders is found the same way (`trimmed_extent.rs`).
 pub fn bbox(surface: &Surface) -> Box3 {
     if surface.domain() == Domain::Unbounded {
         return Box3 { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
@@ -32,73 +32,37 @@ pub fn bbox(surface: &Surface) -> Box3 {
     let (us, vs) = surface.cells();
     let (xs, ys) = (stations(&us), stations(&vs));
     let jets = surface.square_jets(&xs, &ys);
-    let mut bounds = Box3::of(jets.iter().map(|jet| jet.p));
+    let bounds = Box3::of(jets.iter().map(|jet| jet.p));
+    let samples: Vec<Sample> = (0..jets.len()).map(|k| ((xs[k % xs.len()], ys[k / xs.len()]), jets[k].p)).collect();
+    proved(surface, extremes(surface, &samples).into_iter().fold(bounds, |bounds, (_, p)| bounds.with(p)))
+}
+
+/// A place of the square with its point.
+pub(super) type Sample = ((f64, f64), DVec3);
+
+/// Where descents from the lowest and highest samples of each coordinate end.
+pub(super) fn extremes(surface: &Surface, samples: &[Sample]) -> Vec<Sample> {
+    let mut ends = Vec::new();
     for direction in 0..6 {
         let (axis, sign) = (direction / 2, if direction % 2 == 0 { 1.0 } else { -1.0 });
-        let height = |k: usize| sign * jets[k].p[axis];
+        let height = |k: usize| sign * samples[k].1[axis];
         // The lowest few samples: neighbouring ones fall to the same minimum.
-        let mut order: Vec<usize> = (0..jets.len()).collect();
+        let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by(|&a, &b| height(a).total_cmp(&height(b)).then(a.cmp(&b)));
         for &k in order.iter().take(4) {
-            let start = (xs[k % xs.len()], ys[k / xs.len()]);
-            let end = descend(&|x, y| surface.square_jet(x, y), start, |jet| Local {
+            let end = descend(&|x, y| surface.square_jet(x, y), samples[k].0, |jet| Local {
                 value: sign * jet.p[axis],
                 gradient: [sign * jet.du[axis], sign * jet.dv[axis]],
                 hessian: [sign * jet.duu[axis], sign * jet.duv[axis], sign * jet.dvv[axis]],
             });
-            bounds = bounds.with(surface.square_jet(end.place.0, end.place.1).p);
+            ends.push((end.place, surface.square_jet(end.place.0, end.place.1).p));
         }
     }
-    proved(surface, bounds)
+    ends
 }
 
-/// The box of a trimmed surface: of its borders, and of the extreme points of what is inside, found from samples.
-fn trimmed_bbox(surface: &Surface) -> Box3 {
-    let mut bounds = (0..surface.n_sides()).fold(Box3::EMPTY, |bounds, k| match (surface.side(k), surface.border_line(k)) {
-        (Side::Chain { chain, .. }, _) => bounds.union(curve_bbox(&chain)),
-        (_, Some((a, b))) => {
-            let at = |t: f64| surface.point(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
-            bounds.union(Box3::of((0..=BORDER).map(|k| at(k as f64 / BORDER as f64))))
-        }
-        _ => bounds,
-    });
-    if surface.is_flat() {
-        return bounds;
-    }
-    let base = surface.untrimmed();
-    let (us, vs) = base.cells();
-    let (xs, ys) = (stations(&us), stations(&vs));
-    let jets = base.square_jets(&xs, &ys);
-    let kept: Vec<usize> = (0..jets.len())
-        .filter(|k| {
-            let (u, v) = base.from_square(xs[k % xs.len()], ys[k / xs.len()]);
-            surface.keeps(u, v)
-        })
-        .collect();
-    bounds = bounds.union(Box3::of(kept.iter().map(|k| jets[*k].p)));
-    for direction in 0..6 {
-        let (axis, sign) = (direction / 2, if direction % 2 == 0 { 1.0 } else { -1.0 });
-        let mut order = kept.clone();
-        order.sort_by(|&a, &b| (sign * jets[a].p[axis]).total_cmp(&(sign * jets[b].p[axis])).then(a.cmp(&b)));
-        for &k in order.iter().take(4) {
-            let end = descend(&|x, y| base.square_jet(x, y), (xs[k % xs.len()], ys[k / xs.len()]), |jet| Local {
-                value: sign * jet.p[axis],
-                gradient: [sign * jet.du[axis], sign * jet.dv[axis]],
-                hessian: [sign * jet.duu[axis], sign * jet.duv[axis], sign * jet.dvv[axis]],
-            });
-            let (u, v) = base.from_square(end.place.0, end.place.1);
-            if surface.keeps(u, v) {
-                bounds = bounds.with(base.point(u, v));
-            }
-        }
-    }
-    bounds
-}
-
-/// Samples of a border that no curve carries.
-const BORDER: usize = 64;
 /// Rectangles looked at before what is left is taken by its bound.
-const MOST: usize = 20_000;
+pub(super) const MOST: usize = 20_000;
 
 /// The side of a triangle along which u + v = 1.
 const SLANT: usize = 1;
@@ -156,14 +120,18 @@ fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
             bounds = bounds.union(hull);
             continue;
         }
-        let (mu, mv) = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
-        // Halved in the direction in which the coordinate that stands out most runs most.
+        // In the direction in which the coordinate that stands out most runs most.
         let k = (0..3).max_by(|x, y| over[*x].total_cmp(&over[*y])).unwrap_or(0);
-        if spread.du.coordinate(k).reach() * a >= spread.dv.coordinate(k).reach() * b {
-            open.extend([((u.0, mu), v), ((mu, u.1), v)]);
-        } else {
-            open.extend([(u, (v.0, mv)), (u, (mv, v.1))]);
-        }
+        open.extend(halves((u, v), spread.du.coordinate(k).reach() * a >= spread.dv.coordinate(k).reach() * b));
     }
     bounds
+}
+
+/// A rectangle of (u, v): its ends in u and in v.
+pub(super) type Cell = ((f64, f64), (f64, f64));
+
+/// Both halves of a rectangle, along u or along v.
+pub(super) fn halves((u, v): Cell, along_u: bool) -> [Cell; 2] {
+    let (mu, mv) = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
+    if along_u { [((u.0, mu), v), ((mu, u.1), v)] } else { [(u, (v.0, mv)), (u, (mv, v.1))] }
 }

@@ -64,6 +64,7 @@ pub mod sweeps;
 mod trilateral;
 mod trilateral_spread;
 mod trim;
+mod trimmed_extent;
 mod turned;
 pub mod walls;
 mod weights;
