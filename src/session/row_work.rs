@@ -4,6 +4,7 @@ use crate::base::fault::{Fault, ValueFault};
 use crate::base::limits::{REPORT_WORK, WORK_OF_A_SURFACE};
 use crate::base::origin::Origin;
 use crate::base::work::{self, Budget, Exceeded};
+use crate::surface::Surface;
 
 /// What the rows of a report may still take, in evaluations of curves and surfaces.
 #[derive(Debug)]
@@ -19,9 +20,13 @@ impl RowWork {
         Self { left: REPORT_WORK, exceeded: None }
     }
 
-    /// Adds what some surfaces are worth.
-    pub fn allow_surfaces(&mut self, count: usize) {
-        self.left = self.left.saturating_add(WORK_OF_A_SURFACE.saturating_mul(count as u64));
+    /// Adds what some surfaces are worth: one of which a point is made of many curves as many times as there are curves.
+    pub fn allow_surfaces<'a>(&mut self, surfaces: impl Iterator<Item = &'a Surface>) {
+        let worth = |surface: &Surface| {
+            let (across, along) = surface.curves_of_a_point();
+            WORK_OF_A_SURFACE * across.max(along).max(1) as u64
+        };
+        self.left = surfaces.map(worth).fold(self.left, u64::saturating_add);
     }
 
     /// A part of a row, measured within what is left, `None` where that is too much; `what` is the part with its name, as in "the
@@ -50,7 +55,7 @@ mod tests {
     #[test]
     fn rows_share_one_budget_and_the_first_that_goes_over_it_is_told() {
         let mut rows = RowWork::new();
-        rows.allow_surfaces(1);
+        rows.left += WORK_OF_A_SURFACE;
         let mut part = |units: u64| rows.part(Origin::NONE, || "the area of `roof`".to_owned(), || work::spend(units));
         assert_eq!([part(REPORT_WORK), part(WORK_OF_A_SURFACE), part(1), part(0)], [Some(()), Some(()), None, None]);
         let told = rows.exceeded.unwrap();

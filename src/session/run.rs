@@ -286,7 +286,7 @@ impl<'r> Run<'r> {
         self.report.curves = collect::curves(parts, network);
         self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
         let (rows, light, stages) = (&mut self.rows, self.light, self.stages);
-        rows.allow_surfaces(model.surfaces.len());
+        rows.allow_surfaces(model.surfaces.iter().map(|named| &named.surface));
         let mut area = |named: &Named| {
             let what = || format!("the area of `{}`", named.name);
             if light { None } else { rows.part(named.surface.origin(), what, || stages.area(&named.surface)) }
@@ -325,7 +325,7 @@ impl<'r> Run<'r> {
         let shells = self.cx.shells(ModuleId::MAIN);
         for shell in self.take(shells).unwrap_or_default() {
             let (cx, full, mut said) = (&mut self.cx, self.task.full, Vec::new());
-            self.rows.allow_surfaces(shell.value.surfaces.len());
+            self.rows.allow_surfaces(shell.value.surfaces.iter());
             let what = || format!("what the shell `{}` measures", shell.value.name);
             let row = self.rows.part(shell.value.origin, what, || collect::shell(cx, &shell.value, (tolerance, full), &mut said));
             if let Some(row) = row.and_then(|row| self.take(row)) {
