@@ -15,6 +15,7 @@ use super::samples::stations;
 use super::spread::Spread;
 use crate::base::bbox::Box3;
 use crate::base::job;
+use crate::base::range::Ranges;
 use crate::base::tolerance::{BOX, EPSILON, SLIVER};
 use crate::network::Chain;
 
@@ -139,11 +140,12 @@ impl Search<'_> {
         let thin = |lines: &[f64]| -> Vec<(f64, f64)> { lines.iter().map(|x| ((x - SLIVER).max(0.0), (x + SLIVER).min(1.0))).collect() };
         let all = |us: Vec<(f64, f64)>, vs: Vec<(f64, f64)>| vs.into_iter().flat_map(move |v| us.clone().into_iter().map(move |u| (u, v)));
         let (us, vs) = (cells(us), cells(vs));
-        let mut open: VecDeque<Cell> =
-            all(us.clone(), vs.clone()).chain(all(thin(&across_u), vs)).chain(all(us, thin(&across_v))).collect();
+        let cells = all(us.clone(), vs.clone()).chain(all(thin(&across_u), vs)).chain(all(us, thin(&across_v)));
+        // Each with whether no border is known to run over it.
+        let mut open: VecDeque<(Cell, bool)> = cells.map(|cell| (cell, false)).collect();
         let triangle = self.base.domain() == Domain::Triangle;
         let (room, gap, mut seen) = (BOX * bounds.diagonal(), self.surface.gap(), 0);
-        while let Some((u, v)) = open.pop_front() {
+        while let Some(((u, v), clear)) = open.pop_front() {
             job::look();
             if triangle && u.0 + v.0 >= 1.0 {
                 continue;
@@ -161,9 +163,10 @@ impl Search<'_> {
                 continue;
             }
             let mid = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
-            let held = self.surface.holds(mid.0, mid.1);
+            let held = clear || self.surface.holds(mid.0, mid.1);
+            let clear = clear || self.is_clear((u, v), &spread, gap);
             // What of so small a rectangle lies inside is as near to a border.
-            if !held && (hull.diagonal() <= room || self.is_clear((u, v), &spread, gap)) {
+            if !held && (clear || hull.diagonal() <= room) {
                 continue;
             }
             if held {
@@ -178,8 +181,11 @@ impl Search<'_> {
                 bounds = bounds.union(hull);
                 continue;
             }
-            // The longer way: what is to be seen is whether a border runs over it.
-            open.extend(halves((u, v), spread.du.reach() * (u.1 - u.0) >= spread.dv.reach() * (v.1 - v.0)));
+            // Inside, where the coordinate that stands out most runs most; else the longer way, to see whether a border runs over it.
+            let k = (0..3).max_by(|x, y| over[*x].total_cmp(&over[*y])).unwrap_or(0);
+            let reach = |d: &Ranges| if clear { d.coordinate(k).reach() } else { d.reach() };
+            let along_u = reach(&spread.du) * (u.1 - u.0) >= reach(&spread.dv) * (v.1 - v.0);
+            open.extend(halves((u, v), along_u).map(|half| (half, clear)));
         }
         bounds
     }
