@@ -50,6 +50,11 @@ pub fn area(surface: &Surface) -> f64 {
     over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
 }
 
+/// Areas of surfaces, each as [`area`] has it.
+pub fn areas(surfaces: &[Surface]) -> Vec<f64> {
+    par::map(surfaces.len(), |k| area(&surfaces[k]))
+}
+
 /// Area of one surface as [`area`] has it, and the estimate of its error, both square model units.
 pub fn area_within(surface: &Surface) -> (f64, f64) {
     let (area, error) = over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]);

@@ -371,6 +371,8 @@ builtins! {
         let whole = if loops { crate::surface::trim(&s, &outer, &holes, s.origin(), &tolerance)? } else { s.clone() };
         let cutters = crate::lang::meetings::cutters(cx, &whole, by)?;
         let surface = crate::surface::divide(&whole, &cutters, keep.0, cx.origin(), &tolerance)?;
+        let parts = crate::surface::split(&whole, &cutters, cx.origin(), &tolerance)?;
+        measure::adds_up(&whole, &cutters, &measure::areas(&parts), &tolerance)?;
         finished(cx, surface.cut_from(&[s]), &[])
     };
 
