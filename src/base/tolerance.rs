@@ -62,6 +62,10 @@ pub const POLE_REACH: f64 = 1e-6;
 pub const POLE_STEP: f64 = 1e-3;
 /// |U_u × U_v| below this share of the largest |U_u|·|U_v| is singular.
 pub const SINGULAR: f64 = 1e-9;
+/// Jump of a first derivative of a net, as a share of it, up to which it is rounding of the control points in a file.
+pub const SAME_SLOPE: f64 = 1e-10;
+/// How far before a knot, in the parameter, the span that ends there is evaluated.
+pub const BEFORE_KNOT: f64 = 1e-13;
 /// Places on a surface nearer than so many tolerances are taken as one where curves divide it: two curves that meet there are each
 /// within the tolerance of the place, and of the surface.
 pub const TOLD_APART: f64 = 4.0;

@@ -563,6 +563,18 @@ impl Surface {
         self.remade(Parts { borders, kinks, trim, flipped: !parts.flipped, ..parts.clone() })
     }
 
+    /// The same points without curves that others may share: sides are free, seams or poles, as those of a net.
+    pub fn without_curves(&self) -> Self {
+        let parts = self.0.parts.clone();
+        let side = |(k, border): (usize, &Border)| match border.side {
+            Side::Chain { .. } if [parts.closed.1, parts.closed.0][k % 2] => Border::straight(Side::Seam),
+            Side::Chain { .. } => Border::straight(Side::Free),
+            _ => border.clone(),
+        };
+        let borders = parts.borders.iter().enumerate().map(side).collect();
+        self.remade(Parts { borders, chains: Vec::new(), generated: Vec::new(), ..parts })
+    }
+
     /// Carried by a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
         let parts = &self.0.parts;

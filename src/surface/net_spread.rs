@@ -7,7 +7,7 @@ use super::nurbs::NurbsSurface;
 use super::rail::Lean;
 use super::spread::Spread;
 use crate::base::range::{Range, Ranges};
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{EPSILON, SAME_SLOPE};
 use crate::geometry::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected};
 
 /// The Bézier points over an interval inside one span, as sums of the active poles.
@@ -60,9 +60,6 @@ fn shares_by_levels(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> 
     }
     out
 }
-
-/// Jump of a first derivative, as a share of it, up to which it is rounding of the poles in a file.
-const SAME_SLOPE: f64 = 1e-10;
 
 type Net = Vec<Vec<DVec4>>;
 

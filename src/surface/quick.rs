@@ -14,13 +14,11 @@ use super::net_spread::{NetStrip, POINTS};
 use super::nurbs::{NurbsSurface, quotient};
 use super::rail::Lean;
 use super::shape::Shape;
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
 use crate::base::work;
 use crate::geometry::bounds::binomial;
 use crate::geometry::nurbs::{COMMON_DEGREE, projected};
 
-/// How far beside a knot the span before it is looked at.
-const BESIDE: f64 = 1e-13;
 /// Boxes along each side of a span for which third derivatives are bounded apart.
 const BOXES: usize = 3;
 
@@ -328,8 +326,8 @@ impl Quick {
                 let (u, v) = place(x, middle);
                 slopes(&self.surface.outer(self.own_jet(u, v)))
             };
-            let (before, after) = (beside(c - BESIDE), beside(c));
-            let ends = [place(c - BESIDE, from), place(c + BESIDE, to)].map(|(u, v)| DVec2::new(u, v));
+            let (before, after) = (beside(c - BEFORE_KNOT), beside(c));
+            let ends = [place(c - BEFORE_KNOT, from), place(c + BEFORE_KNOT, to)].map(|(u, v)| DVec2::new(u, v));
             let third = self.most_thirds((ends[0], ends[1]), along)[if in_u { 2 } else { 1 }];
             let jump = (after.0 - before.0).dot(along).abs() + half * (after.1 - before.1).dot(along).abs() + half * half * third;
             most = most.max(jump);

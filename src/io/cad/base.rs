@@ -32,6 +32,13 @@ pub enum Base {
         /// The file's parameter where the profile is an arc and begins: its angle there.
         first: Option<f64>,
     },
+    /// A sphere or torus: a whole turn of an arc, with the side that the file gives it.
+    Round {
+        /// Axis of the turn.
+        axis: Axis,
+        /// The arc that is turned.
+        profile: Curve,
+    },
     /// u is the profile's parameter from 0 to 1, v runs along `by`.
     Swept {
         /// The curve that is carried.
@@ -71,17 +78,17 @@ fn even(curve: &Curve) -> bool {
 
 impl Base {
     /// A sphere about a point of an axis; u is the angle from `reference`, v the latitude.
-    pub fn sphere(axis: &Axis, radius: f64, reference: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Self, Damage> {
+    pub fn sphere(axis: &Axis, radius: f64, reference: DVec3, origin: Origin) -> Result<Self, Damage> {
         let across = axis.direction.cross(reference);
         let start = axis.about - axis.direction * radius;
-        turned(&build::arc_center(axis.about, start, std::f64::consts::PI, -across, origin)?, axis, tolerance)
+        Ok(Self::Round { axis: *axis, profile: build::arc_center(axis.about, start, std::f64::consts::PI, -across, origin)? })
     }
 
     /// A torus about an axis; u is the angle from `reference`, v that of the tube from its outermost circle upwards.
-    pub fn torus(axis: &Axis, radii: [f64; 2], reference: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Self, Damage> {
+    pub fn torus(axis: &Axis, radii: [f64; 2], reference: DVec3, origin: Origin) -> Result<Self, Damage> {
         let center = axis.about + reference * radii[0];
         let start = center + reference * radii[1];
-        turned(&build::circle_start(center, start, -axis.direction.cross(reference), origin)?, axis, tolerance)
+        Ok(Self::Round { axis: *axis, profile: build::circle_start(center, start, -axis.direction.cross(reference), origin)? })
     }
 
     /// The surface value; one without ends reaches a little beyond the box.
@@ -97,6 +104,9 @@ impl Base {
         {
             let chains = [Chain::of_curve(a), Chain::of_curve(b)];
             return Ok(ruled(&chains[0], &chains[1], origin, tolerance)?.0);
+        }
+        if let Some(surface) = self.moved_curve(reach, origin, tolerance)? {
+            return Ok(surface);
         }
         let net = self.net(reach, tolerance)?;
         check_reach(net.poles.iter().map(|q| projected(*q)))?;
@@ -130,6 +140,8 @@ impl Base {
                 let net = self.net(&Box3::EMPTY, tolerance)?;
                 Self::Net(carried_net(net, m), [f64::NAN; 4])
             }
+            Self::Round { axis, profile } if is_rigid(m) => Self::Round { axis: moved(&axis), profile: carried(&profile, m, tolerance)? },
+            Self::Round { .. } => Self::Net(carried_net(self.net(&Box3::EMPTY, tolerance)?, m), [f64::NAN; 4]),
             Self::Swept { profile, by } => Self::Swept { profile: carried(&profile, m, tolerance)?, by: m.transform_vector3(by) },
             Self::Ruled { rails: [a, b], by_length } => {
                 Self::Ruled { rails: [carried(&a, m, tolerance)?, carried(&b, m, tolerance)?], by_length }
@@ -167,18 +179,46 @@ impl Base {
                 let profile = profile.moved(&turn).to_nurbs(tolerance)?;
                 Ok(revolve::net(&profile, axis, angles.1 - angles.0))
             }
+            Self::Round { axis, profile } => Ok(revolve::net(&profile.to_nurbs(tolerance)?, axis, std::f64::consts::TAU)),
             Self::Swept { profile, by } => Ok(extrude::net(&profile.to_nurbs(tolerance)?, *by)),
             Self::Ruled { rails: [a, b], .. } => Ok(ruled_net(&a.to_nurbs(tolerance)?, &b.to_nurbs(tolerance)?)),
-            Self::Unbounded { axis, radius, slope, reference } => {
-                let (low, high) = along(axis, reach)?;
-                // A cone ends at its apex.
-                let apex = -radius / slope;
-                let (low, high) = (if *slope > 0.0 { low.max(apex) } else { low }, if *slope < 0.0 { high.min(apex) } else { high });
-                let at = |h: f64| axis.about + axis.direction * h + *reference * (radius + slope * h).max(0.0);
-                let profile = build::line(at(low), at(high), crate::base::origin::Origin::NONE)?.to_nurbs(tolerance)?;
-                Ok(revolve::net(&profile, axis, std::f64::consts::TAU))
-            }
+            Self::Unbounded { axis, .. } => match self.whole_turn(reach, Origin::NONE)? {
+                Some((profile, _)) => Ok(revolve::net(&profile.to_nurbs(tolerance)?, axis, std::f64::consts::TAU)),
+                None => Err(damage("it has no end")),
+            },
         }
+    }
+
+    /// A curve that is turned or carried along, where that makes a surface: its bounds and its parameters are better than those of a net.
+    fn moved_curve(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>, Damage> {
+        let whole = self.whole_turn(reach, origin)?;
+        let (profile, axis, (from, to)) = match (self, &whole) {
+            (_, Some((profile, axis))) => (profile, axis, (0.0, std::f64::consts::TAU)),
+            (Self::Round { profile, axis }, _) => (profile, axis, (0.0, std::f64::consts::TAU)),
+            (Self::Turned { profile, axis, angles, .. }, _) => (profile, axis, *angles),
+            (Self::Swept { profile, by }, _) => {
+                let poles = profile.to_nurbs(tolerance)?.poles;
+                check_reach(poles.iter().map(|q| projected(*q)).flat_map(|p| [p, p + *by]))?;
+                let swept = extrude::extrude(&Chain::of_curve(profile), *by, origin, tolerance);
+                return Ok(swept.ok().map(|surface| surface.without_curves()));
+            }
+            _ => return Ok(None),
+        };
+        check_reach(profile.to_nurbs(tolerance)?.poles.iter().map(|q| projected(*q)))?;
+        let profile = profile.moved(&Motion::rotation(axis.about, axis.direction, from));
+        let turned = revolve::revolve(&Chain::of_curve(&profile), axis, to - from, origin, tolerance);
+        Ok(turned.ok().map(|surface| surface.without_curves()))
+    }
+
+    /// A cylinder or cone as a whole turn of a line that reaches a little beyond the box.
+    fn whole_turn(&self, reach: &Box3, origin: Origin) -> Result<Option<(Curve, Axis)>, Damage> {
+        let Self::Unbounded { axis, radius, slope, reference } = self else { return Ok(None) };
+        let (low, high) = along(axis, reach)?;
+        // A cone ends at its apex.
+        let apex = -radius / slope;
+        let (low, high) = (if *slope > 0.0 { low.max(apex) } else { low }, if *slope < 0.0 { high.min(apex) } else { high });
+        let at = |h: f64| axis.about + axis.direction * h + *reference * (radius + slope * h).max(0.0);
+        Ok(Some((build::line(at(low), at(high), origin)?, *axis)))
     }
 
     /// The point at the file's (u, v).
@@ -189,7 +229,7 @@ impl Base {
             Self::Net(net, [u0, u1, v0, v1]) if u0.is_finite() => {
                 Some(net.jet(share(u, *u0, *u1), share(v, *v0, *v1), (Lean::After, Lean::After)).p)
             }
-            Self::Net(..) | Self::Unbounded { .. } => None,
+            Self::Net(..) | Self::Unbounded { .. } | Self::Round { .. } => None,
             Self::Plane(at, a, b) => Some(*at + *a * u + *b * v),
             Self::Turned { axis, profile, first, .. } => {
                 Some(Motion::rotation(axis.about, axis.direction, v).point(along_file(profile, *first, u)?))
@@ -216,12 +256,6 @@ impl Base {
         let m = DAffine3::from_scale(scale) * DAffine3::from_translation(DVec3::new(-u0, -v0, 0.0));
         m.is_finite().then_some(m)
     }
-}
-
-/// A whole turn of a curve as a net.
-pub fn turned(profile: &Curve, axis: &Axis, tolerance: &Tolerance) -> Result<Base, Damage> {
-    let net = revolve::net(&profile.to_nurbs(tolerance)?, axis, std::f64::consts::TAU);
-    Ok(Base::Net(net, [f64::NAN; 4]))
 }
 
 /// The point of a profile at the parameter of the file, where the curve still has that one or is an arc whose first one is known.

@@ -5,9 +5,7 @@ use super::damage::{Damage, damage};
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::Motion;
-use crate::network::Chain;
-use crate::surface::{Surface, extrude, offset, revolve};
+use crate::surface::{Surface, offset};
 
 /// Share of the tolerance that an offset may be off: its areas are to be found again.
 const FINE: f64 = 0.1;
@@ -33,17 +31,7 @@ impl Base {
                 return Ok((Self::Unbounded { axis: *axis, radius, slope: *slope, reference: *reference }, false));
             }
             Self::Net(_, range) => (*range, self.surface(reach, origin, tolerance)?),
-            // A sweep of the model has a sweep as its offset; one that the model has no place for goes as a net.
-            Self::Turned { axis, profile, angles, .. } => {
-                let start = profile.moved(&Motion::rotation(axis.about, axis.direction, angles.0));
-                let turned = revolve::revolve(&Chain::of_curve(&start), axis, angles.1 - angles.0, origin, &fine);
-                (NO_RANGE, turned.or_else(|_| self.surface(reach, origin, tolerance))?)
-            }
-            Self::Swept { profile, by } => {
-                let swept = extrude(&Chain::of_curve(profile), *by, origin, &fine);
-                (NO_RANGE, swept.or_else(|_| self.surface(reach, origin, tolerance))?)
-            }
-            Self::Ruled { .. } => (NO_RANGE, self.surface(reach, origin, tolerance)?),
+            _ => (NO_RANGE, self.surface(reach, origin, &fine)?),
         };
         let (made, folds) = offset(&surface, distance, origin, &fine)?;
         let net = match made.swept_net((0.0, 1.0), &fine) {

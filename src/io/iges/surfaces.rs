@@ -220,8 +220,8 @@ impl Book {
         match kind {
             192 => Ok(Base::Unbounded { axis, radius, slope: 0.0, reference }),
             194 => Ok(Base::Unbounded { axis, radius, slope: math::tan(b.to_radians()), reference }),
-            196 => Base::sphere(&axis, radius, reference, self.origin, &self.tolerance),
-            _ => Base::torus(&axis, [radius, b * self.scale], reference, self.origin, &self.tolerance),
+            196 => Base::sphere(&axis, radius, reference, self.origin),
+            _ => Base::torus(&axis, [radius, b * self.scale], reference, self.origin),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::base::math;
 use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::nurbs::weighted;
 use crate::geometry::{Curve, build};
-use crate::io::cad::base::{Base, turned};
+use crate::io::cad::base::Base;
 use crate::io::cad::carry::check_weights;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::nets::trimmed_net;
@@ -54,7 +54,7 @@ impl Step<'_> {
                 if radius <= 0.0 {
                     return Err(damage("its radius must be above 0"));
                 }
-                Base::sphere(&axis(&frame), radius, frame.x, self.origin, &self.tolerance)
+                Base::sphere(&axis(&frame), radius, frame.x, self.origin)
             }
             b"TOROIDAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE" => {
                 let frame = self.frame(row.entity(1)?)?;
@@ -88,7 +88,7 @@ impl Step<'_> {
             b"SPHERICAL_SURFACE" => {
                 let frame = self.frame(inner.entity(1)?)?;
                 let radius = grown(inner.number(2)? * self.scale + distance)?;
-                return Base::sphere(&axis(&frame), radius, frame.x, self.origin, &self.tolerance);
+                return Base::sphere(&axis(&frame), radius, frame.x, self.origin);
             }
             b"TOROIDAL_SURFACE" => {
                 let frame = self.frame(inner.entity(1)?)?;
@@ -137,7 +137,7 @@ impl Step<'_> {
         }
         let axis = axis(frame);
         if major > minor * (1.0 + EPSILON) {
-            return Base::torus(&axis, [major, minor], frame.x, self.origin, &self.tolerance);
+            return Base::torus(&axis, [major, minor], frame.x, self.origin);
         }
         // The tube meets the axis where its angle is this one, either way.
         let meets = math::acos((-major / minor).clamp(-1.0, 1.0));
@@ -146,7 +146,7 @@ impl Step<'_> {
         if b - a <= PARALLEL {
             return Err(damage("nothing of it lies inside"));
         }
-        turned(&circle.part(a, b, self.origin)?, &axis, &self.tolerance)
+        Ok(Base::Round { axis, profile: circle.part(a, b, self.origin)? })
     }
 
     fn extruded(&mut self, of: &Course, along: DVec3, reach: &Box3) -> Result<Base, Damage> {

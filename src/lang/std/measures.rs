@@ -88,13 +88,13 @@ fields! {
         Err(Stop::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
         Err(other) => Err(other),
     };
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, curve_bbox(&of)));
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Surface) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&[of])));
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&of.surfaces)));
-    /// The smallest box along the axes that holds all nodes: `{min, max, size, diagonal}`.
+    /// The smallest box along the axes that holds all nodes. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Arc<MeshValue>) -> Value = |cx, of| {
         let mesh = cx.mesh(&of)?;
         Ok(record_of(cx, Box3::of(mesh.nodes.iter().copied())))

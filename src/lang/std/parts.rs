@@ -123,8 +123,9 @@ builtins! {
         of_form(cx, faces, |form| matches!(form, Some(Looks::Sphere { radius, .. }) if fits(radius)))
     };
 
-    /// Those faces that are of ring tori, all or those whose tube has one radius, as fillets of round edges do.
+    /// Those faces that are of ring tori, all or those of one tube radius.
     ///
+    /// Fillets of round edges are such.
     /// ```loft
     /// let axis = line((0, 0, 0), (0, 0, 1m))
     /// surface ring = revolve(circle(center: (3m, 0, 0), radius: 1m, normal: (0, 1, 0)), axis: axis)
@@ -152,10 +153,13 @@ builtins! {
         faces: Vec<Surface>,
     ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| form.is_none());
 
-    /// Those faces that have this name in their file: its name itself, or one that differs by the number that was put behind it.
+    /// Those faces that have this name in their file.
     ///
-    /// ```text
-    /// let rims = part.faces.named("rim")
+    /// A number that the import put behind a name does not count: `named("rim")` finds `rim` and `rim_2`.
+    /// ```loft
+    /// curve base = circle(center: (0, 0, 0), radius: 5mm)
+    /// surface lid = plane(base)
+    /// let rims = len([lid].named("rim")) // => 0
     /// ```
     fn named(
         /// Faces of a part, or the part.
@@ -170,11 +174,13 @@ builtins! {
         Ok(faces.into_iter().filter(|face| cx.said_of(face).is_some_and(|said| fits(&said.name))).collect())
     };
 
-    /// Those faces that have this colour in their file, by the file's name of it or as `"#ff8000"`.
+    /// Those faces that have this colour in their file.
     ///
-    /// ```text
-    /// let wetted = part.faces.colored("blue")
-    /// let painted = part.faces.colored("#ff8000")
+    /// The colour is the file's name of it, or red, green and blue as `"#ff8000"`.
+    /// ```loft
+    /// curve base = circle(center: (0, 0, 0), radius: 5mm)
+    /// surface lid = plane(base)
+    /// let painted = len([lid].colored("#ff8000")) // => 0
     /// ```
     fn colored(
         /// Faces of a part, or the part.
@@ -200,17 +206,17 @@ fields! {
     fn faces(of: Arc<PartValue>) -> Vec<Surface> = |_, of| Ok(of.faces.clone());
     /// Area of all faces of a part.
     fn area(of: Arc<PartValue>) -> Area = |_, of| Ok(Area(measure::sheet(&of.faces).area));
-    /// Volume of all solids of a part; where the file has none, of the skins that its faces make.
+    /// Volume of all solids of a part. Where the file has none it is that of the skins that its faces make.
     fn volume(of: Arc<PartValue>) -> Volume = |cx, of| Ok(Volume(volumes(cx, &of)?.0));
-    /// Centre of the volume of the solids of a part; of the area of its faces where they enclose none.
+    /// Centre of the volume of the solids of a part. Where they enclose none it is that of the area of its faces.
     fn centroid(of: Arc<PartValue>) -> Point = |cx, of| match volumes(cx, &of) {
         Ok((_, centroid)) => Ok(Point(centroid)),
         Err(Stop::Fault(_)) if !of.faces.is_empty() => Ok(Point(measure::sheet(&of.faces).centroid)),
         Err(other) => Err(other),
     };
-    /// The smallest box along the axes, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
+    /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Arc<PartValue>) -> Value = |cx, of| boxed(cx, &of.faces);
-    /// The smallest box along the axes around surfaces, to 1e-6 of its diagonal: `{min, max, size, diagonal}`.
+    /// The smallest box along the axes around surfaces, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Vec<Surface>) -> Value = |cx, of| boxed(cx, &of);
     /// Area of surfaces together.
     fn area(of: Vec<Surface>) -> Area = |_, of| Ok(Area(measure::sheet(&of).area));
