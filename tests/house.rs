@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Floors from the ground up; those in one row do not know each other.
 const FLOORS: &[(&str, u8)] = &[
-    ("base", 8_530),
+    ("base", 0),
     ("geometry", 1),
     ("network", 2),
     ("surface", 3),
