@@ -62,14 +62,17 @@ pub fn area_within(surface: &Surface) -> (f64, f64) {
 }
 
 /// Fails with E721 where the areas of the parts into which curves divide a surface do not add up to its own, within its accuracy and
-/// what vertices that are one within tolerances may take from each part.
+/// what vertices that are one within tolerances may take from each part, and a strip as wide as the tolerance along each cut, which is
+/// within that of the surface.
 pub fn adds_up(whole: &Surface, cuts: &[Chain], parts: &[f64], tolerance: &Tolerance) -> Result<()> {
     /// Area about a vertex, in squares of the distance within which ends are one vertex, and share of the whole.
     const ROOM: (f64, f64) = (4.0, 1e3 * MEASURE_ACCURACY);
     let ((own, error), sum) = (area_within(whole), parts.iter().sum::<f64>());
     let vertex = TOLD_APART * tolerance.point;
     let vertices = (whole.n_sides() + 2 * (cuts.len() + parts.len())) as f64;
-    if whole.domain() == Domain::Unbounded || (sum - own).abs() <= ROOM.0 * vertices * vertex * vertex + ROOM.1 * own + error {
+    let strips = tolerance.point * cuts.iter().map(Chain::length).sum::<f64>();
+    let room = ROOM.0 * vertices * vertex * vertex + strips + ROOM.1 * own + error;
+    if whole.domain() == Domain::Unbounded || (sum - own).abs() <= room {
         return Ok(());
     }
     let cuts = cuts.iter().map(Chain::origin).collect();

@@ -65,6 +65,33 @@ struct Rim {
     length: f64,
 }
 
+impl Rim {
+    /// How far along it a place in model units is nearest.
+    fn foot(&self, at: DVec2) -> f64 {
+        (at - self.ends[0]).dot(self.along).clamp(0.0, self.length)
+    }
+
+    fn distance(&self, at: DVec2) -> f64 {
+        at.distance(self.ends[0] + self.along * self.foot(at))
+    }
+}
+
+/// Bézier ordinates of a part of a curve, by the blossom [Ramshaw 1989].
+fn stretch<const N: usize>(ordinates: [f64; N], from: f64, to: f64) -> [f64; N] {
+    std::array::from_fn(|k| {
+        let mut row = ordinates;
+        for (step, left) in (1..N).rev().enumerate() {
+            let x = if step < k { to } else { from };
+            (0..left).for_each(|i| row[i] += (row[i + 1] - row[i]) * x);
+        }
+        row[0]
+    })
+}
+
+fn hull<const N: usize>(values: [f64; N]) -> Range {
+    values.into_iter().map(Range::at).fold(Range::at(values[0]), Range::union)
+}
+
 /// The surface: a frame and a height along a vector.
 #[derive(Clone, Debug)]
 pub struct Field {
@@ -192,7 +219,7 @@ impl Field {
     fn beyond(&self, p: DVec2) -> Height {
         let at = p * self.size;
         let near = |rim: &Rim| {
-            let s = (at - rim.ends[0]).dot(rim.along).clamp(0.0, rim.length);
+            let s = rim.foot(at);
             (at.distance_squared(rim.ends[0] + rim.along * s), s)
         };
         let mut best: Option<(f64, f64, &Rim)> = None;
@@ -275,7 +302,10 @@ impl Field {
         let mut add = |own: Heights| whole = Some(whole.map_or(own, |w| w.union(own)));
         met.iter().filter(|k| self.pieces[**k].meets(low, high)).for_each(|k| add(self.pieces[*k].heights(low, high)));
         let corners = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)].map(|p| p * self.size);
-        for rim in self.rims.iter() {
+        let middle = 0.5 * (corners[0] + corners[1]);
+        // Of the sides only those that are nearest to some place of the rectangle.
+        let nearest = self.rims.iter().map(|rim| rim.distance(middle)).fold(f64::INFINITY, f64::min);
+        for rim in self.rims.iter().filter(|rim| rim.distance(middle) <= (1.0 + NUDGE) * (nearest + corners[0].distance(corners[1]))) {
             let off = corners.map(|p| (p - rim.ends[0]).dot(-rim.along.perp()));
             if off.iter().any(|d| *d > NUDGE * NUDGE * rim.length) {
                 add(self.outside(rim, &corners, off.into_iter().fold(0.0, f64::max)));
@@ -288,25 +318,29 @@ impl Field {
     fn outside(&self, rim: &Rim, corners: &[DVec2; 4], far: f64) -> Heights {
         let piece = &self.pieces[rim.piece];
         let (t, n) = (rim.along, -rim.along.perp());
+        // The stretch of the side that is nearest to places of the rectangle.
+        let along_it = corners.map(|p| rim.foot(p) / rim.length);
+        let (from, to) = along_it.into_iter().fold((1.0, 0.0), |(a, b): (f64, f64), s| (a.min(s), b.max(s)));
         // Along a side the height is cubic and its slope across linear: second derivatives lie between those at the ends.
         let ends = [0, 1].map(|c| piece.height(piece.corners[c]));
         let bend = |k: usize| {
             let [xx, xy, yy] = self.bends(ends[k].d2);
             let bend = DVec2::new(xx * t.x + xy * t.y, xy * t.x + yy * t.y);
-            (bend.dot(t), bend.dot(n))
+            DVec2::new(bend.dot(t), bend.dot(n))
         };
-        let (a, b) = (bend(0), bend(1));
-        let (along, across) = (Range::between(a.0, b.0), Range::between(a.1, b.1));
+        let (a, b) = (bend(0).lerp(bend(1), from), bend(0).lerp(bend(1), to));
+        let (along, across) = (Range::between(a.x, b.x), Range::between(a.y, b.y));
         let slopes = piece.side_slopes().map(|d| d / self.size);
-        let slope = |axis: usize| slopes.iter().map(|d| Range::at(d[axis])).fold(Range::at(slopes[0][axis]), Range::union);
+        let slope = |axis: usize| hull(stretch(slopes.map(|d| d[axis]), from, to));
         let depth = Range { low: 0.0, high: far };
         let d1 = [0, 1].map(|k| slope(k) + across * depth * t[k]);
         let d2 =
             [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (along * (t[i] * t[j]) + across * (t[i] * n[j] + t[j] * n[i])).union(Range::at(0.0)));
-        let arms = corners.iter().flat_map(|p| rim.ends.map(|end| *p - end));
+        // From feet to the rectangle.
+        let feet = [from, to].map(|s| rim.ends[0].lerp(rim.ends[1], s));
+        let arms = corners.iter().flat_map(|p| feet.map(|foot| *p - foot));
         let arm = |k: usize| arms.clone().map(|d| Range::at(d[k])).fold(Range::at(0.0), Range::union);
-        let on = piece.side_heights().map(Range::at);
-        let h = on.into_iter().fold(on[0], Range::union) + slope(0) * arm(0) + slope(1) * arm(1);
+        let h = hull(stretch(piece.side_heights(), from, to)) + slope(0) * arm(0) + slope(1) * arm(1);
         let (w, l) = (self.size.x, self.size.y);
         Heights { h, d1: [d1[0] * w, d1[1] * l], d2: [d2[0] * (w * w), d2[1] * (w * l), d2[2] * (l * l)] }
     }
