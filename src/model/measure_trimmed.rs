@@ -6,6 +6,7 @@ use super::measure_strips::Strips;
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::EPSILON;
+use crate::base::work;
 use crate::network::Chain;
 use crate::surface::quick::Quick;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
@@ -15,6 +16,8 @@ const ALONG: [[usize; 2]; 2] = [[4, 6], [8, 12]];
 const ACROSS: usize = 12;
 /// Where between two values of u a function's size is looked at: no places that are special for anything.
 const SIZED: [f64; 3] = [0.13, 0.46, 0.89];
+/// Units of work that a place of a scattered surface takes beside the one of a curve: the triangle that holds it has to be found.
+const DEAR: u64 = 3;
 /// A run of a border is halved at most so often.
 const DEEPEST: u32 = 14;
 
@@ -73,7 +76,11 @@ pub fn trimmed_integral<const N: usize>(
     let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
     let quick = surface.quick();
-    let jet = |u, v| surface.jet_by(quick.as_ref(), u, v);
+    let dear = if surface.is_scattered() { DEAR } else { 0 };
+    let jet = |u, v| {
+        work::spend(dear);
+        surface.jet_by(quick.as_ref(), u, v)
+    };
     let part = |low: f64, high: f64, v: f64| -> Sums<N> {
         let mut sum = [0.0; N];
         for (x, w) in &across {
