@@ -11,7 +11,7 @@ use super::sweep::{Path, Sweep};
 use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault};
 use crate::base::math;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::geometry::arc::EllipticArc;
 use crate::geometry::build::{arc_center, circle_start, line};
 use crate::geometry::nurbs::{projected, weighted};
@@ -47,7 +47,20 @@ pub fn axis_of(chain: &Chain, tolerance: &Tolerance) -> Result<Axis> {
     }
 }
 
-/// The surface S(u, v) = o + Rot(a, u·angle)(profile(v) − o); angle in radians, at most one turn either way.
+/// Whether the profile comes back to itself within the tolerance; `short` is what the angle lacks of a turn, in radians: files write
+/// angles with ten digits.
+fn is_whole_turn(profile: &Chain, axis: &Axis, short: f64, tolerance: &Tolerance) -> bool {
+    let turn = std::f64::consts::TAU;
+    if short <= turn * EPSILON || short > turn * NUDGE {
+        return short <= turn * EPSILON;
+    }
+    let bbox = profile.bbox();
+    let farthest = (bbox.center() - axis.about).cross(axis.direction).length() + 0.5 * bbox.diagonal();
+    short * farthest <= tolerance.point
+}
+
+/// The surface S(u, v) = o + Rot(a, u·angle)(profile(v) − o); angle in radians, at most one turn either way, and a whole one where
+/// the profile comes back to itself within the tolerance.
 ///
 /// Ends of the profile on the axis are poles; a whole turn closes in u with its seam at the profile. Fails with E411,
 /// E412 for the angle, E622 when the profile runs in the axis, E623 when it meets it between its ends.
@@ -59,7 +72,7 @@ pub fn revolve(profile: &Chain, axis: &Axis, angle: f64, origin: Origin, toleran
     if angle.is_nan() || angle.abs() > turn * (1.0 + EPSILON) {
         return Err(CurveFault::AngleTooLarge { of: origin, argument: "angle", angle }.into());
     }
-    let closed_u = angle.abs() >= turn * (1.0 - EPSILON);
+    let closed_u = is_whole_turn(profile, axis, turn - angle.abs(), tolerance);
     let angle = if closed_u { turn * angle.signum() } else { angle };
     clear_of_axis(profile, axis, tolerance)?;
     let (rail, kinks) = kinked(profile, tolerance);

@@ -29,16 +29,22 @@ class Tally:
     """Counts what holds and says what does not."""
 
     def __init__(self):
-        self.passed = self.failed = 0
+        self.passed = 0
+        self.wrong = []
 
     def check(self, label, work):
         try:
             work()
             self.passed += 1
         except Exception as error:  # noqa: BLE001 - anything a foreign reader throws is a failed check
-            self.failed += 1
+            self.wrong.append(label)
             where = traceback.extract_tb(error.__traceback__)[-1]
             print(f"FAILED {label}: {type(error).__name__} {error} ({os.path.basename(where.filename)}:{where.lineno})")
+
+    def table(self, wrong, n):
+        """Counts the rows of a table."""
+        self.passed += n - len(wrong)
+        self.wrong += wrong
 
 
 def run_loft(loft, model, folder, *settings):
@@ -134,14 +140,13 @@ def main():
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
     tally.check("roundings and walls by OpenCASCADE", lambda: rounded.check(lambda *a: run_loft(loft, *a), work))
     wrong, n = cad_in.table(loft, os.path.join(work, "cad"))
-    tally.passed += n - len(wrong)
-    tally.failed += len(wrong)
+    tally.table(wrong, n)
     wrong, n = step_out.table(loft, os.path.join(work, "step_out"))
-    tally.passed += n - len(wrong)
-    tally.failed += len(wrong)
+    tally.table(wrong, n)
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
-    print(f"{tally.passed} passed, {tally.failed} failed")
-    return 1 if tally.failed else 0
+    print("".join(f"FAILED {label}\n" for label in tally.wrong), end="")
+    print(f"{tally.passed} passed, {len(tally.wrong)} failed")
+    return 1 if tally.wrong else 0
 
 
 if __name__ == "__main__":
