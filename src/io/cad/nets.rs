@@ -1,9 +1,12 @@
 //! Work on nets of control points: the stretch of knots that counts, and nets between two curves.
 
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 
 use super::damage::{Damage, damage};
+use crate::base::bbox::Box3;
+use crate::base::tolerance::Tolerance;
 use crate::geometry::Nurbs;
+use crate::geometry::nurbs::{projected, weighted};
 use crate::surface::NurbsSurface;
 
 /// The part of a surface over first and last u, first and last v, with full end knots, over 0…1.
@@ -28,6 +31,40 @@ pub fn trimmed_net(net: NurbsSurface, [u0, u1, v0, v1]: [f64; 4]) -> Result<Nurb
         poles = (0..counts.1).flat_map(|j| columns.iter().map(move |c| c.poles[j])).collect();
     }
     Ok(NurbsSurface { degree, knots: (unit(&knots_u), unit(&knots_v)), poles, counts })
+}
+
+/// A border row of a net that was made one point.
+#[derive(Clone, Copy, Debug)]
+pub struct WholePole {
+    /// The point.
+    pub at: DVec3,
+    /// How far control points were moved at most, model units.
+    pub moved: f64,
+}
+
+/// The net with each border row whose control points are one point within the tolerance made one point, as other programs know poles:
+/// one of these where it is as near.
+pub fn with_whole_poles(mut net: NurbsSurface, known: &[DVec3], tolerance: &Tolerance) -> (NurbsSurface, Vec<WholePole>) {
+    let (nu, nv) = net.counts;
+    let rows: [Vec<usize>; 4] = [
+        (0..nu).collect(),
+        (0..nu).map(|i| (nv - 1) * nu + i).collect(),
+        (0..nv).map(|j| j * nu).collect(),
+        (0..nv).map(|j| j * nu + nu - 1).collect(),
+    ];
+    let mut poles = Vec::new();
+    for row in rows {
+        let center = Box3::of(row.iter().map(|k| projected(net.poles[*k]))).center();
+        let whole = |at: DVec3| WholePole { at, moved: row.iter().map(|k| projected(net.poles[*k]).distance(at)).fold(0.0, f64::max) };
+        // Control points of a circle stand on a square round it.
+        let is_one = |pole: &WholePole| pole.moved <= std::f64::consts::SQRT_2 * tolerance.point;
+        let found = known.iter().map(|at| whole(*at)).find(is_one).or_else(|| Some(whole(center)).filter(is_one));
+        if let Some(pole) = found.filter(|pole| pole.moved > 0.0) {
+            row.iter().for_each(|k| net.poles[*k] = weighted(pole.at, net.poles[*k].w));
+            poles.push(pole);
+        }
+    }
+    (net, poles)
 }
 
 /// Whether the knots begin and end with full multiplicity at these parameters.

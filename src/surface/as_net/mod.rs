@@ -55,6 +55,15 @@ impl Off {
             Self::Bounded(off) | Self::Sampled(off) => off,
         }
     }
+
+    /// And as far again, model units, within a bound.
+    pub fn and(self, further: f64) -> Self {
+        match self {
+            Self::Exact if further == 0.0 => Self::Exact,
+            Self::Exact | Self::Bounded(_) => Self::Bounded(self.distance() + further),
+            Self::Sampled(off) => Self::Sampled(off + further),
+        }
+    }
 }
 
 impl Surface {

@@ -7,10 +7,10 @@ use super::text::{Id, Records, Values};
 use crate::base::fault::Result;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::nurbs::projected;
-use crate::io::cad::nets::trimmed_net;
+use crate::io::cad::nets::{trimmed_net, with_whole_poles};
 use crate::model::Patch;
 use crate::surface::elementary::{Elementary, Form};
-use crate::surface::{Domain, NurbsSurface, Off, Surface};
+use crate::surface::{Domain, NurbsSurface, Off, Side, Surface};
 
 /// Share of the tolerance that a net may be off, where that can be had.
 const FINE: f64 = 0.1;
@@ -20,8 +20,8 @@ const FINE: f64 = 0.1;
 pub enum Ground {
     /// A plane, cylinder, cone, sphere or torus.
     Elementary(Elementary),
-    /// A B-spline with how far it is off.
-    Net(NurbsSurface, Off),
+    /// A B-spline with how far it is off, and the points that its poles were made.
+    Net(NurbsSurface, Off, Vec<DVec3>),
 }
 
 /// The surface below a patch, cut to its rectangle where it is a B-spline; `None` for a plane without a border.
@@ -32,12 +32,14 @@ pub fn ground(surface: &Surface, patch: &Patch, scale: &Scale) -> Result<Option<
     if let Some(found) = surface.elementary(patch.v, &scale.tolerance) {
         return Ok(Some(Ground::Elementary(found)));
     }
+    let base = surface.untrimmed();
+    let poles: Vec<DVec3> = (0..base.n_sides()).filter_map(|k| if let Side::Pole(at) = base.side(k) { Some(at) } else { None }).collect();
     // Edges lie in space: the net may run by the profile's own parameter, with which it is exact.
     let whole = patch.u == (0.0, 1.0) && patch.v == (0.0, 1.0);
     if let (0.0, 1.0) = patch.u
         && let Some(net) = surface.swept_net(patch.v, &scale.tolerance)
     {
-        return Ok(Some(shaped(net, Off::Exact, scale)));
+        return Ok(Some(shaped(net, Off::Exact, &poles, scale)));
     }
     let form = |tolerance: &Tolerance| match surface.domain() {
         Domain::Square if whole => surface.to_net(tolerance),
@@ -51,15 +53,17 @@ pub fn ground(surface: &Surface, patch: &Patch, scale: &Scale) -> Result<Option<
         Domain::Square if !whole => trimmed_net(form.net.clone(), [patch.u.0, patch.u.1, patch.v.0, patch.v.1]).unwrap_or(form.net),
         _ => form.net,
     };
-    Ok(Some(shaped(cut, form.off, scale)))
+    Ok(Some(shaped(cut, form.off, &poles, scale)))
 }
 
-/// A net, or the plane that it is.
-fn shaped(net: NurbsSurface, off: Off, scale: &Scale) -> Ground {
-    match flat(&net, scale) {
-        Some(plane) => Ground::Elementary(plane),
-        None => Ground::Net(net, off),
+/// A net with its poles, or the plane that it is.
+fn shaped(net: NurbsSurface, off: Off, poles: &[DVec3], scale: &Scale) -> Ground {
+    if let Some(plane) = flat(&net, scale) {
+        return Ground::Elementary(plane);
     }
+    let (net, poles) = with_whole_poles(net, poles, &scale.tolerance);
+    let moved = poles.iter().map(|pole| pole.moved).fold(0.0, f64::max);
+    Ground::Net(net, off.and(moved), poles.iter().filter(|pole| pole.moved > scale.tolerance.rounding).map(|pole| pole.at).collect())
 }
 
 /// The plane in which all poles of a net lie but for rounding.
@@ -86,7 +90,7 @@ fn flat(net: &NurbsSurface, scale: &Scale) -> Option<Elementary> {
 /// Writes the surface; gives it with whether its normal is the one of the model's surface.
 pub fn put(records: &mut Records, ground: &Ground, scale: &Scale) -> (Id, bool) {
     match ground {
-        Ground::Net(net, _) => (spline(records, net, scale), true),
+        Ground::Net(net, ..) => (spline(records, net, scale), true),
         Ground::Elementary(found) => (elementary(records, found, scale), found.along),
     }
 }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use super::curves::{self, Scale};
 use super::looks::Painted;
+use super::poles::Placed;
 use super::surfaces::{self, Ground};
 use super::text::{Id, Records};
 use crate::base::job;
@@ -114,12 +115,12 @@ impl Writer<'_> {
     /// All faces, in the order of the body.
     fn faces(&mut self, records: &mut Records) -> Result<Vec<Id>, Damage> {
         let body = self.body;
-        self.edges = self.all_edges(records)?;
         let grounds = par::try_map(body.faces.len(), |k| self.ground(&body.faces[k]))?;
+        self.edges = self.all_edges(records, &Placed::new(body, &grounds, self.scale))?;
         let mut made = Vec::with_capacity(body.faces.len());
         for (face, ground) in body.faces.iter().zip(&grounds) {
             job::look();
-            if let Ground::Net(_, off) = ground {
+            if let Ground::Net(_, off, _) = ground {
                 self.made.off = (self.made.off.0.max(off.distance()), self.made.off.1 || matches!(off, Off::Sampled(_)));
             }
             let item = self.face(records, face, ground)?;
@@ -138,11 +139,12 @@ impl Writer<'_> {
     }
 
     /// The edges that some face uses, with their vertices.
-    fn all_edges(&self, records: &mut Records) -> Result<Vec<Option<Id>>, Damage> {
+    fn all_edges(&self, records: &mut Records, placed: &Placed) -> Result<Vec<Option<Id>>, Damage> {
         let body = self.body;
         let mut used = vec![false; body.edges.len()];
         body.faces.iter().flat_map(|face| &face.loops).flatten().for_each(|(edge, _)| used[*edge] = true);
-        let curves = par::try_map(body.edges.len(), |k| if used[k] { self.curve(&body.edges[k]).map(Some) } else { Ok(None) })?;
+        let curve = |k: usize| placed.curve(k, body.edges[k].ends, self.curve(&body.edges[k])?, self.scale);
+        let curves = par::try_map(body.edges.len(), |k| if used[k] { curve(k).map(Some) } else { Ok(None) })?;
         let mut vertices: Vec<Option<Id>> = vec![None; body.vertices.len()];
         let mut edges = Vec::with_capacity(body.edges.len());
         for (edge, curve) in body.edges.iter().zip(curves) {
@@ -152,7 +154,7 @@ impl Writer<'_> {
             };
             let mut vertex = |k: usize| {
                 *vertices[k].get_or_insert_with(|| {
-                    let at = records.point(body.vertices[k] / self.scale.model);
+                    let at = records.point(placed.vertices[k] / self.scale.model);
                     records.put("VERTEX_POINT", |v| {
                         v.text("").id(at);
                     })
