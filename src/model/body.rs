@@ -67,8 +67,8 @@ pub struct Body {
     pub faces: Vec<BodyFace>,
     /// What hangs together, in the order of their first faces.
     pub skins: Vec<Skin>,
-    /// Edges that more than two faces share.
-    pub branching: usize,
+    /// Patches that have no face: thinner than the distance within which edges are one.
+    pub slivers: Vec<PatchId>,
 }
 
 impl Model {
@@ -108,6 +108,7 @@ impl Model {
                 body.faces.push(BodyFace { patch, surface: *surface, other: *other, loops });
             }
         }
+        body.slivers = slivers;
         body.join_corners();
         body.join_seams(self, tolerance);
         body.part_skins();
@@ -293,7 +294,6 @@ impl Body {
             let (a, b) = (root(&mut parent, pair[0].0), root(&mut parent, pair[1].0));
             parent[a.max(b)] = a.min(b);
         }
-        self.branching = users.iter().filter(|u| u.len() > 2).count();
         let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
         for k in 0..self.faces.len() {
             let own = root(&mut parent, k);

@@ -3,8 +3,8 @@
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
 use crate::base::fault::{FileFault, Say};
 use crate::base::origin::Origin;
-use crate::io::Files;
 use crate::io::step::write::{self, Faces, Measured, Scale, Schema, Setup, Shown, Thing};
+use crate::io::{Files, Loss};
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::ExportSpec;
 use crate::lang::scene::{Scene, side_of};
@@ -49,7 +49,9 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let file = spec.path.rsplit('/').next().unwrap_or(&spec.path);
     let name = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
     let sheet = write::sheet(&things, name, &setup).map_err(|what| unsupported(spec.path_origin, what))?;
-    put(spec, files, &mut |out| write::write(&sheet, file, &setup, out).map(|()| Vec::new()))
+    put(spec, files, &mut |out| {
+        write::write(&sheet, file, &setup, out).map(|()| sheet.left_out.iter().cloned().map(Loss::LeftOut).collect())
+    })
 }
 
 fn unsupported(of: Origin, what: String) -> Stop {

@@ -29,9 +29,11 @@ pub use topology::Faces;
 
 use crate::base::job;
 use crate::io::cad::damage::Damage;
+use crate::model::SurfaceId;
 use crate::network::Chain;
 use looks::Painted;
 use text::{Id, Records};
+use topology::Made;
 
 /// One thing to write.
 #[derive(Clone, Debug)]
@@ -75,6 +77,8 @@ pub struct Setup {
 pub struct Sheet {
     records: Records,
     remark: Option<String>,
+    /// What is not in the file, in words.
+    pub left_out: Vec<String>,
 }
 
 /// Makes the file of things; `name` is its product's, but one thing names its own. Fails for a thing that the format or the tolerance cannot hold, with its name.
@@ -88,8 +92,8 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
     let product = product::product(&mut records, setup.schema, name);
     let (mut solids, mut sheets, mut wires) = (Vec::new(), Vec::new(), Vec::new());
     let mut layers: Vec<(&str, Vec<Id>)> = Vec::new();
-    let mut off = (0.0_f64, false);
-    let mut painted = Vec::new();
+    let (mut off, mut thin_area) = ((0.0_f64, false), 0.0);
+    let (mut painted, mut left_out) = (Vec::new(), Vec::new());
     for thing in things {
         job::look();
         let own = put(&mut records, thing, setup)
@@ -106,6 +110,8 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
         sheets.extend(own.sheets);
         wires.extend(own.wires);
         painted.extend(own.painted);
+        left_out.extend(own.left_out);
+        thin_area += own.thin_area;
     }
     let all = [solids.as_slice(), &sheets, &wires].concat();
     let kind = match [solids.is_empty(), sheets.is_empty(), wires.is_empty()] {
@@ -121,12 +127,12 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
         });
     }
     looks::put(&mut records, &painted, context);
-    properties::put(&mut records, things, (product, context), setup);
+    properties::put(&mut records, (things, thin_area), (product, context), setup);
     let remark = (off.0 > 0.0).then(|| {
         let how = if off.1 { ", as sampled" } else { "" };
         format!("Surfaces that are no B-splines are off by at most {:.2e} {}{how}", off.0 / setup.scale.model, setup.unit)
     });
-    Ok(Sheet { records, remark })
+    Ok(Sheet { records, remark, left_out })
 }
 
 /// What became of a thing.
@@ -137,6 +143,8 @@ struct Put {
     wires: Vec<Id>,
     off: (f64, bool),
     painted: Vec<Painted>,
+    left_out: Vec<String>,
+    thin_area: f64,
 }
 
 fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damage> {
@@ -144,7 +152,9 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     let geometry = match &thing.shown {
         Shown::Faces(faces) => {
             let made = faces.put(records, &thing.name, scale)?;
-            return Ok(Put { solids: made.solids, sheets: made.sheets, off: made.off, painted: made.painted, ..Put::default() });
+            let left_out = thin_faces(faces, &thing.name, &made.thin).into_iter().collect();
+            let Made { solids, sheets, off, painted, thin_area, .. } = made;
+            return Ok(Put { solids, sheets, off, painted, left_out, thin_area, ..Put::default() });
         }
         Shown::Point(p) => records.point(*p / scale.model),
         Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, &thing.name, scale)?,
@@ -154,6 +164,17 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     });
     let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true });
     Ok(Put { wires: vec![set], painted: painted.into_iter().collect(), ..Put::default() })
+}
+
+/// What faces that are too thin are called where they are left out.
+fn thin_faces(faces: &Faces, whole: &str, thin: &[SurfaceId]) -> Option<String> {
+    let name = |id: &SurfaceId| faces.model.surfaces[id.index()].name.clone();
+    let [first, others @ ..] = thin else { return None };
+    let (what, are) = match others.len() {
+        0 => (format!("the face `{}`", name(first)), "which is"),
+        n => (format!("{} faces, such as `{}`,", n + 1, name(first)), "which are"),
+    };
+    Some(format!("{what} of `{whole}`, {are} thinner than the distance within which edges are one"))
 }
 
 /// Writes a file; `name` stands in its head.

@@ -14,12 +14,12 @@ pub struct Measured {
     pub volume: Option<f64>,
 }
 
-/// Writes the sums over all things as properties of the product.
-pub fn put(records: &mut Records, things: &[Thing], (product, context): (Id, Context), setup: &Setup) {
+/// Writes the sums over all things as properties of the product, without the area of what is too thin for the file.
+pub fn put(records: &mut Records, (things, thin): (&[Thing], f64), (product, context): (Id, Context), setup: &Setup) {
     let sum = |of: fn(&Measured) -> Option<f64>| things.iter().filter_map(|t| of(&t.measured)).reduce(|a, b| a + b);
     let model = setup.scale.model;
     let kinds = [
-        ("surface area", "surface area measure", "AREA_MEASURE", 2, sum(|m| m.area)),
+        ("surface area", "surface area measure", "AREA_MEASURE", 2, sum(|m| m.area).map(|area| area - thin)),
         ("volume", "volume measure", "VOLUME_MEASURE", 3, sum(|m| m.volume)),
     ];
     for (name, item, measure, power, value) in kinds {

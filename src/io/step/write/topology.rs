@@ -20,7 +20,7 @@ use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::compose::fitted;
 use crate::io::cad::damage::{Damage, damage};
-use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, Skin, SurfaceId};
+use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, Skin, SurfaceId, measure};
 use crate::network::Network;
 use crate::surface::Off;
 
@@ -48,6 +48,10 @@ pub struct Made {
     pub sheets: Vec<Id>,
     /// How far surfaces are from the model's at most, model units; whether all that is known of one are samples.
     pub off: (f64, bool),
+    /// Surfaces that are too thin to have a face.
+    pub thin: Vec<SurfaceId>,
+    /// Area of those of which no face is left, model units.
+    pub thin_area: f64,
     /// Faces with their colours.
     pub painted: Vec<Painted>,
 }
@@ -56,6 +60,9 @@ impl Faces {
     /// Writes the faces under a name.
     pub fn put(&self, records: &mut Records, name: &str, scale: &Scale) -> Result<Made, Damage> {
         let body = self.model.body(&self.shell, &self.network, &scale.tolerance)?;
+        if body.faces.is_empty() {
+            return Err(damage("it is thinner than the distance within which edges are one, so it has no face"));
+        }
         let mut writer = Writer { faces: self, body: &body, scale, edges: Vec::new(), made: Made::default() };
         let faces = writer.faces(records)?;
         let is_solid = |skin: &Skin| self.solid && skin.closed;
@@ -90,6 +97,11 @@ impl Faces {
                 v.text(name).ids(&sheets);
             }));
         }
+        writer.made.thin = body.slivers.iter().map(|patch| self.model.patches[patch.index()].surface).collect();
+        writer.made.thin.dedup();
+        let is_gone = |id: &&SurfaceId| body.faces.iter().all(|face| face.surface != **id);
+        let area = |id: &SurfaceId| measure::area(&self.model.surfaces[id.index()].surface);
+        writer.made.thin_area = writer.made.thin.iter().filter(is_gone).map(area).sum();
         Ok(writer.made)
     }
 }
