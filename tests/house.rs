@@ -56,7 +56,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("surface", 23_650),
     ("model", 6_250),
     ("mesh", 22_700),
-    ("io", 14_050),
+    ("io", 14_200),
     ("draw", 3_000),
     ("lang", 28_650),
     ("session", 11_600),
