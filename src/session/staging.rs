@@ -70,7 +70,8 @@ impl Staging {
         if place.is_dir() {
             return Err(io::Error::new(io::ErrorKind::IsADirectory, "there is a folder of this name"));
         }
-        let folder = place.parent().unwrap_or(Path::new("."));
+        // A bare name has the empty path as its parent, which cannot be listed.
+        let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         fs::create_dir_all(folder)?;
         if self.0.swept.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
             sweep(folder);
