@@ -88,6 +88,17 @@ pub(super) fn squared(surface: &Surface) -> Surface {
     Surface::new(Parts { domain: Domain::Square, borders: free_sides(), trim: None, ..surface.parts().clone() })
 }
 
+/// Share of a plane face by which its square is widened on each side.
+const WIDER: f64 = 1.0 / 16.0;
+
+/// The square of the frame of a plane face with room around, so that no curve of the face runs along a side of it.
+pub(super) fn widened(surface: &Surface) -> Surface {
+    let Shape::Plane(frame) = surface.parts().shape else { return squared(surface) };
+    let (eu, ev) = (frame.eu * (1.0 + 2.0 * WIDER), frame.ev * (1.0 + 2.0 * WIDER));
+    let shape = Shape::Plane(Frame { origin: frame.origin - (frame.eu + frame.ev) * WIDER, eu, ev });
+    Surface::new(Parts { shape, domain: Domain::Square, borders: free_sides(), trim: None, ..surface.parts().clone() })
+}
+
 fn free_sides() -> Vec<Border> {
     (0..4).map(|_| Border::straight(Side::Free)).collect()
 }

@@ -292,6 +292,12 @@ pub(super) fn grounded(surface: &Surface, reach: Box3) -> Surface {
     }
 }
 
+/// The same where only points are asked for: of a plane face a larger square, since where its border touches a side of the
+/// smaller one a curve along that border would end.
+pub(super) fn widely_grounded(surface: &Surface, reach: Box3) -> Surface {
+    if surface.ground() == Domain::Loop { plane::widened(surface) } else { grounded(surface, reach) }
+}
+
 /// Where a straight step in both tangent planes and across leads: solves `a x + b y + c z = d`.
 pub(super) fn solved(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<DVec3> {
     let m = DMat3::from_cols(a, b, c);

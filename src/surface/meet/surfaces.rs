@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::pair::Pair;
 use super::search::{Stopped, common};
-use super::sheet::{Sheet, grounded, patches};
+use super::sheet::{Sheet, patches, widely_grounded};
 use super::{kept_stretches, long, with_loops};
 use crate::base::bbox::Box3;
 use crate::base::fault::{CurveFault, CutFault, Fault, Result};
@@ -83,7 +83,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     if !box_a.touches(&box_b, tolerance.point) {
         return Ok((Vec::new(), Vec::new()));
     }
-    let (mut sheets_a, mut sheets_b) = (sheets(&grounded(a, box_b)), sheets(&grounded(b, box_a)));
+    let (mut sheets_a, mut sheets_b) = (sheets(&widely_grounded(a, box_b)), sheets(&widely_grounded(b, box_a)));
     let lost =
         |at: DVec3| Fault::from(CurveFault::NotConverged { of: origin, what: "the curve in which the surfaces meet".to_owned(), at });
     let along = |at: DVec3| Fault::from(CutFault::RunAlong { a: a.origin(), b: b.origin(), at, tolerance: tolerance.point });
