@@ -93,8 +93,8 @@ impl NurbsSurface {
     /// between arcs of a circle.
     pub fn has_corner(&self, in_u: bool, x: f64) -> bool {
         let (knots, degree) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
-        let before = knots.iter().filter(|k| **k < x - EPSILON).count();
-        let after = knots.iter().filter(|k| **k > x + EPSILON).count();
+        let before = knots.partition_point(|k| *k < x - EPSILON);
+        let after = knots.len() - knots.partition_point(|k| *k <= x + EPSILON);
         let often = knots.len() - before - after;
         if often < degree || before == 0 || after == 0 || often > degree {
             return often >= degree;
