@@ -28,6 +28,17 @@ const fn place(a: usize, b: usize, c: usize) -> usize {
     }
 }
 
+/// The same of all indices, looked up where heights are asked for.
+const PLACES: [[[usize; 3]; 3]; 3] = {
+    let mut places = [[[0; 3]; 3]; 3];
+    let mut k = 0;
+    while k < 27 {
+        places[k / 9][k / 3 % 3][k % 3] = place(k / 9, k / 3 % 3, k % 3);
+        k += 1;
+    }
+    places
+};
+
 /// A cubic over a triangle in (u, v).
 #[derive(Clone, Copy, Debug)]
 pub struct Piece {
@@ -53,7 +64,7 @@ impl Piece {
     }
 
     fn at(&self, a: usize, b: usize, c: usize) -> f64 {
-        self.ordinates[place(a, b, c)]
+        self.ordinates[PLACES[a][b][c]]
     }
 
     /// Weights of the corners at a place, read from the nearest corner: exact there, however thin the triangle.
