@@ -748,15 +748,43 @@ fn files_are_written_and_read_in_any_unit() {
     }
 }
 
-/// A surface that cannot be made stops the meshes of others: each is named.
+/// What is sound of a model is told although a surface, a mesh or a check failed; what failed and what waits for it is named, and no
+/// file is written.
 #[test]
-fn meshes_that_wait_for_a_broken_surface_are_named() {
+fn failed_runs_tell_what_is_sound() {
     let script = "curve a = line((0, 0), (10, 0))\ncurve b = line((0, 10), (10, 10, 3))\nsurface good = ruled(a, b)\n\
-                  surface bad = plane(a, b)\nmesh fine of good { size: 1mm }\nmesh coarse of bad { size: 1mm }\n";
+                  surface bad = plane(a, b)\nshell skin of good\ngroup all of good, bad\nmesh fine of good { size: 1mm }\n\
+                  mesh coarse of bad { size: 1mm }\nreport good\nreport \"nodes\": {nodes: len(fine.nodes)}\n\
+                  check area(good) > 0mm2\ncheck bad.area > 0mm2\nexport fine to \"fine.obj\"\nexport coarse to \"coarse.obj\"\n";
     let folder = Folder::new("waiting").with("a.loft", script);
-    let run = folder.loft(&["run", "a.loft"]);
-    assert_eq!(run.status, 1);
-    for note in ["nothing that depends on `bad` was built: coarse (1 mesh)\n", "not meshed either, as the model is not whole: fine\n"] {
-        assert!(run.err.contains(note), "{note} in\n{}", run.err);
+    for command in ["run", "check"] {
+        let run = folder.loft(&[command, "a.loft"]);
+        assert_eq!(run.status, 1);
+        let notes =
+            ["nothing that depends on `bad` was built: all, coarse (1 mesh, 1 check, 1 export, 1 group)\n", "meshed without `bad`: fine\n"];
+        for note in notes {
+            assert!(run.err.contains(note), "{note} in\n{}", run.err);
+        }
+        let rows = [
+            "\nskin  ",
+            "\nfine  ",
+            "\ngood\n",
+            "\nnodes\n",
+            "pass  area(good) > 0mm2\n",
+            "\nbad                   surface     4  an error of its own\n",
+        ];
+        for row in rows.into_iter().chain(["\ncoarse                mesh        8  bad\n", "\nbad.area > 0mm2       check      12  bad\n"])
+        {
+            assert!(run.out.contains(row), "{row} in\n{}", run.out);
+        }
+        assert_eq!(run.out.contains("not written, as the run failed: fine.obj\n"), command == "run", "{}", run.out);
+    }
+    assert!(!fs::exists(folder.path("fine.obj")).unwrap());
+    let json = folder.loft(&["run", "--json", "a.loft"]);
+    for row in [
+        "\"unwritten\": [\n    \"fine.obj\"\n  ]",
+        "{ \"name\": \"coarse\", \"what\": \"mesh\", \"file\": \"a.loft\", \"line\": 8, \"because\": \"bad\" }",
+    ] {
+        assert!(json.status == 1 && json.out.contains(row), "{row} in\n{}", json.out);
     }
 }

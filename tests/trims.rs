@@ -15,14 +15,21 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::base::math::{cos, sin, sin_cos};
+use lofting::base::origin::Origin;
+use lofting::base::tolerance::Tolerance;
 use lofting::base::triangulate_points::NO_TRIANGLE;
+use lofting::geometry::build::{arc_through, circle, line};
 use lofting::mesh::free::build::{Lattice, Task, triangulate};
 use lofting::mesh::free::ground::{Even, Field, Ground, Spot};
 use lofting::mesh::free::improve::{Care, FINEST};
 use lofting::mesh::free::outline::Outline;
 use lofting::mesh::free::web::Web;
+use lofting::model::measure;
+use lofting::network::Chain;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
+use lofting::surface::revolve::Axis;
+use lofting::surface::{Ground as Speaks, Outlined, extrude, outlined, revolve};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 
@@ -308,4 +315,39 @@ fn loops_that_nearly_touch_are_meshed_or_say_why() {
         prop_assert!(wrong.is_empty(), "{:?}\n{}", wrong, script);
         Ok(())
     });
+}
+
+/// Two rings on a ball bound a belt where one runs each way. Where both run the same way the longer one decides, and that is told.
+#[test]
+fn loops_that_do_not_agree_are_told() {
+    let tolerance = Tolerance::new(1e-6, 20.0);
+    let half = arc_through(DVec3::new(0.0, 0.0, -10.0), DVec3::new(0.0, 0.0, 10.0), DVec3::new(10.0, 0.0, 0.0), Origin::NONE).unwrap();
+    let axis = Axis { about: DVec3::ZERO, direction: DVec3::Z };
+    let ball = revolve(&Chain::of_curve(&half), &axis, std::f64::consts::TAU, Origin::NONE, &tolerance).unwrap();
+    let ring = |z: f64, way: f64| {
+        let radius = (100.0 - z * z).sqrt();
+        vec![Chain::of_curve(&circle(DVec3::new(0.0, 0.0, z), radius, DVec3::Z * way, Origin::NONE).unwrap())]
+    };
+    let known = Outlined { has_outer: true, inside: None, against: false };
+    let made = |loops: [Vec<Chain>; 2]| outlined(&ball, &loops, known, Origin::NONE, &tolerance).unwrap();
+    let (belt, doubts) = made([ring(-3.0, 1.0), ring(6.0, -1.0)]);
+    assert!(doubts.is_empty() && belt.len() == 1, "{doubts:?}");
+    let (_, doubts) = made([ring(-3.0, 1.0), ring(6.0, 1.0)]);
+    let [one] = doubts[..] else { panic!("{doubts:?}") };
+    assert!(one.by == Speaks::Directions && one.share > 0.5 && one.share < 0.6, "{one:?}");
+    assert!((one.at.length() - 10.0).abs() < 1e-6, "{one:?}");
+}
+
+/// What `split` and `trim(by:)` ask of their parts. No script is known whose parts fail it, so the question itself is tested.
+#[test]
+fn parts_that_do_not_add_up_are_told() {
+    let tolerance = Tolerance::new(1e-3, 10.0);
+    let side = Chain::of_curve(&line(DVec3::ZERO, DVec3::X * 10.0, Origin::NONE).unwrap());
+    let square = extrude(&side, DVec3::Y * 10.0, Origin::NONE, &tolerance).unwrap();
+    let cut = Chain::of_curve(&line(DVec3::new(0.0, 4.0, 0.0), DVec3::new(10.0, 4.0, 0.0), Origin::NONE).unwrap());
+    let told = |parts: &[f64]| measure::adds_up(&square, std::slice::from_ref(&cut), parts, &tolerance).map_err(|fault| fault.code().0);
+    assert_eq!(told(&[40.0, 60.0]), Ok(()));
+    // A strip as wide as the tolerance along the cut may be missing, or be in both parts.
+    assert_eq!((told(&[40.0, 59.991]), told(&[40.009, 60.0])), (Ok(()), Ok(())));
+    assert_eq!((told(&[40.0, 59.9]), told(&[40.0, 60.1]), told(&[60.0])), (Err("E721"), Err("E721"), Err("E721")));
 }

@@ -94,6 +94,14 @@ pub fn text(report: &Report, tolerance: Option<f64>, color: bool) -> String {
         out.push('\n');
         checks(report, &mut out, color);
     }
+    if let Some(grid) = unmade(report) {
+        out.push('\n');
+        grid.print(&mut out, color);
+    }
+    if !report.unwritten.is_empty() {
+        out.push('\n');
+        report.unwritten.iter().for_each(|path| out.push_str(&format!("not written, as the run failed: {path}\n")));
+    }
     if !report.outputs.is_empty() {
         out.push('\n');
         report.outputs.iter().for_each(|o| out.push_str(&format!("wrote {}  {}\n", o.place, bytes(o.bytes))));
@@ -152,6 +160,21 @@ fn meshes(report: &Report) -> Option<Grid> {
         row.push(m.parts.to_string());
         row.push(m.groups.len().to_string());
         grid.rows.push(row);
+    }
+    (!grid.rows.is_empty()).then_some(grid)
+}
+
+/// What failed, and what waits for it.
+fn unmade(report: &Report) -> Option<Grid> {
+    let mut grid = Grid::new(&["not made", "what", ">line", "because of"]);
+    for row in &report.unmade {
+        let line = if row.file == report.model { row.line.to_string() } else { format!("{}:{}", row.file, row.line) };
+        let because = match row.because.as_deref() {
+            None => "an error of its own".to_owned(),
+            Some("") => "what could not be read".to_owned(),
+            Some(name) => name.to_owned(),
+        };
+        grid.rows.push(vec![row.name.clone(), row.what.clone(), line, because]);
     }
     (!grid.rows.is_empty()).then_some(grid)
 }

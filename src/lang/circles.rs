@@ -47,7 +47,8 @@ impl Cx<'_> {
         let span = nodes.iter().find(names_first).map_or(script.declarations[closing.1 as usize].span, |n| n.span);
         let through_all = self.machine.stages > 0;
         // Of a circle through all curves one can be taken out.
-        let outside = members.iter().copied().find(|m| through_all && self.may_stay_out(*m)).map(|m| self.stay_out(m));
+        let between = members.iter().copied().find(|m| through_all && self.asks_borders(*m)).map(|m| self.written_inside(m));
+        let outside = members.iter().copied().find(|m| through_all && self.may_stay_out(*m)).map(|m| self.stay_out(m)).or(between);
         let draft = self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here");
         let draft = draft.labels(labels);
         match (outside, through_all) {
@@ -78,7 +79,6 @@ impl Cx<'_> {
         let text = format!("`{}` needs itself: {} → all curves and surfaces → {}", names[0], names.join(" → "), names[0]);
         let help = self.may_stay_out(part).then(|| self.stay_out(part));
         let keyword = self.machine.at(part.0).script.declarations[part.1 as usize].keyword_span;
-        let alone = borders_of(self.sources.text(self.machine.at(site.module).file, span));
         let here = part == (site.module, site.declaration);
         let file = self.machine.at(part.0).file;
         let named = (!here).then(|| Label { file, span: keyword, text: format!("`{}` is one of them", names[0]) });
@@ -86,10 +86,7 @@ impl Cx<'_> {
         match help {
             Some(help) if here => draft.help(help).put(keyword, "let").stop(),
             Some(help) => draft.help(help).stop(),
-            None => match alone {
-                Some(help) => draft.help(help).stop(),
-                None => draft.stop(),
-            },
+            None => draft.stop(),
         }
     }
 
@@ -105,11 +102,16 @@ impl Cx<'_> {
             _ => format!("`let {name} = …`: a `let` curve stays out of the network, so it may be made from all of it"),
         }
     }
-}
 
-/// How a border of a surface alone is named, for an expression that asks for its edges in the model.
-fn borders_of(text: &str) -> Option<String> {
-    let (surface, _) = [".rims", ".edges", ".edge("].into_iter().find_map(|word| text.split_once(word))?;
-    let is_name = !surface.is_empty() && surface.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    is_name.then(|| format!("`iso` takes a border of `{surface}` by itself, at 0 or 1 of u or v"))
+    /// Whether a `let` says borders of surfaces, which a surface itself can be made from.
+    fn asks_borders(&self, (module, index): (ModuleId, u32)) -> bool {
+        let (module, declaration) = (self.machine.at(module), &self.machine.at(module).script.declarations[index as usize]);
+        let text = self.sources.text(module.file, declaration.span);
+        declaration.keyword == Keyword::Let && [".rims", ".edges", ".loops", ".edge("].iter().any(|word| text.contains(word))
+    }
+
+    fn written_inside(&self, (module, index): (ModuleId, u32)) -> String {
+        let name = self.declaration_name(module, index);
+        format!("write what `{name}` is in its place: borders that a surface asks for itself are those of its surfaces alone")
+    }
 }

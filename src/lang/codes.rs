@@ -74,6 +74,7 @@ codes! {
     now "W224", "group-not-meshed", "no mesh that is written holds anything of a group";
     now "W225", "points-merged", "scattered points are given twice";
     now "W226", "points-exceeded", "a surface stands out far over its scattered points";
+    now "W227", "loose-box", "a box may be too large";
     now "E230", "not-in-this-version", "a word of a later version";
     now "E301", "argument-missing", "an argument is missing";
     now "E302", "too-many-arguments", "too many arguments";

@@ -151,7 +151,7 @@ impl Cx<'_> {
                     // Without things there is a fault already, or they are asked for again.
                     let diagonal = if things.is_none() { Some(1.0) } else { None };
                     let things = things.unwrap_or_default();
-                    let mut meshed = Meshed { things: &things, diagonal };
+                    let mut meshed = Meshed { things: &things, said: thing_exprs, diagonal };
                     let rules: Vec<RuleSpec> = on.into_iter().filter_map(|c| gather.take(cx.rule(code, c, &mut meshed))).collect();
                     let refines: Vec<RefineSpec> =
                         others.into_iter().filter_map(|c| gather.take(cx.refine(code, c, &mut meshed))).collect();

@@ -95,6 +95,8 @@ pub struct Sound {
     pub network: Arc<Network>,
     /// The surface model of these surfaces.
     pub model: Arc<Model>,
+    /// Whether the network is that of these curves: meshes and shells can be made on it.
+    pub stands: bool,
 }
 
 /// When a curve is snapped.
@@ -131,8 +133,8 @@ pub trait Pipeline: Sync {
     fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Stop>;
     /// The network of all curves, nameless ones under declared surfaces included.
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop>;
-    /// Patches, edges and vertices of all declared surfaces.
-    fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop>;
+    /// Patches, edges and vertices of all these surfaces, on the network of these curves.
+    fn model(&self, cx: &mut Cx, module: ModuleId, parts: (&Parts, Arc<Network>)) -> Result<Arc<Model>, Stop>;
     /// A declared mesh.
     fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Stop>;
 }
@@ -257,7 +259,16 @@ impl<'w> Cx<'w> {
     pub fn model(&mut self, of: impl Into<Home>) -> Result<Arc<Model>, Stop> {
         match of.into() {
             Home { annex: Some(model), .. } => Ok(model),
-            Home { module, annex: None } => super::stages::model(self, module),
+            Home { module, annex: None, .. } => super::stages::model(self, module),
+        }
+    }
+
+    /// The network that the model stands on in which things are numbered.
+    pub fn network_of(&mut self, home: &Home) -> Result<Arc<Network>, Stop> {
+        match home {
+            Home { alone: true, .. } => Ok(Arc::default()),
+            Home { annex: Some(_), .. } => Ok(self.ground(home.module)?.1),
+            Home { annex: None, .. } => self.network(home.module),
         }
     }
 
@@ -266,12 +277,17 @@ impl<'w> Cx<'w> {
         super::stages::sound(self, module)
     }
 
+    /// Network and surface model that shells and meshes are made on: the whole, or what is sound where declarations failed.
+    pub fn ground(&mut self, module: ModuleId) -> Result<(Arc<Model>, Arc<Network>), Stop> {
+        super::stages::ground(self, module)
+    }
+
     /// What a script declares; evaluates all its points, curves and surfaces first.
     pub fn parts(&mut self, module: ModuleId) -> Result<Arc<Parts>, Stop> {
         super::stages::parts(self, module)
     }
 
-    /// The declared groups of a script: their things, nested lists flattened.
+    /// The declared groups of a script that did not fail: their things, nested lists flattened.
     pub fn groups(&mut self, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
         super::stages::groups(self, module)
     }
@@ -281,7 +297,7 @@ impl<'w> Cx<'w> {
         super::import_part::colors(self, module)
     }
 
-    /// The declared shells of a script.
+    /// The declared shells of a script that did not fail.
     pub fn shells(&mut self, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
         super::stages::shells(self, module)
     }

@@ -61,4 +61,5 @@ pub mod table;
 mod typed_calls;
 pub mod types;
 pub mod units;
+pub mod unmade;
 pub mod value;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cx::Parts;
+use super::cx::{Parts, Sound};
 use super::diag::FileId;
 use super::memory::{Asked, Keys};
 use super::names::Name;
@@ -109,8 +109,13 @@ pub(super) struct Module {
     pub parts: Stage<Arc<Parts>>,
     pub network: Stage<Arc<Network>>,
     pub model: Stage<Arc<Model>>,
-    /// Models of surfaces that are not all declared, of which patches or edges were asked.
-    pub annexes: Vec<Arc<Model>>,
+    /// What is sound of the geometry, where some of it failed.
+    pub sound: Stage<Sound>,
+    /// A declaration that meshes were made without, as it failed.
+    pub lacks: Option<(ModuleId, u32)>,
+    /// Models of surfaces that are not all declared, or that curves and surfaces are made from, of which patches or edges were asked;
+    /// with `true` those that stand on no network.
+    pub annexes: Vec<(Arc<Model>, bool)>,
     pub meshes: Vec<Arc<MeshSpec>>,
     pub mesh_stages: Vec<Stage<Arc<Mesh>>>,
     pub checks: Vec<(u32, CheckResult)>,
@@ -158,6 +163,8 @@ impl Module {
             parts: Stage::Waiting,
             network: Stage::Waiting,
             model: Stage::Waiting,
+            sound: Stage::Waiting,
+            lacks: None,
             annexes: Vec::new(),
             meshes: Vec::new(),
             mesh_stages: Vec::new(),

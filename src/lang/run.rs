@@ -186,7 +186,7 @@ impl Cx<'_> {
         let rest = std::mem::take(&mut self.sink);
         self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
         self.idle_tolerances();
-        let (skipped, unmeshed) = (self.skipped(), self.unmeshed());
+        let (skipped, unmeshed, without) = (self.skipped(), self.unmeshed(), self.meshed_without());
         let mut filed = std::mem::take(&mut self.machine.filed);
         self.tell_meant(&mut filed);
         let mut out: Vec<Diagnostic> = Vec::with_capacity(filed.len());
@@ -197,7 +197,9 @@ impl Cx<'_> {
                 && noted.insert(owner)
             {
                 diagnostic.notes.extend(skipped.get(&owner).map(|members| self.not_built(owner, members)));
-                diagnostic.notes.extend(unmeshed.get(&owner).map(|names| not_meshed(names)));
+                diagnostic.notes.extend(unmeshed.get(&owner).map(|names| told("not meshed either, as the model is not whole", names)));
+                let name = || self.declaration_name(owner.0, owner.1);
+                diagnostic.notes.extend(without.get(&owner).map(|names| told(&format!("meshed without `{}`", name()), names)));
             }
             match out.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
                 Some(found) => found.fold(diagnostic, self.whole),
@@ -248,6 +250,23 @@ impl Cx<'_> {
                 if let Stage::Skipped(m, d) = stage {
                     out.entry((*m, *d)).or_default().push(spec.name.to_string());
                 }
+            }
+        }
+        out
+    }
+
+    /// For each failed declaration the meshes that were made of what is sound.
+    fn meshed_without(&self) -> BTreeMap<(ModuleId, u32), Vec<String>> {
+        let made = |module: &super::module::Module| {
+            let pairs = module.meshes.iter().zip(&module.mesh_stages);
+            pairs.filter(|(_, stage)| matches!(stage, Stage::Done(_))).map(|(spec, _)| spec.name.to_string()).collect::<Vec<_>>()
+        };
+        let mut out: BTreeMap<(ModuleId, u32), Vec<String>> = BTreeMap::new();
+        for module in &self.machine.modules {
+            if let (Some(owner), names) = (module.lacks, made(module))
+                && !names.is_empty()
+            {
+                out.entry(owner).or_default().extend(names);
             }
         }
         out
@@ -340,8 +359,8 @@ fn in_order<T: Clone>(found: &[(u32, T)]) -> Vec<T> {
     found.into_iter().map(|f| f.1.clone()).collect()
 }
 
-/// "not meshed either, as the model is not whole: fine, coarse".
-fn not_meshed(names: &[String]) -> String {
+/// "meshed without `bad`: roof, wall, …".
+fn told(what: &str, names: &[String]) -> String {
     let more = if names.len() > NAMES_LISTED { ", …" } else { "" };
-    format!("not meshed either, as the model is not whole: {}{more}", names[..names.len().min(NAMES_LISTED)].join(", "))
+    format!("{what}: {}{more}", names[..names.len().min(NAMES_LISTED)].join(", "))
 }

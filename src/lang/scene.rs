@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::cx::{Cx, Stop};
 use super::module::{State, bound};
+use super::stages;
 use super::syntax::ast::Keyword;
 use super::value::{Home, ModuleId, ShellValue, Value};
 use crate::base::fault::{Fault, Say};
@@ -26,18 +27,28 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The script's model, extended by those of `surfaces` that it does not declare (moved ones, `let`s).
+    /// The script's model, extended by those of `surfaces` that it does not declare (moved ones, `let`s); where declarations failed
+    /// the model of the others.
     pub fn of<'s>(cx: &mut Cx, module: ModuleId, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
-        let (model, network) = (cx.model(module)?, cx.network(module)?);
+        let (model, network) = cx.ground(module)?;
         Self { model, network }.with(cx, surfaces)
     }
 
     /// The scene of `surfaces`, and where its patches, edges and vertices are numbered: the script's own where that declares them all,
-    /// else one of these surfaces alone, on the script's network. The same surfaces are at home in one place.
+    /// else (and where some of it failed) one of these surfaces or of what is sound, on the script's network. The same surfaces are at home in one place. What is itself a curve or
+    /// surface of the script is made from them alone, on no network: how a surface is bounded does not depend on the others.
     pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, Home), Stop> {
-        let own = Self { model: cx.model(module)?, network: cx.network(module)? };
-        if surfaces.iter().all(|surface| own.find(surface).is_some()) {
-            return Ok((own, module.into()));
+        let alone = stages::is_within(cx, module);
+        let own = if alone {
+            cx.tolerance()?;
+            Self { model: Arc::default(), network: Arc::default() }
+        } else {
+            let (model, network) = cx.ground(module)?;
+            Self { model, network }
+        };
+        if !alone && surfaces.iter().all(|surface| own.find(surface).is_some()) {
+            let annex = if cx.parts(module).is_ok() { None } else { Some(own.model.clone()) };
+            return Ok((own, Home { module, annex, alone }));
         }
         let nothing = Self { model: Arc::default(), ..own };
         let asked = nothing.missing(cx, surfaces);
@@ -45,17 +56,17 @@ impl Scene {
             let mut pairs = model.surfaces.iter().zip(&asked);
             model.surfaces.len() == asked.len() && pairs.all(|(a, b)| side_of(&a.surface, &b.surface) == Some(false))
         };
-        let known = cx.machine.at(module).annexes.iter().find(|model| same(model)).cloned();
+        let known = cx.machine.at(module).annexes.iter().find(|(model, on)| *on == alone && same(model)).map(|found| found.0.clone());
         let scene = match known {
             Some(model) => Self { model, ..nothing },
             None => {
                 let scene = nothing.extended(cx, asked)?;
-                cx.machine.at_mut(module).annexes.push(scene.model.clone());
+                cx.machine.at_mut(module).annexes.push((scene.model.clone(), alone));
                 scene
             }
         };
         let annex = Some(scene.model.clone());
-        Ok((scene, Home { module, annex }))
+        Ok((scene, Home { module, annex, alone }))
     }
 
     /// This scene, extended by those of `surfaces` that it does not hold.

@@ -2,8 +2,9 @@
 
 use super::collections::Resolved;
 use super::cx::{Cx, Stop};
+use super::diag::Label;
 use super::eval::Code;
-use super::syntax::ast::Span;
+use super::syntax::ast::{ExprId, Span};
 use super::types::Ty;
 use super::value::{Quantity, Value};
 use crate::base::bbox::Box3;
@@ -14,6 +15,8 @@ use crate::surface::{Surface, curve_bbox};
 /// The things of a mesh, and the diagonal of the box around them once it was asked for.
 pub(super) struct Meshed<'t> {
     pub things: &'t [(Value, Origin)],
+    /// What says them.
+    pub said: &'t [ExprId],
     pub diagonal: Option<f64>,
 }
 
@@ -22,6 +25,9 @@ impl Cx<'_> {
     pub(super) fn shares(&mut self, code: Code<'_>, settings: &mut [Resolved], meshed: &mut Meshed<'_>) -> Result<(), Stop> {
         for setting in settings.iter_mut().filter(|setting| setting.ty == Ty::Size) {
             let Value::Number(Quantity { value, percent: true, .. }) = setting.value else { continue };
+            if meshed.things.is_empty() && meshed.diagonal.is_none() {
+                return Err(self.share_of_none(code, setting, meshed.said));
+            }
             let diagonal = match meshed.diagonal {
                 Some(diagonal) => diagonal,
                 None => self.box_around(meshed.things)?.diagonal(),
@@ -35,6 +41,21 @@ impl Cx<'_> {
             setting.value = Value::length(value * diagonal);
         }
         Ok(())
+    }
+
+    /// E306: a share of what is meshed, where that is empty: names what chose nothing.
+    fn share_of_none(&mut self, code: Code<'_>, setting: &Resolved, said: &[ExprId]) -> Stop {
+        let file = self.machine.at(code.module).file;
+        let (share, found) = (self.span_of(setting.origin), said.iter().map(|expr| code.span(*expr)).collect::<Vec<_>>());
+        let span = found.first().copied().unwrap_or_default();
+        let words = found.iter().map(|span| format!("`{}`", self.sources.text(file, *span))).collect::<Vec<_>>().join(" and ");
+        let holds = if found.len() == 1 { "holds" } else { "hold" };
+        let text = format!("`{}` is a share of what is meshed, and {words} {holds} nothing", setting.key);
+        let draft = self.error(code, "E306", text, span, "chooses nothing");
+        let labels = found.iter().skip(1).map(|span| Label { file, span: *span, text: "nor does this".to_owned() });
+        let label = share.map(|(file, span)| Label { file, span, text: "a share of it".to_owned() });
+        let help = "a choice that holds something, or a length";
+        draft.labels(labels.chain(label)).help(help).stop()
     }
 
     /// The smallest box along the axes around all things of a mesh.

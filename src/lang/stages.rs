@@ -18,9 +18,7 @@ use crate::base::origin::Origin;
 use crate::base::work;
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::topology::Named;
 use crate::network::Network;
-use crate::surface::Surface;
 
 /// Geometry that the network and the surface model are built from.
 const GEOMETRY: &[Keyword] = &[Keyword::Point, Keyword::Curve, Keyword::ModelingCurve, Keyword::Surface];
@@ -111,6 +109,11 @@ fn asks(cx: &mut Cx, module: ModuleId) {
     cx.machine.asked.fleeting |= !own;
 }
 
+/// Whether a curve, surface or point of a script is being made, so that the whole geometry cannot be asked for.
+pub(super) fn is_within(cx: &Cx, module: ModuleId) -> bool {
+    cx.own_part(module, GEOMETRY).is_some()
+}
+
 pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
     asks(cx, module);
     if let Stage::Done(parts) = &cx.machine.at(module).parts {
@@ -126,10 +129,31 @@ pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
     Ok(parts)
 }
 
+/// Evaluates all declarations of these keywords; those that failed are left out, and the first of them is told.
+fn all_sound(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<Option<(ModuleId, u32)>, Stop> {
+    asks(cx, module);
+    all(cx, module, keywords).map_or_else(without, |()| Ok(None))
+}
+
+/// The declaration that failed where one can go on without it; what cannot be gone on from stays.
+fn without(stop: Stop) -> Result<Option<(ModuleId, u32)>, Stop> {
+    match stop {
+        Stop::Skipped(m, d) => Ok(Some((m, d))),
+        Stop::Broken | Stop::Failed => Ok(None),
+        Stop::NotYet | Stop::Fault(_) | Stop::Bug(_) => Err(stop),
+    }
+}
+
+/// Notes that meshes of a script are made without a declaration.
+fn lacking(cx: &mut Cx, module: ModuleId, missing: Option<(ModuleId, u32)>) {
+    let lacks = &mut cx.machine.at_mut(module).lacks;
+    *lacks = lacks.or(missing);
+}
+
 /// The declared groups of a script with what they hold.
 pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
-    asks(cx, module);
-    all(cx, module, &[Keyword::Group])?;
+    let missing = all_sound(cx, module, &[Keyword::Group])?;
+    lacking(cx, module, missing);
     let mut found: Vec<Found<Vec<Value>>> = Vec::new();
     each_member(cx.machine.at(module), &cx.names, &[Keyword::Group], &mut |i, _, member, name, value| {
         if let Value::List(items) = value {
@@ -145,8 +169,7 @@ pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<V
 
 /// The declared shells of a script.
 pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
-    asks(cx, module);
-    all(cx, module, &[Keyword::Shell])?;
+    all_sound(cx, module, &[Keyword::Shell])?;
     let mut found = Vec::new();
     each_member(cx.machine.at(module), &cx.names, &[Keyword::Shell], &mut |_, _, _, name, value| {
         if let Value::Shell(s) = value {
@@ -197,24 +220,43 @@ fn once<T: Clone>(
 
 /// The whole geometry, or what was evaluated of it.
 pub(super) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
-    if let (Ok(parts), Ok(network), Ok(model)) = (parts(cx, module), network(cx, module), model(cx, module)) {
-        return Ok(Sound { parts, network, model });
-    }
-    let (parts, tolerance) = (Arc::new(gather(cx, module)), cx.tolerance()?);
-    // What is wrong with the curves or surfaces was said when the whole was asked for; some may be fine without the rest.
-    let network = match network(cx, module) {
-        Ok(network) => network,
-        Err(_) => {
-            // What is odd about a part of the curves may be right with the rest.
-            let sink = std::mem::take(&mut cx.sink);
-            let network = cx.pipeline.network(cx, module, &parts).unwrap_or_default();
-            cx.sink = sink;
-            network
+    match parts(cx, module) {
+        Ok(parts) => {
+            if let (Ok(network), Ok(model)) = (network(cx, module), model(cx, module)) {
+                return Ok(Sound { parts, network, model, stands: true });
+            }
         }
-    };
-    let named = |s: &Declared<Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
-    let model = Model::build(parts.surfaces.iter().map(named).collect(), &network, &tolerance, cx.job)?;
-    Ok(Sound { parts, network, model: Arc::new(model) })
+        Err(stop) => {
+            without(stop)?;
+        }
+    }
+    once(cx, |cx| Some(&mut cx.machine.at_mut(module).sound), |cx| gathered(cx, module))
+}
+
+/// Network and model of what was evaluated. What is wrong with the rest was said when the whole was asked for.
+fn gathered(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
+    let parts = Arc::new(gather(cx, module));
+    // What is odd about a part of the curves may be right with the rest.
+    let sink = std::mem::take(&mut cx.sink);
+    let network = network(cx, module).or_else(|_| cx.pipeline.network(cx, module, &parts));
+    cx.sink = sink;
+    let stands = network.is_ok();
+    let network = network.unwrap_or_default();
+    let model = cx.pipeline.model(cx, module, (&parts, network.clone())).map_err(|_| Stop::Broken)?;
+    Ok(Sound { parts, network, model, stands })
+}
+
+/// What shells and meshes are made on: the whole model, or what is sound where declarations of it failed.
+pub(super) fn ground(cx: &mut Cx, module: ModuleId) -> Result<(Arc<Model>, Arc<Network>), Stop> {
+    match parts(cx, module) {
+        Ok(_) => Ok((model(cx, module)?, network(cx, module)?)),
+        Err(stop) => {
+            let missing = without(stop)?;
+            lacking(cx, module, missing);
+            let Sound { network, model, stands, .. } = sound(cx, module)?;
+            if stands { Ok((model, network)) } else { Err(Stop::Broken) }
+        }
+    }
 }
 
 pub(super) fn network(cx: &mut Cx, module: ModuleId) -> Result<Arc<Network>, Stop> {
@@ -224,7 +266,11 @@ pub(super) fn network(cx: &mut Cx, module: ModuleId) -> Result<Arc<Network>, Sto
 
 pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Stop> {
     let parts = parts(cx, module)?;
-    once(cx, |cx| Some(&mut cx.machine.at_mut(module).model), |cx| cx.pipeline.model(cx, module, &parts))
+    let make = |cx: &mut Cx| {
+        let network = network(cx, module)?;
+        cx.pipeline.model(cx, module, (&parts, network))
+    };
+    once(cx, |cx| Some(&mut cx.machine.at_mut(module).model), make)
 }
 
 pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {

@@ -115,11 +115,13 @@ pub struct Home {
     pub module: ModuleId,
     /// The model of those surfaces; `None` for the script's own.
     pub annex: Option<Arc<Model>>,
+    /// It stands on no network: one of the script's surfaces is made from it.
+    pub alone: bool,
 }
 
 impl From<ModuleId> for Home {
     fn from(module: ModuleId) -> Self {
-        Self { module, annex: None }
+        Self { module, annex: None, alone: false }
     }
 }
 
@@ -140,7 +142,7 @@ impl PartialEq for Home {
             }
             _ => false,
         };
-        self.module == other.module && same
+        self.module == other.module && self.alone == other.alone && same
     }
 }
 

@@ -17,7 +17,7 @@ use crate::base::par;
 use crate::base::quadrature::integrate;
 use crate::base::tolerance::{LEAST_SIZE, MEASURE_ACCURACY, SIGN_ACCURACY, TOLD_APART, Tolerance};
 use crate::network::Chain;
-use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, chain_breaks};
+use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, boxed, chain_breaks};
 
 /// A thin sheet of mass 1 per area.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,6 +165,15 @@ pub fn points_inwards(faces: &[(Surface, bool)]) -> Option<bool> {
 /// The smallest box along the axes that holds surfaces; infinite for an unbounded plane.
 pub fn bounds(surfaces: &[Surface]) -> Box3 {
     par::map(surfaces.len(), |k| bbox(&surfaces[k])).into_iter().fold(Box3::EMPTY, Box3::union)
+}
+
+/// The same, and of the surfaces whose own box may be too large by more than a millionth of its diagonal the place in the list of the
+/// one of which that is most, with by how much at most.
+pub fn bounds_told(surfaces: &[Surface]) -> (Box3, Option<(usize, f64)>) {
+    let all = par::map(surfaces.len(), |k| boxed(&surfaces[k]));
+    let loose = all.iter().enumerate().filter_map(|(k, one)| one.loose().map(|by| (k, by)));
+    let worst = loose.reduce(|worst, one| if one.1 > worst.1 { one } else { worst });
+    (all.iter().fold(Box3::EMPTY, |around, one| around.union(one.bounds)), worst)
 }
 
 /// A point near the surfaces, so that moments do not cancel.

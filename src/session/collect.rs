@@ -9,6 +9,7 @@ use crate::lang::cx::{Cx, Parts, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::plans::{CheckResult, ReportTable};
 use crate::lang::scene::Scene;
+use crate::lang::unmade::{Unmade, Why};
 use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
 use crate::mesh::reuse::Reuse;
@@ -19,7 +20,7 @@ use crate::surface::Domain;
 
 use super::report::{
     Cell, CheckRow, Column, Corners, CurveRow, DiagnosticRow, GroupRow, LabelRow, MeshRow, ModelingRow, NetworkCounts, ShellRow,
-    SurfaceRow, Table, TopologyCounts,
+    SurfaceRow, Table, TopologyCounts, UnmadeRow,
 };
 
 /// Counts of the network.
@@ -220,6 +221,21 @@ pub fn table(table: &ReportTable) -> Table {
         title: table.title.clone(),
         columns: table.columns.iter().map(column).collect(),
         rows: table.rows.iter().map(|row| row.iter().map(cell).collect()).collect(),
+    }
+}
+
+/// Something that was not made, with its line.
+pub fn unmade(found: &Unmade, sources: &Sources) -> UnmadeRow {
+    UnmadeRow {
+        name: found.name.clone(),
+        what: found.what.clone(),
+        file: sources.get(found.file).map(|f| f.name.clone()).unwrap_or_default(),
+        line: sources.place(found.file, found.span.start).map_or(0, |place| place.line),
+        because: match &found.why {
+            Why::Failed => None,
+            Why::Waits(of) => Some(of.clone()),
+            Why::Unread => Some(String::new()),
+        },
     }
 }
 

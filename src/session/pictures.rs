@@ -218,7 +218,7 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
 
 /// The surface model that edges and patches of a script are numbered in.
 fn own(cx: &mut Cx, home: &Home) -> Result<Scene, Stop> {
-    Ok(Scene { model: cx.model(home)?, network: cx.network(home.module)? })
+    Ok(Scene { model: cx.model(home)?, network: cx.network_of(home)? })
 }
 
 /// Points that things lie between, for framing them.

@@ -264,7 +264,7 @@ impl Finder<'_> {
             Value::Curve(chain) => vec![Target::Chain(chain.clone())],
             Value::Link(_, link) => vec![Target::Chain(self.scene.network.link_chain(*link))],
             Value::Edge(home, edge) => {
-                let (model, network) = (cx.model(home)?, cx.network(home.module)?);
+                let (model, network) = (cx.model(home)?, cx.network_of(home)?);
                 let place = |id: SurfaceId| self.place(&model, id);
                 let stage = Stage { model: &self.scene.model, network: &self.scene.network };
                 vec![Target::Edge(model.carried(&network, &edge.courses, stage, &place))]
@@ -296,7 +296,7 @@ pub(super) fn edge_name(cx: &Cx, chain: &Chain, edge: &SharedEdge) -> String {
 /// The curve along an edge.
 pub(super) fn chain_of(cx: &mut Cx, home: &Home, edge: &SharedEdge) -> Result<Chain, Stop> {
     let tolerance = cx.tolerance()?;
-    let scene = Scene { model: cx.model(home)?, network: cx.network(home.module)? };
+    let scene = Scene { model: cx.model(home)?, network: cx.network_of(home)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
 }

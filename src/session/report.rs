@@ -42,6 +42,10 @@ pub struct Report {
     pub outputs: Vec<OutputRow>,
     /// Names of the model that stand otherwise in one of the files.
     pub renamed: Vec<RenamedRow>,
+    /// Files that the script asks for and a failed run did not write, by path inside the output folder.
+    pub unwritten: Vec<String>,
+    /// What failed, and what was not made because of it.
+    pub unmade: Vec<UnmadeRow>,
     /// Everything said about the script.
     pub diagnostics: Vec<DiagnosticRow>,
     /// Seconds; the only part that may differ between two runs.
@@ -288,6 +292,21 @@ pub struct RenamedRow {
     pub from: String,
     /// Name in the file.
     pub to: String,
+}
+
+/// Something that was not made; a check that does not hold was made.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct UnmadeRow {
+    /// Its name; of what has none its text.
+    pub name: String,
+    /// The word that declares it; empty where its declaration could not be read.
+    pub what: String,
+    /// Its script.
+    pub file: String,
+    /// Line there, from 1.
+    pub line: usize,
+    /// What it needs and what failed; `None` where it is wrong itself, empty where it needs what could not be read.
+    pub because: Option<String>,
 }
 
 /// A diagnostic.

@@ -281,7 +281,7 @@ impl<'r> Run<'r> {
 
     /// Rows of network and surface model, where something failed of what is sound; gives the box of all, where it is asked for.
     fn geometry(&mut self, sound: &Sound, tolerance: &Tolerance) -> Box3 {
-        let Sound { parts, network, model } = sound;
+        let Sound { parts, network, model, .. } = sound;
         self.report.network = collect::network_counts(network);
         self.report.curves = collect::curves(parts, network);
         self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
@@ -404,6 +404,17 @@ impl<'r> Run<'r> {
         }
     }
 
+    /// Files that the script asks for and that were not written.
+    fn unwritten(&self) -> Vec<String> {
+        if self.task.picture.is_some() || self.light {
+            return Vec::new();
+        }
+        let (exports, pictures) = (self.cx.exports(), self.cx.pictures());
+        let all = exports.iter().map(|spec| &spec.path).chain(pictures.iter().map(|spec| &spec.path));
+        let written = |path: &String| self.report.outputs.iter().any(|row| row.path == *path);
+        all.filter(|path| !written(path)).map(|path| path.to_string()).collect()
+    }
+
     /// The script's name without folder and ending.
     fn model_name(&self) -> String {
         let name = std::path::Path::new(self.task.name).file_stem().unwrap_or_default().to_string_lossy();
@@ -429,6 +440,7 @@ impl<'r> Run<'r> {
     /// Gives outputs their names when all is well, and puts the outcome together.
     fn finish(mut self, said: Option<Diagnostic>) -> (Outcome, Memory) {
         let interrupted = self.cx.job.go_on().is_err();
+        self.report.unmade = self.cx.unmade().iter().map(|unmade| collect::unmade(unmade, &self.cx.sources)).collect();
         let mut diagnostics = self.cx.finish();
         let asked = self.task.picture.is_some_and(|wanted| picture_paths::about_paths(&mut diagnostics, wanted, self.task.text.len()));
         diagnostics.extend(said.or(self.said.take()).filter(|_| !asked));
@@ -452,6 +464,9 @@ impl<'r> Run<'r> {
             self.report.renamed.clear();
         }
         let bug = diagnostics.iter().any(|d| d.code.0 == "E999") && !interrupted;
+        if !ok && !interrupted && self.disk.outputs() == Outputs::Written {
+            self.report.unwritten = self.unwritten();
+        }
         self.report.ok = ok;
         self.report.diagnostics = diagnostics.iter().flat_map(|d| collect::diagnostic(d, &self.cx.sources)).collect();
         let tolerance = self.cx.tolerance_used().map(|t| t.point);

@@ -185,8 +185,8 @@ impl Pipeline for Stages<'_> {
         Ok(network)
     }
 
-    fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Model>, Stop> {
-        let (tolerance, network) = (cx.tolerance()?, cx.network(module)?);
+    fn model(&self, cx: &mut Cx, module: ModuleId, (parts, network): (&Parts, Arc<Network>)) -> Result<Arc<Model>, Stop> {
+        let tolerance = cx.tolerance()?;
         let named = |s: &crate::lang::cx::Declared<crate::surface::Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
         let mut surfaces: Vec<Named> = parts.surfaces.iter().map(named).collect();
         canonical::sort_surfaces(&mut surfaces, &tolerance);

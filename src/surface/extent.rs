@@ -11,13 +11,57 @@ use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::{BOX, EPSILON};
 
+/// A box that holds a surface, and one around points of it that were found.
+#[derive(Clone, Copy, Debug)]
+pub struct Boxed {
+    /// No point of the surface stands out of it by more than [`BOX`] of its diagonal.
+    pub bounds: Box3,
+    /// Around points of the surface.
+    pub(super) found: Box3,
+}
+
+impl Boxed {
+    /// A box of points.
+    pub(super) fn of(bounds: Box3) -> Self {
+        Self { bounds, found: bounds }
+    }
+
+    /// With a point of the surface.
+    pub(super) fn with(self, p: DVec3) -> Self {
+        Self { bounds: self.bounds.with(p), found: self.found.with(p) }
+    }
+
+    /// With a box that points of the surface reach.
+    pub(super) fn and(self, bounds: Box3) -> Self {
+        Self { bounds: self.bounds.union(bounds), found: self.found.union(bounds) }
+    }
+
+    /// With a box that may reach farther than its points.
+    pub(super) fn held_by(self, hull: Box3) -> Self {
+        Self { bounds: self.bounds.union(hull), ..self }
+    }
+
+    /// By how much the box may be too large at most; `None` where that is no more than [`BOX`] of its diagonal.
+    pub fn loose(&self) -> Option<f64> {
+        let apart = (self.bounds.max - self.found.max).max(self.found.min - self.bounds.min).max_element();
+        (apart > BOX * self.bounds.diagonal()).then_some(apart)
+    }
+}
+
+/// The smallest box along the axes that holds the surface, see [`boxed`].
+pub fn bbox(surface: &Surface) -> Box3 {
+    boxed(surface).bounds
+}
+
 /// The smallest box along the axes that holds the surface: no point of it stands out by more than [`BOX`] of the diagonal.
 ///
 /// A descent from the extreme samples finds extreme points; bounds of the surface over ever smaller rectangles then show
 /// that nothing lies further out, or find what does. What a trimmed one has inside its borders is found the same way (`trimmed_extent.rs`).
-pub fn bbox(surface: &Surface) -> Box3 {
+///
+/// After [`MOST`] rectangles what is left is taken by its bound: the box is then too large, and says by how much at most.
+pub fn boxed(surface: &Surface) -> Boxed {
     if surface.domain() == Domain::Unbounded {
-        return Box3 { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+        return Boxed::of(Box3 { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY });
     }
     if surface.domain() == Domain::Loop {
         return trimmed_bbox(surface);
@@ -27,7 +71,7 @@ pub fn bbox(surface: &Surface) -> Box3 {
     if surface.is_flat()
         && let Some(chains) = (0..surface.n_sides()).map(chain).collect::<Option<Vec<_>>>()
     {
-        return chains.iter().fold(Box3::EMPTY, |bounds, chain| bounds.union(curve_bbox(chain)));
+        return Boxed::of(chains.iter().fold(Box3::EMPTY, |bounds, chain| bounds.union(curve_bbox(chain))));
     }
     let (us, vs) = surface.cells();
     let (xs, ys) = (stations(&us), stations(&vs));
@@ -82,19 +126,19 @@ fn below_slant(surface: &Surface, corner: (f64, f64), slant: Box3) -> Box3 {
 }
 
 /// Grows a box of points of the surface until it holds the surface, by branch and bound.
-fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
+fn proved(surface: &Surface, bounds: Box3) -> Boxed {
     let triangle = surface.domain() == Domain::Triangle;
     let slant = match surface.side(SLANT) {
         Side::Chain { chain, from, to } if triangle && from.min(to) <= 0.0 && from.max(to) >= 1.0 => Some(curve_bbox(&chain)),
         _ => None,
     };
-    bounds = slant.map_or(bounds, |slant| bounds.union(slant));
+    let mut grown = Boxed::of(slant.map_or(bounds, |slant| bounds.union(slant)));
     let (us, vs) = surface.cells();
     let stops = |inner: &[f64]| [&[0.0], inner, &[1.0]].concat();
     let (us, vs) = (stops(&us), stops(&vs));
     let mut open: std::collections::VecDeque<((f64, f64), (f64, f64))> =
         vs.windows(2).flat_map(|v| us.windows(2).map(move |u| ((u[0], u[1]), (v[0], v[1])))).collect();
-    let (room, mut seen) = (DVec3::splat(BOX * bounds.diagonal()), 0);
+    let (room, mut seen) = (DVec3::splat(BOX * grown.bounds.diagonal()), 0);
     while let Some((u, v)) = open.pop_front() {
         job::look();
         if triangle && u.0 + v.0 >= 1.0 {
@@ -103,28 +147,28 @@ fn proved(surface: &Surface, mut bounds: Box3) -> Box3 {
         let spread = surface.spread(u, v);
         // Points reached count at once; the middle of a rectangle over the slant is none.
         if !triangle || u.1 + v.1 <= 1.0 {
-            bounds = bounds.with(spread.mid.p);
+            grown = grown.with(spread.mid.p);
         }
         let mut hull = spread.p.bounds();
         if let Some(slant) = slant.filter(|_| u.1 + v.1 > 1.0) {
             let within = below_slant(surface, (u.0, v.0), slant);
             hull = Box3 { min: hull.min.max(within.min), max: hull.max.min(within.max) };
         }
-        let over = (hull.max - bounds.max).max(bounds.min - hull.min);
+        let over = (hull.max - grown.bounds.max).max(grown.bounds.min - hull.min);
         if (0..3).all(|k| over[k] <= room[k]) {
             continue;
         }
         seen += 1;
         let (a, b) = (u.1 - u.0, v.1 - v.0);
         if seen > MOST || a.max(b) <= EPSILON {
-            bounds = bounds.union(hull);
+            grown = grown.held_by(hull);
             continue;
         }
         // In the direction in which the coordinate that stands out most runs most.
         let k = (0..3).max_by(|x, y| over[*x].total_cmp(&over[*y])).unwrap_or(0);
         open.extend(halves((u, v), spread.du.coordinate(k).reach() * a >= spread.dv.coordinate(k).reach() * b));
     }
-    bounds
+    grown
 }
 
 /// A rectangle of (u, v): its ends in u and in v.

@@ -41,12 +41,45 @@ pub struct Outlined {
     pub against: bool,
 }
 
+/// What was asked which side of loops is the face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Where the border of the surface has no curve.
+    Border,
+    /// Curves that are run there and back, inside the face.
+    Inner,
+    /// A point inside the face.
+    Point,
+    /// The directions of the loops.
+    Directions,
+    /// Which of both sides is smaller, or larger where no loop bounds the face from outside.
+    Size,
+}
+
+/// A side of loops that was kept although not everything speaks for it: the other side has another area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Doubt {
+    /// What decided.
+    pub by: Ground,
+    /// Share of it that speaks for the side that was kept, from 0.5 to 1.
+    pub share: f64,
+    /// A place on one of the loops.
+    pub at: DVec3,
+}
+
 /// The parts of a surface on the left of loops, each given by its curves in the direction of the loop; one for each outer loop.
 ///
 /// Where the surface closes loops may run along its seam twice, over it, round the surface and through poles; curves shorter than the
-/// tolerance are left out. The direction of the loops decides only where nothing else does. Fails with E502 or E659 where a loop does not
+/// tolerance are left out. The direction of the loops decides only where nothing else does. Where what decides speaks for both sides the
+/// larger share of it is followed, and told. Fails with E502 or E659 where a loop does not
 /// close, E612 where the loops bound nothing, E613 when a curve leaves the surface.
-pub fn outlined(base: &Surface, loops: &[Vec<Chain>], known: Outlined, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+pub fn outlined(
+    base: &Surface,
+    loops: &[Vec<Chain>],
+    known: Outlined,
+    origin: Origin,
+    tolerance: &Tolerance,
+) -> Result<(Vec<Surface>, Vec<Doubt>)> {
     let mut base = plane::unmapped(base, tolerance)?;
     if base.domain() == Domain::Unbounded {
         base = plane::over(&base, loops.iter().flatten().map(Chain::bbox).fold(Box3::EMPTY, Box3::union));
@@ -54,14 +87,15 @@ pub fn outlined(base: &Surface, loops: &[Vec<Chain>], known: Outlined, origin: O
     let given = loops.iter().flatten().filter(|c| c.length() > tolerance.point).cloned().collect();
     let (borders, inner) = there_and_back(given, tolerance);
     if borders.is_empty() {
-        return Ok(vec![base]);
+        return Ok((vec![base], Vec::new()));
     }
     let dividing = dividing(&base, &borders, Meets::AtEnds, tolerance)?;
     let cells = Cells::new(&base, &dividing.pieces, &dividing.edges, tolerance)?;
     let sides = Sides { base: &base, pieces: &dividing.pieces, cells: &cells, borders: &borders, known, tolerance };
-    let Some(kept) = sides.kept(&inner) else { return Err(sides.nothing(origin).into()) };
+    let Some((kept, doubts)) = sides.kept(&inner) else { return Err(sides.nothing(origin).into()) };
     let faces = cells.faces_of(&kept)?;
-    faces.iter().map(|face| assembled(&base, walks(&dividing.pieces, face), origin)).collect()
+    let made: Result<Vec<Surface>> = faces.iter().map(|face| assembled(&base, walks(&dividing.pieces, face), origin)).collect();
+    Ok((made?, doubts))
 }
 
 /// Curves without those that are run once each way, and the latter.
@@ -93,8 +127,9 @@ enum Tie {
     Other,
 }
 
-/// What speaks for keeping a cell, strongest first.
+/// What speaks for keeping a cell, strongest first: as [`GROUNDS`].
 type Votes = [f64; 5];
+const GROUNDS: [Ground; 5] = [Ground::Border, Ground::Inner, Ground::Point, Ground::Directions, Ground::Size];
 
 struct Sides<'a> {
     base: &'a Surface,
@@ -106,8 +141,8 @@ struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Which cells make the face; none where no choice has it on one side of each curve.
-    fn kept(&self, inner: &[Chain]) -> Option<Vec<bool>> {
+    /// Which cells make the face, with what speaks for others too; none where no choice has it on one side of each curve.
+    fn kept(&self, inner: &[Chain]) -> Option<(Vec<bool>, Vec<Doubt>)> {
         let ties = self.ties();
         let votes = self.votes(inner);
         let n = self.cells.count();
@@ -118,7 +153,7 @@ impl Sides<'_> {
             beside[b].push((a, turns));
         }
         let mut side: Vec<Option<bool>> = vec![None; n];
-        let mut kept = vec![false; n];
+        let (mut kept, mut doubts) = (vec![false; n], Vec::new());
         for first in 0..n {
             if side[first].is_some() {
                 continue;
@@ -140,15 +175,34 @@ impl Sides<'_> {
                     }
                 }
             }
-            let mut sum: Votes = [0.0; 5];
+            let (mut sum, mut all): (Votes, Votes) = ([0.0; 5], [0.0; 5]);
             for cell in &group {
                 let sign = if side[*cell] == Some(true) { 1.0 } else { -1.0 };
-                (0..sum.len()).for_each(|k| sum[k] += sign * votes[*cell][k]);
+                (0..sum.len()).for_each(|k| {
+                    sum[k] += sign * votes[*cell][k];
+                    all[k] += votes[*cell][k].abs();
+                });
             }
-            let as_is = sum.iter().find(|x| x.abs() > self.tolerance.rounding).is_none_or(|x| *x > 0.0);
+            let decides = (0..sum.len()).find(|k| sum[*k].abs() > self.tolerance.rounding);
+            let as_is = decides.is_none_or(|k| sum[k] > 0.0);
+            doubts.extend(self.doubt(&group, decides.unwrap_or(GROUNDS.len() - 1), (&sum, &all)));
             group.iter().for_each(|cell| kept[*cell] = (side[*cell] == Some(true)) == as_is);
         }
-        kept.iter().any(|k| *k).then_some(kept)
+        kept.iter().any(|k| *k).then_some((kept, doubts))
+    }
+
+    /// What speaks for the side of a group of cells that is not kept, where anything does.
+    fn doubt(&self, group: &[usize], decides: usize, (sum, all): (&Votes, &Votes)) -> Option<Doubt> {
+        /// What speaks for the other side is more than rounding from this share of all on.
+        const HEARD: f64 = 1e-6;
+        let share = if all[decides] > 0.0 { 0.5 + 0.5 * sum[decides].abs() / all[decides] } else { 0.5 };
+        if group.len() < 2 || share > 1.0 - HEARD {
+            return None;
+        }
+        let own = |k: &usize| self.cells.beside(*k).into_iter().flatten().any(|cell| group.contains(&cell));
+        let mut bounding = (0..self.pieces.len()).filter(|k| !self.pieces[*k].rim).filter(own);
+        let at = bounding.find_map(|k| middle(self.base, &self.pieces[k]))?.0;
+        Some(Doubt { by: GROUNDS[decides], share, at })
     }
 
     /// Pairs of cells across seams and across curves of loops.

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Domain, Side, Surface};
 use super::curve_extent::curve_bbox_between;
-use super::extent::{Cell, MOST, Sample, extremes, halves};
+use super::extent::{Boxed, Cell, MOST, Sample, extremes, halves};
 use super::samples::stations;
 use super::spread::Spread;
 use crate::base::bbox::Box3;
@@ -21,10 +21,10 @@ use crate::network::Chain;
 
 /// The smallest box along the axes that holds a trimmed surface: no point of it, nor of its borders, stands out by more than [`BOX`]
 /// of the diagonal.
-pub(super) fn trimmed_bbox(surface: &Surface) -> Box3 {
+pub(super) fn trimmed_bbox(surface: &Surface) -> Boxed {
     let borders: Vec<Border> = (0..surface.n_sides()).filter_map(|k| Border::of(surface, k)).collect();
-    let mut bounds = borders.iter().fold(Box3::EMPTY, |bounds, border| match border {
-        Border::Chain(chain, (from, to), _) => bounds.union(curve_bbox_between(chain, *from, *to)),
+    let mut bounds = borders.iter().fold(Boxed::of(Box3::EMPTY), |bounds, border| match border {
+        Border::Chain(chain, (from, to), _) => bounds.and(curve_bbox_between(chain, *from, *to)),
         Border::Line(a, b) => line_bbox(surface, *a, *b, bounds),
     });
     if surface.is_flat() {
@@ -39,7 +39,7 @@ pub(super) fn trimmed_bbox(surface: &Surface) -> Box3 {
     let samples: Vec<Sample> = samples.filter(|sample| surface.keeps(kept(sample.0).0, kept(sample.0).1)).collect();
     for (place, p) in extremes(&base, &samples) {
         let (u, v) = kept(place);
-        if stands_out(&bounds, p) && surface.holds(u, v) {
+        if stands_out(&bounds.bounds, p) && surface.holds(u, v) {
             bounds = bounds.with(p);
         }
     }
@@ -77,7 +77,7 @@ fn course_box(surface: &Surface, k: usize) -> (DVec2, DVec2) {
 }
 
 /// Grows a box by that of a straight line in (u, v), by branch and bound.
-fn line_bbox(surface: &Surface, a: DVec2, b: DVec2, mut bounds: Box3) -> Box3 {
+fn line_bbox(surface: &Surface, a: DVec2, b: DVec2, mut bounds: Boxed) -> Boxed {
     // Where the surface closes a line may run over its seam.
     let mut cuts: Vec<f64> = [(a.x, b.x), (a.y, b.y)].into_iter().flat_map(|(a, b)| seams(a, b)).collect();
     cuts.sort_by(f64::total_cmp);
@@ -86,15 +86,15 @@ fn line_bbox(surface: &Surface, a: DVec2, b: DVec2, mut bounds: Box3) -> Box3 {
     let mut seen = 0;
     while let Some((a, b)) = open.pop_front() {
         job::look();
-        bounds = bounds.union(Box3::of([a, b].map(|uv| surface.point(uv.x, uv.y))));
+        bounds = bounds.and(Box3::of([a, b].map(|uv| surface.point(uv.x, uv.y))));
         let hull = spread_between(surface, a, b).p.bounds();
-        let over = (hull.max - bounds.max).max(bounds.min - hull.min).max_element();
-        if over <= BOX * bounds.diagonal() {
+        let over = (hull.max - bounds.bounds.max).max(bounds.bounds.min - hull.min).max_element();
+        if over <= BOX * bounds.bounds.diagonal() {
             continue;
         }
         seen += 1;
         if seen > MOST || a.distance(b) <= EPSILON {
-            bounds = bounds.union(hull);
+            bounds = bounds.held_by(hull);
             continue;
         }
         let middle = a.lerp(b, 0.5);
@@ -128,7 +128,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The box grown by what of the inside stands out of it.
-    fn grown(&self, mut bounds: Box3, (us, vs): (&[f64], &[f64])) -> Box3 {
+    fn grown(&self, mut bounds: Boxed, (us, vs): (&[f64], &[f64])) -> Boxed {
         let (closed_u, closed_v) = self.base.closed();
         let lines = |inner: &[f64], closed: bool| if closed { [&[0.0], inner, &[1.0]].concat() } else { inner.to_vec() };
         let (across_u, across_v) = (lines(us, closed_u), lines(vs, closed_v));
@@ -144,7 +144,7 @@ impl Search<'_> {
         // Each with whether no border is known to run over it.
         let mut open: VecDeque<(Cell, bool)> = cells.map(|cell| (cell, false)).collect();
         let triangle = self.base.domain() == Domain::Triangle;
-        let (room, gap, mut seen) = (BOX * bounds.diagonal(), self.surface.gap(), 0);
+        let (room, gap, mut seen) = (BOX * bounds.bounds.diagonal(), self.surface.gap(), 0);
         while let Some(((u, v), clear)) = open.pop_front() {
             job::look();
             if triangle && u.0 + v.0 >= 1.0 {
@@ -152,7 +152,7 @@ impl Search<'_> {
             }
             let spread = self.base.spread(u, v);
             let hull = spread.p.bounds();
-            let out = |bounds: &Box3| (hull.max - bounds.max).max(bounds.min - hull.min);
+            let out = |grown: &Boxed| (hull.max - grown.bounds.max).max(grown.bounds.min - hull.min);
             let turns = |d: &Spread, k: usize| {
                 let (du, dv) = (d.du.coordinate(k), d.dv.coordinate(k));
                 (du.low <= 0.0 && du.high >= 0.0 || u.1 - u.0 <= 2.0 * SLIVER)
@@ -178,7 +178,7 @@ impl Search<'_> {
             }
             seen += 1;
             if seen > MOST || (u.1 - u.0).max(v.1 - v.0) <= EPSILON {
-                bounds = bounds.union(hull);
+                bounds = bounds.held_by(hull);
                 continue;
             }
             // Inside, where the coordinate that stands out most runs most; else the longer way, to see whether a border runs over it.
@@ -190,8 +190,8 @@ impl Search<'_> {
         bounds
     }
 
-    fn with(&self, bounds: Box3, (u, v): (f64, f64), p: DVec3) -> Box3 {
-        if stands_out(&bounds, p) && self.surface.holds(u, v) { bounds.with(p) } else { bounds }
+    fn with(&self, bounds: Boxed, (u, v): (f64, f64), p: DVec3) -> Boxed {
+        if stands_out(&bounds.bounds, p) && self.surface.holds(u, v) { bounds.with(p) } else { bounds }
     }
 
     /// Whether no border runs over a rectangle: of curves, by their distance from its middle; they lie within `gap` of the surface.

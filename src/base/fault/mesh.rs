@@ -425,7 +425,8 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         }
         F::TooMuchWork { of, name, surface } => {
             let report = Report::new("E217", format!("the mesh `{name}` takes more work than it may")).at(*of, "asked for here");
-            let report = if surface.is_some() { report.at(*surface, "most of it goes into this face") } else { report };
+            let most = format!("most of it goes into {}", say.quoted(*surface, "this face"));
+            let report = if surface.is_some() { report.at(*surface, most) } else { report };
             report.help("a value that suits the size of the face, and points that are not far off by mistake")
         }
         F::TooManySteps { of, name, limit } => Report::new("E217", format!("the steps of the mesh `{name}` along a border are too many"))

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
+use crate::base::text::decimals;
 
 /// A plain value that an entity cannot be made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,6 +147,15 @@ pub enum ValueFault {
         /// What of it and its name, for example "the area of `roof`".
         what: String,
     },
+    /// W227: the box of a surface may be too large.
+    LooseBox {
+        /// The surface.
+        of: Origin,
+        /// By how much at most.
+        by: f64,
+        /// The same as a share of the diagonal of the box asked for.
+        share: f64,
+    },
     /// E217: a list or work limit.
     Limit {
         /// What would be made, for example "a mesh of 4 000 000 000 elements".
@@ -271,6 +281,13 @@ impl Describe for ValueFault {
             Self::RowWork { of, what } => Report::new("E217", format!("{what} takes more work than it may"))
                 .at(*of, "measured for the report")
                 .help("fewer or simpler parts, and points that are not far off by mistake"),
+            Self::LooseBox { of, by, share } => {
+                let (name, by) = (say.quoted(*of, "this surface"), say.length(*by));
+                let message = format!("the box of {name} may be too large by up to {by}, {} % of its diagonal", decimals(share * 100.0, 4));
+                Report::new("W227", message)
+                    .at(*of, "has more places that are extreme alike than are looked at")
+                    .help("it holds the surface; the boxes of parts of it (`split`) are closer")
+            }
             Self::Limit { what, limit } => {
                 Report::new("E217", format!("{what} is too much")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))
             }

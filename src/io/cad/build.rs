@@ -6,19 +6,25 @@ use super::part::{Figure, Part, Unusable};
 use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::origin::Origin;
+use crate::base::text::decimals;
 use crate::base::tolerance::Tolerance;
 use crate::model::measure;
 use crate::network::Chain;
-use crate::surface::{Outlined, Side, Surface, outlined, trim};
+use crate::surface::{Doubt, Ground, Outlined, Side, Surface, outlined, trim};
 
 impl Part {
     /// Makes [`Part::built`] of the faces, and [`Part::unusable`] of those that fail; says where the file states other figures of them.
     pub fn build(&mut self, origin: Origin, tolerance: &Tolerance) -> Vec<Malformed> {
         self.built = Vec::with_capacity(self.surfaces.len());
+        let mut said = Vec::new();
         for (k, item) in self.surfaces.iter().enumerate() {
             job::look();
             self.built.push(match item.value.surfaces(origin, tolerance) {
-                Ok(surfaces) => surfaces,
+                Ok((surfaces, doubts)) => {
+                    let words = |doubt: &Doubt| format!("{} at {}{}: {}", item.name, self.mark, item.id, told(doubt, self.model_unit));
+                    said.extend(doubts.iter().map(|doubt| Malformed::line(item.line, words(doubt))));
+                    surfaces
+                }
                 Err(Damage(why)) => {
                     let entity = format!("{} at {}{}", item.name, self.mark, item.id);
                     self.unusable.push(Unusable { face: Some(k), entity, line: item.line, cause: why });
@@ -26,7 +32,8 @@ impl Part {
                 }
             });
         }
-        self.differences()
+        said.extend(self.differences());
+        said
     }
 
     /// Share of the area that the faces without a surface have, from 0 to 1, where the file states the area of all.
@@ -43,16 +50,17 @@ impl Part {
 }
 
 impl Face {
-    /// The surface values, one for each outer loop; borders may be as far off as the file has them.
-    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>, Damage> {
+    /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
+    /// the file has them.
+    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
         let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
         if self.outer.is_none() && self.holes.is_empty() {
-            return Ok(vec![self.turned(self.base.clone())]);
+            return Ok((vec![self.turned(self.base.clone())], Vec::new()));
         }
         let trimmed = || {
             let outer = self.outer.as_deref().map(chains).unwrap_or_default();
             let holes: Vec<Vec<Chain>> = self.holes.iter().map(|hole| chains(hole)).collect();
-            trim(&self.base, &outer, &holes, origin, &tolerance).map(|surface| vec![surface])
+            trim(&self.base, &outer, &holes, origin, &tolerance).map(|surface| (vec![surface], Vec::new()))
         };
         let bounded = || {
             let loops: Vec<Vec<Chain>> = self.outer.iter().chain(&self.holes).map(|border| chains(border)).collect();
@@ -70,7 +78,8 @@ impl Face {
         } else {
             bounded().or_else(|why| trimmed().map_err(|_| why))
         };
-        Ok(made?.into_iter().map(|surface| self.turned(surface)).collect())
+        let (made, doubts) = made?;
+        Ok((made.into_iter().map(|surface| self.turned(surface)).collect(), doubts))
     }
 
     /// Whether the surface below has neither seams nor poles.
@@ -81,6 +90,20 @@ impl Face {
     fn turned(&self, surface: Surface) -> Surface {
         if self.flipped { surface.flipped() } else { surface }
     }
+}
+
+/// "its loops do not agree which side is the face, …".
+fn told(doubt: &Doubt, unit: &str) -> String {
+    let percent = decimals(doubt.share * 100.0, 1);
+    let why = match doubt.by {
+        Ground::Border => format!("{percent} % of the border of the surface that no curve runs along speaks for it"),
+        Ground::Inner => format!("{percent} % of the curves that are run there and back lie in it"),
+        Ground::Point => "a point inside the face lies in it".to_owned(),
+        Ground::Directions => format!("{percent} % of their length has it on its left"),
+        Ground::Size => "their directions cancel, so its size decided".to_owned(),
+    };
+    let at = doubt.at.to_array().map(|x| decimals(x, 3)).join(", ");
+    format!("its loops do not agree which side of them is the face, near ({at}) {unit}; the side that is kept: {why}")
 }
 
 fn chains(borders: &[Border]) -> Vec<Chain> {

@@ -117,7 +117,7 @@ fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&Geometry) -> Result<b
         match value {
             Value::List(items) => open.extend(items.iter().rev().cloned()),
             Value::Edge(home, edge) => {
-                let scene = Scene { model: cx.model(&home)?, network: cx.network(home.module)? };
+                let scene = Scene { model: cx.model(&home)?, network: cx.network_of(&home)? };
                 let Some(track) = scene.model.shared_track(&edge, &scene.network) else { continue };
                 if wanted(&Geometry { scene: &scene, edge: &edge, track, tolerance })? {
                     found.push(EdgeOf(home, edge));

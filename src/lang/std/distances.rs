@@ -32,7 +32,7 @@ fn figure(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Figure, S
         Value::Curve(_) | Value::Link(..) => Figure::Curve(cx.as_chain(value)?),
         Value::Edge(home, edge) => {
             let tolerance = cx.tolerance()?;
-            let scene = Scene { model: cx.model(&home)?, network: cx.network(home.module)? };
+            let scene = Scene { model: cx.model(&home)?, network: cx.network_of(&home)? };
             let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
             Figure::Curve(scene.shared_chain(&edge, &tolerance)?.ok_or_else(later)?)
         }

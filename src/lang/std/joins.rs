@@ -67,7 +67,7 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
 /// The stretches along which an edge of the model joins two faces.
 fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Stop> {
     let tolerance = cx.tolerance()?;
-    let (model, network) = (cx.model(&edge.0)?, cx.network(edge.0.module)?);
+    let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
     const SAMPLES: u32 = 32;
     let Some(track) = model.shared_track(&edge.1, &network) else { return Ok(Vec::new()) };
     let length = track.length();

@@ -28,6 +28,16 @@ pub(super) fn record_of(cx: &mut Cx, bounds: Box3) -> Value {
     ])
 }
 
+/// The box of surfaces as a record; W227 where it may be too large.
+pub(super) fn box_of(cx: &mut Cx, surfaces: &[Surface]) -> Value {
+    let (bounds, loose) = measure::bounds_told(surfaces);
+    if let Some((k, by)) = loose {
+        let whole = (bounds.max - bounds.min).length();
+        cx.say(&ValueFault::LooseBox { of: surfaces[k].origin(), by, share: by / whole }.into());
+    }
+    record_of(cx, bounds)
+}
+
 /// What a closed shell encloses; an open one encloses nothing.
 pub(super) fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
     let (module, tolerance) = (cx.module(), cx.tolerance()?);
@@ -91,9 +101,13 @@ fields! {
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, curve_bbox(&of)));
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
-    fn bbox(of: Surface) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&[of])));
+    ///
+    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
+    fn bbox(of: Surface) -> Value = |cx, of| Ok(box_of(cx, &[of]));
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
-    fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(record_of(cx, measure::bounds(&of.surfaces)));
+    ///
+    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
+    fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(box_of(cx, &of.surfaces));
     /// The smallest box along the axes that holds all nodes. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Arc<MeshValue>) -> Value = |cx, of| {
         let mesh = cx.mesh(&of)?;

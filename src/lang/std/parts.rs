@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::measures::{record_of, solid};
-use crate::base::bbox::Box3;
+use super::measures::{box_of, solid};
 use crate::base::fault::ValueFault;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::part::PartValue;
@@ -215,14 +214,17 @@ fields! {
         Err(other) => Err(other),
     };
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
+    ///
+    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
     fn bbox(of: Arc<PartValue>) -> Value = |cx, of| boxed(cx, &of.faces);
     /// The smallest box along the axes around surfaces, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
+    ///
+    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
     fn bbox(of: Vec<Surface>) -> Value = |cx, of| boxed(cx, &of);
     /// Area of surfaces together.
     fn area(of: Vec<Surface>) -> Area = |_, of| Ok(Area(measure::sheet(&of).area));
 }
 
 fn boxed(cx: &mut Cx, faces: &[Surface]) -> Result<Value, Stop> {
-    let bounds = if faces.is_empty() { Box3::EMPTY } else { measure::bounds(faces) };
-    if bounds.is_empty() { Err(nothing()) } else { Ok(record_of(cx, bounds)) }
+    if faces.is_empty() { Err(nothing()) } else { Ok(box_of(cx, faces)) }
 }

@@ -57,7 +57,7 @@ fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Stop> {
 fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Stop> {
     let (surfaces, stated) = (faces.surfaces(), faces.snap());
     let (home, model, _) = patches(cx, &surfaces)?;
-    let (tolerance, network) = (cx.tolerance()?, cx.network(home.module)?);
+    let (tolerance, network) = (cx.tolerance()?, cx.network_of(&home)?);
     let scene = Scene { model, network };
     let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
     let near = scene.model.reach(places.iter().copied(), stated, &tolerance);
@@ -74,7 +74,7 @@ fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
 fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Stop> {
     let (all, _) = skin(cx, faces)?;
     let Some(home) = all.first().map(|edge| edge.0.clone()) else { return Ok(all) };
-    let (model, network, tolerance) = (cx.model(&home)?, cx.network(home.module)?, cx.tolerance()?);
+    let (model, network, tolerance) = (cx.model(&home)?, cx.network_of(&home)?, cx.tolerance()?);
     let scene = Scene { model, network };
     let surfaces = faces.surfaces();
     let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
@@ -103,7 +103,7 @@ fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Stop> {
 
 /// The geometry of an edge at the middle of its length.
 fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
-    let (model, network) = (cx.model(&edge.0)?, cx.network(edge.0.module)?);
+    let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
     let track = model.shared_track(&edge.1, &network).ok_or(Stop::Bug("an edge without geometry"))?;
     Ok(track.point(0.5 * track.length()))
 }
@@ -111,7 +111,7 @@ fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
 /// The one edge of some surfaces that lies on a curve or at a point.
 fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Stop> {
     let (home, model, patches) = patches(cx, surfaces)?;
-    let scene = Scene { model: model.clone(), network: cx.network(home.module)? };
+    let scene = Scene { model: model.clone(), network: cx.network_of(&home)? };
     let mut found: Vec<EdgeId> = Vec::new();
     for edge in model.edges_of(&patches) {
         if choosing::lies(cx, &scene, &model.whole_edge(edge), key)? {
@@ -144,7 +144,7 @@ fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
 /// The modeling curve along an edge.
 pub(in crate::lang) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
     let tolerance = cx.tolerance()?;
-    let scene = Scene { model: cx.model(&edge.0)?, network: cx.network(edge.0.module)? };
+    let scene = Scene { model: cx.model(&edge.0)?, network: cx.network_of(&edge.0)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(&edge.1, &tolerance)?.ok_or_else(later)?)
 }

@@ -104,7 +104,7 @@ impl Held {
                 }
             }
             Thing::Edge(home, edge) => {
-                let (Ok(model), Ok(network), Ok(tolerance)) = (cx.model(home), cx.network(home.module), cx.tolerance()) else { return };
+                let (Ok(model), Ok(network), Ok(tolerance)) = (cx.model(home), cx.network_of(home), cx.tolerance()) else { return };
                 let scene = Scene { model, network };
                 match scene.shared_chain(edge, &tolerance) {
                     Ok(Some(chain)) => self.chain(&chain),

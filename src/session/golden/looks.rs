@@ -74,7 +74,7 @@ pub fn of(cx: &mut Cx) -> Looks {
     let Some(tolerance) = cx.tolerance_used() else { return looks };
     let unit = cx.unit().name;
     if let Ok(sound) = cx.sound(ModuleId::MAIN) {
-        let Sound { parts, network, model } = &sound;
+        let Sound { parts, network, model, .. } = &sound;
         looks.points = parts.points.iter().map(|p| line("point", &p.name).put("at", point(p.value, unit)).0).collect();
         let names = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect::<BTreeSet<String>>();
         let curves = names(parts.curves.iter().map(|c| &*c.name).collect());
