@@ -20,7 +20,7 @@ use super::trim::{assembled, shifts};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Result, SurfaceFault};
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
 use crate::network::Chain;
 
 /// Where two curves are compared, as shares of their lengths.
@@ -193,10 +193,8 @@ impl Sides<'_> {
 
     /// What speaks for the side of a group of cells that is not kept, where anything does.
     fn doubt(&self, group: &[usize], decides: usize, (sum, all): (&Votes, &Votes)) -> Option<Doubt> {
-        /// What speaks for the other side is more than rounding from this share of all on.
-        const HEARD: f64 = 1e-6;
         let share = if all[decides] > 0.0 { 0.5 + 0.5 * sum[decides].abs() / all[decides] } else { 0.5 };
-        if group.len() < 2 || share > 1.0 - HEARD {
+        if group.len() < 2 || share > 1.0 - ROUNDING_SHARE {
             return None;
         }
         let own = |k: &usize| self.cells.beside(*k).into_iter().flatten().any(|cell| group.contains(&cell));
