@@ -279,7 +279,7 @@ fn the_json_report_has_its_keys_in_order() {
     let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ");
     assert_eq!(
         keys(&report),
-        "loft model units ok network modeling curves surfaces topology shells meshes checks reports outputs renamed diagnostics timings"
+        "loft model units ok network modeling curves surfaces topology shells meshes checks reports outputs renamed unwritten unmade diagnostics timings"
     );
     assert_eq!(keys(&report["surfaces"][0]), "name kind flow patches edges vertices area");
     assert_eq!(
