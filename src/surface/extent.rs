@@ -58,7 +58,7 @@ pub fn bbox(surface: &Surface) -> Box3 {
 /// A descent from the extreme samples finds extreme points; bounds of the surface over ever smaller rectangles then show
 /// that nothing lies further out, or find what does. What a trimmed one has inside its borders is found the same way (`trimmed_extent.rs`).
 ///
-/// After [`MOST`] rectangles what is left is taken by its bound: the box is then too large, and says by how much at most.
+/// After a bounded number of rectangles what is left is taken by its bound: the box is then too large, and says by how much at most.
 pub fn boxed(surface: &Surface) -> Boxed {
     if surface.domain() == Domain::Unbounded {
         return Boxed::of(Box3 { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY });
