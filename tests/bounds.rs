@@ -16,6 +16,7 @@ use lofting::geometry::{Curve, Ends, Motion, Spline, spread};
 use lofting::mesh::chart::{Chart, Shape};
 use lofting::mesh::faces::Frame;
 use lofting::mesh::free::bound::chord;
+use lofting::mesh::free::sides::distance;
 use lofting::mesh::{Elements, FaceRange, Input, Mesh, Method as MeshMethod, Plan, build as mesh_of};
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
@@ -482,7 +483,7 @@ fn jumps_of_first_derivatives_are_bounded() {
         let at = [low, glam::DVec2::new(high.x, low.y + part(3, 17) * across), glam::DVec2::new(low.x + part(2, 19) * half, high.y)];
         let corner = at.map(|at| surface.point(at.x, at.y));
         let normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalize();
-        let bound = chord((&surface, Some(&quick)), at, corner, f64::INFINITY);
+        let bound = chord((&surface, Some(&quick)), (at, None), corner, f64::INFINITY);
         jumps += usize::from(quick.bends((low, high), normal).unwrap().jump > 0.0);
         for (i, j) in (0..=12_u32).flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0))) {
             let at = at[0] * (1.0 - i - j) + at[1] * i + at[2] * j;
@@ -494,7 +495,7 @@ fn jumps_of_first_derivatives_are_bounded() {
     // Never far more than there is: halving a triangle beside the knot lowers the bound.
     let of = |size: f64| {
         let at = [(-0.4, 0.0), (0.6, 0.1), (-0.1, 1.0)].map(|(x, y)| glam::DVec2::new(knot + x * size, 0.4 + y * size));
-        chord((&surface, Some(&quick)), at, at.map(|at| surface.point(at.x, at.y)), f64::INFINITY)
+        chord((&surface, Some(&quick)), (at, None), at.map(|at| surface.point(at.x, at.y)), f64::INFINITY)
     };
     assert!(of(0.01) < 0.6 * of(0.02), "{} {}", of(0.01), of(0.02));
 }
@@ -672,4 +673,37 @@ fn forty_sliver_patches_leave_the_grid_unchanged() {
         }
     }
     assert!(counts[0] < counts[2] && counts[2] < counts[4], "node counts fall as the limit is relaxed: {counts:?}");
+}
+
+#[test]
+fn the_surface_over_sides_is_as_near_as_their_bound_says() {
+    let surface = uneven_net(3, 3);
+    let quick = surface.quick().unwrap();
+    let mut near = 0;
+    for k in 0..200_u32 {
+        let part = |n: u32, of: u32| f64::from(k * n % of) / f64::from(of);
+        let size = 0.002 + 0.05 * part(7, 31);
+        let low = glam::DVec2::new(0.9 * part(5, 29), 0.9 * part(13, 41));
+        let at = [low, low + glam::DVec2::new(size, size * part(3, 17)), low + glam::DVec2::new(size * part(2, 19), size)];
+        let corner = at.map(|at| surface.point(at.x, at.y));
+        let sides = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [at[i], at[j]]);
+        let truth = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+            let along = (corner[j] - corner[i]).normalize();
+            let off = |n: u32| {
+                let place = at[i].lerp(at[j], f64::from(n) / 64.0);
+                (surface.point(place.x, place.y) - corner[i]).reject_from_normalized(along).length()
+            };
+            (1..64).map(off).fold(0.0, f64::max)
+        });
+        let most = truth.into_iter().fold(0.0, f64::max);
+        for wanted in [f64::INFINITY, 1.1 * most] {
+            let bound = distance((&surface, Some(&quick)), sides.map(Some), corner, wanted);
+            assert!(most <= bound * (1.0 + 1e-9) + 1e-12, "{most} against {bound}");
+            near += usize::from(bound <= 1.1 * most);
+        }
+        // A side that is not asked for is not looked at.
+        let first = distance((&surface, Some(&quick)), [Some(sides[0]), None, None], corner, f64::INFINITY);
+        assert!(first >= truth[0] * (1.0 - 1e-9) - 1e-12);
+    }
+    assert!(near > 150, "{near}");
 }

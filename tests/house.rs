@@ -55,7 +55,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_800),
     ("surface", 23_900),
     ("model", 6_250),
-    ("mesh", 22_700),
+    ("mesh", 22_900),
     ("io", 14_200),
     ("draw", 3_000),
     ("lang", 28_900),

@@ -2,13 +2,14 @@
 //!
 //! The points are those of a triangle divided in six along each side, corners left out. Each has a place on the surface by
 //! linear interpolation of (u, v). What is off along the normal there is nearly the distance (the error falls with the
-//! square of the size); of each row the triangles that seem farthest are followed to their feet.
+//! square of the size). One more point is where the quadratic function is largest that has the same heights in the corners and in the middles
+//! of the sides. Of each row the triangles that seem farthest are followed to their feet.
 
 use glam::{DVec2, DVec3};
 
 use super::chart::{Chart, Grid, Shape};
 use super::faces::Frame;
-use super::free::loads::from_pole;
+use super::free::poles::from_pole;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
@@ -207,17 +208,29 @@ impl Cell {
         let [pa, pb, pc] = self.half.map(|k| self.points[k]);
         let normal = (pb - pa).cross(pc - pa).normalize_or_zero();
         let mut seen = Seen { seems: -1.0, p: pa, uv: self.places[0] };
+        let place = |x: f64, y: f64| {
+            let (s, t) = (x / SIX as f64, y / SIX as f64);
+            let [q0, q1, _, q3] = self.places;
+            (q0.0 + (q1.0 - q0.0) * s + (q3.0 - q0.0) * t, q0.1 + (q1.1 - q0.1) * s + (q3.1 - q0.1) * t)
+        };
+        let mut middles = [0.0; 3];
         for (wa, wb, wc) in weights() {
             let x = (a.0 * wa + b.0 * wb + c.0 * wc) / SIX;
             let y = (a.1 * wa + b.1 * wb + c.1 * wc) / SIX;
             let p = (pa * wa as f64 + pb * wb as f64 + pc * wc as f64) / SIX as f64;
-            let seems = off(p, fine[y * width + i * SIX + x], normal);
-            if seems > seen.seems {
-                let (s, t) = (x as f64 / SIX as f64, y as f64 / SIX as f64);
-                let [q0, q1, _, q3] = self.places;
-                let uv = (q0.0 + (q1.0 - q0.0) * s + (q3.0 - q0.0) * t, q0.1 + (q1.1 - q0.1) * s + (q3.1 - q0.1) * t);
-                seen = Seen { seems, p, uv };
+            let there = fine[y * width + i * SIX + x];
+            if let Some(k) = middle([wa, wb, wc]) {
+                middles[k] = (there - p).dot(normal);
             }
+            let seems = off(p, there, normal);
+            if seems > seen.seems {
+                seen = Seen { seems, p, uv: place(x as f64, y as f64) };
+            }
+        }
+        if let Some((seems, w)) = peak(middles).filter(|(seems, _)| *seems > seen.seems) {
+            let along = |a: usize, b: usize, c: usize| a as f64 * w[0] + b as f64 * w[1] + c as f64 * w[2];
+            let uv = place(along(a.0, b.0, c.0), along(a.1, b.1, c.1));
+            seen = Seen { seems, p: pa * w[0] + pb * w[1] + pc * w[2], uv };
         }
         seen
     }
@@ -241,6 +254,23 @@ fn weights() -> impl Iterator<Item = (usize, usize, usize)> {
     (0..=SIX).flat_map(|b| (0..=SIX - b).map(move |c| (SIX - b - c, b, c))).filter(|(a, b, c)| *a != SIX && *b != SIX && *c != SIX)
 }
 
+/// The side opposite which corner weights are the middle of.
+fn middle(weights: [usize; 3]) -> Option<usize> {
+    const HALF: usize = SIX / 2;
+    (0..3).find(|k| weights[*k] == 0 && weights[(*k + 1) % 3] == HALF)
+}
+
+/// Where the quadratic function over a triangle that vanishes at the corners, and has such heights in the middles of the sides opposite, is
+/// largest inside, as weights, with its height; `None` where it is largest on a side.
+fn peak(middles: [f64; 3]) -> Option<(f64, [f64; 3])> {
+    let [a, b, c] = middles;
+    let w = [a * (b + c - a), b * (c + a - b), c * (a + b - c)];
+    let sum = w[0] + w[1] + w[2];
+    let w = w.map(|w| w / sum);
+    let is_inside = w.iter().all(|w| *w > 0.0);
+    is_inside.then(|| (4.0 * (a * w[1] * w[2] + b * w[2] * w[0] + c * w[0] * w[1]).abs(), w))
+}
+
 /// Places of a triangle's corners, with one at a pole between the others.
 fn beside_pole(surface: &Surface, at: [(f64, f64); 3]) -> [(f64, f64); 3] {
     let tangents = |at: DVec2| {
@@ -254,14 +284,23 @@ fn beside_pole(surface: &Surface, at: [(f64, f64); 3]) -> [(f64, f64); 3] {
 fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Seen {
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or_zero();
     let mut seen = Seen { seems: -1.0, p: points[0], uv: uv[0] };
+    let place = |w: [f64; 3]| (uv[0].0 * w[0] + uv[1].0 * w[1] + uv[2].0 * w[2], uv[0].1 * w[0] + uv[1].1 * w[1] + uv[2].1 * w[2]);
+    let spot = |w: [f64; 3]| points[0] * w[0] + points[1] * w[1] + points[2] * w[2];
+    let mut middles = [0.0; 3];
     for (a, b, c) in weights() {
         let w = [a, b, c].map(|n| n as f64 / SIX as f64);
-        let at = (uv[0].0 * w[0] + uv[1].0 * w[1] + uv[2].0 * w[2], uv[0].1 * w[0] + uv[1].1 * w[1] + uv[2].1 * w[2]);
-        let p = points[0] * w[0] + points[1] * w[1] + points[2] * w[2];
-        let seems = off(p, point(at), normal);
+        let (at, p) = (place(w), spot(w));
+        let there = point(at);
+        if let Some(k) = middle([a, b, c]) {
+            middles[k] = (there - p).dot(normal);
+        }
+        let seems = off(p, there, normal);
         if seems > seen.seems {
             seen = Seen { seems, p, uv: at };
         }
+    }
+    if let Some((seems, w)) = peak(middles).filter(|(seems, _)| *seems > seen.seems) {
+        seen = Seen { seems, p: spot(w), uv: place(w) };
     }
     seen
 }

@@ -117,6 +117,13 @@ impl Bends {
         let ranges = [0, 1, 2].map(range);
         Self { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1), jump: self.jump.max(other.jump) }
     }
+
+    /// The most that the second derivative along a step of (u, v) is.
+    pub fn along(&self, step: DVec2) -> f64 {
+        let squares = [step.x * step.x, 2.0 * step.x * step.y, step.y * step.y];
+        let mid: f64 = (0..3).map(|k| self.mid[k] * squares[k]).sum();
+        mid.abs() + (0..3).map(|k| self.slack[k] * squares[k].abs()).sum::<f64>()
+    }
 }
 
 impl Surface {

@@ -32,7 +32,7 @@ fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), n
 }
 
 /// Bounds over any box: where the surface closes, parameters go on over the seam.
-fn bent_over(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
+pub fn bent_over(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
     let closed = turning(surface);
     if surface.is_flat() || low.cmpge(DVec2::ZERO).all() && high.cmple(DVec2::ONE).all() {
         return bent(surface, quick, (low, high), normal);
@@ -70,20 +70,30 @@ const PARTS: u32 = 3;
 /// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
 /// has no bounded second derivative. `quick` is the surface made ready, where it can be.
 ///
-/// A bound above `wanted` is found by parts, with the heights at their corners: of a part half as wide what is not known of the
+/// Of a triangle with a corner at a pole a second one in (u, v) belongs to it, with two corners there: each is looked at. A bound above
+/// `wanted` is found by parts, with the heights at their corners: of a part half as wide what is not known of the
 /// bend weighs an eighth. Nearly what there is, for some five times the work.
-pub fn chord(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+pub fn chord(of: (&Surface, Option<&Quick>), (uv, second): ([DVec2; 3], Option<[DVec2; 3]>), p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
         return off_line(of.0, uv);
     }
+    let first = above_plane(of, uv, (p[0], normal), wanted);
+    match second {
+        Some(second) if first <= wanted => first.max(above_plane(of, second, (p[0], normal), wanted)),
+        _ => first,
+    }
+}
+
+/// The most that the surface over a triangle of (u, v) is off a plane in which its corners are.
+fn above_plane(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], (on, normal): (DVec3, DVec3), wanted: f64) -> f64 {
     let first = part(of, uv, normal, None);
     if first <= wanted || first > TOO_FAR * wanted {
         return first;
     }
     let height = |uv: DVec2| {
         let at = of.0.point_by(of.1, uv.x, uv.y);
-        (at - p[0]).dot(normal)
+        (at - on).dot(normal)
     };
     let quarter = |uv: [DVec2; 3], above: [f64; 3]| {
         let middle = |i: usize, j: usize| 0.5 * (uv[i] + uv[j]);
@@ -253,7 +263,7 @@ fn surely_tall(
             let uv = [hold(a), hold(b), c].map(|corner| on_side(surface, (at, c), corner));
             let p = uv.map(point);
             let guessed = if k < GUESSES { sampled(&point, uv, p) / limit } else { 1.0 };
-            let load = if guessed <= 1.0 && tries > 0 { chord((surface, quick), uv, p, limit) / limit } else { guessed };
+            let load = if guessed <= 1.0 && tries > 0 { chord((surface, quick), (uv, None), p, limit) / limit } else { guessed };
             if load <= 1.0 {
                 break;
             }

@@ -6,7 +6,9 @@ use glam::{DVec2, DVec3};
 
 use super::bound;
 use super::ground::Ground;
+use super::poles::{self, from_pole, under};
 use super::sheet::Sheet;
+use super::sides;
 use super::web::Web;
 use crate::base::math::angle_between;
 use crate::base::par;
@@ -52,7 +54,7 @@ impl Loads {
         let stale: Vec<u32> = some.iter().copied().filter(|t| corners(*t) != self.seen[*t as usize].0).collect();
         let batches = par::map(stale.len().div_ceil(BATCH), |batch| {
             let some = &stale[batch * BATCH..stale.len().min((batch + 1) * BATCH)];
-            some.iter().map(|t| load_with_sides(sheet, web, web.tri[*t as usize], limits)).collect::<Vec<_>>()
+            some.iter().map(|t| load_with_sides(sheet, web, *t, limits)).collect::<Vec<_>>()
         });
         for (t, load) in stale.iter().zip(batches.into_iter().flatten()) {
             self.seen[*t as usize] = (corners(*t), load);
@@ -121,9 +123,6 @@ fn capped(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), load: Load, limits: 
 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
 const UPRIGHT: f64 = 0.5;
-/// Share of the limit from which on the sides of steep triangles are looked at, and the cosine below which a triangle is steep.
-const SLACK: f64 = 0.75;
-const STEEP: f64 = 0.97;
 
 /// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
 /// triangle that stands on edge: near to what is over it along its own normal, and its sides far from the surface all the same.
@@ -159,24 +158,22 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], first: Option<(DVec2, D
     of_places(sheet, (xy, p, beside), limits)
 }
 
-/// The bounds of a triangle of a front, and where it is steep how far its sides are from the surface.
-fn load_with_sides(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits) -> Load {
+/// The bounds of a triangle of a front, and of its sides where it leans so far that the surface over one of them may be farther from
+/// it than from the plane of the triangle by what is left of the limit: between two triangles at an angle nothing is nearer.
+fn load_with_sides(sheet: &Sheet, web: &Web, t: u32, limits: &Limits) -> Load {
+    let corners = web.tri[t as usize];
     let found = load(sheet, web, corners, None, limits);
+    let Some(limit) = limits.chord.filter(|_| found.chord > 0.0 && found.chord <= 1.0) else { return found };
     let (xy, p) = (corners.map(|n| web.xy[n as usize]), corners.map(|n| web.p[n as usize]));
-    let steep = limits.chord.filter(|_| (SLACK..=1.0).contains(&found.chord) && lean(sheet, xy, p) < STEEP);
-    steep.map_or(found, |limit| Load { chord: found.chord.max(over_sides(sheet, xy, p) / limit), ..found })
-}
-
-/// How far the surface over the sides of a triangle is from them, across each, at a few places: between two triangles at a large angle
-/// a side is farther off than either of them along its own normal.
-fn over_sides(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
-    let side = |k: usize| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let along = (p[j] - p[i]).normalize_or_zero();
-        let off = |share: f64| (sheet.spot(xy[i].lerp(xy[j], share)).p - p[i].lerp(p[j], share)).reject_from_normalized(along).length();
-        if along == DVec3::ZERO { 0.0 } else { [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max) }
-    };
-    side(0).max(side(1)).max(side(2))
+    if found.chord <= lean(sheet, xy, p) {
+        return found;
+    }
+    let mut ends = poles::sides(&|at| sheet.tangents(at.into()), xy.map(|xy| DVec2::from(sheet.uv(xy)))).map(Some);
+    // Borders keep the limit by themselves.
+    let locked = web.locked.get(t as usize).map_or(0, |bits| *bits);
+    (0..3).filter(|k| locked >> k & 1 == 1).for_each(|k| ends[k] = None);
+    let farthest = sides::distance((sheet.surface(), sheet.quick()), ends, p, limit);
+    Load { chord: found.chord.max(farthest / limit), ..found }
 }
 
 /// The same of three places of the chart with their points, by parts.
@@ -189,7 +186,8 @@ fn of_places(sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limi
     let places = xy.map(|xy| DVec2::from(sheet.uv(xy)));
     let surface = (sheet.surface(), sheet.quick());
     let chord = limits.chord.map_or(0.0, |limit| {
-        (bound::chord(surface, from_pole(&|at| sheet.tangents(at.into()), places), p, limit - beside) + beside) / limit
+        let under = under(&|at| sheet.tangents(at.into()), places);
+        (bound::chord(surface, under, p, limit - beside) + beside) / limit
     });
     let angle = limits.angle.map_or(0.0, |limit| {
         let columns = from_pole(&|at| sheet.tangents(at.into()), places);
@@ -218,30 +216,4 @@ fn pole_normal(sheet: &Sheet, at: DVec2) -> Option<DVec3> {
 /// How far a border node is from the surface: glued edges run beside it.
 fn off_surface(sheet: &Sheet, web: &Web, n: usize, limit: f64) -> f64 {
     gaps::distance(sheet.surface(), web.p[n], sheet.uv(web.xy[n]), limit * gaps::SLIGHT)
-}
-
-/// Places of a triangle of which a corner may be at a pole: all places there are one point, and that between the other two
-/// corners spans the least.
-pub fn from_pole(tangents: &impl Fn(DVec2) -> [DVec3; 3], at: [DVec2; 3]) -> [DVec2; 3] {
-    let free = at.map(|at| {
-        // Poles lie on the border of (u, v).
-        if at.cmpgt(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all() {
-            return None;
-        }
-        let [_, du, dv] = tangents(at).map(DVec3::length);
-        [(du, dv, 0), (dv, du, 1)].into_iter().find(|(none, all, _)| *none <= SINGULAR * all).map(|found| found.2)
-    });
-    let mut best = at;
-    for k in 0..3 {
-        let Some(axis) = free[k] else { continue };
-        // Of two corners in poles both have the column of the third.
-        let others = [(k + 1) % 3, (k + 2) % 3];
-        let held: Vec<f64> = others.into_iter().filter(|i| free[*i] != Some(axis)).map(|i| at[i][axis]).collect();
-        best[k][axis] = match held[..] {
-            [] => 0.5 * (at[others[0]][axis] + at[others[1]][axis]),
-            [one] => one,
-            _ => 0.5 * (held[0] + held[1]),
-        };
-    }
-    best
 }

@@ -10,6 +10,7 @@ use crate::base::job;
 use crate::base::triangulate_points::{Triangles, points};
 use crate::mesh::free::build::{Trouble, inside};
 use crate::mesh::free::loads;
+use crate::mesh::free::poles::from_pole;
 use crate::mesh::free::tree::Class;
 use crate::mesh::free::web::Web;
 
@@ -97,7 +98,7 @@ impl Work<'_> {
     fn wraps(&self, web: &Web, c: [u32; 3]) -> bool {
         let sheet = self.ask.sheet;
         let places = c.map(|n| DVec2::from(sheet.uv(web.xy[n as usize])));
-        let columns = loads::from_pole(&|at| sheet.tangents(at.into()), places);
+        let columns = from_pole(&|at| sheet.tangents(at.into()), places);
         let middle = (columns[0] + columns[1] + columns[2]) / 3.0;
         let p = c.map(|n| web.p[n as usize]);
         let (a, b) = [(p[0], p[1]), (p[1], p[2]), (p[2], p[0])]

@@ -1,0 +1,61 @@
+//! Chord errors that are asked for are kept, by the distances of triangles and not by what the mesher tells.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a test fails by panicking")]
+
+#[path = "support/script.rs"]
+mod script;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec3;
+use lofting::base::tolerance::Tolerance;
+use lofting::mesh::Mesh;
+use lofting::session::disk::{Disk, Outputs};
+
+fn mesh(text: &str) -> Arc<Mesh> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let disk = Disk::new(None, Some(folder), &[], Outputs::Counted).unwrap();
+    let outcome = script::outcome("m.loft", text.as_bytes(), &[], &disk);
+    assert!(outcome.report.ok, "{}\n{}", outcome.drawn(false, false), &text[..text.len().min(400)]);
+    outcome.meshes.into_iter().next().unwrap().1
+}
+
+/// Distance of a triangle from the origin.
+fn distance(t: [DVec3; 3]) -> f64 {
+    let normal = (t[1] - t[0]).cross(t[2] - t[0]).normalize_or_zero();
+    let under = normal * normal.dot(t[0]);
+    let is_inside = (0..3).all(|k| (t[(k + 1) % 3] - t[k]).cross(under - t[k]).dot(normal) >= 0.0);
+    let side = |k: usize| {
+        let (a, b) = (t[k], t[(k + 1) % 3]);
+        let share = -a.dot(b - a) / (b - a).length_squared();
+        a.lerp(b, share.clamp(0.0, 1.0)).length()
+    };
+    if is_inside && normal != DVec3::ZERO { under.length() } else { side(0).min(side(1)).min(side(2)) }
+}
+
+#[test]
+fn triangles_at_poles_keep_the_chord_error() {
+    let slanted = "trim(ball, by: plane(at: (0, 0, 30), normal: (0.5, 0.2, 1)), keep: (0, 0, 50))";
+    let level = "trim(ball, by: plane(at: (0, 0, 35), normal: (0, 0, 1)), keep: (0, 0, 50))";
+    let large = "trim(ball, by: plane(at: (5, 0, -20), normal: (0.2, 0.5, 1)), keep: (0, 0, 50))";
+    for (part, limit) in [(slanted, 2.0), (level, 0.3), (large, 0.1), (large, 0.05), ("ball", 0.1)] {
+        let mesh = mesh(&format!(
+            "units mm\nsurface ball = revolve(arc((0, 0, -50), (0, 0, 50), through: (50, 0, 0)))\nsurface part = {part}
+mesh m of part {{ chord_error: {limit}  method: display }}"
+        ));
+        let nearest = mesh.triangles.iter().map(|t| distance(t.map(|n| mesh.nodes[n as usize]))).fold(50.0, f64::min);
+        assert!(50.0 - nearest <= limit * (1.0 + 1e-9), "{part}: {} of {limit}", 50.0 - nearest);
+    }
+}
+
+#[test]
+fn reported_chord_errors_are_nearly_the_largest_distances() {
+    for settings in ["size: 12", "size: 12  method: delaunay", "chord_error: 1", "size: 20  method: delaunay", "size: 9  method: mapped"] {
+        let mesh = mesh(&format!(
+            "units mm\nsurface ball = revolve(arc((0, 0, -50), (0, 0, 50), through: (50, 0, 0)))\nmesh m of ball {{ {settings} }}"
+        ));
+        let nearest = mesh.triangles.iter().map(|t| distance(t.map(|n| mesh.nodes[n as usize]))).fold(50.0, f64::min);
+        let (is, reported) = (50.0 - nearest, mesh.chord_error(&Tolerance::new(1e-6, 100.0)).unwrap());
+        assert!((is - reported).abs() <= 0.012 * is, "{settings}: {is}, reported {reported}");
+    }
+}
