@@ -13,7 +13,7 @@ const ALL: &str = "links, nodes, `network` and meshes depend on all curves and s
 impl Cx<'_> {
     /// Reports a cycle once, with all its members.
     pub(super) fn cycle(&mut self, module: ModuleId, index: u32) -> Stop {
-        let from = self.machine.running.iter().position(|r| *r == (module, index)).unwrap_or(0);
+        let from = self.machine.running.iter().rposition(|r| *r == (module, index)).unwrap_or(0);
         let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
         self.machine.in_cycle.extend(&members);
         let least = (0..members.len()).min_by_key(|k| members[*k]).unwrap_or(0);
@@ -47,8 +47,7 @@ impl Cx<'_> {
         let span = nodes.iter().find(names_first).map_or(script.declarations[closing.1 as usize].span, |n| n.span);
         let through_all = self.machine.stages > 0;
         // Of a circle through all curves one can be taken out.
-        let between = members.iter().copied().find(|m| through_all && self.asks_borders(*m)).map(|m| self.written_inside(m));
-        let outside = members.iter().copied().find(|m| through_all && self.may_stay_out(*m)).map(|m| self.stay_out(m)).or(between);
+        let outside = members.iter().copied().find(|m| through_all && self.may_stay_out(*m)).map(|m| self.stay_out(m));
         let draft = self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here");
         let draft = draft.labels(labels);
         match (outside, through_all) {
@@ -101,17 +100,5 @@ impl Cx<'_> {
             Keyword::Point => format!("`let {name} = …`: a `let` point is none of the network's"),
             _ => format!("`let {name} = …`: a `let` curve stays out of the network, so it may be made from all of it"),
         }
-    }
-
-    /// Whether a `let` says borders of surfaces, which a surface itself can be made from.
-    fn asks_borders(&self, (module, index): (ModuleId, u32)) -> bool {
-        let (module, declaration) = (self.machine.at(module), &self.machine.at(module).script.declarations[index as usize]);
-        let text = self.sources.text(module.file, declaration.span);
-        declaration.keyword == Keyword::Let && [".rims", ".edges", ".loops", ".edge("].iter().any(|word| text.contains(word))
-    }
-
-    fn written_inside(&self, (module, index): (ModuleId, u32)) -> String {
-        let name = self.declaration_name(module, index);
-        format!("write what `{name}` is in its place: borders that a surface asks for itself are those of its surfaces alone")
     }
 }

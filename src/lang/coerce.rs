@@ -7,6 +7,8 @@ use glam::DVec3;
 use super::cx::{Cx, Stop};
 use super::eval::Code;
 use super::settings::DECK_ELEMENTS;
+use super::std::kinds::EdgeOf;
+use super::std::topology::curve_of;
 use super::syntax::ast::{Expr, ExprId};
 use super::types::Ty;
 use super::units;
@@ -91,7 +93,7 @@ impl Cx<'_> {
             (Ty::Vector | Ty::Direction | Ty::Axis, Value::Node(p)) => Ok(Some(Value::point(*p))),
             (Ty::Vector | Ty::Direction, Value::Vertex(..)) => Ok(Some(Value::point(self.as_vector(value.clone())?.0))),
             (Ty::Curve | Ty::Axis, Value::Curve(_)) => Ok(None),
-            (Ty::Curve | Ty::Axis, Value::Link(..)) => Ok(Some(Value::Curve(self.as_chain(value.clone())?))),
+            (Ty::Curve | Ty::Axis, Value::Link(..) | Value::Edge(..)) => Ok(Some(Value::Curve(self.as_chain(value.clone())?))),
             (Ty::List(of) | Ty::Rest(of), Value::Table(t)) => self.fit(&Value::List(t.rows.clone()), Ty::List(of), module),
             (Ty::List(of) | Ty::Rest(of), v) => self.fit_things(v, *of, module),
             (wanted, v) => ok(plain(wanted, v)),
@@ -99,6 +101,10 @@ impl Cx<'_> {
     }
 
     fn fit_one(&mut self, value: &Value, types: &[Ty], module: ModuleId) -> Result<Option<Value>, Misfit> {
+        // An edge is a curve only where edges as such are not taken.
+        if matches!(value, Value::Edge(..)) && types.contains(&Ty::Edge) {
+            return Ok(None);
+        }
         let mut first = None;
         for ty in types {
             match self.fit(value, *ty, module) {
@@ -199,6 +205,7 @@ impl Cx<'_> {
         match value {
             Value::Curve(chain) => Ok(chain),
             Value::Link(module, id) => Ok(self.network(module)?.link_chain(id)),
+            Value::Edge(home, edge) => curve_of(self, EdgeOf(home, edge)),
             _ => Err(Stop::Bug("not a curve")),
         }
     }

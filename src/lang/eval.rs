@@ -8,6 +8,7 @@ use super::diag::Diagnostic;
 use super::memory::Asked;
 use super::module::{Module, State};
 use super::names::Name;
+use super::numbering::Sees;
 use super::origins::{NO_MEMBER, Origins, Place};
 use super::plans::MeshSpec;
 use super::recall::Start;
@@ -295,28 +296,30 @@ impl Cx<'_> {
 
     /// The value of a declaration, evaluated on first use.
     pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
-        if matches!(self.machine.at(module).states[index as usize], State::Waiting) && !self.recall(module, index) {
+        let sees = self.sees(module, index);
+        if matches!(self.seen_as(module, index, sees).0, State::Waiting) && !self.recall(module, index, sees) {
             // Its own calls have their own budgets.
-            return work::uncharged(|| self.evaluate(module, index));
+            return work::uncharged(|| self.evaluate(module, index, sees));
         }
-        let asked = self.machine.at(module).asked[index as usize];
-        self.machine.asked.join(asked);
-        match &self.machine.at(module).states[index as usize] {
+        let (state, asked) = self.seen_as(module, index, sees);
+        let answer = match state {
             State::Done(value) => Ok(value.clone()),
             State::Waiting => Err(Stop::Bug("a declaration that was neither evaluated nor taken over")),
             State::Failed => Err(Stop::Skipped(module, index)),
             State::Skipped(m, d) => Err(Stop::Skipped(*m, *d)),
             State::Suspended => Err(Stop::NotYet),
             State::Broken => Err(Stop::Broken),
-            State::Running => Err(self.cycle(module, index)),
-        }
+            State::Running => return Err(self.cycle(module, index)),
+        };
+        self.machine.asked.join(asked);
+        answer
     }
 
-    fn evaluate(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
+    fn evaluate(&mut self, module: ModuleId, index: u32, sees: Sees) -> Result<Value, Stop> {
         if self.machine.running.len() >= DECLARATION_DEPTH {
             return Err(self.cycle(module, index));
         }
-        self.machine.at_mut(module).states[index as usize] = State::Running;
+        self.begin(module, index, sees);
         self.machine.running.push((module, index));
         let script = self.machine.at(module).script.clone();
         let declaration: &Declaration = &script.declarations[index as usize];
@@ -363,23 +366,29 @@ impl Cx<'_> {
             State::Suspended => Err(Stop::NotYet),
             _ => Err(Stop::Broken),
         };
-        self.machine.at_mut(module).states[index as usize] = state;
-        self.put_back(module, index, start, (asked, seen, &said));
-        if !waits {
+        let files = !waits && (sees == Sees::All || failed || !self.machine.asked.numbered);
+        self.put_back((module, index), (state, sees), start, (asked, seen, &said));
+        if files {
             self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
         }
         answer
     }
 
     /// Ends what was counted for a declaration, keeps it for the next run, and goes on counting for the one around it.
-    fn put_back(&mut self, module: ModuleId, index: u32, start: Start, (around, seen, said): (Asked, Box3, &[Diagnostic])) {
+    fn put_back(
+        &mut self,
+        (module, index): (ModuleId, u32),
+        (state, sees): (State, Sees),
+        start: Start,
+        (around, seen, said): (Asked, Box3, &[Diagnostic]),
+    ) {
         let mut asked = std::mem::replace(&mut self.machine.asked, around);
         let own_seen = std::mem::replace(&mut self.seen, seen);
         self.seen = self.seen.union(own_seen);
-        self.remember(module, index, start, asked, (own_seen, said));
+        self.remember((module, index), (&state, sees), start, asked, (own_seen, said));
         // Meshes are numbered anew in each run, so what holds one is not kept.
         asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
-        self.machine.at_mut(module).asked[index as usize] = asked;
+        self.end(module, index, (state, sees), asked);
         self.machine.asked.join(asked);
         self.machine.asked.members += self.machine.room.held().saturating_sub(start.members);
         self.machine.asked.steps += self.machine.steps - start.steps;

@@ -57,6 +57,8 @@ pub(super) struct Kept {
     pub tolerance: Option<Tolerance>,
     /// Key of all geometry, when a stage was asked for.
     pub world: Option<Digest>,
+    /// Whether it depends on where it is asked for.
+    pub numbered: bool,
     /// Notes and warnings, places counted from the start of the declaration.
     pub said: Vec<Diagnostic>,
     /// Digest of its text, when what was said or written depends on more than the tokens.
@@ -77,6 +79,7 @@ impl Kept {
             seen: Box3::EMPTY,
             tolerance: None,
             world: None,
+            numbered: false,
             said: Vec::new(),
             text: None,
             checks: Vec::new(),
@@ -195,6 +198,8 @@ pub(super) struct Asked {
     pub world: bool,
     /// Something that is not kept: a mesh, a stage of another script.
     pub fleeting: bool,
+    /// Patches, edges or vertices of surfaces, which geometry that is made from them numbers by itself.
+    pub numbered: bool,
     /// List members and steps of the declarations evaluated inside it.
     pub members: usize,
     pub steps: u64,
@@ -205,6 +210,7 @@ impl Asked {
     pub fn join(&mut self, other: Self) {
         self.world |= other.world;
         self.fleeting |= other.fleeting;
+        self.numbered |= other.numbered;
     }
 }
 

@@ -33,6 +33,7 @@ pub mod memory;
 mod module;
 pub mod names;
 mod near;
+mod numbering;
 mod operators;
 pub mod origins;
 mod outputs;

@@ -1,5 +1,6 @@
 //! One evaluated script: its declarations, their states and what they have produced.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::cx::{Parts, Sound};
@@ -106,6 +107,8 @@ pub(super) struct Module {
     pub keys: Option<Keys>,
     /// What each declaration asked for beside values.
     pub asked: Vec<Asked>,
+    /// Declarations whose patches and edges are numbered otherwise where geometry is made from them: as they are there.
+    pub within: BTreeMap<u32, (State, Asked)>,
     pub parts: Stage<Arc<Parts>>,
     pub network: Stage<Arc<Network>>,
     pub model: Stage<Arc<Model>>,
@@ -156,6 +159,7 @@ impl Module {
             choices,
             entered: vec![0; states.len()],
             asked: vec![Asked::default(); states.len()],
+            within: BTreeMap::new(),
             states,
             given: Vec::new(),
             tokens: Vec::new(),

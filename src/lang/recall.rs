@@ -6,6 +6,7 @@ use super::cx::Cx;
 use super::diag::Diagnostic;
 use super::memory::{Asked, Kept, Memory, attached, detached};
 use super::module::{Stage, State};
+use super::numbering::Sees;
 use super::syntax::ast::Keyword;
 use super::value::{MeshValue, ModuleId, Value};
 use crate::base::bbox::Box3;
@@ -40,18 +41,25 @@ impl Cx<'_> {
     }
 
     /// Brings a declaration to the state in which the run before left it; `false` when it must be evaluated.
-    pub(super) fn recall(&mut self, module: ModuleId, index: u32) -> bool {
+    pub(super) fn recall(&mut self, module: ModuleId, index: u32, sees: Sees) -> bool {
         if self.memory.is_none() {
             return false;
         }
         let keys = self.keys(module);
         let (Some(key), tolerance) = (keys.of[index as usize], self.tolerance) else { return false };
         let Some(memory) = &mut self.memory else { return false };
-        let Some(entry) = memory.find(key) else { return false };
         let fits = |kept: &&Kept| {
             (kept.tolerance.is_none() || kept.tolerance == tolerance) && kept.world.is_none_or(|world| Some(world) == keys.world)
         };
-        match entry.kept.as_ref().filter(fits) {
+        if sees == Sees::Own
+            && let Some(kept) = memory.find(sees.key(key)).and_then(|entry| entry.kept.as_ref()).filter(fits).cloned()
+        {
+            memory.count_reused();
+            self.restore_within(module, index, kept);
+            return true;
+        }
+        let Some(entry) = memory.find(key) else { return false };
+        match entry.kept.as_ref().filter(fits).filter(|kept| sees == Sees::All || !kept.numbered) {
             Some(kept) => {
                 let kept = kept.clone();
                 memory.count_reused();
@@ -69,6 +77,16 @@ impl Cx<'_> {
         }
     }
 
+    fn restore_within(&mut self, module: ModuleId, index: u32, kept: Kept) {
+        if self.tolerance.is_none() {
+            self.seen = self.seen.union(kept.seen);
+        }
+        self.machine.room.take_over(kept.members);
+        self.machine.steps += kept.steps;
+        let asked = Asked { world: kept.world.is_some(), numbered: true, ..Asked::default() };
+        self.machine.at_mut(module).within.insert(index, (State::Done(kept.value), asked));
+    }
+
     fn restore(&mut self, module: ModuleId, index: u32, kept: Kept) {
         if self.tolerance.is_none() {
             self.seen = self.seen.union(kept.seen);
@@ -79,7 +97,7 @@ impl Cx<'_> {
         let span = m.script.declarations[index as usize].span;
         let said = attached(&kept.said, m.file, span.start);
         let fleeting = m.script.declarations[index as usize].keyword == Keyword::Mesh;
-        m.asked[index as usize] = Asked { world: kept.world.is_some(), fleeting, ..Asked::default() };
+        m.asked[index as usize] = Asked { world: kept.world.is_some(), fleeting, numbered: kept.numbered, ..Asked::default() };
         let mut next = m.meshes.len() as u32;
         m.states[index as usize] = State::Done(if fleeting { numbered(&kept.value, module, &mut next) } else { kept.value });
         m.meshes.extend(kept.meshes);
@@ -108,14 +126,21 @@ impl Cx<'_> {
     }
 
     /// Keeps the state that an evaluation ended in, where the next run may take it over.
-    pub(super) fn remember(&mut self, module: ModuleId, index: u32, start: Start, asked: Asked, (seen, said): (Box3, &[Diagnostic])) {
+    pub(super) fn remember(
+        &mut self,
+        (module, index): (ModuleId, u32),
+        (state, sees): (&State, Sees),
+        start: Start,
+        asked: Asked,
+        (seen, said): (Box3, &[Diagnostic]),
+    ) {
         if self.memory.is_none() {
             return;
         }
         let keys = self.keys(module);
         let Some(key) = keys.of[index as usize] else { return };
-        let m = self.machine.at(module);
-        match &m.states[index as usize] {
+        let key = if asked.numbered { sees.key(key) } else { key };
+        match state {
             State::Suspended if !asked.fleeting => {
                 if let Some(memory) = &mut self.memory {
                     memory.suspend(key, seen);
@@ -128,7 +153,7 @@ impl Cx<'_> {
                     return;
                 }
                 if let Some(kept) = self.kept(module, index, (start, asked), said) {
-                    let kept = Kept { value, seen, world, ..kept };
+                    let kept = Kept { value, seen, world, numbered: asked.numbered, ..kept };
                     if let Some(memory) = &mut self.memory {
                         memory.keep(key, kept);
                     }

@@ -61,6 +61,16 @@ pub struct SetCell {
     pub cell: Span,
 }
 
+/// A tolerance as it is written.
+struct Said {
+    /// Model units.
+    point: f64,
+    /// Radians.
+    angle: Option<f64>,
+    /// Declaration and expression of the length.
+    at: (u32, ExprId),
+}
+
 impl Cx<'_> {
     /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
     pub fn load(&mut self, entry: &Entry) {
@@ -153,7 +163,7 @@ impl Cx<'_> {
     }
 
     /// `tolerance 0.001mm, 0.5deg`: lengths in model units, angles in radians.
-    fn said_tolerance(&mut self) -> Option<(f64, Option<f64>)> {
+    fn said_tolerance(&mut self) -> Option<Said> {
         let index = self.single(ModuleId::MAIN, Keyword::Tolerance)?;
         let script = self.machine.at(ModuleId::MAIN).script.clone();
         let DeclarationKind::Tolerance(exprs) = &script.declarations[index as usize].kind else { return None };
@@ -169,16 +179,31 @@ impl Cx<'_> {
             Some(Value::Number(q)) => Some(q.value),
             _ => None,
         };
-        Some((number(0)?, number(1).map(units::radians)))
+        Some(Said { point: number(0)?, angle: number(1).map(units::radians), at: (index, exprs[0]) })
     }
 
-    fn fix_tolerance(&mut self, said: Option<(f64, Option<f64>)>) {
+    /// The tolerance that is written, or the one for the size of the model. E306 for one that rounding does not keep; the smallest one that
+    /// it does is gone on with.
+    fn fix_tolerance(&mut self, said: Option<Said>) {
         let diagonal = self.seen.diagonal();
-        self.tolerance = Some(match said {
-            Some((point, None)) => Tolerance::new(point, diagonal),
-            Some((point, Some(angle))) => Tolerance::new(point, diagonal).with_angle(angle),
-            None => Tolerance::from_diagonal(diagonal, units::convert(FALLBACK_MM, units::MILLIMETRE, self.unit, 1)),
-        });
+        let Some(Said { point, angle, at: (index, expr) }) = said else {
+            let fallback = units::convert(FALLBACK_MM, units::MILLIMETRE, self.unit, 1);
+            self.tolerance = Some(Tolerance::from_diagonal(diagonal, fallback));
+            return;
+        };
+        let mut tolerance = Tolerance::new(point, diagonal);
+        if tolerance.rounding > point && tolerance.rounding.is_finite() {
+            let (least, found) = (self.length(tolerance.rounding), self.length(point));
+            let script = self.machine.at(ModuleId::MAIN).script.clone();
+            let code = Code { nodes: &script.declarations[index as usize].nodes, module: ModuleId::MAIN, declaration: index };
+            let text = format!("the tolerance must be at least {least}, got {found}");
+            let why = format!("the model is {} across, and rounding moves its points by up to 1e-12 of that", self.length(diagonal));
+            self.error(code, "E306", text, code.span(expr), found).note(why).say();
+            let said = std::mem::take(&mut self.sink);
+            self.machine.filed.extend(said.into_iter().map(|d| (Some((ModuleId::MAIN, index)), d)));
+            tolerance = Tolerance::new(tolerance.rounding, diagonal);
+        }
+        self.tolerance = Some(angle.map_or(tolerance, |angle| tolerance.with_angle(angle)));
     }
 
     /// Everything said, in order of place: what was skipped is noted at its cause, equal reports are counted.

@@ -38,6 +38,7 @@ impl Scene {
     /// else (and where some of it failed) one of these surfaces or of what is sound, on the script's network. The same surfaces are at home in one place. What is itself a curve or
     /// surface of the script is made from them alone, on no network: how a surface is bounded does not depend on the others.
     pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, Home), Stop> {
+        cx.machine.asked.numbered = true;
         let alone = stages::is_within(cx, module);
         let own = if alone {
             cx.tolerance()?;

@@ -218,6 +218,7 @@ impl Cx<'_> {
             // A second declaration of one name stays refused.
             let first = bound(declaration).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
             let evaluated = !matches!(self.machine.at(module).states[i], State::Waiting | State::Running | State::Suspended);
+            self.machine.at_mut(module).within.remove(&(i as u32));
             if first && evaluated {
                 self.machine.at_mut(module).states[i] = State::Waiting;
                 again[i] = true;
@@ -246,6 +247,7 @@ impl Cx<'_> {
         self.machine.filed.retain(|(owner, said)| owner.map_or_else(|| !of_file(said), |(m, _)| m != module));
         let m = self.machine.at_mut(module);
         m.states.fill(State::Broken);
+        m.within.clear();
         m.checks.clear();
         m.reports.clear();
         m.exports.clear();

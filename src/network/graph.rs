@@ -268,11 +268,17 @@ impl NetCurve {
         self.nodes.first() == self.nodes.last() && self.stations[self.stations.len() - 1] >= self.curve.length()
     }
 
+    /// The node nearest to an arc length, of those within `reach`, by its place among its own.
+    fn station_at(&self, s: f64, reach: f64) -> Option<usize> {
+        let off = |k: &usize| (self.stations[*k] - s).abs();
+        (0..self.stations.len()).filter(|k| off(k) <= reach).min_by(|a, b| off(a).total_cmp(&off(b)))
+    }
+
     /// The place among its own of the first link of a whole turn from wherever it begins; begun between nodes it is the ring
     /// all the same.
     fn first_of_turn(&self, lo: f64, tolerance: &Tolerance) -> usize {
         let (reach, length) = (4.0 * tolerance.point, self.curve.length());
-        let at = |s: f64| self.stations.iter().position(|st| (st - s).abs() <= reach);
+        let at = |s: f64| self.station_at(s, reach);
         at(lo).or_else(|| at(lo + length)).or_else(|| at(lo - length)).unwrap_or(0)
     }
 
@@ -281,7 +287,7 @@ impl NetCurve {
         let reach = 4.0 * tolerance.point;
         let length = self.curve.length();
         let closed = self.is_closed();
-        let at = |s: f64| self.stations.iter().position(|st| (st - s).abs() <= reach);
+        let at = |s: f64| self.station_at(s, reach);
         if !closed {
             let (from, to) = (at(lo)?, at(hi)?);
             return Some(self.links[from..to].to_vec());

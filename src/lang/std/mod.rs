@@ -29,7 +29,7 @@ mod scatters;
 mod surfaces;
 mod sweeps;
 mod text;
-mod topology;
+pub(in crate::lang) mod topology;
 mod transforms;
 mod vectors;
 mod walls;
