@@ -27,7 +27,7 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
     let foot = foot_of(base, cutters, keep, tolerance)?;
     let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
-    undivided(base, &dividing, cells.faces()?.len())?;
+    undivided(base, &dividing, cells.faces()?.len(), tolerance)?;
     let Some(face) = cells.face(foot)? else {
         return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
     };
@@ -41,13 +41,13 @@ pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tol
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     let part = |face: &Face| Ok(assembled(base, walks(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
     let faces = cells.faces()?;
-    undivided(base, &dividing, faces.len())?;
+    undivided(base, &dividing, faces.len(), tolerance)?;
     faces.iter().map(part).collect()
 }
 
 /// Fails where cuts that end nowhere leave one part of a surface on which every way round encloses something: then one of them was
 /// taken the wrong way round.
-fn undivided(base: &Surface, dividing: &Dividing, parts: usize) -> Result<()> {
+fn undivided(base: &Surface, dividing: &Dividing, parts: usize, tolerance: &Tolerance) -> Result<()> {
     let (closed_u, closed_v) = base.closed();
     let pole = |k: usize| matches!(base.side(k), Side::Pole(_));
     let simple = match base.domain() {
@@ -61,10 +61,7 @@ fn undivided(base: &Surface, dividing: &Dividing, parts: usize) -> Result<()> {
     };
     let cut = dividing.pieces.iter().find(|piece| !piece.rim);
     match cut.filter(|_| simple && parts < 2) {
-        Some(piece) => {
-            let what = "a cut that ends nowhere parts nothing off";
-            Err(CutFault::NotDivided { surface: base.origin(), what, at: piece.p.1 }.into())
-        }
+        Some(piece) => Err(CutFault::NothingParted { surface: base.origin(), at: piece.p.1, tolerance: tolerance.point }.into()),
         None => Ok(()),
     }
 }

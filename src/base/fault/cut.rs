@@ -71,6 +71,15 @@ pub enum CutFault {
         /// Where.
         at: DVec3,
     },
+    /// E721 `cuts-too-near`: a cut that ends nowhere leaves one part: it was taken along what is one with its other side.
+    NothingParted {
+        /// The surface.
+        surface: Origin,
+        /// A place on the cut.
+        at: DVec3,
+        /// The model's tolerance.
+        tolerance: f64,
+    },
     /// E721 `cuts-too-near`: what divides a surface comes so near to itself that parts between are not told apart.
     CutsTooNear {
         /// The surface.
@@ -156,6 +165,16 @@ impl Describe for CutFault {
                 Report::new("E999", format!("a bug in loft: {name} is not divided right, for {what} at {}", say.point(*at)))
                     .at(*surface, "this surface")
                     .help("please report it with this script; curves moved by a little may do meanwhile")
+            }
+            Self::NothingParted { surface, at, tolerance } => {
+                let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
+                Report::new(
+                    "E721",
+                    format!("a cut of {name} that ends nowhere parts nothing off, at {at}: it cannot be followed all the way"),
+                )
+                .at(*surface, "this surface")
+                .help("a smaller `tolerance` tells curves apart that are near to each other, and bends of them")
+                .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
             }
             Self::CutsTooNear { surface, cuts: [one, other], at, apart, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
