@@ -25,6 +25,8 @@ pub const FLAT: f64 = 1e-6;
 pub const LENGTH_ACCURACY: f64 = 1e-13;
 /// Absolute error that a stretch of a stored arc length may always have, model length units (math notes §4).
 pub const LENGTH_FLOOR: f64 = 1e-16;
+/// Error of a stretch of a stored arc length that rounding of the points makes, as a share of their distance from the origin.
+pub const LENGTH_ROUNDING: f64 = 4e-15;
 /// A quotient within this of a whole number is that number (counts of mesh steps).
 pub const WHOLE_NUMBER: f64 = 1e-9;
 /// Smallest sine of the angle between two directions that may span a plane or count as not parallel.

@@ -7,8 +7,8 @@
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Units that a thread counts by itself before it charges them.
 const AT_A_TIME: u64 = 4096;
@@ -61,6 +61,12 @@ impl Budget {
         if let Some(whole) = &self.0.whole {
             whole.charge(units);
         }
+    }
+
+    /// Units that may still be spent.
+    fn left(&self) -> u64 {
+        let own = || self.0.limit.load(Ordering::Relaxed).saturating_sub(self.spent());
+        self.0.whole.as_ref().map_or_else(own, Self::left)
     }
 
     fn is_exceeded(&self) -> bool {
@@ -153,6 +159,41 @@ pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
     (made, part.spent())
 }
 
+/// A value that is made once, whoever asks for it: each is charged what it takes, so that the order of asking decides nothing, and a budget
+/// that it has been too much for is known to be exceeded without making it again.
+#[derive(Debug, Default)]
+pub struct Once<T> {
+    /// With the work that it took.
+    made: OnceLock<(T, u64)>,
+    /// Work after which it was not made yet.
+    least: AtomicU64,
+}
+
+impl<T: Copy> Once<T> {
+    /// The value.
+    pub fn get(&self, make: impl FnOnce() -> T) -> T {
+        if let Some((value, units)) = self.made.get() {
+            spend(*units);
+            return *value;
+        }
+        let (charged, least) = (budget(), self.least.load(Ordering::Relaxed));
+        if charged.as_ref().is_some_and(|budget| budget.left() < least) {
+            spend(least.max(AT_A_TIME));
+        }
+        let part = Budget(Arc::new(Counts { limit: AtomicU64::new(u64::MAX), whole: charged, ..Counts::default() }));
+        let charging = Charging::to(Some(part.clone()));
+        let made = catch_unwind(AssertUnwindSafe(make));
+        drop(charging);
+        match made {
+            Ok(value) => self.made.get_or_init(|| (value, part.spent())).0,
+            Err(panic) => {
+                self.least.fetch_max(part.spent(), Ordering::Relaxed);
+                resume_unwind(panic)
+            }
+        }
+    }
+}
+
 /// The budget that work of this thread is charged to.
 pub fn budget() -> Option<Budget> {
     BUDGET.with_borrow(Clone::clone)
@@ -220,6 +261,27 @@ mod tests {
             })
         };
         assert_eq!(Budget::new(5000).within(endless), Err::<((), u64), Exceeded>(Exceeded));
+    }
+
+    #[test]
+    fn a_value_is_made_once_and_charged_to_all_and_a_failure_is_known() {
+        let (once, made) = (Once::default(), AtomicU64::new(0));
+        let get = || {
+            once.get(|| {
+                made.fetch_add(1, Ordering::Relaxed);
+                spend(10_000);
+                7
+            })
+        };
+        assert_eq!(Budget::new(9000).within(get), Err(Exceeded));
+        assert_eq!(made.load(Ordering::Relaxed), 1);
+        // It is known to take more.
+        assert_eq!(Budget::new(8000).within(get), Err(Exceeded));
+        assert_eq!(made.load(Ordering::Relaxed), 1);
+        assert_eq!(Budget::new(10_000).within(get), Ok(7));
+        assert_eq!(Budget::new(10_000).within(|| measured(get)), Ok((7, 10_000)));
+        assert_eq!(Budget::new(9999).within(get), Err(Exceeded));
+        assert_eq!(made.load(Ordering::Relaxed), 2);
     }
 
     #[test]

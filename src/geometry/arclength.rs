@@ -4,7 +4,7 @@ use super::curve::{Curve, Jet};
 use crate::base::job;
 use crate::base::quadrature::{KRONROD, NODES, Panel, RUNNING, chebyshev, kronrod, running_integral};
 use crate::base::solve;
-use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY, LENGTH_FLOOR};
+use crate::base::tolerance::{CUSP, EPSILON, LENGTH_ACCURACY, LENGTH_FLOOR, LENGTH_ROUNDING};
 use crate::base::work;
 
 /// A panel is halved at most this often.
@@ -48,9 +48,15 @@ impl Lengths {
             open.push((span[0], span[1], DEPTH));
             while let Some((a, b, left)) = open.pop() {
                 job::look();
-                let panel = kronrod(a, b, |t| jet(t).d1.length());
+                let mut farthest = 0.0_f64;
+                let panel = kronrod(a, b, |t| {
+                    let jet = jet(t);
+                    farthest = farthest.max(jet.p.length_squared());
+                    jet.d1.length()
+                });
                 let done = table.s[table.s.len() - 1];
-                if panel.error <= LENGTH_ACCURACY * (done + panel.integral) + LENGTH_FLOOR {
+                let rounding = LENGTH_ROUNDING * farthest.sqrt();
+                if panel.error <= LENGTH_ACCURACY * (done + panel.integral) + LENGTH_FLOOR + rounding {
                     table.push(b, &panel);
                     continue;
                 }
@@ -138,7 +144,7 @@ impl Lengths {
     }
 
     fn invert(&self, k: usize, s: f64) -> f64 {
-        work::spend(1);
+        work::spend(2);
         let (a, b) = (self.t[k], self.t[k + 1]);
         let (wanted, length) = (s - self.s[k], self.s[k + 1] - self.s[k]);
         let slack = EPSILON * self.total();

@@ -47,7 +47,7 @@ pub struct Solid {
 
 /// Area of one surface, square model units; 0 for an unbounded plane's (it has none).
 pub fn area(surface: &Surface) -> f64 {
-    over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]).0[0]
+    area_within(surface).0
 }
 
 /// Areas of surfaces, each as [`area`] has it.
@@ -57,8 +57,10 @@ pub fn areas(surfaces: &[Surface]) -> Vec<f64> {
 
 /// Area of one surface as [`area`] has it, and the estimate of its error, both square model units.
 pub fn area_within(surface: &Surface) -> (f64, f64) {
-    let (area, error) = over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]);
-    (area[0], error[0])
+    surface.area_once(|| {
+        let (area, error) = over(surface, DVec3::ZERO, MEASURE_ACCURACY, &|jet, _| [jet.du.cross(jet.dv).length()]);
+        (area[0], error[0])
+    })
 }
 
 /// Fails with E721 where the areas of the parts into which curves divide a surface do not add up to its own, within its accuracy and

@@ -12,22 +12,17 @@ use super::report::MeshRow;
 use crate::base::bytes;
 use crate::base::digest::{Digest, Digester};
 use crate::base::fault::Fault;
-use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::base::work;
 use crate::lang::memory::Memory;
 use crate::lang::value::ModuleId;
 use crate::mesh::reuse::Reuse;
 use crate::mesh::sizing::Remark;
 use crate::mesh::{Built, Mesh, record};
+use crate::model::Model;
 use crate::model::topology::Named;
-use crate::model::{Model, measure};
 use crate::network::Network;
 use crate::network::graph::Input;
 use crate::surface::Surface;
-
-/// Areas kept before those of surfaces that are gone are forgotten.
-const AREAS: usize = 10_000;
 
 /// Runs for which a mesh is kept that none of them asked for.
 const RUNS: u64 = 16;
@@ -63,8 +58,6 @@ pub(super) struct KeptStages {
     pub models: BTreeMap<ModuleId, KeptModel>,
     /// Meshes by their keys.
     pub meshes: BTreeMap<Digest, KeptMesh>,
-    /// Areas of surfaces, each with the work that it took.
-    pub areas: BTreeMap<Origin, (Surface, f64, u64)>,
     pub rows: Vec<(Arc<Mesh>, bool, MeshRow)>,
     /// The last two meshes of each declaration: a change that is taken back costs nothing.
     asked: BTreeMap<Place, Asked>,
@@ -75,21 +68,6 @@ pub(super) struct KeptStages {
 }
 
 impl KeptStages {
-    /// The area of a surface, measured once.
-    pub fn area(&mut self, surface: &Surface) -> f64 {
-        match self.areas.get(&surface.origin()) {
-            Some((before, area, work)) if before.is(surface) => {
-                work::spend(*work);
-                *area
-            }
-            _ => {
-                let (area, work) = work::measured(|| measure::area(surface));
-                self.areas.insert(surface.origin(), (surface.clone(), area, work));
-                area
-            }
-        }
-    }
-
     /// The row of a mesh in the report, measured once.
     pub fn row(&mut self, name: &str, mesh: &Arc<Mesh>, full: bool, measure: impl FnOnce(&Reuse) -> MeshRow) -> MeshRow {
         if let Some((.., row)) = self.rows.iter().find(|(m, f, row)| Arc::ptr_eq(m, mesh) && *f == full && row.name == name) {
@@ -111,11 +89,6 @@ impl KeptStages {
 
     /// Forgets what the last run did not use any more.
     pub fn tidy(&mut self) {
-        let live = |surface: &Surface| self.models.values().any(|m| m.model.surfaces.iter().any(|named| named.surface.is(surface)));
-        if self.areas.len() > AREAS {
-            let areas = std::mem::take(&mut self.areas);
-            self.areas = areas.into_iter().filter(|(_, (surface, ..))| live(surface)).collect();
-        }
         if let Some(cache) = &self.cache {
             cache.tidy();
         }

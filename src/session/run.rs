@@ -285,11 +285,11 @@ impl<'r> Run<'r> {
         self.report.network = collect::network_counts(network);
         self.report.curves = collect::curves(parts, network);
         self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
-        let (rows, light, stages) = (&mut self.rows, self.light, self.stages);
+        let (rows, light) = (&mut self.rows, self.light);
         rows.allow_surfaces(model.surfaces.iter().map(|named| &named.surface));
         let mut area = |named: &Named| {
             let what = || format!("the area of `{}`", named.name);
-            if light { None } else { rows.part(named.surface.origin(), what, || stages.area(&named.surface)) }
+            if light { None } else { rows.part(named.surface.origin(), what, || measure::area(&named.surface)) }
         };
         self.report.surfaces = collect::surfaces(parts, model, &mut area);
         self.flows = collect::flows(&self.cx, parts, model);

@@ -18,8 +18,8 @@ use crate::lang::value::ModuleId;
 use crate::mesh::reuse::Shelf;
 use crate::mesh::sizing::Remark;
 use crate::mesh::{self, Mesh};
+use crate::model::Model;
 use crate::model::topology::Named;
-use crate::model::{Model, measure};
 use crate::network::chain::same_curve;
 use crate::network::graph::Input;
 use crate::network::snap::{Hold, SnapEnd, snap};
@@ -102,14 +102,6 @@ impl<'c> Stages<'c> {
 }
 
 impl Stages<'_> {
-    /// The area of a surface.
-    pub(super) fn area(&self, surface: &Surface) -> f64 {
-        match self.kept() {
-            Some(mut kept) => kept.area(surface),
-            None => measure::area(surface),
-        }
-    }
-
     /// The row of a mesh in the report.
     pub(super) fn row(&self, name: &str, mesh: &Arc<Mesh>, tolerance: &Tolerance, full: bool) -> MeshRow {
         let measured = |reuse: Option<&_>| collect::mesh(name, mesh, tolerance, (full, reuse));

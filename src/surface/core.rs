@@ -13,6 +13,7 @@ use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, PARALLEL, POLE_STEP, SINGULAR, Tolerance};
+use crate::base::work::Once;
 use crate::geometry::Motion;
 use crate::network::Chain;
 
@@ -184,6 +185,7 @@ pub struct Surface(Arc<Whole>);
 struct Whole {
     parts: Parts,
     ready: Ready,
+    area: Once<(f64, f64)>,
     /// The surfaces that it is a part of.
     part_of: Vec<Surface>,
 }
@@ -230,7 +232,7 @@ impl Content for Surface {
 
 impl Surface {
     pub(super) fn new(parts: Parts) -> Self {
-        Self(Arc::new(Whole { parts, ready: Ready::default(), part_of: Vec::new() }))
+        Self(Arc::new(Whole { parts, ready: Ready::default(), area: Once::default(), part_of: Vec::new() }))
     }
 
     /// The surfaces that this one was cut from, and those that they were cut from; none of what was moved since.
@@ -244,12 +246,17 @@ impl Surface {
         // What is kept holds no list of its own: a row of cuts makes no row of surfaces within surfaces.
         let own = wholes.iter().map(|w| if w.part_of().is_empty() { w.clone() } else { Self::new(w.0.parts.clone()) });
         let part_of = own.chain(before).chain(self.part_of().iter().cloned()).collect();
-        Self(Arc::new(Whole { parts: self.0.parts.clone(), ready: Ready::default(), part_of }))
+        Self(Arc::new(Whole { parts: self.0.parts.clone(), ready: Ready::default(), area: Once::default(), part_of }))
     }
 
     /// Other parts of the same surface: it stays a part of what it is a part of.
     fn remade(&self, parts: Parts) -> Self {
-        Self(Arc::new(Whole { parts, ready: Ready::default(), part_of: self.0.part_of.clone() }))
+        Self(Arc::new(Whole { parts, ready: Ready::default(), area: Once::default(), part_of: self.0.part_of.clone() }))
+    }
+
+    /// Its area with an estimate of the error, square model units, as `measure` finds them: once for all copies of it.
+    pub fn area_once(&self, measure: impl FnOnce() -> (f64, f64)) -> (f64, f64) {
+        self.0.area.get(measure)
     }
 
     pub(super) fn ready(&self) -> &Ready {

@@ -90,9 +90,17 @@ impl Shape {
         }
     }
 
+    /// Evaluations of a curve that a jet in a grid is worth, beside those of the curves that it is made of.
+    fn weight(&self) -> u64 {
+        /// Curves that are blended in the time of one evaluation.
+        const BLENDED: usize = 12;
+        let Self::Blend(blend) = self else { return 1 };
+        1 + ((blend.along_u().len() + blend.along_v().len()) / BLENDED) as u64
+    }
+
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
-        work::spend((us.len() * vs.len()) as u64);
+        work::spend((us.len() * vs.len()) as u64 * self.weight());
         match self {
             Self::Blend(s) => s.jets(us, vs, out),
             Self::Sweep(s) => s.jets(us, vs, out),

@@ -57,6 +57,9 @@ pub struct Made<'a> {
     pub wanted: &'a Wanted,
 }
 
+/// Times that the work of a face which is tried again is halved.
+const FEWER: u32 = 2;
+
 /// A face without anything in it, for as long as only its border matters.
 pub fn empty(made: &Made, face: &Face) -> Prepared {
     prepared(made, face, Free::default(), (Vec::new(), Vec::new()), Vec::new())
@@ -98,7 +101,8 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
     }
     let all = || grown(made, face, (border, sheet, outline), job);
     let surface = || made.input.model.surfaces[face.surface.index()].surface.origin();
-    let ready = Budget::new(MESH_WORK).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
+    // What is tried again with shorter steps of its border may take less.
+    let ready = Budget::new(MESH_WORK >> face.halved.min(FEWER)).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
     if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
         known.keep_free(key, Taken::of(&ready, free));
     }

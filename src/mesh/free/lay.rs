@@ -30,8 +30,8 @@ use crate::mesh::explain::{Decider, Tally};
 use crate::mesh::sources::Sources;
 
 /// Work of a cell and of a node of a border in one try, in evaluations of the surface: all are sorted and looked through anew.
-const CELL_WORK: u64 = 10;
-const NODE_WORK: u64 = 4;
+const CELL_WORK: u64 = 20;
+const NODE_WORK: u64 = 8;
 
 /// What a face is laid out by.
 pub struct Ask<'a> {

@@ -6,12 +6,16 @@ use super::Gardener;
 use super::flips::GAIN;
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::base::work;
 use crate::mesh::free::outline::area2;
 use crate::mesh::free::shape::Star;
 use crate::mesh::free::web::Patch;
 
 /// Share of the quality that is there which a first guess must have to be searched on.
 const HOPE: f64 = 0.6;
+/// Work of a bad triangle that is looked at, and of a patch that is planned anew, in evaluations of the surface.
+const MEND_WORK: u64 = 20;
+const PLAN_WORK: u64 = 20;
 /// What a change must gain where all is fair.
 const WORTH: f64 = 0.01;
 
@@ -40,6 +44,7 @@ impl Gardener<'_> {
     }
 
     fn mend_one(&mut self, t: u32) -> bool {
+        work::spend(MEND_WORK);
         self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
     }
 
@@ -182,6 +187,7 @@ impl Gardener<'_> {
 
     /// The best that can be made of a patch, where that may be worth it.
     pub(super) fn plan(&mut self, patch: &Patch, keep: Keep, worth: Worth) -> Option<(f64, Plan)> {
+        work::spend(PLAN_WORK);
         self.rim.fill(patch.rim.iter().map(|n| (self.web.p[*n as usize], self.web.xy[*n as usize])));
         if let Keep::None = keep {
             return self.best_fan(patch);

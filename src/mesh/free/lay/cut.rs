@@ -28,14 +28,18 @@ const THIN: f64 = 0.6;
 const TURN: f64 = 0.35;
 /// Largest part of the way from pole to pole that one cell covers.
 const HALF: f64 = 0.6;
-/// Elements whose work a cell is worth that is cut because it is too large by itself.
-const CELL: u64 = 6;
+/// Elements whose work a cell is worth that is cut because it is too large by itself, and once more for so many curves of which a point of
+/// the surface is made.
+const CELL: u64 = 2;
+const CURVES: usize = 4;
 /// Pieces by which the side of a cell is measured.
 const PIECES: usize = 4;
 
 impl Work<'_> {
     /// Cuts leaves, and theirs, until each is no longer than allowed and keeps the limits by itself.
     pub(super) fn settle(&mut self, mut open: Vec<u32>) -> Tried<()> {
+        let (across, along) = self.ask.sheet.surface().curves_of_a_point();
+        let worth = CELL * (1 + (across + along) / CURVES) as u64;
         while let Some(k) = open.pop() {
             job::look();
             if self.cells.n_whole() > self.ask.most || self.cells.all().len() > 8 * self.ask.most {
@@ -45,7 +49,7 @@ impl Work<'_> {
                 continue;
             }
             if let Some((cut, why)) = self.wants(k)? {
-                allow(CELL, &mut 0);
+                allow(worth, &mut 0);
                 let first = self.cells.all().len() as u32;
                 self.cells.split(k, cut, why);
                 open.extend([first + 1, first]);

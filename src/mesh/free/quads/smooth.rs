@@ -6,8 +6,11 @@ use glam::{DVec2, DVec3};
 use super::net::{NONE, Net};
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use crate::base::work;
 use crate::mesh::free::ground::{Field, Ground, foot_near, foot_spot};
 
+/// Work of a search for a better place of a node, in evaluations of the surface, beside those.
+const CLIMB_WORK: u64 = 40;
 /// Moves below this share of the wanted length end the smoothing of a node.
 const STILL: f64 = 0.005;
 /// Elements that stay this good may get worse for the sake of even lengths.
@@ -292,6 +295,7 @@ impl<'a> Smoother<'a> {
 
     /// Searches round a node for the place where the worst element is best.
     fn climb(&mut self, node: usize) -> bool {
+        work::spend(CLIMB_WORK);
         let size = self.mean_side(node);
         let start = self.worst(node);
         let (mut best, mut place) = (start, self.place(node));
