@@ -6,6 +6,7 @@
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::convert::Infallible;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -161,7 +162,7 @@ pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
 
 /// A value that is made once, whoever asks for it: each is charged what it takes, so that the order of asking decides nothing, and a budget
 /// that it has been too much for is known to be exceeded without making it again.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Once<T> {
     /// With the work that it took.
     made: OnceLock<(T, u64)>,
@@ -169,12 +170,23 @@ pub struct Once<T> {
     least: AtomicU64,
 }
 
-impl<T: Copy> Once<T> {
+impl<T> Default for Once<T> {
+    fn default() -> Self {
+        Self { made: OnceLock::new(), least: AtomicU64::new(0) }
+    }
+}
+
+impl<T: Clone> Once<T> {
     /// The value.
     pub fn get(&self, make: impl FnOnce() -> T) -> T {
+        self.try_get(|| Ok::<T, Infallible>(make())).unwrap_or_else(|never| match never {})
+    }
+
+    /// The same of what may fail, which is tried again each time.
+    pub fn try_get<E>(&self, make: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
         if let Some((value, units)) = self.made.get() {
             spend(*units);
-            return *value;
+            return Ok(value.clone());
         }
         let (charged, least) = (budget(), self.least.load(Ordering::Relaxed));
         if charged.as_ref().is_some_and(|budget| budget.left() < least) {
@@ -185,7 +197,7 @@ impl<T: Copy> Once<T> {
         let made = catch_unwind(AssertUnwindSafe(make));
         drop(charging);
         match made {
-            Ok(value) => self.made.get_or_init(|| (value, part.spent())).0,
+            Ok(made) => made.map(|value| self.made.get_or_init(|| (value, part.spent())).0.clone()),
             Err(panic) => {
                 self.least.fetch_max(part.spent(), Ordering::Relaxed);
                 resume_unwind(panic)

@@ -110,6 +110,8 @@ pub struct Machine {
     pub(super) unknown: super::near::Unknowns,
     /// What the declaration being evaluated asked for beside values.
     pub(super) asked: Asked,
+    /// Shells that something of was asked for, by script and expression.
+    pub(super) glued: std::collections::BTreeMap<(ModuleId, Origin), Vec<super::glued::Asked>>,
 }
 
 impl Default for Machine {
@@ -136,6 +138,7 @@ impl Default for Machine {
             filed: Vec::new(),
             unknown: super::near::Unknowns::new(),
             asked: Asked::default(),
+            glued: std::collections::BTreeMap::new(),
         }
     }
 }

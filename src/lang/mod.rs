@@ -19,6 +19,7 @@ pub mod eval;
 mod expr;
 mod faults;
 pub mod fmt;
+pub mod glued;
 mod import_part;
 mod imports;
 mod joining;

@@ -14,7 +14,7 @@ use super::types::Ty;
 use super::units;
 use super::value::{Dim, ModuleId, Value};
 use crate::base::fault::{Say, Severity};
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{EPSILON, Tolerance};
 
 /// Names listed in a note about what was not built.
 const NAMES_LISTED: usize = 12;
@@ -191,17 +191,17 @@ impl Cx<'_> {
             self.tolerance = Some(Tolerance::from_diagonal(diagonal, fallback));
             return;
         };
-        let mut tolerance = Tolerance::new(point, diagonal);
-        if tolerance.rounding > point && tolerance.rounding.is_finite() {
-            let (least, found) = (self.length(tolerance.rounding), self.length(point));
+        let (mut tolerance, least) = (Tolerance::new(point, diagonal), EPSILON * diagonal);
+        if least > point && least.is_finite() {
+            let (shown, found) = (self.length(least), self.length(point));
             let script = self.machine.at(ModuleId::MAIN).script.clone();
             let code = Code { nodes: &script.declarations[index as usize].nodes, module: ModuleId::MAIN, declaration: index };
-            let text = format!("the tolerance must be at least {least}, got {found}");
-            let why = format!("the model is {} across, and rounding moves its points by up to 1e-12 of that", self.length(diagonal));
+            let text = format!("the tolerance must be at least {shown}, got {found}");
+            let why = format!("the model is {} across, and rounding moves its points by up to 1e-14 of that", self.length(diagonal));
             self.error(code, "E306", text, code.span(expr), found).note(why).say();
             let said = std::mem::take(&mut self.sink);
             self.machine.filed.extend(said.into_iter().map(|d| (Some((ModuleId::MAIN, index)), d)));
-            tolerance = Tolerance::new(tolerance.rounding, diagonal);
+            tolerance = Tolerance::new(least, diagonal);
         }
         self.tolerance = Some(angle.map_or(tolerance, |angle| tolerance.with_angle(angle)));
     }

@@ -8,7 +8,6 @@ use crate::base::tolerance::{GAP_ROOM, Tolerance};
 use crate::lang::cx::{Cx, Parts, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::plans::{CheckResult, ReportTable};
-use crate::lang::scene::Scene;
 use crate::lang::unmade::{Unmade, Why};
 use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
@@ -148,21 +147,21 @@ pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
 
 /// A shell: how it is closed, and what it measures; how its faces join only when `full`. What is said of it goes to `said`.
 pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bool), said: &mut Vec<Fault>) -> Result<ShellRow, Stop> {
-    let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
-    let built = scene.shell(shell, tolerance, said)?;
+    let glued = cx.glued(ModuleId::MAIN, shell)?;
+    let (scene, built) = (&glued.scene, &glued.shell);
+    said.extend(glued.said.iter().cloned());
     // Roofs are open; that a skin of faces with borders of their own is, may be news.
     let news = |fault: &&Fault| fault.code().0 != "N615" || shell.snap.is_some() || built.near > GAP_ROOM * tolerance.point;
     said.retain(|fault| news(&fault));
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
-    let sides: Vec<_> = built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
     let members: Vec<_> = built.surfaces.iter().map(|(id, _)| *id).collect();
     let contacts = if full { scene.model.contacts((&members, built.near), (&scene.network, tolerance), |_, _| true) } else { Vec::new() };
     Ok(ShellRow {
         name: shell.name.to_string(),
         faces,
         closed: built.closed,
-        area: Some(measure::sheet(&shell.surfaces).area),
-        volume: built.closed.then(|| measure::solid(&sides).volume.abs()),
+        area: Some(measure::areas(&shell.surfaces).iter().sum()),
+        volume: built.closed.then(|| glued.solid().volume.abs()),
         gap: contacts.iter().map(|c| c.gap.max).reduce(f64::max),
         angle: contacts.iter().filter_map(|c| c.angle).map(|a| crate::lang::units::degrees(a.max)).reduce(f64::max),
         corners: if full { corners(measure::bounds(&shell.surfaces)) } else { None },

@@ -79,8 +79,7 @@ fn lone(scene: &Scene, surface: &Surface, (setup, colors): (&Setup, &Colors)) ->
 /// A shell: a solid where it closes.
 fn whole(scene: &Scene, shell: &ShellValue, (setup, colors): (&Setup, &Colors)) -> Result<(Shown, Measured), Stop> {
     // What is to be said of it was said where it is declared.
-    let mut said = Vec::new();
-    let built = scene.shell(shell, &setup.scale.tolerance, &mut said)?;
+    let built = scene.shell(shell, &setup.scale.tolerance, &mut Vec::new())?;
     let faces: Vec<(Surface, bool)> =
         built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
     let area = faces.iter().map(|(surface, _)| measure::area(surface)).sum();

@@ -6,13 +6,11 @@ use glam::DVec3;
 
 use super::kinds::PatchOf;
 use crate::base::bbox::Box3;
-use crate::base::fault::{SurfaceFault, ValueFault};
+use crate::base::fault::ValueFault;
 use crate::lang::cx::{Cx, Stop};
-use crate::lang::scene::Scene;
 use crate::lang::types::{Area, Point, Volume};
 use crate::lang::value::{MeshValue, ShellValue, Value};
-use crate::model::SurfaceId;
-use crate::model::measure::{self, Solid};
+use crate::model::measure;
 use crate::network::Chain;
 use crate::surface::{Surface, curve_bbox};
 use crate::{builtins, fields};
@@ -36,21 +34,6 @@ pub(super) fn box_of(cx: &mut Cx, surfaces: &[Surface]) -> Value {
         cx.say(&ValueFault::LooseBox { of: surfaces[k].origin(), by, share: by / whole }.into());
     }
     record_of(cx, bounds)
-}
-
-/// What a closed shell encloses; an open one encloses nothing.
-pub(super) fn solid(cx: &mut Cx, shell: &ShellValue) -> Result<Solid, Stop> {
-    let (module, tolerance) = (cx.module(), cx.tolerance()?);
-    let scene = Scene::of(cx, module, &shell.surfaces)?;
-    let built = scene.shell(shell, &tolerance, &mut Vec::new())?;
-    if !built.closed {
-        let edge = |(id, at, length): &(SurfaceId, DVec3, f64)| (scene.model.surfaces[id.index()].surface.origin(), *at, *length);
-        let free = built.free.iter().map(edge).collect();
-        return Err(SurfaceFault::ShellNotClosed { shell: shell.origin, wanted: "volume", free }.into());
-    }
-    let faces: Vec<(Surface, bool)> =
-        built.surfaces.iter().map(|(id, other)| (scene.model.surfaces[id.index()].surface.clone(), *other)).collect();
-    Ok(measure::solid(&faces))
 }
 
 builtins! {
@@ -78,11 +61,11 @@ fields! {
         Ok(Area(measure::area_between(&model.surfaces[patch.surface.index()].surface, (patch.u, patch.v))))
     };
     /// Area of all surfaces of a shell.
-    fn area(of: Arc<ShellValue>) -> Area = |_, of| Ok(Area(measure::sheet(&of.surfaces).area));
+    fn area(of: Arc<ShellValue>) -> Area = |_, of| Ok(Area(measure::areas(&of.surfaces).iter().sum()));
     /// Area of all faces of a mesh.
     fn area(of: Arc<MeshValue>) -> Area = |cx, of| Ok(Area(cx.mesh(&of)?.quality().map_or(0.0, |q| q.area)));
     /// Volume that a closed shell encloses.
-    fn volume(of: Arc<ShellValue>) -> Volume = |cx, of| Ok(Volume(solid(cx, &of)?.volume.abs()));
+    fn volume(of: Arc<ShellValue>) -> Volume = |cx, of| Ok(Volume(cx.solid(&of)?.volume.abs()));
     /// Centre of the length of a curve.
     fn centroid(of: Chain) -> Point = |_, of| Ok(Point(measure::curve_centroid(&of)));
     /// Centre of the area of a mesh; of lines alone of their length.
@@ -93,7 +76,7 @@ fields! {
     /// Centre of the area of a surface.
     fn centroid(of: Surface) -> Point = |_, of| Ok(Point(measure::sheet(std::slice::from_ref(&of)).centroid));
     /// Centre of the volume of a closed shell, of the area of an open one.
-    fn centroid(of: Arc<ShellValue>) -> Point = |cx, of| match solid(cx, &of) {
+    fn centroid(of: Arc<ShellValue>) -> Point = |cx, of| match cx.solid(&of) {
         Ok(solid) => Ok(Point(solid.centroid)),
         Err(Stop::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
         Err(other) => Err(other),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::measures::{box_of, solid};
+use super::measures::box_of;
 use crate::base::fault::ValueFault;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::part::PartValue;
@@ -49,7 +49,7 @@ fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Stop> {
     let (mut volume, mut moment) = (0.0, DVec3::ZERO);
     for body in part.solids() {
         let Value::Shell(shell) = body else { continue };
-        let solid = solid(cx, &shell)?;
+        let solid = cx.solid(&shell)?;
         volume += solid.volume.abs();
         moment += solid.centroid * solid.volume.abs();
     }

@@ -380,9 +380,8 @@ fields! {
     };
     /// Whether no edge of a shell is free.
     fn closed(of: Arc<ShellValue>) -> bool = |cx, of| {
-        let (module, tolerance) = (cx.module(), cx.tolerance()?);
-        let scene = Scene::of(cx, module, &of.surfaces)?;
-        Ok(scene.shell(&of, &tolerance, &mut Vec::new())?.closed)
+        let module = cx.module();
+        Ok(cx.glued(module, &of)?.shell.closed)
     };
     /// The edges around a patch, in order.
     fn edges(of: PatchOf) -> Vec<EdgeOf> = |cx, of| {

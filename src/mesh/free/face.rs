@@ -101,8 +101,9 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
     }
     let all = || grown(made, face, (border, sheet, outline), job);
     let surface = || made.input.model.surfaces[face.surface.index()].surface.origin();
-    // What is tried again with shorter steps of its border may take less.
-    let ready = Budget::new(MESH_WORK >> face.halved.min(FEWER)).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
+    // What is tried again with shorter steps of its border, because nothing kept its limits, may take less.
+    let again = if face.method.is_sparing() { face.halved.min(FEWER) } else { 0 };
+    let ready = Budget::new(MESH_WORK >> again).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
     if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
         known.keep_free(key, Taken::of(&ready, free));
     }
