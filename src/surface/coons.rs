@@ -82,7 +82,7 @@ pub struct Grid<'a> {
 /// Fails with E604 when meetings coincide or come in different orders.
 pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     if grid.flow.kind == FlowKind::UniformTrilateral {
-        return trilateral(grid, settings);
+        return trilateral(grid, settings, tolerance);
     }
     let mut notes = Vec::new();
     let flow = grid.flow;
@@ -375,14 +375,36 @@ pub(super) fn borders(blend: &Blend) -> Vec<Border> {
     vec![of(u.first()), of(v.last()), of(u.last()), of(v.first())]
 }
 
-/// Three borders and no pole: one along u, two along v (u = 0 and the slant).
-fn trilateral(grid: &Grid, settings: &Settings) -> Result<(Surface, Vec<Fault>)> {
-    let side = |member: Option<&Member>| {
-        let (chain, reversed) = member.map_or((&grid.chains[0], false), |m| (&grid.chains[m.curve], m.reversed));
-        (Rail::new(chain.clone(), if reversed { Map::reverse() } else { Map::identity() }), Border::chain(chain.clone(), reversed))
+/// Three borders and no pole: one along u, two along v (u = 0 and the slant). Ends that stand out beyond another border are left out with a
+/// note.
+fn trilateral(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let mut notes = Vec::new();
+    // Each from the border where it begins to the one where it ends.
+    let mut side = |member: Option<&Member>, meets: [Option<&Member>; 2]| -> Result<(Rail, Border)> {
+        let Some(Member { curve, reversed, crossings }) = member else {
+            return Ok((Rail::new(grid.chains[0].clone(), Map::identity()), Border::chain(grid.chains[0].clone(), false)));
+        };
+        let mut chain = grid.chains[*curve].clone();
+        let near = tolerance.point / chain.length();
+        let (first, last) = if *reversed { (1.0, 0.0) } else { (0.0, 1.0) };
+        let mut ends = [first, last];
+        for (k, (end, border)) in [first, last].into_iter().zip(meets).enumerate() {
+            let here = crossings.get(k).copied().unwrap_or(end);
+            if (here - end).abs() > near {
+                let border = border.map_or(Origin::NONE, |m| grid.chains[m.curve].origin());
+                let length = (here - end).abs() * chain.length();
+                notes.push(SurfaceFault::EndTrimmed { curve: chain.origin(), border, end: chain.point(end), length }.into());
+                ends[k] = here;
+            }
+        }
+        if ends != [first, last] {
+            chain = chain.slice(ends[0].min(ends[1]), ends[0].max(ends[1]), tolerance)?;
+        }
+        Ok((Rail::new(chain.clone(), if *reversed { Map::reverse() } else { Map::identity() }), Border::chain(chain, *reversed)))
     };
     let (along_u, along_v) = (&grid.flow.along_u, &grid.flow.along_v);
-    let (bottom, slant, left) = (side(along_u.first()), side(along_v.get(1)), side(along_v.first()));
+    let (bottom, slant, left) = (along_u.first(), along_v.get(1), along_v.first());
+    let (bottom, slant, left) = (side(bottom, [left, slant])?, side(slant, [bottom, left])?, side(left, [bottom, slant])?);
     let surface = Surface::new(Parts {
         origin: settings.origin,
         kind: settings.method.kind(),
@@ -397,5 +419,5 @@ fn trilateral(grid: &Grid, settings: &Settings) -> Result<(Surface, Vec<Fault>)>
         trim: None,
         flipped: false,
     });
-    Ok((surface, Vec::new()))
+    Ok((surface, notes))
 }

@@ -1,6 +1,7 @@
 //! Where surfaces meet curves and each other: subdivision with guaranteed bounds, Newton's method where there is one meeting
 //! or one line. `docs/notes/intersections.md` has the reasons.
 
+mod coplanar;
 mod curve;
 mod fit;
 mod itself;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::coplanar::{Coplanar, overlap};
 use super::pair::Pair;
 use super::search::{Stopped, common};
 use super::sheet::{Sheet, patches, widely_grounded};
@@ -112,7 +113,11 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
                     continue;
                 }
                 if extent.diagonal() > long(tolerance, f64::INFINITY) {
-                    return Err(along(at));
+                    match overlap(a, b, tolerance)? {
+                        Coplanar::Apart => continue,
+                        Coplanar::Overlap(place) => return Err(along(place)),
+                        Coplanar::Unknown => return Err(along(at)),
+                    }
                 }
                 touches.push(at);
             }
