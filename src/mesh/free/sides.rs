@@ -80,6 +80,6 @@ impl Side<'_> {
             Some(bends) => 0.125 * bends.along(step) + bends.jump,
             None => f64::INFINITY,
         };
-        along(self.across[0]).hypot(along(self.across[1]))
+        DVec2::new(along(self.across[0]), along(self.across[1])).length()
     }
 }
