@@ -43,6 +43,11 @@ impl Budget {
         Self(Arc::new(Counts { limit: AtomicU64::new(limit), ..Counts::default() }))
     }
 
+    /// One that only measures a part of the work of another one, where there is one.
+    fn part_of(whole: Option<Self>) -> Self {
+        Self(Arc::new(Counts { limit: AtomicU64::new(u64::MAX), whole, ..Counts::default() }))
+    }
+
     /// Adds to the budget of what is being done. The sum is the same in every run where this is not called by parallel work.
     pub fn allow(&self, more: u64) {
         if let Some(whole) = &self.0.whole {
@@ -153,7 +158,7 @@ pub fn uncharged<T>(work: impl FnOnce() -> T) -> T {
 
 /// Runs `work` at the charge of whoever is charged already, and says how many units it took.
 pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
-    let part = Budget(Arc::new(Counts { limit: AtomicU64::new(u64::MAX), whole: budget(), ..Counts::default() }));
+    let part = Budget::part_of(budget());
     let charging = Charging::to(Some(part.clone()));
     let made = work();
     drop(charging);
@@ -166,7 +171,7 @@ pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
 pub struct Once<T> {
     /// With the work that it took.
     made: OnceLock<(T, u64)>,
-    /// Work after which it was not made yet.
+    /// Work that a budget was exceeded with before it was made; 0: none was.
     least: AtomicU64,
 }
 
@@ -192,14 +197,16 @@ impl<T: Clone> Once<T> {
         if charged.as_ref().is_some_and(|budget| budget.left() < least) {
             spend(least.max(AT_A_TIME));
         }
-        let part = Budget(Arc::new(Counts { limit: AtomicU64::new(u64::MAX), whole: charged, ..Counts::default() }));
+        let part = Budget::part_of(charged);
         let charging = Charging::to(Some(part.clone()));
         let made = catch_unwind(AssertUnwindSafe(make));
         drop(charging);
         match made {
             Ok(made) => made.map(|value| self.made.get_or_init(|| (value, part.spent())).0.clone()),
             Err(panic) => {
-                self.least.fetch_max(part.spent(), Ordering::Relaxed);
+                if is_ours(panic.as_ref()) {
+                    self.least.fetch_max(part.spent(), Ordering::Relaxed);
+                }
                 resume_unwind(panic)
             }
         }

@@ -144,6 +144,7 @@ impl Lengths {
     }
 
     fn invert(&self, k: usize, s: f64) -> f64 {
+        // A step or two of Newton's.
         work::spend(2);
         let (a, b) = (self.t[k], self.t[k + 1]);
         let (wanted, length) = (s - self.s[k], self.s[k + 1] - self.s[k]);

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::{Chart, Grid, Shape};
 use super::faces::Frame;
+use super::free::bound::stationary;
 use super::free::poles::from_pole;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
@@ -260,15 +261,10 @@ fn middle(weights: [usize; 3]) -> Option<usize> {
     (0..3).find(|k| weights[*k] == 0 && weights[(*k + 1) % 3] == HALF)
 }
 
-/// Where the quadratic function over a triangle that vanishes at the corners, and has such heights in the middles of the sides opposite, is
-/// largest inside, as weights, with its height; `None` where it is largest on a side.
+/// How high the quadratic function over a triangle is where it is largest inside, and where, as weights, that vanishes at the corners and
+/// has such heights in the middles of the sides opposite.
 fn peak(middles: [f64; 3]) -> Option<(f64, [f64; 3])> {
-    let [a, b, c] = middles;
-    let w = [a * (b + c - a), b * (c + a - b), c * (a + b - c)];
-    let sum = w[0] + w[1] + w[2];
-    let w = w.map(|w| w / sum);
-    let is_inside = w.iter().all(|w| *w > 0.0);
-    is_inside.then(|| (4.0 * (a * w[1] * w[2] + b * w[2] * w[0] + c * w[0] * w[1]).abs(), w))
+    stationary(middles.map(|height| 4.0 * height)).map(|(height, weights)| (height.abs(), weights))
 }
 
 /// Places of a triangle's corners, with one at a pole between the others.

@@ -71,7 +71,7 @@ pub enum CutFault {
         /// Where.
         at: DVec3,
     },
-    /// E721 `cuts-too-near`: a cut that ends nowhere leaves one part: it was taken along what is one with its other side.
+    /// E721 `cuts-too-near`: a cut without ends leaves one part, where every such cut divides: it was not followed all the way.
     NothingParted {
         /// The surface.
         surface: Origin,
@@ -170,7 +170,7 @@ impl Describe for CutFault {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
                 Report::new(
                     "E721",
-                    format!("a cut of {name} that ends nowhere parts nothing off, at {at}: it cannot be followed all the way"),
+                    format!("a cut of {name} cannot be followed all the way near {at}: what lies on its two sides is one part"),
                 )
                 .at(*surface, "this surface")
                 .help("a smaller `tolerance` tells curves apart that are near to each other, and bends of them")

@@ -319,16 +319,17 @@ fn beside_kinks(surface: &Surface, own: (DVec2, DVec2), (mut low, mut high): (DV
 /// The most that Σ c λi λj can be for barycentric λ, `c` in the order of the sides opposite the corners.
 fn most(c: [f64; 3]) -> f64 {
     let on_side = c.iter().fold(0.0_f64, |m, c| m.max(0.25 * c));
-    // Inside, the three derivatives are equal: λ ∝ c_a (c_b + c_c − c_a).
+    stationary(c).map_or(on_side, |(value, _)| on_side.max(value))
+}
+
+/// The value of Σ c λi λj where it is stationary, and the barycentric λ of that place; `None` where that is outside of the triangle.
+pub fn stationary(c: [f64; 3]) -> Option<(f64, [f64; 3])> {
+    // The three derivatives are equal: λ ∝ c_a (c_b + c_c − c_a).
     let weight = |k: usize| c[k] * (c[(k + 1) % 3] + c[(k + 2) % 3] - c[k]);
     let w = [weight(0), weight(1), weight(2)];
     let sum: f64 = w.iter().sum();
-    let inside = w.iter().all(|x| x / sum > 0.0);
-    if !inside {
-        return on_side;
-    }
     let l = w.map(|x| x / sum);
-    on_side.max(c[0] * l[1] * l[2] + c[1] * l[2] * l[0] + c[2] * l[0] * l[1])
+    l.iter().all(|x| *x > 0.0).then(|| (c[0] * l[1] * l[2] + c[1] * l[2] * l[0] + c[2] * l[0] * l[1], l))
 }
 
 /// Wanted edge length for limits at a place: of an equilateral triangle, however it lies.

@@ -158,8 +158,8 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], first: Option<(DVec2, D
     of_places(sheet, (xy, p, beside), limits)
 }
 
-/// The bounds of a triangle of a front, and of its sides where it leans so far that the surface over one of them may be farther from
-/// it than from the plane of the triangle by what is left of the limit: between two triangles at an angle nothing is nearer.
+/// The bounds of a triangle, and of its sides where it leans so far that they may break the limit though its plane keeps it: a height over
+/// the plane is, along the normal of the surface, as much farther as the cosine between the two is less than 1.
 fn load_with_sides(sheet: &Sheet, web: &Web, t: u32, limits: &Limits) -> Load {
     let corners = web.tri[t as usize];
     let found = load(sheet, web, corners, None, limits);

@@ -13,9 +13,10 @@ use crate::surface::quick::Quick;
 /// How often a side is halved where the bound over the whole of it is not enough.
 const HALVES: u32 = 5;
 
-/// The largest distance between the surface and the sides of a triangle, by the ends of the sides in (u, v) in the order of the corners
-/// opposite ([`super::poles::sides`]; none are looked at where there are none) and the points of the corners. A bound where it is at most `wanted`; otherwise only known to be
-/// above that, or not known to be below.
+/// A bound of the distance between the surface and the sides of a triangle, model units.
+///
+/// `ends` are the ends of the sides in (u, v), in the order of the corners opposite ([`super::poles::sides`]); a side without them is left
+/// out. `p` are the corners. The search ends with the first distance above `wanted`, which need not be the largest.
 pub fn distance(of: (&Surface, Option<&Quick>), ends: [Option<[DVec2; 2]>; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let up = (p[1] - p[0]).cross(p[2] - p[0]);
     let mut worst = 0.0_f64;

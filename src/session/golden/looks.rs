@@ -15,7 +15,6 @@ use crate::base::math::compare_points;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Sound, Stop};
-use crate::lang::scene::Scene;
 use crate::lang::value::{ModuleId, ShellValue};
 use crate::mesh::{Group, Mesh};
 use crate::model::Moments;
@@ -103,7 +102,7 @@ pub fn of(cx: &mut Cx) -> Looks {
     }
     for shell in cx.shells(ModuleId::MAIN).unwrap_or_default() {
         looks.declared.insert(shell.name.to_string());
-        if let Ok(moments) = of_shell(cx, &shell.value, &tolerance) {
+        if let Ok(moments) = of_shell(cx, &shell.value) {
             looks.shells.insert(shell.name.to_string(), of_sheet(&moments, unit));
         }
     }
@@ -176,13 +175,12 @@ fn of_chain(chain: &Chain, moments: &Moments, loose: bool, (tolerance, unit): (&
     Look { loose, pairs }
 }
 
-fn of_shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance) -> Result<Moments, Stop> {
-    let scene = Scene::of(cx, ModuleId::MAIN, &shell.surfaces)?;
-    let built = scene.shell(shell, tolerance, &mut Vec::new())?;
-    let parts = par::map(built.surfaces.len(), |k| {
-        let (id, other) = built.surfaces[k];
-        let moments = Moments::of_surface(&scene.model.surfaces[id.index()].surface);
-        if other { moments.flipped() } else { moments }
+fn of_shell(cx: &mut Cx, shell: &ShellValue) -> Result<Moments, Stop> {
+    let faces = cx.glued(ModuleId::MAIN, shell)?.faces();
+    let parts = par::map(faces.len(), |k| {
+        let (surface, other) = &faces[k];
+        let moments = Moments::of_surface(surface);
+        if *other { moments.flipped() } else { moments }
     });
     Ok(Moments::total(parts))
 }

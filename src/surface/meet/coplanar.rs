@@ -11,6 +11,7 @@ use crate::surface::closest::Nearest;
 use crate::surface::core::{Domain, Side, Surface};
 
 /// What faces in one plane have in common.
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Coplanar {
     /// They are not known to lie in one plane, or not all of their borders are curves.
     Unknown,

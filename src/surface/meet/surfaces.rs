@@ -88,7 +88,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     let lost =
         |at: DVec3| Fault::from(CurveFault::NotConverged { of: origin, what: "the curve in which the surfaces meet".to_owned(), at });
     let along = |at: DVec3| Fault::from(CutFault::RunAlong { a: a.origin(), b: b.origin(), at, tolerance: tolerance.point });
-    let (mut curves, mut touches) = (Vec::new(), Vec::new());
+    let (mut curves, mut touches, mut coplanar) = (Vec::new(), Vec::new(), None);
     for x in &mut sheets_a {
         for y in &mut sheets_b {
             job::look();
@@ -113,7 +113,11 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
                     continue;
                 }
                 if extent.diagonal() > long(tolerance, f64::INFINITY) {
-                    match overlap(a, b, tolerance)? {
+                    let known = match coplanar {
+                        Some(known) => known,
+                        None => *coplanar.insert(overlap(a, b, tolerance)?),
+                    };
+                    match known {
                         Coplanar::Apart => continue,
                         Coplanar::Overlap(place) => return Err(along(place)),
                         Coplanar::Unknown => return Err(along(at)),

@@ -28,9 +28,9 @@ const THIN: f64 = 0.6;
 const TURN: f64 = 0.35;
 /// Largest part of the way from pole to pole that one cell covers.
 const HALF: f64 = 0.6;
-/// Elements whose work a cell is worth that is cut because it is too large by itself, and once more for so many curves of which a point of
-/// the surface is made.
+/// Elements whose work a cell is worth that is cut because it is too large by itself.
 const CELL: u64 = 2;
+/// Curves of which a point of the surface is made, for each of which a cell is worth as much again.
 const CURVES: usize = 4;
 /// Pieces by which the side of a cell is measured.
 const PIECES: usize = 4;
