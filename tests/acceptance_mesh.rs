@@ -1,20 +1,6 @@
 //! Models of the papers on meshing (math notes §16, P1 and P4), as scripts with checks, and the same bytes on any number of
 //! threads.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "support/invariants.rs"]
-mod invariants;
-#[path = "support/reference.rs"]
-mod reference;
-#[path = "support/script.rs"]
-mod script;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -25,8 +11,11 @@ use lofting::mesh::chart::Shape;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::run::Outcome;
-use reference::reference;
 use serde_json::Value as Json;
+
+use crate::support::invariants;
+use crate::support::reference::reference;
+use crate::support::script;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

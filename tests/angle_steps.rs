@@ -1,7 +1,5 @@
 //! Steps that `angle_error` takes on mapped faces, against the least that keep it: random curves and faces with a fixed seed.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a test fails by panicking")]
-
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};

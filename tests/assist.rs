@@ -1,6 +1,5 @@
 //! Help while typing: `tests/assist/*.loft` hold lines `//   ^ offers …` and `//   ^ tells …` below the place they
-//! speak of, and what must be said there. `LOFT_ACCEPT=1 cargo test --test assist` writes it anew; read the difference.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
+//! speak of, and what must be said there. `LOFT_ACCEPT=1 cargo test assist::` writes it anew; read the difference.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,11 +1,4 @@
 //! Bounds of surfaces hold everywhere and come near to the truth; what stands on them keeps its promise.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
 
 use glam::DVec3;
 use lofting::base::job::Job;

@@ -4,16 +4,6 @@
 //! with this code begins on this line, and its message, labels or help hold these words. Several may stand on one line;
 //! `// error:` and `// warning:` and `// note:` mean the same, the letter of the code tells. A comment
 //! `// error below: …` speaks of the next line. Every error has to be announced; warnings and notes may stay unsaid.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -25,6 +15,8 @@ use lofting::lang::diag::{Diagnostic, Sources};
 use lofting::lang::diag_render::{render, render_all};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
+
+use crate::support::script;
 
 /// A script and its text.
 type Key = (PathBuf, String);

@@ -1,7 +1,5 @@
 //! Results kept on disk change nothing but the time: cold, warm, after edits, and with files that were damaged.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

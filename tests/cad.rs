@@ -1,14 +1,6 @@
 //! Shells of CAD files: their faces come with borders of their own, which are glued over the gaps the files have, and their
 //! meshes conform.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "cad/gaps.rs"]
 mod gaps;
 
 use std::collections::{BTreeMap, BTreeSet};

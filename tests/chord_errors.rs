@@ -1,8 +1,4 @@
 //! Chord errors that are asked for are kept, by the distances of triangles and not by what the mesher tells.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a test fails by panicking")]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,6 +7,8 @@ use glam::DVec3;
 use lofting::base::tolerance::Tolerance;
 use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
+
+use crate::support::script;
 
 fn mesh(text: &str) -> Arc<Mesh> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

@@ -1,11 +1,4 @@
 //! The commands as a user runs them: transcripts in `tests/cli/*.md`, and runs that write files in folders of their own.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
 
 use std::fs;
 use std::io::Write;

@@ -1,7 +1,5 @@
 //! Pictures as measured: what covers how many pixels, what hides what, what the files hold.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

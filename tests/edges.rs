@@ -1,8 +1,4 @@
 //! Edges of surfaces and shells in meshes: sets hold every node along an edge, rules decide it, whatever the edge is made of.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -15,6 +11,8 @@ use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::json::report_text;
 use lofting::session::run::Outcome;
+
+use crate::support::script;
 
 /// Scripts that make `s`, each with how many edges it has.
 const KINDS: [(&str, usize, &str); 16] = [

@@ -5,7 +5,6 @@
 //! `LOFT_EDITS` says how many edits (a few dozen without it), `LOFT_EDITS_FROM` the number of the first, `LOFT_EDITS_SECONDS` the
 //! processor time of each, `LOFT_EDITS_LOFT` which program is run (a release build in `.ci/run`).
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,5 @@
 //! `loft fmt`: a table of cases in `tests/fmt/*.txt`, and what holds for every script: laid out twice is laid out once,
 //! the tree is the same, and so are all tokens and comments.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,4 @@
 //! `loft fmt` as a user runs it.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::io::Write;

@@ -1,5 +1,4 @@
 //! Curves against numbers computed elsewhere, and against properties that hold for all of them.
-#![allow(clippy::unwrap_used, clippy::panic)] // A test may fail by them.
 
 use std::path::Path;
 

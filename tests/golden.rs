@@ -1,10 +1,4 @@
 //! The project's own goldens, through the runner that `loft test` uses, and proof that goldens catch what they should.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

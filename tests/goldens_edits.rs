@@ -2,7 +2,6 @@
 //!
 //! A few dozen edits in `cargo test`; `LOFT_EDITS` says how many of each kind. Examples with
 //! large meshes are left out: nearly all of their time goes into those.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,9 +19,7 @@ use lofting::session::kept::Kept;
 use lofting::session::run::{Task, run_seen};
 use lofting::surface::Side;
 
-#[path = "support/random.rs"]
-mod random;
-use random::Random;
+use crate::support::random::Random;
 
 /// Share of the diagonal of the model's box by which values may differ that are one: the centroid of a curve moves less than the
 /// place that moves most, so it is some times what a golden allows.

@@ -1,5 +1,4 @@
 //! Goldens see every change of place, size, side and membership, and nothing else.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

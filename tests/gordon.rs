@@ -1,10 +1,4 @@
 //! Gordon surfaces through networks of real parts: built from curves in any order, direction and size, exact on the net.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/networks.rs"]
-mod networks;
-#[path = "support/script.rs"]
-mod script;
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,7 +9,9 @@ use lofting::model::measure::area_within;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::surface::Surface;
 use lofting::surface::gordon::NetCheck;
-use networks::{NETWORKS, as_given, network, surface};
+
+use crate::support::networks::{NETWORKS, as_given, network, surface};
+use crate::support::script;
 
 #[test]
 fn every_network_is_contained_and_smooth() {

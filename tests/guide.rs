@@ -1,5 +1,4 @@
 //! The guide holds when it is followed letter by letter: its commands print what stands there, and it tells of every setting and format.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,5 @@
 //! Input that is meant to eat the machine: each is refused by a clear error, at once and in little memory. `loft` runs as a
 //! child here, so that a hang, an abort or a swollen heap is seen from outside.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

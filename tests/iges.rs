@@ -1,22 +1,9 @@
 //! IGES files: what programs wrote reads as their facts say, each kind of entity is the curve or surface it describes, and no
 //! damage to a file breaks the reader.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "iges/entities.rs"]
 mod entities;
-#[path = "iges/file.rs"]
 mod file;
-#[path = "iges/loops.rs"]
 mod loops;
-#[path = "iges/mutate.rs"]
-mod mutate;
-#[path = "iges/written.rs"]
 mod written;
 
 use std::f64::consts::PI;
@@ -31,8 +18,9 @@ use lofting::base::tolerance::Tolerance;
 use lofting::io::iges::{Options, Part, open};
 use lofting::model::measure;
 use lofting::surface::{Domain, Surface};
-use mutate::{Random, mutated};
 use serde_json::Value as Json;
+
+use crate::support::mutate::{Random, mutated};
 
 const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
 

@@ -1,7 +1,5 @@
 //! A run that takes over what earlier runs found says, measures and writes the same as one that starts from nothing.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,6 @@
 //! A run that is stopped leaves the old outputs or the new ones, never half of one.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -232,8 +231,8 @@ fn a_session_comes_back_soon_whatever_it_does() {
         }
     }
     assert!(caught.iter().all(|n| *n > 0), "not every entry was caught: {caught:?}");
-    // A second is wanted; tests run beside others.
-    assert!(worst.0 < Duration::from_secs(3), "{worst:?}");
+    // A second is wanted; other tests run beside this one.
+    assert!(worst.0 < Duration::from_secs(8), "{worst:?}");
 }
 
 /// What a run on a terminal leaves on the screen, by the program that gives it one.

@@ -2,8 +2,6 @@
 //!
 //! `PROPTEST_CASES` makes the runs longer.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
 use std::slice::from_ref;
 
 use glam::DVec3;

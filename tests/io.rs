@@ -1,7 +1,5 @@
 //! Files: what is written reads back, what is read is what the file's own facts say, and no bytes break a reader.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

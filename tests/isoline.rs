@@ -1,20 +1,15 @@
 //! Cells between lines of constant u and v: the marks of the paper against its reference, and against the winding.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
-
-#[path = "support/borders.rs"]
-mod borders;
-#[path = "support/reference.rs"]
-mod reference;
 
 use std::f64::consts::PI;
 
-use borders::closed;
 use glam::DVec2;
 use lofting::mesh::free::isoline::Cells;
 use lofting::mesh::free::marks::{corners, marks};
 use lofting::mesh::free::tree::{Class, Tree};
-use reference::reference;
 use serde_json::Value;
+
+use crate::support::borders::closed;
+use crate::support::reference::reference;
 
 fn given(value: &Value) -> (Vec<[DVec2; 2]>, (DVec2, DVec2)) {
     let number = |v: &Value| v.as_f64().unwrap();

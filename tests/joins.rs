@@ -1,8 +1,4 @@
 //! Surfaces one after another as one: nothing moves, common borders have one parameter, order and direction change nothing.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/random.rs"]
-mod random;
 
 use glam::DVec3;
 use lofting::base::math;
@@ -13,7 +9,8 @@ use lofting::network::Chain;
 use lofting::surface::nurbs::{Net, nurbs};
 use lofting::surface::revolve::{Axis, revolve};
 use lofting::surface::{Lean, Nearest, Surface, join};
-use random::Random;
+
+use crate::support::random::Random;
 
 const AFTER: Lean = Lean::After;
 

@@ -1,15 +1,13 @@
 //! One thing where a list is wanted: every parameter that takes a list of things takes one, a list, a nested list and a
 //! family alike, and so do the clauses of collections.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::path::Path;
 
 use lofting::lang::std::{Builtin, Param, builtins, fields};
 use lofting::lang::types::Ty;
 use lofting::session::disk::{Disk, Outputs};
+
+use crate::support::script;
 
 /// What is said about a script: codes and messages, and the tables of its reports.
 fn said(text: &str) -> Vec<String> {

@@ -1,7 +1,5 @@
 //! The language server as an editor talks to it: messages over standard input and output.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
@@ -520,7 +518,7 @@ fn the_grammar_of_editors_is_current() {
         fs::write(&path, &said.stdout).unwrap();
     }
     let kept = fs::read(&path).unwrap();
-    assert!(said.stdout == kept, "the grammar is not current: LOFT_ACCEPT=1 cargo test --test lsp grammar");
+    assert!(said.stdout == kept, "the grammar is not current: LOFT_ACCEPT=1 cargo test the_grammar_of_editors");
     let package: Value = serde_json::from_slice(&fs::read(path.parent().unwrap().with_file_name("package.json")).unwrap()).unwrap();
     assert_eq!(package["version"], env!("CARGO_PKG_VERSION"));
 }

@@ -1,11 +1,4 @@
 //! The surface model and mapped meshes: topology, conformity, limits, and the same bytes on any number of threads.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
 
 use std::collections::BTreeMap;
 

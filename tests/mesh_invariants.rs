@@ -1,16 +1,5 @@
 //! What must hold of every mesh (`support/invariants.rs`), of all goldens and examples; those of the papers' models are looked at in
 //! `acceptance_mesh.rs`.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "support/invariants.rs"]
-mod invariants;
-#[path = "support/script.rs"]
-mod script;
 
 use std::path::{Path, PathBuf};
 
@@ -18,6 +7,9 @@ use glam::DVec2;
 use lofting::mesh::extent::{Extent, Place, agrees, inside, left_out};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
+
+use crate::support::invariants;
+use crate::support::script;
 
 fn models(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap().flatten() {

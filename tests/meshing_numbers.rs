@@ -1,10 +1,5 @@
 //! The numbers of the reference notes on meshing (§14.2, §14.3, §14.5, §14.7): what weak methods miss is found here.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a test fails by panicking")]
-
-#[path = "support/reference.rs"]
-mod reference;
-
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -20,8 +15,9 @@ use lofting::mesh::free::quads::smooth::Smoother;
 use lofting::network::Chain;
 use lofting::session::live::{Depth, Live};
 use lofting::surface::{closest, plane, polynomial, trim};
-use reference::reference;
 use serde_json::Value;
+
+use crate::support::reference::reference;
 
 /// The plane z = 0.
 struct Flat;

@@ -1,9 +1,5 @@
 //! Borders that face each other over less than the size: no angle is small that the geometry does not make so, no divided
 //! border crosses another one, and few elements more are taken for it.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::path::Path;
 use std::process::Command;
@@ -12,6 +8,8 @@ use std::sync::Arc;
 use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::run::Outcome;
+
+use crate::support::script;
 
 fn outcome(text: &str) -> Outcome {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

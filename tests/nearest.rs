@@ -1,15 +1,11 @@
 //! Nearest points of surfaces are no farther than any other point of them: creases, seams, poles of a stretch, folds and holes.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/script.rs"]
-mod script;
 
 use glam::DVec3;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::surface::{Domain, Nearest, Surface};
-use random::Random;
+
+use crate::support::random::Random;
+use crate::support::script;
 
 const MODEL: &str = "
 units mm

@@ -1,8 +1,4 @@
 //! Nets of curves as B-splines: how near, how smooth, and with how many control points.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/networks.rs"]
-mod networks;
 
 use glam::DVec3;
 use lofting::base::math;
@@ -15,7 +11,8 @@ use lofting::surface::revolve::Axis;
 use lofting::surface::skin::{Across, Leaving, Section, Settings, skin};
 use lofting::surface::sweeps::{AlongSettings, Input, Law, Method, along, sweep};
 use lofting::surface::{NetForm, Off, Surface, extrude, revolve};
-use networks::{NETWORKS, as_given};
+
+use crate::support::networks::{NETWORKS, as_given};
 
 /// Largest distance of a net from its surface at equal (u, v), as a share of the size.
 fn off(surface: &Surface, form: &NetForm, size: f64) -> f64 {

@@ -2,13 +2,6 @@
 //! simple cases.
 //!
 //! `PROPTEST_CASES` says how many random nets; 40 without it.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/networks.rs"]
-mod networks;
-
-#[path = "support/surfaces.rs"]
-mod surfaces;
 
 use std::slice::from_ref;
 
@@ -22,6 +15,9 @@ use lofting::network::Chain;
 use lofting::surface::skin::{Across, Leaving, Section, Settings, skin};
 use lofting::surface::sweeps::{Input, Law, Method, sweep};
 use lofting::surface::{Closest, Nearest, Surface, extrude, revolve};
+
+use crate::support::networks;
+use crate::support::surfaces;
 
 const SIZE: f64 = 400.0;
 

@@ -1,8 +1,4 @@
 //! The curve network and chains against reference numbers, and what must never change them.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, its helpers too")]
-
-#[path = "support/reference.rs"]
-mod reference;
 
 use glam::DVec3;
 use lofting::base::fault::Fault;
@@ -15,8 +11,9 @@ use lofting::network::{Chain, ChainFlow, Flow, FlowFault, FlowOptions, Input, Ne
 
 #[path = "../benches/shared/nets.rs"]
 mod nets;
-use reference::reference;
 use serde_json::Value;
+
+use crate::support::reference::reference;
 
 const O: Origin = Origin::NONE;
 

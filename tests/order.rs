@@ -1,7 +1,6 @@
 //! The order of declarations decides nothing: the examples, shuffled, write the same files and report the same.
 //!
 //! Two shuffles of each example in `cargo test`; `LOFT_SHUFFLES` says how many, and `.ci/run` asks for ten.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

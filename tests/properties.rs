@@ -2,11 +2,6 @@
 //!
 //! `PROPTEST_CASES` makes the runs longer.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/script.rs"]
-mod script;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +10,8 @@ use lofting::session::guard::guarded;
 use lofting::session::report::Report;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
+
+use crate::support::script;
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("properties-{name}"));

@@ -1,8 +1,4 @@
 //! Quads on faces that no map fits: only quads, conforming, none turned over, within their limits; or an error that says where.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,6 +10,8 @@ use lofting::mesh::Mesh;
 use lofting::mesh::quality::of_element;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::run::Outcome;
+
+use crate::support::script;
 
 const PLATE: &str = "units mm
 curve rim = polyline([(0, 0), (20, 0), (20, 10), (0, 10)], closed: true)

@@ -1,19 +1,14 @@
 //! The quadtree: leaf counts against an exact reference, and what meshes gain by it.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
-
-#[path = "support/borders.rs"]
-mod borders;
-#[path = "support/reference.rs"]
-mod reference;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use borders::closed;
 use glam::DVec2;
 use lofting::mesh::free::tree::{Cell, Class, DEEPEST, Halt, Tree};
-use reference::reference;
 use serde_json::Value;
+
+use crate::support::borders::closed;
+use crate::support::reference::reference;
 
 /// Leaves by level and class.
 fn counts(tree: &Tree) -> BTreeMap<(String, &'static str), u64> {

@@ -3,8 +3,6 @@
 //! Lines that start with `> ` are entries, `. ` continues one, `//` is a comment; the rest is what was answered.
 //! `LOFT_ACCEPT=1` writes the answers of now.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};

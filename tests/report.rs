@@ -1,5 +1,4 @@
 //! The JSON report: its shape is the one that `docs/report.schema.json` states, for every example, and it is whole.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,15 +1,12 @@
 //! Surfaces through scattered points: what they meet, how smooth they are, and what changes nothing.
-#![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/random.rs"]
-mod random;
 
 use glam::{DVec2, DVec3};
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::Motion;
 use lofting::surface::{Surface, scatter};
-use random::Random;
+
+use crate::support::random::Random;
 
 /// Numbers of 0…1, the same every time.
 fn cloud(numbers: &mut Random, n: usize, height: impl Fn(f64, f64) -> f64) -> Vec<DVec3> {

@@ -1,10 +1,5 @@
 //! Sizes of meshes: `near`, `in`, `growth` and `min_size` on faces, links and across borders.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/script.rs"]
-mod script;
-
 use std::collections::BTreeMap;
 
 use glam::DVec3;
@@ -23,6 +18,8 @@ use lofting::model::{Model, SurfaceId};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
 use lofting::surface::{Surface, plane};
+
+use crate::support::script;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)

@@ -1,8 +1,4 @@
 //! Faces as one skin: which side they show, and where they touch.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/script.rs"]
-mod script;
 
 use std::path::Path;
 
@@ -11,6 +7,8 @@ use lofting::io::stl_read;
 use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::run::Outcome;
+
+use crate::support::script;
 
 /// Runs a script that must succeed; files go to a folder of the test's own.
 fn run(name: &str, text: &str) -> Outcome {

@@ -5,13 +5,6 @@
 //! report with a label on that line whose sentence holds the quoted words. A report that nothing
 //! expects fails, and so does an expectation that nothing meets. A fence ```` ```csv offsets.csv ```` (any word, then a
 //! name) is a file beside the fences that follow it.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
 
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,6 @@
 //!
 //! `PROPTEST_CASES` makes the runs longer.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};

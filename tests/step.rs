@@ -1,21 +1,9 @@
 //! STEP files: what programs wrote reads as their facts say, each kind of entity is the curve or surface it describes, the text may be
 //! laid out in any way, and no damage to a file breaks the reader.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "step/entities.rs"]
 mod entities;
-#[path = "step/file.rs"]
 mod file;
-#[path = "step/malformed.rs"]
 mod malformed;
-#[path = "iges/mutate.rs"]
-mod mutate;
 
 use std::path::Path;
 use std::time::Instant;
@@ -28,8 +16,9 @@ use lofting::base::tolerance::Tolerance;
 use lofting::io::cad::part::{Options, Part};
 use lofting::io::step::open;
 use lofting::model::measure;
-use mutate::{Random, mutated};
 use serde_json::Value as Json;
+
+use crate::support::mutate::{Random, mutated};
 
 const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
 

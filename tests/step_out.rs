@@ -1,8 +1,6 @@
 //! STEP files that models write: references lead somewhere, faces share edges, names and units are kept, and the same model gives the same
 //! bytes.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, reason = "a test fails by panicking")]
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -1,14 +1,4 @@
 //! Surfaces against the reference numbers, and the properties they must keep.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::disallowed_methods,
-    clippy::approx_constant,
-    reason = "a test fails by panicking and checks with the platform's functions"
-)]
-
-#[path = "support/reference.rs"]
-mod reference;
 
 use glam::DVec3;
 use lofting::base::fault::Fault;
@@ -23,8 +13,9 @@ use lofting::surface::coons::{Grid, Method, Settings, build};
 use lofting::surface::interpolate::{Tangents, fitted};
 use lofting::surface::revolve::Axis;
 use lofting::surface::{Domain, Lean, Nearest, NurbsSurface, Reparam, Side, Surface, axis_of, extrude, plane, revolve, ruled};
-use reference::reference;
 use serde_json::Value;
+
+use crate::support::reference::reference;
 
 fn vec3(value: &Value) -> DVec3 {
     let number = |v: &Value| v.as_f64().unwrap_or_else(|| v.as_str().unwrap().parse().unwrap());

@@ -1,8 +1,4 @@
 //! Properties of sweeps: what they contain, what changes nothing, what moves with them.
-#![allow(clippy::panic, reason = "a test fails by panicking")]
-
-#[path = "support/surfaces.rs"]
-mod surfaces;
 
 use std::slice::from_ref;
 
@@ -15,6 +11,8 @@ use lofting::geometry::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
 use lofting::surface::sweeps::{AlongSettings, Input, Law, Method, along, sweep};
 use lofting::surface::{Surface, extrude, revolve};
+
+use crate::support::surfaces;
 
 const SIZE: f64 = 400.0;
 

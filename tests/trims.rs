@@ -2,13 +2,6 @@
 //!
 //! `PROPTEST_CASES` makes the runs longer.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/invariants.rs"]
-mod invariants;
-#[path = "support/script.rs"]
-mod script;
-
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -32,6 +25,9 @@ use lofting::surface::revolve::Axis;
 use lofting::surface::{Ground as Speaks, Outlined, extrude, outlined, revolve};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
+
+use crate::support::invariants;
+use crate::support::script;
 
 /// z = h sin x cos y.
 struct Waves(f64);

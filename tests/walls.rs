@@ -1,8 +1,4 @@
 //! Offsets keep their distance and walls enclose what area and curvature say, on random faces.
-#![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::panic, missing_docs)]
-
-#[path = "support/random.rs"]
-mod random;
 
 use std::f64::consts::PI;
 
@@ -14,7 +10,8 @@ use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::walls::thicken;
 use lofting::surface::{Surface, closest, grid, offset};
-use random::Random;
+
+use crate::support::random::Random;
 
 /// A number between two.
 fn between(numbers: &mut Random, a: f64, b: f64) -> f64 {

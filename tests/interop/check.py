@@ -1,6 +1,6 @@
 """python check.py LOFT WORK DECKS: runs everything and prints "N passed, N failed".
 
-LOFT is the program, WORK a scratch folder, DECKS a folder of files from `cargo test --test io`, each family with its
+LOFT is the program, WORK a scratch folder, DECKS a folder of files from `cargo test decks_for_other_programs`, each family with its
 facts in a JSON file.
 """
 import glob

@@ -88,7 +88,7 @@ def calculix(folder):
 
 
 def takes_every_set(deck, work):
-    """The sheet of `cargo test --test io`, with shells, beams and all its sets in use: two corners held, two moved."""
+    """The sheet of `cargo test decks_for_other_programs`, with shells, beams and all its sets in use: two corners held, two moved."""
     folder = os.path.join(work, "solve_" + os.path.basename(deck).replace(".", "_"))
     os.makedirs(folder, exist_ok=True)
     shutil.copy(deck, os.path.join(folder, "sheet.inp"))

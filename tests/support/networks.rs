@@ -1,5 +1,4 @@
 //! The networks of real parts that several tests build.
-#![allow(dead_code, missing_docs)]
 
 use std::fs;
 

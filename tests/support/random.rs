@@ -1,5 +1,4 @@
 //! Random numbers and texts of tests, the same in every run.
-#![allow(dead_code, reason = "each test uses its part")]
 
 /// Pseudo-random numbers (SplitMix64), the same in every run.
 #[derive(Clone, Debug)]

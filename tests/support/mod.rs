@@ -1,0 +1,10 @@
+//! What several tests use.
+
+pub mod borders;
+pub mod invariants;
+pub mod mutate;
+pub mod networks;
+pub mod random;
+pub mod reference;
+pub mod script;
+pub mod surfaces;
