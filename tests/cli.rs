@@ -623,6 +623,36 @@ fn a_limit_of_elements_holds_in_every_command_and_method() {
     assert!(zero.status == 2 && zero.err.contains("1..=1000000000"), "{}", zero.err);
 }
 
+#[test]
+fn a_limit_of_work_ends_a_run_as_a_whole_and_leaves_no_file() {
+    let text =
+        format!("{MANY_STEPS}param n = 1\nmesh m of plate {{ chord_error: 1mm  size: 1mm  method: delaunay }}\nexport m to \"m.inp\"\n");
+    let folder = Folder::new("work").with("m.loft", &text);
+    let all = |rest: &[&str]| folder.loft(&[rest, &["m.loft"]].concat());
+    for threads in ["1", "2"] {
+        let ended = all(&["run", "--threads", threads, "--max-work", "20000"]);
+        let told = ended.err.contains("E217") && ended.err.contains("--max-work 20000") && ended.err.contains("meshing m (1 of 1)");
+        assert!(ended.status == 1 && told, "status {}: {}", ended.status, ended.err);
+        assert!(!folder.0.join("m.inp").exists());
+    }
+    let json = all(&["check", "--json", "--max-work", "20000"]);
+    let report: Value = serde_json::from_str(&json.out).unwrap();
+    assert!(report["ok"] == false && report["diagnostics"][0]["code"] == "E217", "{}", json.out);
+    assert_eq!(all(&["run", "--max-work", "1000000000"]).status, 0);
+    assert!(folder.0.join("m.inp").exists());
+    // Each row of a table is a run.
+    std::fs::write(folder.0.join("rows.csv"), "n\n1\n2\n").unwrap();
+    let rows = all(&["check", "--table", "rows.csv", "--max-work", "20000"]);
+    assert!(
+        rows.status == 1 && rows.err.contains("E217") && rows.err.contains("case 002"),
+        "status {}: {}{}",
+        rows.status,
+        rows.out,
+        rows.err
+    );
+    assert_eq!(all(&["check", "--max-work", "0"]).status, 2);
+}
+
 /// A square with room for many elements.
 const MANY_STEPS: &str = r#"units mm
 curve south = line((0, 0), (100, 0))

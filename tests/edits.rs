@@ -1,6 +1,6 @@
 //! Scripts with a few numbers or tokens changed at random: whatever they then ask for, `loft check` ends in time and memory with an
 //! answer of its own, status 0, 1 or 2. `loft` runs as a child, so that a hang, an abort or a swollen heap is seen from outside;
-//! meshes are limited to few elements, so that large ones that are sound do not take the time.
+//! meshes are limited to few elements and runs to some work, so that what is large and sound does not take the time.
 //!
 //! `LOFT_EDITS` says how many edits (a few dozen without it), `LOFT_EDITS_FROM` the number of the first, `LOFT_EDITS_SECONDS` the
 //! processor time of each, `LOFT_EDITS_LOFT` which program is run (a release build in `.ci/run`).
@@ -20,6 +20,8 @@ const SECONDS: u64 = if cfg!(debug_assertions) { 60 } else { 5 };
 const MEMORY_KB: u64 = 2 << 20;
 /// Elements that a mesh may have.
 const ELEMENTS: &str = "20000";
+/// Evaluations that a run may take.
+const WORK: &str = "10000000";
 /// Edits that run at a time.
 const AT_A_TIME: usize = 2;
 /// Numbers that are put in place of others, and what is done to those that are there.
@@ -154,7 +156,8 @@ fn number_of(name: &str, otherwise: u64) -> u64 {
 
 /// Runs a script from its own folder, so that what it imports is there; what is wrong with how that ended.
 fn wrong(loft: &str, at: &Path, text: &str, seconds: u64) -> Option<String> {
-    let limits = format!("ulimit -t {seconds}; ulimit -v {MEMORY_KB}; exec \"$0\" check --threads 1 --max-elements {ELEMENTS} -");
+    let limits =
+        format!("ulimit -t {seconds}; ulimit -v {MEMORY_KB}; exec \"$0\" check --threads 1 --max-elements {ELEMENTS} --max-work {WORK} -");
     let mut command = Command::new("sh");
     command.args(["-c", &limits, loft]).current_dir(at).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();

@@ -3,11 +3,14 @@
 //! Work that a [`Job`] watches ([`Job::watch`]) asks at each row, face or round whether it should go on: by [`Job::go_on`]
 //! where it has the job and may fail, by [`look`] anywhere else. A look at a cancelled job unwinds to the watch around
 //! the work, so that functions without errors can be stopped as well, and no half result gets anywhere.
+//!
+//! A job may also say how much work a run of it may do ([`Job::run`]), in evaluations of curves and surfaces; a run that does more ends
+//! in the same way.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::fault::{Fault, Result};
 use super::limits::MESH_ELEMENTS;
@@ -31,6 +34,10 @@ impl Shared {
         self.total.store(0, Ordering::Relaxed);
         std::mem::replace(&mut now.0, phase)
     }
+
+    fn phase_now(&self) -> (String, u64) {
+        self.phase.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 /// A phase of a job, which goes back to the one before when this is dropped.
@@ -46,25 +53,47 @@ impl Drop for Phase {
     }
 }
 
-/// A stop flag, the phase the work is in and two counters, shared between the work and whoever waits for it; and how much it may make.
+/// A stop flag, the phase the work is in and two counters, shared between the work and whoever waits for it; and how much it may make
+/// and do.
 ///
-/// Counters never change a result.
+/// The counters of progress never change a result.
 #[derive(Debug, Default)]
 pub struct Job {
     shared: Arc<Shared>,
     most_elements: Option<u64>,
+    most_work: Option<u64>,
 }
 
 /// What unwinds from a look to the watch.
 struct Cancelled;
 
-thread_local! {
-    static WATCHED: RefCell<Watched> = const { RefCell::new(Watched(None)) };
+/// The work of one run: what it may do, what it did, and the phase in which that became too much.
+#[derive(Debug)]
+struct Work {
+    limit: u64,
+    spent: AtomicU64,
+    phase: OnceLock<String>,
 }
 
-/// The job that watches the work of a thread, to be handed to the threads that help it.
+/// A run did more work than its job allows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TooMuchWork {
+    /// What it may do, evaluations of curves and surfaces.
+    pub limit: u64,
+    /// What was done then, in a few words; empty where nothing was said.
+    pub phase: String,
+}
+
+thread_local! {
+    static WATCHED: RefCell<Watched> = const { RefCell::new(Watched { job: None, work: None }) };
+}
+
+/// The job that watches the work of a thread and the run that it belongs to, to be handed to the threads that help it.
 #[derive(Clone, Debug, Default)]
-pub struct Watched(Option<Arc<Shared>>);
+pub struct Watched {
+    job: Option<Arc<Shared>>,
+    work: Option<Arc<Work>>,
+}
 
 /// Work of this thread belongs to a job until this is dropped.
 #[derive(Debug)]
@@ -78,6 +107,18 @@ pub fn watched() -> Watched {
 }
 
 impl Watched {
+    fn is_ended(&self) -> bool {
+        self.job.as_ref().is_some_and(|job| job.stop.load(Ordering::Relaxed))
+            || self.work.as_ref().is_some_and(|work| work.phase.get().is_some())
+    }
+
+    fn charge(&self, units: u64) {
+        let Some(work) = &self.work else { return };
+        if work.spent.fetch_add(units, Ordering::Relaxed).saturating_add(units) > work.limit {
+            work.phase.get_or_init(|| self.job.as_ref().map_or_else(String::new, |job| job.phase_now().0));
+        }
+    }
+
     /// Work of this thread belongs to the job from now on.
     pub fn enter(&self) -> Entered {
         Entered { before: WATCHED.replace(self.clone()) }
@@ -90,11 +131,16 @@ impl Drop for Entered {
     }
 }
 
-/// Goes on unless the job of this thread was cancelled; costs a few nanoseconds. To be called at least every few
+/// Charges the run of this thread, where its job limits its work.
+pub(super) fn charge(units: u64) {
+    WATCHED.with_borrow(|watched| watched.charge(units));
+}
+
+/// Goes on unless the job of this thread was cancelled or its run did too much; costs a few nanoseconds. To be called at least every few
 /// milliseconds of work.
 #[inline]
 pub fn look() {
-    if WATCHED.with_borrow(|watched| watched.0.as_ref().is_some_and(|job| job.stop.load(Ordering::Relaxed))) {
+    if WATCHED.with_borrow(Watched::is_ended) {
         leave();
     }
 }
@@ -142,6 +188,11 @@ impl Job {
         Self { most_elements: Some(most), ..self }
     }
 
+    /// The same for work whose runs may take so many evaluations of curves and surfaces each.
+    pub fn with_most_work(self, most: u64) -> Self {
+        Self { most_work: Some(most), ..self }
+    }
+
     /// Elements that a mesh may have.
     pub fn most_elements(&self) -> u64 {
         self.most_elements.unwrap_or(MESH_ELEMENTS)
@@ -154,7 +205,20 @@ impl Job {
 
     /// Does work that every [`look`] in it may end; then it is [`Fault::Interrupted`].
     pub fn watch<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
-        let _entered = Watched(Some(self.shared.clone())).enter();
+        self.watch_run(WATCHED.with_borrow(|watched| watched.work.clone()), work)
+    }
+
+    /// Does the work of one run, which [`Job::with_most_work`] limits: [`Fault::Interrupted`] where it was ended, and whether that was for
+    /// the limit.
+    pub fn run<T>(&self, work: impl FnOnce() -> T) -> (Result<T>, Option<TooMuchWork>) {
+        let limit = self.most_work.map(|limit| Arc::new(Work { limit, spent: AtomicU64::new(0), phase: OnceLock::new() }));
+        let done = self.watch_run(limit.clone(), work);
+        let over = limit.and_then(|work| Some(TooMuchWork { limit: work.limit, phase: work.phase.get()?.clone() }));
+        (done, over)
+    }
+
+    fn watch_run<T>(&self, run: Option<Arc<Work>>, work: impl FnOnce() -> T) -> Result<T> {
+        let _entered = Watched { job: Some(self.shared.clone()), work: run }.enter();
         match catch_unwind(AssertUnwindSafe(work)) {
             Ok(done) => Ok(done),
             Err(payload) if payload.is::<Cancelled>() => Err(Fault::Interrupted),
@@ -164,7 +228,13 @@ impl Job {
 
     /// `Ok` to go on, or [`Fault::Interrupted`].
     pub fn go_on(&self) -> Result<()> {
-        if self.shared.stop.load(Ordering::Relaxed) { Err(Fault::Interrupted) } else { Ok(()) }
+        let ended = self.shared.stop.load(Ordering::Relaxed) || WATCHED.with_borrow(Watched::is_ended);
+        if ended { Err(Fault::Interrupted) } else { Ok(()) }
+    }
+
+    /// Counts work that no [`super::work::spend`] counts for the run of this thread.
+    pub fn charge(&self, units: u64) {
+        charge(units);
     }
 
     /// Says what is done from now on, in a few words (`meshing roof (1 of 2)`), until what is given back is dropped. Counters
@@ -175,7 +245,7 @@ impl Job {
 
     /// What is done now, and the number of this phase.
     pub fn now(&self) -> (String, u64) {
-        self.shared.phase.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.shared.phase_now()
     }
 
     /// Announces `n` more steps of work.
@@ -197,6 +267,7 @@ impl Job {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::work;
 
     #[test]
     fn a_look_ends_cancelled_work_on_every_thread() {
@@ -244,6 +315,29 @@ mod tests {
         assert_eq!((job.now(), job.progress()), (("curves".to_owned(), 3), (0, 0)));
         drop(outer);
         assert_eq!(job.now().0, "");
+    }
+
+    #[test]
+    fn a_run_that_does_too_much_is_ended_wherever_it_is_charged() {
+        let job = Job::new().with_most_work(1_000_000);
+        let each = |units: u64| {
+            job.run(|| {
+                let _phase = job.phase("meshing roof");
+                par::map(100, |_| work::uncharged(|| work::spend(units))).len()
+            })
+        };
+        assert!(matches!(each(10_000), (Ok(100), None)));
+        let too_much = Some(TooMuchWork { limit: 1_000_000, phase: "meshing roof".to_owned() });
+        let (ended, over) = each(10_001);
+        assert!(matches!(ended, Err(Fault::Interrupted) | Ok(_)) && over == too_much);
+        // A watch and a budget inside, and what fails there, do not hide it.
+        let (ended, over) = job.run(|| {
+            let done = work::Budget::new(10_000_000).within(|| job.watch(|| work::spend(2_000_000)).is_err());
+            (done, job.go_on().is_err())
+        });
+        assert!(over.is_some() && matches!(ended, Ok((Ok(true), true))), "{ended:?}");
+        assert!(matches!(each(1), (Ok(100), None)));
+        assert!(matches!(Job::new().run(|| work::spend(2_000_000)), (Ok(()), None)));
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //! budget. Counts decide, never the clock, so that what is refused on one machine and one thread is refused on all.
 //!
 //! Loops deep in the kernel return points, not results. What goes over its budget is therefore unwound to where the
-//! budget was set ([`Budget::within`]), as rayon and std hand a panic on; the panic hook is not called.
+//! budget was set ([`Budget::within`]), as rayon and std hand a panic on; the panic hook is not called. What is spent also counts
+//! for the whole run ([`job::Job::run`]), whoever is charged for it, or nobody.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -10,6 +11,8 @@ use std::convert::Infallible;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
+
+use super::{job, par};
 
 /// Units that a thread counts by itself before it charges them.
 const AT_A_TIME: u64 = 4096;
@@ -124,6 +127,7 @@ impl Drop for Charging {
         if let Some(budget) = BUDGET.replace(self.before.take()) {
             budget.charge(spent);
         }
+        job::charge(spent);
     }
 }
 
@@ -145,9 +149,11 @@ fn settle() {
         budget.charge(spent);
         budget.is_exceeded()
     });
-    if exceeded && !super::par::is_unwinding() {
+    job::charge(spent);
+    if exceeded && !par::is_unwinding() {
         resume_unwind(Box::new(Exceeded));
     }
+    job::look();
 }
 
 /// Runs `work` without charging anyone: what is made once for everyone, and what has a budget of its own inside.
@@ -221,7 +227,6 @@ pub fn budget() -> Option<Budget> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::par;
 
     #[test]
     fn work_ends_where_its_budget_is_spent_whatever_the_threads() {

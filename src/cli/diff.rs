@@ -18,7 +18,7 @@ fn arguments(command: clap::Command) -> clap::Command {
     command
         .arg(file("old", "A", "A script or a golden"))
         .arg(file("new", "B", "The other one"))
-        .arg(options::most_elements())
+        .args([options::most_elements(), options::most_work()])
         .after_help("Exit status: 0 no difference, 1 they differ, 2 wrong usage.")
 }
 

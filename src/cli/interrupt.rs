@@ -20,18 +20,16 @@ struct Watched {
     outputs: Vec<Staging>,
     /// The program goes on after an interrupted job.
     session: bool,
-    /// Elements that a mesh may have, where the command line says so.
-    most_elements: Option<u64>,
+    /// Elements that a mesh may have, and evaluations that a run may take, where the command line says so.
+    limits: [Option<u64>; 2],
 }
 
 impl Watched {
     /// A job within the limits of the command line.
     fn new_job(&self) -> Arc<Job> {
-        let job = Job::new();
-        Arc::new(match self.most_elements {
-            Some(most) => job.with_most_elements(most),
-            None => job,
-        })
+        let [elements, work] = self.limits;
+        let job = elements.into_iter().fold(Job::new(), Job::with_most_elements);
+        Arc::new(work.into_iter().fold(job, Job::with_most_work))
     }
 }
 
@@ -61,10 +59,10 @@ pub fn own_job() -> Arc<Job> {
     watched().new_job()
 }
 
-/// Says how many elements a mesh may have, before any job is asked for.
-pub fn set_most_elements(most: u64) {
+/// Says how many elements a mesh may have and how many evaluations a run may take, before any job is asked for.
+pub fn set_limits(elements: Option<u64>, work: Option<u64>) {
     let mut watched = watched();
-    watched.most_elements = Some(most);
+    watched.limits = [elements, work];
     watched.job = watched.new_job();
 }
 

@@ -75,7 +75,7 @@ pub fn add_shared(command: clap::Command) -> clap::Command {
                 .value_parser(value_parser!(u16).range(1..))
                 .help("How many threads may work [default: one per core]; results do not depend on it"),
         )
-        .arg(most_elements())
+        .args([most_elements(), most_work()])
         .arg(flag("strict", "Warnings count as errors"))
         .arg(flag("timings", "Shows the seconds of each phase"))
         .arg(flag("verbose", "Shows how things were found: flows, methods, counts, notes").short('v'))
@@ -96,11 +96,16 @@ pub fn most_elements() -> Arg {
     most.help(format!("Elements that a mesh may have before it is refused (E217) [default: {MESH_ELEMENTS}]"))
 }
 
-/// Sets the limit on meshes of all runs of this command.
+/// The limit on the work of whatever runs a model.
+pub fn most_work() -> Arg {
+    let most = Arg::new("max-work").long("max-work").value_name("N").value_parser(value_parser!(u64).range(1..));
+    most.help("Evaluations of curves and surfaces that a run may take before it is ended (E217) [default: as many as its parts may]")
+}
+
+/// Sets the limits of all runs of this command.
 pub fn read_limits(matches: &ArgMatches) {
-    if let Some(most) = matches.get_one::<u64>("max-elements") {
-        interrupt::set_most_elements(*most);
-    }
+    let limit = |name| matches.get_one::<u64>(name).copied();
+    interrupt::set_limits(limit("max-elements"), limit("max-work"));
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

@@ -30,7 +30,7 @@ fn arguments(command: clap::Command) -> clap::Command {
         .arg(jobs.help("How many models run at the same time [default: one per core]"))
         .arg(flag("list", "Prints the names and runs nothing"))
         .arg(junit.help("Also writes the results as JUnit XML"))
-        .arg(options::most_elements())
+        .args([options::most_elements(), options::most_work()])
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {

@@ -29,6 +29,8 @@ const DECLARATION_DEPTH: usize = 500;
 const EXPRESSION_DEPTH: u32 = 30_000;
 /// Steps between two looks at the stop flag.
 const STEPS_A_LOOK: u64 = 1 << 16;
+/// Steps that take about as long as an evaluation of a curve.
+const STEPS_OF_A_UNIT: u64 = 4;
 const STACK_BYTES: usize = 1 << 30;
 
 /// Runs `work` on a thread whose stack holds the deepest legal recursion; on this one when no thread can be had.
@@ -232,6 +234,7 @@ impl Cx<'_> {
     #[cold]
     fn look(&mut self) -> Result<(), Stop> {
         self.machine.next_look = self.machine.steps + STEPS_A_LOOK;
+        self.job.charge(STEPS_A_LOOK / STEPS_OF_A_UNIT);
         self.job.go_on()?;
         if self.machine.steps > limits::EVALUATION_STEPS {
             return Err(crate::base::fault::ValueFault::Limit {

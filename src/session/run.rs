@@ -14,7 +14,7 @@ use super::row_work::RowWork;
 use super::stages::Stages;
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity, ValueFault};
-use crate::base::job::Job;
+use crate::base::job::{Job, TooMuchWork};
 use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Sound, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
@@ -181,11 +181,11 @@ impl<'r> Run<'r> {
             Ok(text) => {
                 let job = self.cx.job;
                 // Whether it was stopped is asked at the end.
-                let _ = job.watch(|| {
+                let (_, over) = job.run(|| {
                     self.evaluate(text);
                     look(&mut self.cx);
                 });
-                self.finish(None)
+                self.finish(over.map(too_much_work))
             }
             Err(error) => {
                 let message = format!("{} is not UTF-8 text (byte {})", self.task.name, error.valid_up_to() + 1);
@@ -489,4 +489,11 @@ impl<'r> Run<'r> {
         };
         (outcome, self.cx.into_memory())
     }
+}
+
+/// E217 of a run that goes over `--max-work`.
+fn too_much_work(TooMuchWork { limit, phase }: TooMuchWork) -> Diagnostic {
+    let when = if phase.is_empty() { String::new() } else { format!(" ({phase})") };
+    Diagnostic::without_place("E217", format!("this run takes more work than `--max-work {limit}` allows{when}"))
+        .help("a larger limit; or fewer parts, larger elements and looser errors, and points that are not far off by mistake")
 }

@@ -51,6 +51,11 @@ impl<const N: usize> Basis<N> {
     }
 }
 
+/// How often a knot stands in a vector of knots, which ascends.
+pub(super) fn multiplicity(knots: &[f64], knot: f64) -> usize {
+    knots.partition_point(|k| *k <= knot + EPSILON) - knots.partition_point(|k| *k < knot - EPSILON)
+}
+
 /// The basis at a parameter [Piegl & Tiller 1997, A2.2 and eq. 2.9].
 fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis<N> {
     let (low, high) = (degree, knots.len() - degree - 2);
@@ -244,18 +249,17 @@ impl NurbsSurface {
             let n = 4 * degree + 1;
             stops.windows(2).flat_map(|w| (0..=n).map(|k| w[0] + (w[1] - w[0]) * k as f64 / n as f64).collect::<Vec<_>>()).collect()
         };
-        let multiple = |knots: &[f64], x: f64, degree: usize| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count() >= degree;
         let (along_u, along_v) = (along(&us, self.degree.0), along(&vs, self.degree.1));
         let turns = |a: DVec3, b: DVec3| a.length_squared() > 0.0 && b.length_squared() > 0.0 && tolerance.is_kink(a, b);
         let kink_u = us.iter().copied().filter(|&u| {
-            multiple(&self.knots.0, u, self.degree.0)
+            multiplicity(&self.knots.0, u) >= self.degree.0
                 && along_v.iter().any(|&v| {
                     let side = |lean| self.jet(u, v, (lean, Lean::After)).du;
                     turns(side(Lean::Before), side(Lean::After))
                 })
         });
         let kink_v = vs.iter().copied().filter(|&v| {
-            multiple(&self.knots.1, v, self.degree.1)
+            multiplicity(&self.knots.1, v) >= self.degree.1
                 && along_u.iter().any(|&u| {
                     let side = |lean| self.jet(u, v, (Lean::After, lean)).dv;
                     turns(side(Lean::Before), side(Lean::After))

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3, DVec4};
 use super::Jet2;
 use super::core::Surface;
 use super::net_spread::{NetStrip, POINTS};
-use super::nurbs::{NurbsSurface, quotient};
+use super::nurbs::{NurbsSurface, multiplicity, quotient};
 use super::rail::Lean;
 use super::shape::Shape;
 use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
@@ -168,8 +168,7 @@ impl Powers {
         let (u_spans, v_spans) = (spans(net, true, &stops.0), spans(net, false, &stops.1));
         let powers = v_spans.iter().flat_map(|v| u_spans.iter().map(move |u| (u, v))).flat_map(|(u, v)| powers(&net.piece(u, v)));
         let repeated = |stops: &[f64], knots: &[f64], wanted: &dyn Fn(usize) -> bool| -> Vec<f64> {
-            let often = |x: &f64| knots.iter().filter(|k| (**k - x).abs() <= EPSILON).count();
-            stops[1..stops.len() - 1].iter().copied().filter(|x| wanted(often(x))).collect()
+            stops[1..stops.len() - 1].iter().copied().filter(|x| wanted(multiplicity(knots, *x))).collect()
         };
         let rough = |stops: &[f64], knots: &[f64], degree: usize| repeated(stops, knots, &|often| often + 1 >= degree);
         let rough = (rough(&stops.0, &net.knots.0, net.degree.0), rough(&stops.1, &net.knots.1, net.degree.1));

@@ -22,7 +22,9 @@ pub const COMMAND: Command = Command { name: "lsp", about: "Language server for 
 
 fn arguments(command: clap::Command) -> clap::Command {
     // Editors like to say which way they talk.
-    command.arg(options::most_elements()).arg(clap::Arg::new("stdio").long("stdio").action(clap::ArgAction::SetTrue).hide(true))
+    command
+        .args([options::most_elements(), options::most_work()])
+        .arg(clap::Arg::new("stdio").long("stdio").action(clap::ArgAction::SetTrue).hide(true))
 }
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {

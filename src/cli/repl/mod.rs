@@ -36,7 +36,7 @@ const GREETING: &str = "loft session: declarations define, expressions ask, `:he
 const PROMPT: &str = "loft> ";
 
 fn arguments(command: clap::Command) -> clap::Command {
-    command.arg(Arg::new("model").value_name("MODEL").help("A script to go on with")).arg(options::most_elements())
+    command.arg(Arg::new("model").value_name("MODEL").help("A script to go on with")).args([options::most_elements(), options::most_work()])
 }
 
 fn notebook(color: bool) -> Notebook {
