@@ -46,6 +46,34 @@ mesh m of part {{ chord_error: {limit}  method: display }}"
     }
 }
 
+/// Distance of a point from the profile of a bent sheet: along x, round a corner of radius 0.3 at (20, 0), along y.
+fn from_bend(p: DVec3) -> f64 {
+    let (r, middle) = (0.3, DVec3::new(19.7, 0.3, p.z));
+    if p.x > middle.x && p.y < middle.y {
+        (p.distance(middle) - r).abs()
+    } else {
+        let along_x = (p.x - p.x.clamp(0.0, middle.x)).abs().max(p.y.abs());
+        along_x.min((p.x - 20.0).abs().max((p.y - p.y.clamp(middle.y, 15.0)).abs()))
+    }
+}
+
+#[test]
+fn triangles_that_stand_on_edge_beside_a_fillet_keep_the_chord_error() {
+    let places = (0..=12).flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0)));
+    for limit in [0.3, 0.1, 0.03, 0.01, 0.003] {
+        let mesh = mesh(&format!(
+            "units mm\ncurve bend = fillet(polyline([(0, 0, 0), (20, 0, 0), (20, 15, 0)]), radius: 0.3mm)
+surface sheet = extrude(bend, by: (0, 0, 40))
+surface bore = extrude(circle(center: (16, -10, 20), radius: 6, normal: (0, 1, 0)), by: (0, 40, 0))
+mesh m of trim(sheet, by: bore, keep: (1, 0, 1)) {{ chord_error: {limit}  method: display }}"
+        ));
+        let corners = mesh.triangles.iter().map(|t| t.map(|n| mesh.nodes[n as usize]));
+        let points = corners.flat_map(|t| places.clone().map(move |(i, j)| t[0] + (t[1] - t[0]) * i + (t[2] - t[0]) * j));
+        let is = points.map(from_bend).fold(0.0, f64::max);
+        assert!(is <= limit * (1.0 + 1e-9), "{is} of {limit}");
+    }
+}
+
 #[test]
 fn reported_chord_errors_are_nearly_the_largest_distances() {
     for settings in ["size: 12", "size: 12  method: delaunay", "chord_error: 1", "size: 20  method: delaunay", "size: 9  method: mapped"] {

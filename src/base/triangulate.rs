@@ -90,7 +90,7 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<[usize; 3]>, PolygonFault> {
 /// No two points are one, and coordinates are about 1. None where there is no triangle.
 pub fn delaunay(points: &[DVec2]) -> Vec<[usize; 3]> {
     let corner = |(index, p): (usize, &DVec2)| Corner { at: spade::mitigate_underflow(Point2::new(p.x, p.y)), index };
-    let Ok(made) = DelaunayTriangulation::<Corner>::bulk_load_stable(points.iter().enumerate().map(corner).collect()) else {
+    let Ok(made) = DelaunayTriangulation::<Corner>::bulk_load(points.iter().enumerate().map(corner).collect()) else {
         return Vec::new();
     };
     let mut found: Vec<[usize; 3]> = made.inner_faces().map(|face| face.vertices().map(|vertex| vertex.data().index)).collect();

@@ -105,14 +105,14 @@ fn keep_maps(layout: &mut Layout) -> bool {
     any
 }
 
-/// Halves the steps of the borders of faces made with as few triangles as may be on which nothing keeps a limit: what stands beside a
+/// Halves the steps of the borders of faces made with as few triangles as may be that do not keep a limit: what stands beside a
 /// long step of a border leans over the surface, however small it is. Whether there were any.
 fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
     let Fault::Mesh(fault) = fault else { return false };
-    let MeshFault::NotReached { surface, reached, .. } = &**fault else { return false };
+    let MeshFault::NotReached { surface, .. } = &**fault else { return false };
     let of = |face: &Face| input.model.surfaces[face.surface.index()].surface.origin();
     let mut any = false;
-    for face in layout.faces.iter_mut().filter(|face| reached.is_infinite() && of(face) == *surface) {
+    for face in layout.faces.iter_mut().filter(|face| of(face) == *surface) {
         if face.method.is_sparing() && face.halved < LEANING {
             face.halved += 1;
             any = true;

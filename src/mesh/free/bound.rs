@@ -76,7 +76,7 @@ const PARTS: u32 = 3;
 pub fn chord(of: (&Surface, Option<&Quick>), (uv, second): ([DVec2; 3], Option<[DVec2; 3]>), p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
-        return off_line(of.0, uv);
+        return in_any_direction(of.0, uv);
     }
     let first = above_plane(of, uv, (p[0], normal), wanted);
     match second {
@@ -128,9 +128,11 @@ fn above_plane(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], (on, normal): (DV
     worst
 }
 
-/// The same of three corners on a line, or of which two are one point: how far the surface between their places may be from the
-/// line, in any direction. Nothing where the places are on a line too, as in a pole.
-fn off_line(surface: &Surface, uv: [DVec2; 3]) -> f64 {
+/// How far the surface over a triangle of (u, v) may be from the places between its corners in space, in any direction: |S − L| where L is linear
+/// and S at the corners. Infinite where no second derivative is bounded; nothing where (u, v) are on a line, as in a pole.
+///
+/// A bound for three corners on a line, which have no plane, and for a triangle that stands on edge.
+pub fn in_any_direction(surface: &Surface, uv: [DVec2; 3]) -> f64 {
     if (uv[1] - uv[0]).perp_dot(uv[2] - uv[0]).abs() <= NUDGE * NUDGE {
         return 0.0;
     }

@@ -85,6 +85,7 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangu
             bad = gardener.divide(guard, bad, job)?;
         }
     }
+    gardener.set_upright();
     let mut web = gardener.web;
     web.compact();
     Ok(Ok(Triangulated { web, keeps: bad.is_empty() }))

@@ -9,6 +9,7 @@ mod last;
 mod mend;
 mod smooth;
 mod tried;
+mod upright;
 
 use glam::{DVec2, DVec3};
 

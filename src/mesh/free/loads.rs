@@ -98,9 +98,11 @@ pub fn load_of_upright(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Lim
 
 fn load_of_leaning(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits, lean: f64) -> Load {
     let c = corners.map(|n| n as usize);
-    let load = leaning(load(sheet, web, corners, None, limits), lean);
+    let (xy, p) = (c.map(|n| web.xy[n]), c.map(|n| web.p[n]));
+    let beside = beside(sheet, web, c, limits);
+    let load = leaning(sheet, (xy, beside), of_places(sheet, (xy, p, beside), limits), lean, limits);
     let fixed = corners.iter().any(|n| *n < web.fixed);
-    if fixed { load } else { capped(sheet, (c.map(|n| web.xy[n]), c.map(|n| web.p[n])), load, limits) }
+    if fixed { load } else { capped(sheet, (xy, p), load, limits) }
 }
 
 /// No place of the surface over a triangle is farther from it than the surface there reaches: all there is to say at a tip, where
@@ -140,9 +142,19 @@ fn lean_of(own: [DVec3; 3], p: [DVec3; 3]) -> f64 {
     own.into_iter().map(cosine).fold(1.0, f64::min)
 }
 
-/// What is a height over the triangle is further from its sides the more it leans.
-fn leaning(load: Load, lean: f64) -> Load {
-    Load { chord: if lean < UPRIGHT && load.chord > 0.0 { f64::INFINITY } else { load.chord / lean.max(UPRIGHT) }, ..load }
+/// The load of a triangle that leans against its surface: a height over it is, from its sides, that over `lean`. Where it stands nearly on
+/// edge, how far the surface is in any direction from the places between the corners is the bound; upside down, nothing is.
+fn leaning(sheet: &Sheet, (xy, beside): ([DVec2; 3], f64), load: Load, lean: f64, limits: &Limits) -> Load {
+    let chord = match limits.chord {
+        Some(_) if load.chord > 0.0 && lean < 0.0 => f64::INFINITY,
+        Some(limit) if load.chord > 0.0 && lean < UPRIGHT => {
+            let (first, second) = under(&|at| sheet.tangents(at.into()), xy.map(|xy| DVec2::from(sheet.uv(xy))));
+            let off = |uv| bound::in_any_direction(sheet.surface(), uv);
+            (off(first).max(second.map_or(0.0, off)) + beside) / limit
+        }
+        _ => load.chord / lean.max(UPRIGHT),
+    };
+    Load { chord, ..load }
 }
 
 /// The bounds of three nodes as a triangle against the limits; `first` is where the first of them is to go.
@@ -150,12 +162,13 @@ pub fn load(sheet: &Sheet, web: &Web, corners: [u32; 3], first: Option<(DVec2, D
     let c = corners.map(|n| n as usize);
     let at = |k: usize| first.filter(|_| k == 0).unwrap_or_else(|| (web.xy[c[k]], web.p[c[k]]));
     let at = [at(0), at(1), at(2)];
-    let beside = match limits.chord {
-        Some(limit) => c.iter().filter(|n| **n < web.fixed as usize).map(|n| off_surface(sheet, web, *n, limit)).fold(0.0, f64::max),
-        None => 0.0,
-    };
-    let (xy, p) = (at.map(|at| at.0), at.map(|at| at.1));
-    of_places(sheet, (xy, p, beside), limits)
+    of_places(sheet, (at.map(|at| at.0), at.map(|at| at.1), beside(sheet, web, c, limits)), limits)
+}
+
+/// How far nodes of the border among some are from the surface.
+fn beside(sheet: &Sheet, web: &Web, nodes: [usize; 3], limits: &Limits) -> f64 {
+    let Some(limit) = limits.chord else { return 0.0 };
+    nodes.into_iter().filter(|n| *n < web.fixed as usize).map(|n| off_surface(sheet, web, n, limit)).fold(0.0, f64::max)
 }
 
 /// The bounds of a triangle, and of its sides where it leans so far that they may break the limit though its plane keeps it: a height over
@@ -178,7 +191,8 @@ fn load_with_sides(sheet: &Sheet, web: &Web, t: u32, limits: &Limits) -> Load {
 
 /// The same of three places of the chart with their points, by parts.
 pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
-    capped(sheet, (xy, p), leaning(of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p)), limits)
+    let load = leaning(sheet, (xy, 0.0), of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p), limits);
+    capped(sheet, (xy, p), load, limits)
 }
 
 /// Points are up to `beside` off the surface.

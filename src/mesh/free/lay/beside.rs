@@ -68,7 +68,8 @@ impl Work<'_> {
             if self.cells.all()[leaf as usize].class == Class::Exterior {
                 continue;
             }
-            if !load.worst().is_finite() && self.is_hopeless(leaf) {
+            let of_border = c.iter().all(|n| *n < web.fixed);
+            if (of_border || !load.worst().is_finite()) && self.is_hopeless(leaf) {
                 return Vec::new();
             }
             let bounds = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
@@ -79,8 +80,8 @@ impl Work<'_> {
         bad.into_iter().collect()
     }
 
-    /// Whether smaller cells help no more where nothing bounds the surface: a cell reaches no farther than a part of the chord error
-    /// already, and the steps of a border beside it, which are given, stand on both sides of a fold.
+    /// Whether smaller cells help no more where nothing bounds the surface, or between nodes of a border alone: a cell reaches no farther than a
+    /// part of the chord error already, and the steps of the border beside it, which are given, stand on both sides of a fold.
     fn is_hopeless(&mut self, leaf: u32) -> bool {
         let (low, high) = (self.cells.all()[leaf as usize].low, self.cells.all()[leaf as usize].high);
         self.ask.limits.chord.is_some_and(|limit| self.lengths(low, high).max_element() <= FINE * limit)
