@@ -6,6 +6,7 @@
 use std::slice::from_ref;
 
 use glam::DVec3;
+use lofting::base::math::{cos, sin};
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::Motion;
@@ -272,5 +273,29 @@ fn one_section_round_an_axis_is_revolved() {
         let wanted = lofting::surface::revolve(&section, &axis, angle, Origin::NONE, &tolerance(1.0)).unwrap();
         let far = apart(&wanted, &swept(from_ref(&section), from_ref(&way), Law::Rotational(axis), 1.0));
         assert!(far <= 1e-12 * SIZE, "{seed}: {far:e}");
+    }
+}
+
+/// Nodes and slopes across nearly cancel in a spline through many sections: what bounds each by itself is hundreds of times too large.
+#[test]
+fn bounds_of_skins_of_many_sections_come_near() {
+    let point = |i: f64, k: f64| {
+        let wave = 12.0 * sin((25.0 * i + 7.0 * k).to_radians()) + 4.0 * cos((11.0 * k).to_radians());
+        DVec3::new(10.0 * i, 5.0 * k, wave)
+    };
+    let section = |k: u32| Section::Curve(through(&(0..15_u32).map(|i| point(f64::from(i), f64::from(k))).collect::<Vec<_>>()));
+    let surface = skinned(&(0..99).map(section).collect::<Vec<_>>(), (Leaving::Plain, Leaving::Plain), 500.0);
+    // Cells along u and v in the whole, and how far the bounds may be from the largest values found.
+    for (cells, most) in [((28, 98), [2.5, 4.0, 6.0]), ((112, 392), [1.5, 1.5, 2.0])] {
+        let (u, v) = ((0.31, 0.31 + 1.0 / f64::from(cells.0)), (0.3, 0.3 + 1.0 / f64::from(cells.1)));
+        let bound = surface.second_derivative_bound(u, v);
+        let mut found = [0.0_f64; 3];
+        for (i, j) in (0..=20).flat_map(|i| (0..=20).map(move |j| (f64::from(i) / 20.0, f64::from(j) / 20.0))) {
+            let jet = surface.jet(u.0 + (u.1 - u.0) * i, v.0 + (v.1 - v.0) * j);
+            let own = [jet.duu, jet.duv, jet.dvv].map(DVec3::length);
+            (0..3).for_each(|k| found[k] = found[k].max(own[k]));
+        }
+        let ratios = [0, 1, 2].map(|k| bound[k] / found[k]);
+        assert!((0..3).all(|k| (1.0..most[k]).contains(&ratios[k])), "{cells:?}: {ratios:?}");
     }
 }

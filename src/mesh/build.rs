@@ -17,7 +17,6 @@ use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
 use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
-use crate::base::limits::MESH_WORK;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{self, Budget, Exceeded};
@@ -107,8 +106,9 @@ impl Outline {
 
     /// The same, with the work that it took but for that of its free faces; as much as it may where it took more.
     pub fn measured(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> (Result<Built>, u64) {
-        let within = Budget::new(MESH_WORK).within(|| work::measured(|| self.built(input, reuse, job)));
-        within.unwrap_or_else(|Exceeded| (Err(faces::too_much_work(input, Origin::NONE)), MESH_WORK))
+        let most = faces::work_on(input.plan.surfaces.iter().map(|(s, _)| &input.model.surfaces[s.index()].surface));
+        let within = Budget::new(most).within(|| work::measured(|| self.built(input, reuse, job)));
+        within.unwrap_or_else(|Exceeded| (Err(faces::too_much_work(input, Origin::NONE)), most))
     }
 
     fn built(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {

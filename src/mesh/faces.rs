@@ -15,7 +15,7 @@ use super::plan::{Elements, Method, Plan};
 use super::trilateral::{Blocks, LatticeFrame};
 use super::uneven::Uneven;
 use crate::base::fault::{Fault, MeshFault, Result};
-use crate::base::limits::WORK_OF_AN_ELEMENT;
+use crate::base::limits::{MESH_WORK, WORK_OF_AN_ELEMENT};
 use crate::base::origin::Origin;
 use crate::base::text::real;
 use crate::base::work;
@@ -403,6 +403,18 @@ pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
     let plan = input.plan;
     let limit = plan.chord_error.or(plan.angle_error).map(|limit| limit.1);
     MeshFault::TooMuchWork { of: limit.unwrap_or_else(|| plan.size_origin()), name: plan.name.clone(), surface }.into()
+}
+
+/// Work that a mesh of some surfaces may take beside that of its elements, in evaluations of curves and surfaces: more where a point of one is made
+/// of many curves.
+pub fn work_on<'a>(surfaces: impl Iterator<Item = &'a Surface>) -> u64 {
+    /// Curves that are worth as much again.
+    const CURVES: usize = 16;
+    let curves = |surface: &Surface| {
+        let (across, along) = surface.curves_of_a_point();
+        across + along
+    };
+    MESH_WORK * (1 + surfaces.map(curves).max().unwrap_or(0) / CURVES) as u64
 }
 
 /// Raises what a mesh or face may take to what so many elements are worth, with what was `worth` for it before.

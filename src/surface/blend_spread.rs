@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::Jet2;
 use super::blend::Blend;
-use super::line::{Line, Shares, blended};
+use super::line::{Line, Shares, blended, taylor};
 use super::rail::Lean;
 use super::spread::Spread;
 use crate::base::range::Range;
@@ -21,12 +21,20 @@ pub struct BlendStrip {
     terms: Vec<usize>,
     shares: usize,
     weights: Vec<([f64; 3], [Range; 3])>,
+    /// Third derivatives of the weights, where these are numbers.
+    thirds: Option<Vec<f64>>,
     /// The curves along the strip, one per node of the other direction, made for the cells that ask for them.
     rails: Vec<OnceLock<Line>>,
     /// Where it begins and ends.
     ends: (f64, f64),
     /// Slopes across them: sums of all curves, made for the cells that ask for them.
     slopes: Vec<OnceLock<Line>>,
+}
+
+impl BlendStrip {
+    fn shares_of(&self, half: f64) -> Shares<'_> {
+        Shares { weights: &self.weights, shares: self.shares, thirds: self.thirds.as_deref(), half }
+    }
 }
 
 impl Blend {
@@ -47,7 +55,9 @@ impl Blend {
         let rails = vec![OnceLock::new(); rails.len()];
         let slopes = if rails.is_empty() { Vec::new() } else { vec![OnceLock::new(); across.slopes().len()] };
         let terms = if idle { Vec::new() } else { middle.iter().map(|(term, _)| term).collect() };
-        BlendStrip { terms, shares: axis.shares(), weights, rails, ends: (x0, x1), slopes }
+        let thirds = if idle { Vec::new() } else { axis.thirds(x0, x1) };
+        let thirds = thirds.iter().all(|third| third.low == third.high).then(|| thirds.iter().map(|third| third.low).collect());
+        BlendStrip { terms, shares: axis.shares(), weights, thirds, rails, ends: (x0, x1), slopes }
     }
 
     /// The curve or slope of a term along a strip (`along_u`: of u).
@@ -77,13 +87,22 @@ impl Blend {
         };
         let corners: Vec<DVec3> = strip.terms.iter().map(corner).collect();
         let (mut mid, mut d1, mut d2) = (line.mid, line.d1, line.d2);
-        for (k, (q, (w, range))) in corners.iter().zip(&strip.weights).enumerate() {
+        for (q, (w, _)) in corners.iter().zip(&strip.weights) {
             mid.p -= *q * w[0];
             mid.d1 -= *q * w[1];
             mid.d2 -= *q * w[2];
-            let step = if k < strip.shares { *q - corners[0] } else { *q };
-            d1 = d1 - range[1] * step;
-            d2 = d2 - range[2] * step;
+        }
+        if let Some(thirds) = &strip.thirds {
+            let sum = |d: usize| -> DVec3 { corners.iter().zip(&strip.weights).map(|(q, (w, _))| *q * w[d]).sum() };
+            let third: DVec3 = corners.iter().zip(thirds).map(|(q, w)| *q * *w).sum();
+            d1 = d1 - taylor(line.half, 0) * sum(1) - taylor(line.half, 1) * sum(2) - taylor(line.half, 2) * third;
+            d2 = d2 - taylor(line.half, 0) * sum(2) - taylor(line.half, 1) * third;
+        } else {
+            for (k, (q, (_, range))) in corners.iter().zip(&strip.weights).enumerate() {
+                let step = if k < strip.shares { *q - corners[0] } else { *q };
+                d1 = d1 - range[1] * step;
+                d2 = d2 - range[2] * step;
+            }
         }
         Line::new(line.half, mid, Some(d1), d2)
     }
@@ -91,7 +110,7 @@ impl Blend {
     /// Bounds over the rectangle of a strip of u and one of v.
     pub fn spread(&self, u: &BlendStrip, v: &BlendStrip, half: (f64, f64)) -> Spread {
         let g = |m: &[f64]| self.mixed(u, true, &v.terms, m);
-        let (a, b) = (Shares { weights: &u.weights, shares: u.shares }, Shares { weights: &v.weights, shares: v.shares });
+        let (a, b) = (u.shares_of(half.0), v.shares_of(half.1));
         if self.along_v().is_empty() {
             let second = [blended(b, 0, 2, &g), blended(b, 1, 1, &g), blended(b, 2, 0, &g)];
             let first = [blended(b, 0, 1, &g), blended(b, 1, 0, &g)];

@@ -68,12 +68,33 @@ pub struct Shares<'a> {
     pub weights: &'a [([f64; 3], [Range; 3])],
     /// How many of them, from the first on, have the same sum everywhere.
     pub shares: usize,
+    /// Their third derivatives, where these are numbers: the weights are cubics.
+    pub thirds: Option<&'a [f64]>,
+    /// Half the width of the stretch.
+    pub half: f64,
+}
+
+/// (tⁿ / n!) for −`half` ≤ t ≤ `half`.
+pub fn taylor(half: f64, n: usize) -> Range {
+    match n {
+        0 => Range::at(1.0),
+        1 => Range::around_zero(half),
+        2 => Range { low: 0.0, high: 0.5 * half * half },
+        _ => Range::around_zero(half * half * half / 6.0),
+    }
 }
 
 /// Σ w_k·l_k^(order) for weights known by their middle values and ranges; `mixed` gives Σ m_k l_k for numbers m.
 ///
-/// What the shares vary by sums to 0, so it multiplies differences of the l_k only: constants cost nothing.
+/// Cubic weights are their Taylor sums about the middle, whose derivatives are mixed before they meet ranges: what of nodes and slopes
+/// cancels does so exactly. What the shares of others vary by sums to 0, so it multiplies differences of the l_k only: constants cost
+/// nothing.
 pub fn blended(of: Shares, derivative: usize, order: usize, mixed: &dyn Fn(&[f64]) -> Line) -> Ranges {
+    if let Some(thirds) = of.thirds {
+        let at = |d: usize| if d == 3 { thirds.to_vec() } else { of.weights.iter().map(|w| w.0[d]).collect() };
+        let term = |n: usize| mixed(&at(derivative + n)).order(order) * taylor(of.half, n);
+        return (1..=3 - derivative).map(term).fold(term(0), |sum, more| sum + more);
+    }
     let mut by: Vec<f64> = of.weights.iter().map(|w| w.0[derivative]).collect();
     let mut sum = mixed(&by).order(order);
     for (k, (middle, range)) in of.weights.iter().enumerate().skip(1) {

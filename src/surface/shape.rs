@@ -93,7 +93,7 @@ impl Shape {
     /// Evaluations of a curve that a jet in a grid is worth, beside those of the curves that it is made of.
     fn weight(&self) -> u64 {
         /// Curves that are blended in the time of one evaluation.
-        const BLENDED: usize = 12;
+        const BLENDED: usize = 40;
         let Self::Blend(blend) = self else { return 1 };
         1 + ((blend.along_u().len() + blend.along_v().len()) / BLENDED) as u64
     }

@@ -240,27 +240,32 @@ impl Axis {
         let (middle, half) = (0.5 * (x0 + x1), 0.5 * (x1 - x0));
         let at = self.weights(middle, Lean::After);
         let steps = Range::around_zero(half);
-        let third = |k: usize| match self.rule {
-            Rule::Linear => Range::at(0.0),
-            Rule::Cubic => {
-                let h = self.nodes[at.first + 1] - self.nodes[at.first];
-                Range::at(if k == 1 { -12.0 } else { 12.0 } / (h * h * h))
-            }
-            Rule::Spline | Rule::Periodic => {
-                let h = self.nodes[at.first + 1] - self.nodes[at.first];
-                Range::at([12.0 / (h * h * h), -12.0 / (h * h * h), 6.0 / (h * h), 6.0 / (h * h)][k])
-            }
-            Rule::Lagrange => self.lagrange_third(k, Range { low: x0, high: x1 }),
-        };
+        let third = self.thirds(x0, x1);
         let one = |(k, w): (usize, &[f64; 3])| {
             // Down from the third derivative by Taylor's formula about the middle.
-            let d3 = third(k);
+            let d3 = third[k];
             let d2 = Range::at(w[2]) + d3 * steps;
             let d1 = Range::at(w[1]) + steps * w[2] + d3 * Range { low: 0.0, high: 0.5 * half * half };
             let d0 = Range::at(w[0]) + steps * w[1] + d2 * Range { low: 0.0, high: 0.5 * half * half };
             [d0, d1, d2]
         };
         at.values().iter().enumerate().map(one).collect()
+    }
+
+    /// Bounds of the third derivatives of the active blending values over `x0 < x1` inside one cell: numbers but for the polynomial.
+    pub fn thirds(&self, x0: f64, x1: f64) -> Vec<Range> {
+        let at = self.weights(0.5 * (x0 + x1), Lean::After);
+        let cube = || {
+            let h = self.nodes[at.first + 1] - self.nodes[at.first];
+            (12.0 / (h * h * h), 6.0 / (h * h))
+        };
+        let third = |k: usize| match self.rule {
+            Rule::Linear => Range::at(0.0),
+            Rule::Cubic => Range::at(if k == 1 { -cube().0 } else { cube().0 }),
+            Rule::Spline | Rule::Periodic => Range::at([cube().0, -cube().0, cube().1, cube().1][k]),
+            Rule::Lagrange => self.lagrange_third(k, Range { low: x0, high: x1 }),
+        };
+        (0..at.values().len()).map(third).collect()
     }
 
     /// Bounds of L_i‴ by the product rule over intervals.

@@ -27,13 +27,12 @@ use super::taken::{self, Taken};
 use super::tree::DEEPEST;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
-use crate::base::limits::MESH_WORK;
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
 use crate::base::work::{Budget, Exceeded};
 use crate::mesh::build::Input;
 use crate::mesh::chart::{Chart, Free, Shape};
-use crate::mesh::faces::{Frame, Prepared, middle, too_much_work};
+use crate::mesh::faces::{Frame, Prepared, middle, too_much_work, work_on};
 use crate::mesh::layout::{Face, Layout};
 use crate::mesh::nodes::Nodes;
 use crate::mesh::plan::Elements;
@@ -100,10 +99,11 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
         return Ok(Prepared { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) });
     }
     let all = || grown(made, face, (border, sheet, outline), job);
-    let surface = || made.input.model.surfaces[face.surface.index()].surface.origin();
+    let surface = &made.input.model.surfaces[face.surface.index()].surface;
     // What is tried again with shorter steps of its border, because nothing kept its limits, may take less.
     let again = if face.method.is_sparing() { face.halved.min(FEWER) } else { 0 };
-    let ready = Budget::new(MESH_WORK >> again).within(all).map_err(|Exceeded| too_much_work(made.input, surface()))??;
+    let most = work_on([surface].into_iter()) >> again;
+    let ready = Budget::new(most).within(all).map_err(|Exceeded| too_much_work(made.input, surface.origin()))??;
     if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
         known.keep_free(key, Taken::of(&ready, free));
     }
