@@ -337,6 +337,12 @@ mod tests {
         });
         assert!(over.is_some() && matches!(ended, Ok((Ok(true), true))), "{ended:?}");
         assert!(matches!(each(1), (Ok(100), None)));
+        // What each thread counts by itself is charged when it is done.
+        let small = |n: usize| {
+            let all = || par::map(n, |_| work::spend(10)).len();
+            job.run(|| work::uncharged(all)).1.is_some()
+        };
+        assert_eq!([100_000, 100_001].map(small), [false, true]);
         assert!(matches!(Job::new().run(|| work::spend(2_000_000)), (Ok(()), None)));
     }
 

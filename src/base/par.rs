@@ -31,8 +31,9 @@ struct Helper {
 
 /// A thread helps until this is dropped.
 struct Entered {
-    _job: job::Entered,
+    // First: what is pending is charged while the thread still helps the job.
     _budget: work::Charging,
+    _job: job::Entered,
 }
 
 impl Helper {
@@ -41,7 +42,8 @@ impl Helper {
     }
 
     fn enter(&self) -> Entered {
-        Entered { _job: self.watched.enter(), _budget: work::Charging::to(self.budget.clone()) }
+        let job = self.watched.enter();
+        Entered { _budget: work::Charging::to(self.budget.clone()), _job: job }
     }
 }
 

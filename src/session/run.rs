@@ -16,6 +16,7 @@ use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity, ValueFault};
 use crate::base::job::{Job, TooMuchWork};
 use crate::base::tolerance::Tolerance;
+use crate::base::work;
 use crate::lang::cx::{Cx, Sound, Stop};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::diag_render::render_all;
@@ -181,10 +182,12 @@ impl<'r> Run<'r> {
             Ok(text) => {
                 let job = self.cx.job;
                 // Whether it was stopped is asked at the end.
-                let (_, over) = job.run(|| {
+                let all = || {
                     self.evaluate(text);
                     look(&mut self.cx);
-                });
+                };
+                // What is pending at the end counts as well.
+                let (_, over) = job.run(|| work::uncharged(all));
                 self.finish(over.map(too_much_work))
             }
             Err(error) => {

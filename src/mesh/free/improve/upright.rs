@@ -1,6 +1,6 @@
 //! Triangles on their backs: right side up in the chart and folded over in space, as near a tip, where the chart is skewed.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Gardener;
 use crate::base::job;
@@ -10,7 +10,8 @@ use crate::base::triangulate_points::NO_TRIANGLE;
 const PASSES: usize = 3;
 
 impl Gardener<'_> {
-    /// Flips sides of triangles that lie against the normal of their surface, where both new ones lie with it and keep the limits.
+    /// Flips sides of triangles that lie against the normal of their surface, where both new ones lie with it, have no longer side and keep
+    /// the limits.
     pub fn set_upright(&mut self) {
         for _ in 0..PASSES {
             let folded: Vec<u32> = (0..self.web.tri.len() as u32).filter(|t| self.is_folded(*t)).collect();
@@ -40,7 +41,7 @@ impl Gardener<'_> {
     }
 
     fn lies_upright(&self, corners: [u32; 3]) -> bool {
-        let middle = corners.iter().map(|n| self.web.xy[*n as usize]).sum::<glam::DVec2>() / 3.0;
+        let middle = corners.iter().map(|n| self.web.xy[*n as usize]).sum::<DVec2>() / 3.0;
         self.up(corners).dot(self.ground.spot(middle).normal()) > 0.0
     }
 
@@ -48,6 +49,10 @@ impl Gardener<'_> {
         let mut best: Option<(f64, usize)> = None;
         for k in 0..3 {
             let Some([a, b, c, d]) = self.quad(t, k).filter(|quad| self.convex(*quad)) else { continue };
+            let length = |x: u32, y: u32| self.web.p[x as usize].distance(self.web.p[y as usize]);
+            if length(a, c) > length(a, b).max(length(b, c)).max(length(c, d)).max(length(d, a)).max(length(b, d)) {
+                continue;
+            }
             let new = [[a, b, c], [a, c, d]];
             let worst = new.iter().map(|corners| self.web.shape(*corners)).fold(1.0, f64::min);
             let is_better = best.is_none_or(|(least, _)| worst > least);
