@@ -651,6 +651,17 @@ fn a_limit_of_work_ends_a_run_as_a_whole_and_leaves_no_file() {
         rows.err
     );
     assert_eq!(all(&["check", "--max-work", "0"]).status, 2);
+    // What was ended is no golden, equals nothing, and says why it has no value.
+    let told = |run: &Run| (run.out.clone() + &run.err).contains("this run takes more work than `--max-work 20000` allows");
+    let accepted = all(&["test", "--accept", "--max-work", "20000"]);
+    assert!(accepted.status == 1 && told(&accepted) && !folder.0.join("m.golden").exists(), "{}{}", accepted.out, accepted.err);
+    assert_eq!(all(&["test", "--accept"]).status, 0);
+    let tested = all(&["test", "--max-work", "20000"]);
+    assert!(tested.status == 1 && told(&tested) && tested.out.contains("ended"), "{}{}", tested.out, tested.err);
+    let differs = folder.loft(&["diff", "m.loft", "m.loft", "--max-work", "20000"]);
+    assert!(differs.status == 2 && told(&differs), "status {}: {}{}", differs.status, differs.out, differs.err);
+    let asked = run(&folder.0, &["repl", "--max-work", "20000", "m.loft"], Some(b"len(m.triangles)\n"));
+    assert!(told(&asked), "{}{}", asked.out, asked.err);
 }
 
 /// A square with room for many elements.

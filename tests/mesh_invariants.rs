@@ -44,7 +44,8 @@ fn every_mesh_of_every_model_is_sound() {
     }
     // Of a few elements round a whole ball, a ring or the tip of a needle neither sides nor samples of the error mean anything; nor
     // do samples where the chord error that is asked for, or a step, is larger than the waves of the surface. Where a border turns back
-    // along itself the surface bends without a radius. At the tip of a cusp triangles of a hair's breadth stand on edge. The nearest place of a pipe that goes through itself may be on its other sheet.
+    // along itself the surface bends without a radius. At the tip of a cusp triangles of a hair's breadth stand on edge. The nearest place of
+    // a pipe that goes through itself may be on its other sheet.
     let coarse = |f: &str| {
         let (ball, ring) = (f.starts_with("closed.loft: ball_quads: "), f.starts_with("closed.loft: ring_large: "));
         let needle = f.starts_with("needles.loft: ");

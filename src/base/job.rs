@@ -8,6 +8,7 @@
 //! in the same way.
 
 use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -82,6 +83,13 @@ pub struct TooMuchWork {
     pub limit: u64,
     /// What was done then, in a few words; empty where nothing was said.
     pub phase: String,
+}
+
+impl fmt::Display for TooMuchWork {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "this run takes more work than `--max-work {}` allows", self.limit)?;
+        if self.phase.is_empty() { Ok(()) } else { write!(f, " ({})", self.phase) }
+    }
 }
 
 thread_local! {

@@ -405,8 +405,8 @@ pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
     MeshFault::TooMuchWork { of: limit.unwrap_or_else(|| plan.size_origin()), name: plan.name.clone(), surface }.into()
 }
 
-/// Work that a mesh of some surfaces may take beside that of its elements, in evaluations of curves and surfaces: more where a point of one is made
-/// of many curves.
+/// Work that a mesh of some surfaces may take beside that of its elements, in evaluations of curves and surfaces: more where a point of
+/// one is made of many curves.
 pub fn work_on<'a>(surfaces: impl Iterator<Item = &'a Surface>) -> u64 {
     /// Curves that are worth as much again.
     const CURVES: usize = 16;

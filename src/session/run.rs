@@ -78,6 +78,8 @@ pub struct Outcome {
     pub tolerance: Option<f64>,
     /// Stopped from outside.
     pub interrupted: bool,
+    /// Ended for its work, where that is limited: what was found out is a part, and no property of the model.
+    pub over: Option<TooMuchWork>,
     /// Something that cannot happen did.
     pub bug: bool,
     /// Declarations, stages and faces of meshes whose results were taken over from the run before.
@@ -188,7 +190,8 @@ impl<'r> Run<'r> {
                 };
                 // What is pending at the end counts as well.
                 let (_, over) = job.run(|| work::uncharged(all));
-                self.finish(over.map(too_much_work))
+                let (outcome, memory) = self.finish(over.as_ref().map(too_much_work));
+                (Outcome { over, ..outcome }, memory)
             }
             Err(error) => {
                 let message = format!("{} is not UTF-8 text (byte {})", self.task.name, error.valid_up_to() + 1);
@@ -485,6 +488,7 @@ impl<'r> Run<'r> {
             notes: self.flows.into_iter().chain(self.stages.notes()).chain(self.unnamed).collect(),
             tolerance,
             interrupted,
+            over: None,
             bug,
             reused: 0,
             reused_faces: 0,
@@ -495,8 +499,7 @@ impl<'r> Run<'r> {
 }
 
 /// E217 of a run that goes over `--max-work`.
-fn too_much_work(TooMuchWork { limit, phase }: TooMuchWork) -> Diagnostic {
-    let when = if phase.is_empty() { String::new() } else { format!(" ({phase})") };
-    Diagnostic::without_place("E217", format!("this run takes more work than `--max-work {limit}` allows{when}"))
+fn too_much_work(over: &TooMuchWork) -> Diagnostic {
+    Diagnostic::without_place("E217", over.to_string())
         .help("a larger limit; or fewer parts, larger elements and looser errors, and points that are not far off by mistake")
 }

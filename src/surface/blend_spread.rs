@@ -95,8 +95,8 @@ impl Blend {
         if let Some(thirds) = &strip.thirds {
             let sum = |d: usize| -> DVec3 { corners.iter().zip(&strip.weights).map(|(q, (w, _))| *q * w[d]).sum() };
             let third: DVec3 = corners.iter().zip(thirds).map(|(q, w)| *q * *w).sum();
-            d1 = d1 - taylor(line.half, 0) * sum(1) - taylor(line.half, 1) * sum(2) - taylor(line.half, 2) * third;
-            d2 = d2 - taylor(line.half, 0) * sum(2) - taylor(line.half, 1) * third;
+            d1 = d1 + -sum(1) - taylor(line.half, 1) * sum(2) - taylor(line.half, 2) * third;
+            d2 = d2 + -sum(2) - taylor(line.half, 1) * third;
         } else {
             for (k, (q, (_, range))) in corners.iter().zip(&strip.weights).enumerate() {
                 let step = if k < strip.shares { *q - corners[0] } else { *q };

@@ -51,7 +51,7 @@ pub struct Difference {
 /// Why nothing was compared.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoDiff {
-    /// A file cannot be read; a sentence.
+    /// A file cannot be read, or its run was ended for its work; a sentence.
     Unreadable(String),
     /// A bug in loft.
     Bug(Bug),
@@ -146,6 +146,9 @@ fn model(path: &Path, text: &[u8], clock: &(dyn Fn() -> f64 + Sync), job: &Job) 
     let outcome = guarded(|| run::run_seen(&task, &disk, job, &mut |cx| seen = looks::of(cx))).map_err(NoDiff::Bug)?;
     if outcome.interrupted {
         return Err(NoDiff::Interrupted);
+    }
+    if let Some(over) = outcome.over {
+        return Err(NoDiff::Unreadable(format!("{}: {over}", path.display())));
     }
     let found = section::of(&outcome, seen, "");
     let ran =

@@ -20,7 +20,7 @@ pub fn text(results: &[CaseResult]) -> String {
 
 /// Failures are about models, errors about files and loft itself.
 fn is_error(verdict: Verdict) -> bool {
-    matches!(verdict, Verdict::Unreadable | Verdict::Bug | Verdict::Interrupted)
+    matches!(verdict, Verdict::Unreadable | Verdict::Ended | Verdict::Bug | Verdict::Interrupted)
 }
 
 fn case(result: &CaseResult, out: &mut String) {

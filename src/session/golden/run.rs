@@ -55,6 +55,8 @@ pub enum Verdict {
     Orphaned,
     /// The golden or the script cannot be read, or the golden not written.
     Unreadable,
+    /// It was ended for its work, which `--max-work` limits: nothing is compared or accepted.
+    Ended,
     /// A bug in loft, caught.
     Bug,
     /// Stopped from outside.
@@ -71,6 +73,7 @@ impl Verdict {
             Self::Missing => "missing",
             Self::Orphaned => "orphaned",
             Self::Unreadable => "unreadable",
+            Self::Ended => "ended",
             Self::Bug => "bug",
             Self::Interrupted => "interrupted",
         }
@@ -285,6 +288,9 @@ impl Model<'_> {
         })?;
         if outcome.interrupted {
             return Err(CaseResult::new(&name, Verdict::Interrupted, "interrupted"));
+        }
+        if let Some(over) = outcome.over {
+            return Err(CaseResult::new(&name, Verdict::Ended, over.to_string()).help("a larger `--max-work`, or none"));
         }
         self.kept.replace(kept);
         if let Some(bug) = outcome.diagnostics.iter().find(|d| d.code.0 == "E999") {

@@ -207,6 +207,9 @@ impl Notebook {
         if outcome.interrupted {
             return Err(stopped());
         }
+        if let Some(over) = outcome.over {
+            return Err(Answer::failure(over.to_string()));
+        }
         let timings = outcome.report.timings;
         self.last = Some(Last {
             seconds: (self.clock)() - start,
