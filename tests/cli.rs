@@ -634,6 +634,7 @@ fn a_limit_of_work_ends_a_run_as_a_whole_and_leaves_no_file() {
         let told = ended.err.contains("E217") && ended.err.contains("--max-work 20000") && ended.err.contains("meshing m (1 of 1)");
         assert!(ended.status == 1 && told, "status {}: {}", ended.status, ended.err);
         assert!(!folder.0.join("m.inp").exists());
+        assert!(!ended.out.contains("not made"), "{}", ended.out);
     }
     let json = all(&["check", "--json", "--max-work", "20000"]);
     let report: Value = serde_json::from_str(&json.out).unwrap();

@@ -190,7 +190,11 @@ impl<'r> Run<'r> {
                 };
                 // What is pending at the end counts as well.
                 let (_, over) = job.run(|| work::uncharged(all));
-                let (outcome, memory) = self.finish(over.as_ref().map(too_much_work));
+                let (mut outcome, memory) = self.finish(over.as_ref().map(too_much_work));
+                if over.is_some() {
+                    // All that was not reached: the one reason is told already.
+                    outcome.report.unmade.clear();
+                }
                 (Outcome { over, ..outcome }, memory)
             }
             Err(error) => {
