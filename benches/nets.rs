@@ -10,8 +10,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build;
 use lofting::geometry::spline::{Ends, Spline, spline};
+use lofting::geometry::{Motion, build};
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::Surface;
@@ -24,8 +24,9 @@ fn through(points: &[DVec3]) -> Chain {
     Chain::of_curve(&spline(points, &settings, Origin::NONE).unwrap())
 }
 
-/// Lines of constant parameter of one bicubic surface of 50 × 50 spans: profiles, then guides.
-fn synthetic(n: usize) -> [Vec<Chain>; 2] {
+/// Lines of constant parameter of one bicubic surface of 50 × 50 spans: profiles, then guides. With `chords` each is a cubic spline
+/// through its points at the knots and crossings instead, by chord length.
+fn synthetic(n: usize, chords: bool) -> [Vec<Chain>; 2] {
     const SPANS: usize = 50;
     let knots: Vec<f64> = [vec![0.0; 3], (0..=SPANS).map(|k| k as f64 / SPANS as f64).collect(), vec![1.0; 3]].concat();
     let greville: Vec<f64> = (0..SPANS + 3).map(|i| knots[i + 1..i + 4].iter().sum::<f64>() / 3.0).collect();
@@ -38,7 +39,16 @@ fn synthetic(n: usize) -> [Vec<Chain>; 2] {
     let lines = |pole: &dyn Fn(usize, usize) -> DVec3| -> Vec<Chain> {
         let across: Vec<_> = (0..greville.len()).map(|k| curve(&(0..greville.len()).map(|i| pole(i, k)).collect::<Vec<_>>())).collect();
         let line = |j: usize| across.iter().map(|c| c.point(j as f64 / (n - 1) as f64)).collect::<Vec<_>>();
-        (0..n).map(|j| Chain::of_curve(&curve(&line(j)))).collect()
+        let steps = |m: usize| (0..=m).map(move |k| k as f64 / m as f64);
+        let mut stops: Vec<f64> = steps(SPANS).chain(steps(n - 1)).collect();
+        stops.sort_by(f64::total_cmp);
+        stops.dedup_by(|b, a| *b - *a < 1e-9);
+        let made = |j: usize| {
+            let exact = curve(&line(j));
+            let points = || stops.iter().map(|x| exact.point(*x)).collect::<Vec<_>>();
+            if chords { through(&points()) } else { Chain::of_curve(&exact) }
+        };
+        (0..n).map(made).collect()
     };
     [lines(&|i, k| at(greville[k], greville[i])), lines(&|i, k| at(greville[i], greville[k]))]
 }
@@ -53,7 +63,10 @@ fn builds(c: &mut Criterion) {
     let mut slow = c.benchmark_group("large");
     slow.sample_size(10);
     slow.bench_function("gordon 50x50 curves of 50 spans", |b| {
-        b.iter_batched(|| synthetic(50), |chains| networks::surface(chains, 1e-6), criterion::BatchSize::LargeInput);
+        b.iter_batched(|| synthetic(50, false), |chains| networks::surface(chains, 1e-6), criterion::BatchSize::LargeInput);
+    });
+    slow.bench_function("gordon 50x50 curves by chord length", |b| {
+        b.iter_batched(|| synthetic(50, true), |chains| networks::surface(chains, 1e-6), criterion::BatchSize::LargeInput);
     });
 }
 
@@ -106,7 +119,9 @@ fn sweeps(c: &mut Criterion) {
     let fine = Tolerance::new(1e-7 * fuselage.1, fuselage.1);
     slow.bench_function("skin 100 sections to a net", |b| b.iter(|| all().to_net(&Tolerance::new(1e-7 * 40.0, 40.0)).unwrap()));
     slow.bench_function("fuselage1 to a net", |b| b.iter(|| fuselage.0.to_net(&fine).unwrap()));
-    slow.bench_function("fuselage1 area", |b| b.iter(|| measure::area(&fuselage.0)));
+    // A surface knows its area once it is measured: each time it is another one.
+    let moved = || fuselage.0.moved(&Motion::translation(DVec3::X));
+    slow.bench_function("fuselage1 area", |b| b.iter_batched(moved, |s| measure::area(&s), criterion::BatchSize::LargeInput));
 }
 
 criterion_group!(benches, builds, sweeps);

@@ -53,7 +53,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 8_800),
     ("geometry", 5_550),
     ("network", 3_800),
-    ("surface", 23_950),
+    ("surface", 24_050),
     ("model", 6_250),
     ("mesh", 23_000),
     ("io", 14_200),

@@ -12,7 +12,7 @@ use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{NUDGE, PARALLEL, POLE_STEP, SINGULAR, Tolerance};
+use crate::base::tolerance::{PARALLEL, POLE_STEP, SINGULAR, SLIVER, Tolerance};
 use crate::base::work::Once;
 use crate::geometry::Motion;
 use crate::network::Chain;
@@ -340,7 +340,7 @@ impl Surface {
 
     /// Into 0…1 where a surface closes: borders may run over the seam. What rounding put beside a seam stays on its side.
     pub(super) fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
-        let wrap = |x: f64, closed: bool| if closed && !(-NUDGE..=1.0 + NUDGE).contains(&x) { x - x.floor() } else { x };
+        let wrap = |x: f64, closed: bool| if closed && !(-SLIVER..=1.0 + SLIVER).contains(&x) { x - x.floor() } else { x };
         (wrap(u, self.0.parts.closed.0), wrap(v, self.0.parts.closed.1))
     }
 
