@@ -10,7 +10,7 @@ use lofting::surface::nurbs::{Net, nurbs};
 use lofting::surface::revolve::{Axis, revolve};
 use lofting::surface::{Lean, Nearest, Surface, join};
 
-use crate::support::random::Random;
+use crate::support::random::{Random, cases};
 
 const AFTER: Lean = Lean::After;
 
@@ -46,7 +46,7 @@ fn row(numbers: &mut Random, n: usize) -> Vec<Surface> {
 #[test]
 fn nothing_moves_and_borders_have_one_parameter() {
     let mut numbers = Random(0x701_1ed);
-    for case in 0..200 {
+    for case in 0..cases(200) {
         let parts = row(&mut numbers, 2 + case % 4);
         let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();
         let (stops, _) = whole.breaks();
@@ -91,7 +91,7 @@ fn nothing_moves_and_borders_have_one_parameter() {
 #[test]
 fn order_direction_and_nesting_change_nothing() {
     let mut numbers = Random(0x0_de8);
-    for case in 0..100 {
+    for case in 0..cases(100) {
         let parts = row(&mut numbers, 3 + case % 3);
         let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();
         let mut others: Vec<Surface> = parts[1..].iter().map(|s| if numbers.share() < 0.5 { s.flipped() } else { s.clone() }).collect();
@@ -124,7 +124,7 @@ fn tower(numbers: &mut Random, n: usize) -> Vec<Surface> {
 #[test]
 fn seams_of_closed_borders_may_lie_anywhere() {
     let mut numbers = Random(0x5ea0);
-    for case in 0..60 {
+    for case in 0..cases(60) {
         let parts = tower(&mut numbers, 2 + case % 3);
         let whole = join(&parts, Origin::NONE, &tolerance()).unwrap();
         assert_eq!(whole.closed(), (true, false), "case {case}");

@@ -18,12 +18,13 @@ use lofting::surface::sweeps::{Input, Law, Method, sweep};
 use lofting::surface::{Closest, Nearest, Surface, extrude, revolve};
 
 use crate::support::networks;
+use crate::support::random;
 use crate::support::surfaces;
 
 const SIZE: f64 = 400.0;
 
 fn cases() -> u64 {
-    std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(40)
+    random::cases(40) as u64
 }
 
 /// Numbers between −1 and 1 that are the same in every run.

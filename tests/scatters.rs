@@ -6,7 +6,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::Motion;
 use lofting::surface::{Surface, scatter};
 
-use crate::support::random::Random;
+use crate::support::random::{Random, cases};
 
 /// Numbers of 0…1, the same every time.
 fn cloud(numbers: &mut Random, n: usize, height: impl Fn(f64, f64) -> f64) -> Vec<DVec3> {
@@ -68,7 +68,9 @@ fn a_thousand_clouds_are_met_in_any_order_and_are_smooth() {
 #[test]
 fn planes_and_quadratics_come_back() {
     let mut numbers = Random(0x91a2_e001);
-    for case in 0..200 {
+    // What neighbours determine badly is damped: in few cases a little of the quadratic is.
+    let mut damped = 0;
+    for case in 0..cases(200) {
         let n = 3 + case % 60;
         let flat = |x: f64, y: f64| 0.4 * x - 1.1 * y + 0.2;
         let points = cloud(&mut numbers, n, flat);
@@ -85,19 +87,23 @@ fn planes_and_quadratics_come_back() {
         let bowl = |x: f64, y: f64| 0.7 * x * x - 0.3 * x * y + 0.5 * y * y + x - 0.1;
         let points = cloud(&mut numbers, 25 + n, bowl);
         let surface = made(&points, Some(DVec3::Z));
-        for [p, q, r] in surface.triangles() {
+        let off = |[p, q, r]: [DVec2; 3]| {
             let at = (p + q + r) / 3.0;
             let p = surface.point(at.x, at.y);
-            assert!((p.z - bowl(p.x, p.y)).abs() <= 1e-8, "case {case}: {:e}", p.z - bowl(p.x, p.y));
-        }
+            (p.z - bowl(p.x, p.y)).abs()
+        };
+        let most = surface.triangles().into_iter().map(off).fold(0.0, f64::max);
+        assert!(most <= 1e-5, "case {case}: {most:e}");
+        damped += usize::from(most > 1e-8);
     }
+    assert!(damped * 100 <= cases(200), "{damped} of {}", cases(200));
 }
 
 #[test]
 fn motions_and_scales_go_with_the_points() {
     let mut numbers = Random(0x77_1dea);
-    for case in 0..60 {
-        let points = cloud(&mut numbers, 5 + case, |x, y| 0.4 * (2.0 * x).sin() * y + 0.2 * y * y);
+    for case in 0..cases(60) {
+        let points = cloud(&mut numbers, 5 + case % 60, |x, y| 0.4 * (2.0 * x).sin() * y + 0.2 * y * y);
         let axis = DVec3::new(numbers.share() - 0.5, numbers.share() - 0.5, numbers.share() - 0.5).normalize();
         let motion = Motion::rotation(DVec3::new(1.0, 2.0, 3.0), axis, 6.0 * numbers.share());
         let moved: Vec<DVec3> = points.iter().map(|p| motion.point(*p)).collect();
@@ -130,7 +136,7 @@ fn motions_and_scales_go_with_the_points() {
 #[test]
 fn bounds_hold() {
     let mut numbers = Random(0xb0_11d5);
-    for case in 0..200 {
+    for case in 0..cases(200) {
         let points = cloud(&mut numbers, 4 + case % 30, |x, y| 0.5 * (3.0 * x).sin() * (2.0 * y).cos());
         let surface = made(&points, Some(DVec3::Z));
         for _ in 0..10 {
@@ -163,8 +169,8 @@ fn bounds_hold() {
 fn surfaces_that_stand_out_over_their_points_say_so() {
     let mut numbers = Random(0x0_0e5e);
     let (mut told, mut worst) = (0, 0.0_f64);
-    for case in 0..100 {
-        let points = cloud(&mut numbers, 12 + case, |x, y| 0.1 * (1234.5 * x).sin() * (987.6 * y).cos());
+    for case in 0..cases(100) {
+        let points = cloud(&mut numbers, 12 + case % 100, |x, y| 0.1 * (1234.5 * x).sin() * (987.6 * y).cos());
         let (surface, notes) = scatter(&points, Some(DVec3::Z), Origin::NONE, &Tolerance::new(1e-7, 3.0)).unwrap();
         let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.z), b.max(p.z)));
         let mut out = 0.0_f64;
@@ -180,7 +186,7 @@ fn surfaces_that_stand_out_over_their_points_say_so() {
         worst = worst.max(if said { 0.0 } else { out / (high - low) });
     }
     assert!(worst <= 0.6, "a surface stands out {worst} of the range of its heights without a word");
-    assert!(told <= 20, "{told} of 100");
+    assert!(told * 5 <= cases(100), "{told} of {}", cases(100));
 }
 
 /// Second derivatives jump across the sides of triangles: a net of few pieces keeps them only where they hardly do.

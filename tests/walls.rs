@@ -11,7 +11,7 @@ use lofting::network::Chain;
 use lofting::surface::walls::thicken;
 use lofting::surface::{Surface, closest, grid, offset};
 
-use crate::support::random::Random;
+use crate::support::random::{Random, cases};
 
 /// A number between two.
 fn between(numbers: &mut Random, a: f64, b: f64) -> f64 {
@@ -34,7 +34,7 @@ fn net(random: &mut Random, tolerance: &Tolerance) -> Surface {
 fn offsets_keep_their_distance_and_come_back() {
     let tolerance = Tolerance::new(1e-4, 20.0);
     let mut random = Random(1);
-    for case in 0..200 {
+    for case in 0..cases(200) {
         let face = net(&mut random, &tolerance);
         let d = between(&mut random, 0.05, 0.6) * if random.share() < 0.5 { -1.0 } else { 1.0 };
         let (made, notes) = offset(&face, d, Origin::NONE, &tolerance).unwrap();
@@ -70,7 +70,7 @@ fn total_curvature(face: &Surface) -> f64 {
 fn walls_of_nets_enclose_area_times_thickness_and_a_twelfth_of_the_curvature() {
     let tolerance = Tolerance::new(1e-4, 20.0);
     let mut random = Random(7);
-    for case in 0..200 {
+    for case in 0..cases(200) {
         let face = net(&mut random, &tolerance);
         let t = between(&mut random, 0.1, 1.0);
         let (faces, _) = thicken(&face, (-0.5 * t, 0.5 * t), Origin::NONE, &tolerance).unwrap();
@@ -90,7 +90,7 @@ fn walls_of_nets_enclose_area_times_thickness_and_a_twelfth_of_the_curvature() {
 fn walls_of_turned_profiles_enclose_what_steiner_says() {
     let tolerance = Tolerance::new(1e-6, 20.0);
     let mut random = Random(11);
-    for case in 0..200 {
+    for case in 0..cases(200) {
         // A cone, or a part of a sphere between its poles.
         let (r, h, t) = (between(&mut random, 3.0, 6.0), between(&mut random, 2.0, 8.0), between(&mut random, 0.1, 1.0));
         let axis = lofting::surface::revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };

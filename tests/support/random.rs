@@ -22,3 +22,8 @@ impl Random {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 }
+
+/// How many random cases a property is tried with: what `PROPTEST_CASES` says, else `least`.
+pub fn cases(least: usize) -> usize {
+    std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(least)
+}
