@@ -19,6 +19,7 @@ mod network;
 mod no_flow;
 mod scatter;
 mod surface;
+mod surface_shape;
 mod sweep;
 mod values;
 mod walls;

@@ -1,0 +1,192 @@
+//! Words of what can go wrong with one surface: its shape, its loops, what carries it.
+
+use super::surface::SurfaceFault;
+use super::{Edit, Report, Say, Subject};
+use crate::base::text::{decimals, real};
+
+/// W606–N608, E611, W614, E62x, W651, E655, W669: one surface.
+pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
+    use SurfaceFault as F;
+    let uv = |(u, v): (f64, f64)| format!("u {}, v {}", decimals(u, 3), decimals(v, 3));
+    Some(match fault {
+        F::PatchSingular { surface, uv: place, at } => {
+            Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
+                .at(*surface, "its two directions fall together there")
+                .help("let no two borders be tangent to each other at a corner, or take the corner as `pole:`")
+        }
+        F::PatchFolded { surface, uv: place, at, turn } => Report::new(
+            "W607",
+            format!(
+                "{} folds over: its normal turns by {} at {}, {}",
+                say.quoted(*surface, "this surface"),
+                say.angle(*turn),
+                uv(*place),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "the map runs back over itself there")
+        .help("add a curve across the fold, or divide the surface in two"),
+        F::CrossesItself { surface, uv: places, at } => {
+            let (name, at) = (say.quoted(*surface, "this surface"), say.point(*at));
+            let message = match places {
+                Some((a, b)) => format!("{name} crosses itself at {at}: {} and {} are one place", uv(*a), uv(*b)),
+                None => format!("{name} crosses itself at {at}: two of its faces cross there"),
+            };
+            Report::new("W669", message)
+                .at(*surface, "passes through itself there")
+                .help("a mesh of it has no nodes on the line of crossing: move the curves apart, or make parts that meet along that line")
+        }
+        F::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(
+            "N608",
+            format!(
+                "{} may swing out between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
+                say.quoted(*surface, "this surface")
+            ),
+        )
+        .at(*surface, "one polynomial through all curves")
+        .help("`coons` with the same curves stays between them"),
+        F::LoopGoesRound { of, surface, trimming, at } => {
+            let (which, whose) = (say.quoted(*of, "the loop"), say.quoted(*surface, "the surface"));
+            Report::new(
+                "E612",
+                format!("{which} goes round {whose} through {} and has border on both sides: it bounds nothing alone", say.point(*at)),
+            )
+            .at(*trimming, "trimmed here")
+            .at(*of, "this loop")
+            .help("`by:` this loop with `keep:` a point of the part that stays")
+        }
+        F::LoopOutsideSurface { of, surface, off, at, tolerance } => Report::new(
+            "E613",
+            format!(
+                "{} leaves {}: it is {} away at {}, and the tolerance is {}",
+                say.quoted(*of, "the curve"),
+                say.quoted(*surface, "the surface"),
+                say.length(*off),
+                say.point(*at),
+                say.length(*tolerance)
+            ),
+        )
+        .at(*of, "this loop")
+        .at(*surface, "this surface")
+        .help("build the curve on the surface, or `project` it"),
+        F::LoopOutsideParameters { of, surface, uv } => {
+            let (curve, of_surface) = (say.quoted(*of, "the curve"), say.quoted(*surface, "the surface"));
+            Report::new("E613", format!("{curve} leaves {of_surface} at u = {}, v = {}: both run from 0 to 1", real(uv.0), real(uv.1)))
+                .at(*of, "x and y of this loop are u and v")
+                .at(*surface, "this surface")
+        }
+        F::LoopSelfIntersects { a, b, at, along } => Report::new(
+            "E611",
+            format!(
+                "the boundary crosses itself: {} meets {} at {}, {} % along one and {} % along the other",
+                say.quoted(*a, "one curve"),
+                say.quoted(*b, "another one"),
+                say.point(*at),
+                (along.0 * 100.0).round(),
+                (along.1 * 100.0).round()
+            ),
+        )
+        .at(*a, "this curve")
+        .at(*b, "crosses this one")
+        .help("take the corners in the order in which one walks round the face"),
+        F::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(
+            "W614",
+            format!(
+                "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {} to {}, at {}",
+                say.quoted(*surface, "this surface"),
+                say.length(*width),
+                say.length(*neighbour),
+                decimals(from_to.0, 6),
+                decimals(from_to.1, 6),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "the kinks of opposite borders split it here")
+        .help("move the kinks to the same share of the length on both borders"),
+        F::NoNet { surface, trimmed } => {
+            let (why, help) = match trimmed {
+                true => ("is trimmed", "take `nurbs` of the surface that it was cut from, and trim that"),
+                false => ("is a plane without four sides", "bound it by four curves"),
+            };
+            Report::new("E676", format!("{} has no B-spline form: it {why}", say.quoted(*surface, "the surface")))
+                .at(*surface, why)
+                .help(help)
+        }
+        F::AxisNotStraight { axis, off, at } => Report::new(
+            "E621",
+            format!("the axis {} is not straight: {} off at {}", say.quoted(*axis, "of the rotation"), say.length(*off), say.point(*at)),
+        )
+        .at(*axis, "must be one straight line")
+        .help("axis: line((0, 0, 0), (0, 0, 1))")
+        .edit(Subject::Call, Edit::Set("axis", "line((0, 0, 0), (0, 0, 1))".to_owned())),
+        F::GeneratrixOnAxis { profile, from, to } => {
+            let (from, to) = say.pair(*from, *to);
+            Report::new("E622", format!("{} lies in the axis from {from} to {to}", say.quoted(*profile, "the profile")))
+                .at(*profile, "sweeps no area there")
+                .help("leave that stretch out: `profile[A..B]`")
+        }
+        F::GeneratrixCrossesAxis { profile, at, fraction } => Report::new(
+            "E623",
+            format!(
+                "{} meets the axis between its ends, at {}, {} % along",
+                say.quoted(*profile, "the profile"),
+                say.point(*at),
+                decimals(fraction * 100.0, 1)
+            ),
+        )
+        .at(*profile, "meets the axis")
+        .help(format!("turn one side of it only: `{}[0%..{}%]`", named_or(say.name(*profile), "profile"), decimals(fraction * 100.0, 6)))
+        .edit(
+            Subject::Argument("profile"),
+            Edit::Instead { of: say.name(*profile), put: format!("{}[0%..{}%]", say.name(*profile), decimals(fraction * 100.0, 6)) },
+        ),
+        F::SweepDegenerate { profile, from, to } => {
+            let ((from, to), which) = (say.pair(*from, *to), say.quoted(*profile, "the profile"));
+            Report::new("E624", format!("{which} runs along the direction of the sweep from {from} to {to}: no area"))
+                .at(*profile, "parallel to the sweep")
+                .help("choose another `by:`, or leave that stretch out")
+        }
+        F::GridUneven { surface, line, index, ratio, at } => Report::new(
+            "W651",
+            format!(
+                "{line} {index} of {} is spaced {ratio:.1} times unlike the mean at {}",
+                say.quoted(*surface, "this grid"),
+                say.point(*at)
+            ),
+        )
+        .at(*surface, "one parameter serves all rows")
+        .help("resample the rows: `[for r in rows: spline(r).points(20)]`"),
+        F::OffsetFolds { surface, distance, largest, at } => {
+            let message = format!(
+                "{} folds over: at {} the surface bends with a radius of {}, less than the distance, {}",
+                say.quoted(*surface, "this offset"),
+                say.point(*at),
+                say.length(*largest),
+                say.length(distance.abs())
+            );
+            let most = say.length(largest.copysign(*distance));
+            Report::new("W664", message)
+                .at(*surface, "turns back there")
+                .help(format!("a distance between 0 and {most} does not fold there"))
+        }
+        F::PlaneNotFlat { curve, off, at, tolerance } => Report::new(
+            "E655",
+            format!(
+                "the boundary is not flat: {} is {} off the plane at {}; the tolerance is {}",
+                say.quoted(*curve, "one curve"),
+                say.length(*off),
+                say.point(*at),
+                say.length(*tolerance)
+            ),
+        )
+        .at(*curve, "leaves the plane of the others")
+        .help("`coons` takes borders that are not flat")
+        .edit(Subject::Call, Edit::Instead { of: "plane".to_owned(), put: "coons".to_owned() }),
+        _ => return None,
+    })
+}
+
+/// A name, or a word that stands for one that is missing.
+fn named_or(name: String, otherwise: &str) -> String {
+    if name.is_empty() { otherwise.to_owned() } else { name }
+}
