@@ -330,10 +330,11 @@ impl Cutter<'_> {
         self.surface.chains().iter().find_map(|chain| self.lies_on(chain, corners))
     }
 
-    /// Whether a line inside lies on a chain: its corners and the quarters between them do.
+    /// Whether a line inside lies on a chain: its corners and the quarters between them do, one after the other. A ring that begins
+    /// elsewhere than the chain is none of it.
     fn lies_on(&self, chain: &Chain, corners: &[((f64, f64), usize)]) -> Option<OnChain> {
         let curve = chain.to_curve().ok()?;
-        let mut fractions = Vec::new();
+        let (mut fractions, mut places) = (Vec::new(), Vec::new());
         for w in corners.windows(2) {
             for step in 0..4 {
                 let t = f64::from(step) / 4.0;
@@ -343,8 +344,9 @@ impl Cutter<'_> {
                 if foot.distance > self.tolerance.point {
                     return None;
                 }
+                places.push(curve.length_at(foot.t) / curve.length());
                 if step == 0 {
-                    fractions.push(curve.length_at(foot.t) / curve.length());
+                    fractions.extend(places.last());
                 }
             }
         }
@@ -353,9 +355,10 @@ impl Cutter<'_> {
         if foot.distance > self.tolerance.point {
             return None;
         }
-        fractions.push(curve.length_at(foot.t) / curve.length());
-        let ascending = fractions.windows(2).all(|w| w[0] < w[1]);
-        let descending = fractions.windows(2).all(|w| w[0] > w[1]);
+        places.push(curve.length_at(foot.t) / curve.length());
+        fractions.extend(places.last());
+        let ascending = places.windows(2).all(|w| w[0] < w[1]);
+        let descending = places.windows(2).all(|w| w[0] > w[1]);
         (ascending || descending).then(|| OnChain::new(chain, fractions, self.network, self.tolerance))
     }
 

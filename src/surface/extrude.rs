@@ -24,7 +24,6 @@ pub fn extrude(profile: &Chain, by: DVec3, origin: Origin, tolerance: &Tolerance
     if by.length() <= tolerance.point {
         return Err(CurveFault::ZeroDirection { of: origin, argument: "by", needed: "with a length" }.into());
     }
-    degenerate(profile, by, tolerance)?;
     let (rail, kinks) = kinked(profile, tolerance);
     let closed_v = profile.is_closed(tolerance);
     let far = profile.moved(&Motion::translation(by)).with_origin(origin);
@@ -35,7 +34,7 @@ pub fn extrude(profile: &Chain, by: DVec3, origin: Origin, tolerance: &Tolerance
     if !closed_v {
         generated.push(last.clone());
     }
-    Ok(Surface::new(Parts {
+    let surface = Surface::new(Parts {
         origin,
         kind: SurfaceKind::Extrude,
         flow: phrase(0, (false, closed_v)),
@@ -53,7 +52,9 @@ pub fn extrude(profile: &Chain, by: DVec3, origin: Origin, tolerance: &Tolerance
         generated,
         trim: None,
         flipped: false,
-    }))
+    });
+    sweeps_area(&surface, profile, tolerance)?;
+    Ok(surface)
 }
 
 /// The exact net of an extruded profile: degree 1 in u, the profile's in v.
@@ -81,18 +82,21 @@ pub(super) fn kinked(profile: &Chain, tolerance: &Tolerance) -> (Rail, Vec<f64>)
     (rail, lines.into_iter().map(|line| line.0).collect())
 }
 
-/// E624 where a stretch of the profile (longer than a point) is parallel to `by`.
-fn degenerate(profile: &Chain, by: DVec3, tolerance: &Tolerance) -> Result<()> {
+/// E624 where a stretch of the profile (longer than a point) is carried along itself: (u, v) are the way and the profile.
+pub(super) fn sweeps_area(surface: &Surface, profile: &Chain, tolerance: &Tolerance) -> Result<()> {
     const SAMPLES: usize = 16;
+    const WAYS: [f64; 4] = [0.07, 0.31, 0.62, 0.93];
     let stops = [vec![0.0], super::breaks::chain_breaks(profile), vec![1.0]].concat();
     for w in stops.windows(2) {
         if (w[1] - w[0]) * profile.length() <= tolerance.point {
             continue;
         }
         let parallel = (0..SAMPLES).all(|k| {
-            let f = w[0] + (w[1] - w[0]) * (k as f64 + 0.5) / SAMPLES as f64;
-            let tangent = profile.jet(f).d1;
-            tangent.cross(by).length() <= crate::base::tolerance::PARALLEL * tangent.length() * by.length()
+            let v = w[0] + (w[1] - w[0]) * (k as f64 + 0.5) / SAMPLES as f64;
+            WAYS.iter().all(|u| {
+                let jet = surface.jet(*u, v);
+                jet.du.cross(jet.dv).length() <= crate::base::tolerance::PARALLEL * jet.du.length() * jet.dv.length()
+            })
         });
         if parallel {
             let (from, to) = (profile.point(w[0]), profile.point(w[1]));

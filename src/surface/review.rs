@@ -43,7 +43,9 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     let singular = |k: usize| normals[k].is_none() || jets[k].du.cross(jets[k].dv).length() < SINGULAR * scale;
     let end = |k: usize| [0, samples + 1].contains(&(k % (samples + 2)));
     if let Some(k) = (0..jets.len()).find(|&k| !end(k % us.len()) && !end(k / us.len()) && singular(k)) {
-        found.push(SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p }.into());
+        found.push(
+            SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p, made: surface.kind().making() }.into(),
+        );
     }
     // A fold turns the normal by more than a right angle between neighbours of one smooth piece, however near they come;
     // a sharp bend, the nose of an airfoil, does so only between samples that lie apart.
@@ -69,7 +71,10 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
         }
     }
     if let Some((turn, k)) = worst {
-        found.push(SurfaceFault::PatchFolded { surface: surface.origin(), uv: place(k), at: jets[k].p, turn }.into());
+        found.push(
+            SurfaceFault::PatchFolded { surface: surface.origin(), uv: place(k), at: jets[k].p, turn, made: surface.kind().making() }
+                .into(),
+        );
     }
     found
 }

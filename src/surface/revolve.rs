@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4};
 
 use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
-use super::extrude::{kinked, unit_knots};
+use super::extrude::{kinked, sweeps_area, unit_knots};
 use super::flow_words::phrase;
 use super::nurbs::NurbsSurface;
 use super::shape::Shape;
@@ -63,7 +63,8 @@ fn is_whole_turn(profile: &Chain, axis: &Axis, short: f64, tolerance: &Tolerance
 /// the profile comes back to itself within the tolerance.
 ///
 /// Ends of the profile on the axis are poles; a whole turn closes in u with its seam at the profile. Fails with E411,
-/// E412 for the angle, E622 when the profile runs in the axis, E623 when it meets it between its ends.
+/// E412 for the angle, E622 when the profile runs in the axis, E623 when it meets it between its ends,
+/// E624 where it is turned along itself.
 pub fn revolve(profile: &Chain, axis: &Axis, angle: f64, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let turn = std::f64::consts::TAU;
     if angle == 0.0 {
@@ -99,7 +100,7 @@ pub fn revolve(profile: &Chain, axis: &Axis, angle: f64, origin: Origin, toleran
     let first = path(profile.start())?;
     let last = if closed_v { first.clone() } else { path(profile.end())? };
     let poles = [&first, &last].iter().filter(|border| matches!(border.side, Side::Pole(_))).count();
-    Ok(Surface::new(Parts {
+    let surface = Surface::new(Parts {
         origin,
         kind: SurfaceKind::Revolve,
         flow: phrase(poles, (closed_u, closed_v)),
@@ -112,7 +113,9 @@ pub fn revolve(profile: &Chain, axis: &Axis, angle: f64, origin: Origin, toleran
         generated,
         trim: None,
         flipped: false,
-    }))
+    });
+    sweeps_area(&surface, profile, tolerance)?;
+    Ok(surface)
 }
 
 /// Checks that the profile touches the axis with its ends only.

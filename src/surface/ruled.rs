@@ -6,6 +6,7 @@ use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
 use super::flow_words::phrase;
 use super::rail::Rail;
 use super::reparam::Map;
+use super::ring::Ring;
 use super::shape::Shape;
 use super::weights::{Axis, Rule};
 use crate::base::fault::{Fault, Result};
@@ -16,12 +17,13 @@ use crate::network::Chain;
 
 /// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
 ///
-/// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them); closed
-/// curves are read as they are. Ends that meet are poles. Returns warnings too (W614).
+/// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them), a closed one when it runs
+/// the other way round; closed curves are read from where they start. Ends that meet are poles. Returns warnings too (W614).
 pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let closed = a.is_closed(tolerance) && b.is_closed(tolerance);
     let apart = |b0: glam::DVec3, b1: glam::DVec3| a.start().distance_squared(b0) + a.end().distance_squared(b1);
-    let reversed = !closed && apart(b.end(), b.start()) < apart(b.start(), b.end());
+    let reversed =
+        if closed { Ring::of(a).runs_against(&Ring::of(b)) == Some(true) } else { apart(b.end(), b.start()) < apart(b.start(), b.end()) };
     let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
     let rails = vec![Rail::new(a.clone(), Map::identity()), other];
     let axis = || Axis::new(vec![0.0, 1.0], Rule::Lagrange);

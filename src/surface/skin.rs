@@ -6,24 +6,18 @@ use super::coons::evenly;
 use super::core::{Border, Side, Surface, SurfaceKind};
 use super::flow_words::phrase;
 use super::gordon::{CurveNet, Named, blended};
-use super::rail::Rail;
-use super::reparam::Map;
+use super::rail::{Lean, Rail};
+use super::skin_align::{Read, aligned, distances, runs_back};
 use super::skin_ends::{Spanned, ended};
 use super::skin_fit::fitted;
-use crate::base::fault::{Fault, NetFault, Result, ValueFault};
-use crate::base::job;
+use crate::base::fault::{Fault, NetFault, Result, SurfaceFault, ValueFault};
+use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
 
 pub use super::skin_ends::Leaving;
 
-/// Places along a section at which neighbours are compared.
-const COMPARED: usize = 32;
-/// Starts tried along a closed section before the best one is made better.
-const STARTS: usize = 64;
-/// Halvings to the best start.
-const STEPS: usize = 48;
 /// How often a fit is made closer because of what its ends add.
 const CLOSER: usize = 8;
 
@@ -68,34 +62,17 @@ pub struct Settings {
 pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let chains: Vec<Chain> = sections.iter().filter_map(|s| if let Section::Curve(c) = s { Some(c.clone()) } else { None }).collect();
     let round = chains.iter().all(|c| c.is_closed(tolerance));
-    let mut aligned: Vec<Read> = Vec::with_capacity(sections.len());
-    for section in sections {
-        job::look();
-        let before =
-            aligned.iter().rev().find_map(|read| if let Read::Curve(chain, turned) = read { Some((chain, *turned)) } else { None });
-        let next = match (section, before) {
-            (Section::Point(p), _) => Read::Point(*p),
-            (Section::Curve(chain), None) => Read::Curve(chain.clone(), false),
-            (Section::Curve(chain), Some(before)) if round => nearest_start(before, chain, tolerance)?,
-            (Section::Curve(chain), Some(before)) => {
-                Read::Curve(chain.clone(), apart(before, (chain, 0.0, true)) < apart(before, (chain, 0.0, false)))
-            }
-        };
-        aligned.push(next);
-    }
-    if settings.closed
-        && !round
-        && let [Read::Curve(first, turned), .., Read::Curve(last, before)] = aligned.as_slice()
-        && apart((last, *before), (first, 0.0, !*turned)) < apart((last, *before), (first, 0.0, *turned))
-    {
+    let aligned = aligned(sections, round, tolerance)?;
+    if settings.closed && !round && runs_back(&aligned) {
         let (found, range) = ("sections of which the last one runs against the first one".to_owned(), "`false` for them".to_owned());
         return Err(ValueFault::OutsideRange { argument: "closed", found, range }.into());
     }
-    let (nodes, length) = distances(&aligned, settings.closed);
-    if let Some(k) = nodes.windows(2).position(|w| (w[1] - w[0]).max(0.0) <= tolerance.parameter) {
-        let origin = |k: usize| if let Section::Curve(c) = &sections[k % sections.len()] { c.origin() } else { settings.origin };
-        let at = aligned[k].point(0.0);
-        return Err(NetFault::Cross { a: origin(k), b: origin(k + 1), guides: false, at }.into());
+    let (nodes, length) = distances(&aligned, settings.closed, round);
+    if let Some(k) = nodes.windows(2).position(|w| (w[1] - w[0]) * length <= tolerance.point.max(tolerance.parameter * length)) {
+        let origin = |k: usize| if let Section::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
+        let closing = k + 1 == sections.len();
+        let (a, b) = if closing { (origin(0), origin(k)) } else { (origin(k), origin(k + 1)) };
+        return Err(NetFault::OneSection { a, b, at: aligned[k].point(0.0), closing }.into());
     }
     let rails: Vec<Rail> = aligned.iter().map(Read::rail).collect();
     let poles = sections.len() - chains.len();
@@ -110,7 +87,8 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
         let Spanned { nodes, rails } = ended(given, settings.ends, length, tolerance);
         let net = CurveNet { along_u: rails, along_v: Vec::new(), nodes: (evenly(2), nodes), closed: (false, settings.closed) };
         let (surface, notes) = blended(net, named(chains.clone()), settings.across == Across::Linear, tolerance);
-        (surface.with_ends(side.clone(), round), notes)
+        let back = if settings.across == Across::Linear { turned_back(&surface) } else { None };
+        (surface.with_ends(side.clone(), round), [notes, back.into_iter().collect()].concat())
     };
     let Some(allowed) = settings.smooth else { return Ok(made(Spanned { nodes, rails })) };
     let mut within = allowed;
@@ -131,6 +109,27 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
     Ok(made(Spanned { nodes, rails }))
 }
 
+/// W607 where a skin of straight pieces runs back over itself at a section, all along it.
+fn turned_back(surface: &Surface) -> Option<Fault> {
+    const PLACES: usize = 8;
+    let (_, vs) = surface.kinks();
+    let turn = |v: f64, u: f64| {
+        let [a, b] = [Lean::Before, Lean::After].map(|lean| surface.jet_lean(u, v, (Lean::After, lean)).dv);
+        math::angle_between(a, b)
+    };
+    vs.iter().find_map(|&v| {
+        let at = |k: usize| (k as f64 + 0.5) / PLACES as f64;
+        let least = (0..PLACES).map(|k| turn(v, at(k))).fold(f64::INFINITY, f64::min);
+        let made = SurfaceKind::Skin.making();
+        let fault =
+            || SurfaceFault::PatchFolded { surface: surface.origin(), uv: (at(0), v), at: surface.point(at(0), v), turn: least, made };
+        (least > BACK).then(|| fault().into())
+    })
+}
+
+/// Turn at a section, radians, beyond which the surface runs back: it may be sharper at some places of a section, not at all.
+const BACK: f64 = 3.0;
+
 /// Places along each section at which a fit is measured.
 const MEASURED: usize = 128;
 
@@ -148,102 +147,6 @@ fn farthest(surface: &Surface, nodes: &[f64], rails: &[Rail]) -> (f64, usize, DV
         }
     }
     worst
-}
-
-/// A section as it is read.
-#[derive(Clone, Debug)]
-enum Read {
-    /// A curve from its start, or backwards.
-    Curve(Chain, bool),
-    Point(DVec3),
-}
-
-impl Read {
-    fn point(&self, x: f64) -> DVec3 {
-        match self {
-            Self::Curve(chain, turned) => read((chain, 0.0, *turned), x),
-            Self::Point(p) => *p,
-        }
-    }
-
-    fn rail(&self) -> Rail {
-        match self {
-            Self::Curve(chain, turned) => Rail::new(chain.clone(), if *turned { Map::reverse() } else { Map::identity() }),
-            Self::Point(p) => Rail::Point(*p),
-        }
-    }
-}
-
-/// A section: `turn` of its length later, backwards or not.
-fn read((chain, turn, turned): (&Chain, f64, bool), x: f64) -> DVec3 {
-    let x = if turned { 1.0 - x } else { x };
-    let f = x + turn;
-    chain.point(if f > 1.0 { f - 1.0 } else { f })
-}
-
-/// Sum of squared distances between two sections.
-fn apart((before, turned): (&Chain, bool), section: (&Chain, f64, bool)) -> f64 {
-    let at = |k: usize| k as f64 / COMPARED as f64;
-    (0..=COMPARED).map(|k| read((before, 0.0, turned), at(k)).distance_squared(read(section, at(k)))).sum()
-}
-
-/// How that sum grows with the turn of the second one, halved.
-fn slope((before, back): (&Chain, bool), (chain, turn, turned): (&Chain, f64, bool)) -> f64 {
-    let one = |k: usize| {
-        let x = k as f64 / COMPARED as f64;
-        let f = (if turned { 1.0 - x } else { x }) + turn;
-        let jet = chain.jet(if f > 1.0 { f - 1.0 } else { f });
-        (jet.p - read((before, 0.0, back), x)).dot(jet.d1)
-    };
-    (0..=COMPARED).map(one).sum()
-}
-
-/// A closed section from the start, and in the direction, that twists least against the one before.
-///
-/// Corners go to corners: where both have equally many, only these are tried.
-fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance) -> Result<Read> {
-    let corners = |chain: &Chain| chain.kinks(tolerance).into_iter().filter(|f| *f < 1.0).collect::<Vec<_>>();
-    let (own, other) = (corners(section), corners(before.0));
-    let kinked = own.len() == other.len() && !own.is_empty();
-    let starts = if kinked { own } else { (0..STARTS).map(|k| k as f64 / STARTS as f64).collect() };
-    let off = |start: f64, turned: bool| apart(before, (section, start.rem_euclid(1.0), turned));
-    let mut best = (f64::INFINITY, 0.0, false);
-    for (start, turned) in starts.iter().flat_map(|start| [(*start, false), (*start, true)]) {
-        let miss = off(start, turned);
-        if miss < best.0 * (1.0 - tolerance.parameter) {
-            best = (miss, start, turned);
-        }
-    }
-    let mut start = best.1;
-    if !kinked && start != 0.0 {
-        // Where the sum no longer falls: halving keeps all digits, the sum itself only half of them.
-        let falls = |start: f64| slope(before, (section, start.rem_euclid(1.0), best.2)) < 0.0;
-        let (mut low, mut high) = (start - 1.0 / STARTS as f64, start + 1.0 / STARTS as f64);
-        for _ in 0..STEPS {
-            let middle = 0.5 * (low + high);
-            if falls(middle) { low = middle } else { high = middle }
-        }
-        start = (0.5 * (low + high)).rem_euclid(1.0);
-    }
-    if start * section.length() <= tolerance.point || (1.0 - start) * section.length() <= tolerance.point {
-        return Ok(Read::Curve(section.clone(), best.2));
-    }
-    Ok(Read::Curve(section.slice(start, start, tolerance)?, best.2))
-}
-
-/// v of the sections: sums of their mean distances, from 0 to 1; and their whole, model units.
-fn distances(aligned: &[Read], closed: bool) -> (Vec<f64>, f64) {
-    let n = aligned.len();
-    let at = |k: usize| k as f64 / COMPARED as f64;
-    let mean = |a: &Read, b: &Read| (0..=COMPARED).map(|k| a.point(at(k)).distance(b.point(at(k)))).sum::<f64>();
-    let mut sums = vec![0.0];
-    for k in 1..n + usize::from(closed) {
-        sums.push(sums[k - 1] + mean(&aligned[k - 1], &aligned[k % n]));
-    }
-    let last = sums.len() - 1;
-    let whole = sums[last];
-    let shares = sums.iter().enumerate().map(|(k, sum)| if k == last { 1.0 } else { sum / whole }).collect();
-    (shares, whole / (COMPARED + 1) as f64)
 }
 
 impl Surface {

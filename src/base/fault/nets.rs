@@ -39,6 +39,17 @@ pub enum NetFault {
         /// Where they meet.
         at: DVec3,
     },
+    /// E642: neighbouring sections of a skin lie within the tolerance of each other.
+    OneSection {
+        /// One section, or the first.
+        a: Origin,
+        /// The next one, or the last.
+        b: Origin,
+        /// On the one.
+        at: DVec3,
+        /// They are the first and the last one of a closed skin.
+        closing: bool,
+    },
     /// N677: the curves of a net miss each other within what is allowed.
     Gap {
         /// The surface.
@@ -132,6 +143,22 @@ impl Describe for NetFault {
                 "guides may end in one pole and share nothing else"
             } else {
                 "profiles share no point; curves that end in one pole are guides"
+            }),
+            Self::OneSection { a, b, at, closing } => Report::new(
+                "E642",
+                format!(
+                    "{} and {} are one within the tolerance, at {}",
+                    say.quoted(*a, "a section"),
+                    say.quoted(*b, "the next one"),
+                    say.point(*at)
+                ),
+            )
+            .at(*a, if *closing { "the first section" } else { "this section" })
+            .at(*b, if *closing { "the last one is the same" } else { "is the same as this one" })
+            .help(if *closing {
+                "leave the last one out: `closed: true` joins what is then the last section to the first"
+            } else {
+                "leave one of them out"
             }),
             Self::Gap { surface, profile, guide, gap, at, pairs } => Report::new(
                 "N677",

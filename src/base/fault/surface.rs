@@ -23,6 +23,17 @@ pub enum Touching {
     Meeting,
 }
 
+/// How a surface is made, for what helps where it folds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Making {
+    /// From curves around it and across.
+    Curves,
+    /// Through sections in an order.
+    Sections,
+    /// A profile is carried.
+    Carried,
+}
+
 /// What can go wrong with a surface, a patch or a shell, or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceFault {
@@ -89,6 +100,8 @@ pub enum SurfaceFault {
         uv: (f64, f64),
         /// Where in space.
         at: DVec3,
+        /// How the surface is made.
+        made: Making,
     },
     /// W607: the normal flips inside.
     PatchFolded {
@@ -100,6 +113,8 @@ pub enum SurfaceFault {
         at: DVec3,
         /// Angle between the normal there and that of the neighbouring sample.
         turn: f64,
+        /// How the surface is made.
+        made: Making,
     },
     /// W669: a surface crosses itself, or two faces made together cross.
     CrossesItself {

@@ -1,20 +1,29 @@
 //! Words of what can go wrong with one surface: its shape, its loops, what carries it.
 
-use super::surface::SurfaceFault;
+use super::surface::{Making, SurfaceFault};
 use super::{Edit, Report, Say, Subject};
 use crate::base::text::{decimals, real};
+
+/// Help where sections fold.
+const IN_ORDER: &str = "give the sections in the order in which the surface passes them, none crossing its neighbours";
+/// Help where what is carried runs along its way.
+const ACROSS: &str = "draw the profile across its way, where that begins (`-path` begins at the other end), and smaller than it bends";
 
 /// W606–N608, E611, W614, E62x, W651, E655, W669: one surface.
 pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
     use SurfaceFault as F;
     let uv = |(u, v): (f64, f64)| format!("u {}, v {}", decimals(u, 3), decimals(v, 3));
     Some(match fault {
-        F::PatchSingular { surface, uv: place, at } => {
+        F::PatchSingular { surface, uv: place, at, made } => {
             Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
                 .at(*surface, "its two directions fall together there")
-                .help("let no two borders be tangent to each other at a corner, or take the corner as `pole:`")
+                .help(match made {
+                    Making::Curves => "let no two borders be tangent to each other at a corner, or take the corner as `pole:`",
+                    Making::Sections => IN_ORDER,
+                    Making::Carried => ACROSS,
+                })
         }
-        F::PatchFolded { surface, uv: place, at, turn } => Report::new(
+        F::PatchFolded { surface, uv: place, at, turn, made } => Report::new(
             "W607",
             format!(
                 "{} folds over: its normal turns by {} at {}, {}",
@@ -25,7 +34,11 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
             ),
         )
         .at(*surface, "the map runs back over itself there")
-        .help("add a curve across the fold, or divide the surface in two"),
+        .help(match made {
+            Making::Curves => "add a curve across the fold, or divide the surface in two",
+            Making::Sections => IN_ORDER,
+            Making::Carried => ACROSS,
+        }),
         F::CrossesItself { surface, uv: places, at } => {
             let (name, at) = (say.quoted(*surface, "this surface"), say.point(*at));
             let message = match places {

@@ -116,6 +116,17 @@ pub enum SweepFault {
         at: DVec3,
         /// Fraction of its arc length.
         fraction: f64,
+        /// It has no direction there, but does not turn back.
+        still: bool,
+    },
+    /// E306: a run of a path that ends in a mitred corner is bent.
+    BentRun {
+        /// The path.
+        path: Origin,
+        /// The corner.
+        at: DVec3,
+        /// Fraction of its arc length.
+        fraction: f64,
     },
     /// W639: what is carried moves backwards somewhere, so that the surface crosses itself.
     SelfIntersects {
@@ -201,17 +212,28 @@ impl Describe for SweepFault {
             )
             .at(*section, "the nearest section to that station")
             .help("draw one more section there"),
-            F::GuideCusp { guide, at, fraction } => Report::new(
-                "E636",
+            F::GuideCusp { guide, at, fraction, still } => {
+                let what = if *still { "has no direction" } else { "turns back on itself" };
+                let (which, share) = (say.quoted(*guide, "the path"), decimals(100.0 * fraction, 1));
+                Report::new("E636", format!("{which} {what} at {}, {share}% of its length", say.point(*at)))
+                    .at(*guide, "has no direction there that a section could follow")
+                    .help(if *still {
+                        "control points that follow each other coincide there: leave one of them out"
+                    } else {
+                        "take the runs before and after it, `c[0..P]` and `c[P..1]`, or draw the cusp as a bend"
+                    })
+            }
+            F::BentRun { path, at, fraction } => Report::new(
+                "E306",
                 format!(
-                    "{} turns back on itself at {}, {}% of its length",
-                    say.quoted(*guide, "the path"),
+                    "{} bends where it comes to or leaves its corner at {}, {}% of its length: no plane cuts that",
+                    say.quoted(*path, "the path"),
                     say.point(*at),
                     decimals(100.0 * fraction, 1)
                 ),
             )
-            .at(*guide, "has no direction there that a section could follow")
-            .help("take the runs before and after it, `c[0..P]` and `c[P..1]`, or draw the cusp as a bend"),
+            .at(*path, "runs beside a mitred corner are straight")
+            .help("`corner: round` turns the profile about the corner"),
             F::SelfIntersects { surface, path, at, reach, radius } => {
                 let why = match radius {
                     Some(radius) => {

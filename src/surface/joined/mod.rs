@@ -91,7 +91,8 @@ fn row(all: &[Surface], rims: &[Vec<Rim>], links: &[Link]) -> Result<Row> {
             turn = rims::turn(entered, ahead, turn.back_y != link.reversed);
             let mut piece = Piece::new(all[next].clone(), turn, next);
             let (end, begin) = if ahead { (1.0, 0.0) } else { (0.0, 1.0) };
-            if link.apart {
+            // A piece whose y begins elsewhere than its border takes the next one along.
+            if link.apart || before.shift > 0.0 {
                 piece.begin_at(begin, before.jet(end, 0.0, LAST).p);
             }
             before = piece.clone();

@@ -9,7 +9,7 @@ use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
 use crate::base::math;
 use crate::base::range::{Range, Ranges};
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{EPSILON, SLIVER};
 use crate::geometry::Motion;
 use crate::surface::Jet2;
 use crate::surface::breaks::tidy;
@@ -109,7 +109,7 @@ impl Piece {
         let even = |n: usize| n as f64 / (4 * PLACES) as f64;
         let start = (0..4 * PLACES).min_by(|a, b| far(even(*a)).total_cmp(&far(even(*b)))).map_or(0.0, even);
         let w = foot_round(self, x, start, p);
-        self.shift = if w < 1.0 { w } else { 0.0 };
+        self.shift = if (SLIVER..=1.0 - SLIVER).contains(&w) { w } else { 0.0 };
     }
 
     /// Where its seam lies in y; none where y begins there.

@@ -9,6 +9,8 @@ use crate::surface::divide;
 
 /// Share of a step on which a surface goes on at the least, where it is taken to go on so far.
 const AHEAD: f64 = 0.5;
+/// Share of its distance from the middle of the cut at which a place must be clear of all of the cut.
+const CLEAR: f64 = 0.7;
 
 /// The part of surface `k` on the far side of the contact curve from the edge.
 pub(super) fn cut_back(ball: &Ball, k: usize, contact: &Chain, origin: Origin) -> Result<Surface> {
@@ -19,13 +21,23 @@ pub(super) fn cut_back(ball: &Ball, k: usize, contact: &Chain, origin: Origin) -
     let normal = face.normal_at(at);
     let out = along.cross(normal).normalize_or_zero();
     let away = if out.dot(at - from) < 0.0 { -out } else { out };
-    // Half as far as there is something of the surface ahead: clear of the cut and of the border beyond.
-    let ahead = |step: f64| (face.nearest(at + away * step) - at).dot(away);
-    let least = LEFT * ball.tolerance.point;
-    let mut step = at.distance(from);
-    while step > least && ahead(step) < AHEAD * step {
-        step *= 0.5;
+    // A place well beside the cut: farther and farther from it while the surface goes on, and while no other stretch of the cut is much
+    // nearer than this one, for across a small closed one lies what goes.
+    let place = |step: f64| {
+        let ahead = (face.nearest(at + away * step) - at).dot(away);
+        let keep = face.nearest(at + away * (0.5 * ahead));
+        let clear = contact.closest(keep).2 >= CLEAR * keep.distance(at);
+        (keep, ahead >= AHEAD * step && clear)
+    };
+    let (mut step, longest) = (LEFT * ball.tolerance.point, at.distance(from));
+    let mut keep = place(step).0;
+    while 2.0 * step <= longest {
+        step *= 2.0;
+        let (farther, good) = place(step);
+        if !good {
+            break;
+        }
+        keep = farther;
     }
-    let keep = face.nearest(at + away * (0.5 * ahead(step.max(least))));
     divide(&face.kept, std::slice::from_ref(contact), keep, origin, &ball.tolerance)
 }

@@ -3,14 +3,14 @@
 use glam::{DMat3, DVec3};
 
 use super::super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
-use super::super::extrude::{extrude, kinked};
+use super::super::extrude::{extrude, kinked, sweeps_area};
 use super::super::flow_words::phrase;
 use super::super::rail::{Lean, Rail};
 use super::super::reparam::{Map, Reparam};
 use super::super::revolve::{Axis, revolve};
 use super::super::shape::Shape;
 use super::framed::Framed;
-use super::legs::Legs;
+use super::legs::{Legs, no_frame};
 use super::matrices::Matrices;
 use super::rounded::Rounded;
 use crate::base::fault::{Fault, Result, SweepFault};
@@ -50,6 +50,7 @@ pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tol
         }
         None => framed(profile, path, settings, tolerance)?,
     };
+    sweeps_area(&surface, profile, tolerance)?;
     let notes = folds(&surface, path, &Some, tolerance);
     Ok((surface, notes))
 }
@@ -57,8 +58,7 @@ pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tol
 /// With turns about the corners. W639 where the profile reaches over to the inner side of one.
 fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let mut legs = Legs::new(path, settings.twist, tolerance)?;
-    let cusp = || SweepFault::GuideCusp { guide: path.origin(), at: path.start(), fraction: 0.0 };
-    let turned = Rounded::new(&mut legs, profile, tolerance).ok_or_else(cusp)?;
+    let turned = Rounded::new(&mut legs, profile, tolerance).ok_or_else(|| no_frame(path, (0.0, 1.0)))?;
     let closed = legs.closes(settings.twist, tolerance);
     let (us, fractions): (Vec<f64>, Vec<f64>) = turned.stops.iter().copied().unzip();
     let mut way = Rail::new(path.clone(), Map::new(us, fractions, Reparam::Linear, false));
@@ -108,7 +108,7 @@ pub fn moved_by(
     let mut all = Matrices::empty();
     for w in stops.windows(2) {
         if !all.fit((w[0], w[1]), turn) {
-            return Err(SweepFault::GuideCusp { guide: path.origin(), at: path.point(w[0]), fraction: w[0] }.into());
+            return Err(no_frame(path, (w[0], w[1])));
         }
     }
     let closed = path.is_closed(tolerance);

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::frame::{bent, frame, place, transported, twisted};
 use super::matrices::Matrices;
-use crate::base::fault::{Result, SweepFault, ValueFault};
+use crate::base::fault::{Fault, Result, SweepFault};
 use crate::base::job;
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, Tolerance};
@@ -38,6 +38,19 @@ fn bisector(before: DVec3, after: DVec3) -> DVec3 {
     (before + after).normalize_or_zero()
 }
 
+/// E636 for a stretch of a path along which no frame can be carried: it stands still at an end of it, or turns back.
+pub fn no_frame(path: &Chain, (a, b): (f64, f64)) -> Fault {
+    let stands = |f: f64, before: bool| place(path, f, before).1 == DVec3::ZERO;
+    let (fraction, still) = if stands(a, false) {
+        (a, true)
+    } else if stands(b, true) {
+        (b, true)
+    } else {
+        (a, false)
+    };
+    SweepFault::GuideCusp { guide: path.origin(), at: path.point(fraction), fraction, still }.into()
+}
+
 impl<'a> Legs<'a> {
     /// Carries a frame along the whole path; a closed path gets what its frame lacks spread over its length, then `twist`.
     ///
@@ -47,7 +60,7 @@ impl<'a> Legs<'a> {
         for &f in &corners {
             let (before, after) = sides(path, f);
             if before.dot(after) <= -1.0 + tolerance.angle * tolerance.angle {
-                return Err(SweepFault::GuideCusp { guide: path.origin(), at: path.point(f), fraction: f }.into());
+                return Err(SweepFault::GuideCusp { guide: path.origin(), at: path.point(f), fraction: f, still: false }.into());
             }
         }
         let inner = corners.iter().copied().filter(|f| *f > 0.0);
@@ -139,7 +152,7 @@ impl<'a> Legs<'a> {
                     (p * (1.0 - x) + q * x) * turned
                 };
                 if !all.fit((a, b), &mut of) {
-                    return Err(SweepFault::GuideCusp { guide: self.path.origin(), at: self.path.point(a), fraction: a }.into());
+                    return Err(no_frame(self.path, (a, b)));
                 }
             }
         }
@@ -155,10 +168,7 @@ impl<'a> Legs<'a> {
         let chord = self.path.point(run.1).distance(self.path.point(run.0));
         let length = (run.1 - run.0) * self.path.length();
         if length - chord > EPSILON * self.path.length() {
-            let found = "miter".to_owned();
-            let share = 100.0 * f;
-            let range = format!("`round` here: the run of the path that ends in the corner at {share:.4}% of its length is not straight");
-            return Err(ValueFault::OutsideRange { argument: "corner", found, range }.into());
+            return Err(SweepFault::BentRun { path: self.path.origin(), at: self.path.point(f), fraction: f }.into());
         }
         let (t, n) = (if before { arriving } else { leaving }, bisector(arriving, leaving));
         let along = t / n.dot(t);
