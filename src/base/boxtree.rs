@@ -52,6 +52,15 @@ impl BoxTree {
         Self { items: order.into_iter().map(|(_, k)| k).collect(), levels }
     }
 
+    /// The items of [`BoxTree::query`], ascending.
+    pub fn near(&self, bbox: &Box3, margin: f64) -> Vec<usize> {
+        job::look();
+        let mut found = Vec::new();
+        self.query(bbox, margin, |k| found.push(k));
+        found.sort_unstable();
+        found
+    }
+
     /// Calls `found` with each item whose box comes within `margin` of `bbox` along every axis, in no particular order.
     pub fn query(&self, bbox: &Box3, margin: f64, mut found: impl FnMut(usize)) {
         let Some(top) = self.levels.len().checked_sub(1) else { return };

@@ -3,6 +3,8 @@
 use super::kinds::SurfaceOrShell;
 use super::surfaces::tell_crossing;
 use crate::base::fault::{Fault, Say, ValueFault};
+use crate::base::limits::WORK_OF_A_SURFACE;
+use crate::base::work;
 use crate::lang::types::Length;
 use crate::model::measure::points_inwards;
 use crate::surface::Surface;
@@ -74,6 +76,10 @@ builtins! {
             SurfaceOrShell::Surface(face) => thicken(face, reach, origin, &tolerance).map_err(|fault| of_thickness(fault, &side, t))?,
             SurfaceOrShell::Shell(shell) => {
                 let faces = without_creases(&shell.surfaces, origin, &tolerance)?;
+                // A call that is given many faces may look at each of them.
+                if let Some(budget) = work::budget() {
+                    budget.allow(faces.len() as u64 * WORK_OF_A_SURFACE);
+                }
                 let near = shell.snap.map_or(0.0, |snap| snap.0);
                 let inwards = |faces: &[Surface]| points_inwards(&faces.iter().map(|f| (f.clone(), false)).collect::<Vec<_>>()) == Some(true);
                 let turned = |faces: &[Surface], closed: bool| (closed && inwards(faces)) != shell.flip;

@@ -8,7 +8,8 @@ use crate::base::fault::{NoBlend, Result};
 use crate::base::origin::Origin;
 use crate::geometry::build::line;
 use crate::network::{Chain, meet};
-use crate::surface::core::{Domain, Side, Surface};
+use crate::surface::core::Surface;
+use crate::surface::walls::border_chains;
 use crate::surface::{Way, carried, trim};
 
 /// Steps from the middle to an end in which the border is looked for.
@@ -34,7 +35,7 @@ pub(super) fn ended(ball: &Ball, roll: Roll, origin: Origin) -> Result<Roll> {
     }
     let roll = if stops == [[0.0, 1.0]; 2] { roll } else { slanted(ball, &roll, stops, origin)? };
     for (k, contact) in roll.contacts.iter().enumerate() {
-        for border in borders(&ball.faces[k].kept) {
+        for border in border_chains(&ball.faces[k].kept, &ball.tolerance)? {
             let inner = |p: &DVec3| ball.closed || p.distance(contact.start()).min(p.distance(contact.end())) > AWAY * point;
             if let Some(m) = meet(contact, &border, &ball.tolerance)?.iter().find(|m| inner(&m.point)) {
                 return Err(ball.fault(NoBlend::Leaves { surface: ball.origins[k], at: m.point }));
@@ -46,17 +47,6 @@ pub(super) fn ended(ball: &Ball, roll: Roll, origin: Origin) -> Result<Roll> {
 
 /// A contact that is this near to its end, in tolerances, is there.
 const AWAY: f64 = 16.0;
-
-/// The curves of a border, seams left out.
-fn borders(kept: &Surface) -> Vec<Chain> {
-    let closed = kept.closed();
-    let seam = |k: usize| kept.domain() == Domain::Square && (if k % 2 == 1 { closed.0 } else { closed.1 });
-    let chain = |k: usize| match kept.side(k) {
-        Side::Chain { chain, .. } if !seam(k) => Some(chain),
-        _ => None,
-    };
-    (0..kept.n_sides()).filter_map(chain).collect()
-}
 
 /// u at which a contact meets the border of its surface, towards an end of the rounding.
 fn stop_of(ball: &Ball, k: usize, rounding: &Surface, end: f64) -> Result<f64> {

@@ -14,7 +14,7 @@ use crate::surface::foot::step;
 use crate::surface::offset::slopes;
 use crate::surface::pull::{Course, foot};
 use crate::surface::rail::Lean;
-use crate::surface::trim::Walk;
+use crate::surface::trim::{Walk, natural};
 
 /// Share of the tolerance within which copies of a border are.
 const SHARE: f64 = 0.125;
@@ -77,37 +77,52 @@ pub(in crate::surface) fn whole(surface: &Surface, tolerance: &Tolerance) -> Sur
 /// The borders of all loops of a face, loop by loop; `None` for poles and for seams, across which the face goes on.
 pub fn boundaries(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
     let below = whole(surface, tolerance);
-    let boundary = |border: &Border, course: &Course| Boundary {
-        surface: below.clone(),
-        side: border.side.clone(),
-        course: course.clone(),
-        part: (0.0, 1.0),
-    };
-    let closed = surface.closed();
-    let seam = |walk: &Walk, k: usize| {
-        let own = &walk.courses[k];
-        let middle = |k: usize| {
-            let jet = boundary(&walk.borders[k], &walk.courses[k]).jet(0.5, false);
-            jet.map(|jet| jet.p)
-        };
-        let pole = |k: usize| matches!(walk.borders[k].side, Side::Pole(_));
-        let partner = |j: usize| {
-            let near = || matches!((middle(j), middle(k)), (Some(a), Some(b)) if a.distance(b) <= BESIDE * surface.hull().diagonal());
-            j != k && !pole(j) && walk.courses[j].is_seam(closed) && near()
-        };
-        own.is_seam(closed) && (matches!(walk.borders[k].side, Side::Seam) || (0..walk.borders.len()).any(partner))
-    };
     let each = |walk: &Walk| {
+        let seams = seams(surface, &below, walk);
         let one = |k: usize| {
             let pole = matches!(walk.borders[k].side, Side::Pole(_));
-            (!pole && !seam(walk, k)).then(|| boundary(&walk.borders[k], &walk.courses[k]))
+            (!pole && !seams[k]).then(|| Boundary::of(&below, walk, k))
         };
         (0..walk.borders.len()).map(one).collect()
     };
     walks.iter().map(each).collect()
 }
 
+/// The chains of the borders of a face; neither poles nor seams, across which the face goes on.
+pub(in crate::surface) fn border_chains(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
+    let below = whole(surface, tolerance);
+    let mut all = Vec::new();
+    for walk in natural(surface, tolerance)? {
+        let seams = seams(surface, &below, &walk);
+        let chain = |(border, seam): (&Border, bool)| match &border.side {
+            Side::Chain { chain, .. } if !seam => Some(chain.clone()),
+            _ => None,
+        };
+        all.extend(walk.borders.iter().zip(seams).filter_map(chain));
+    }
+    Ok(all)
+}
+
+/// Which borders of a loop are seams across which the face goes on: its loop runs along both sides of them.
+fn seams(surface: &Surface, below: &Surface, walk: &Walk) -> Vec<bool> {
+    let closed = surface.closed();
+    let on_seam = |k: usize| !matches!(walk.borders[k].side, Side::Pole(_)) && walk.courses[k].is_seam(closed);
+    let middle = |k: usize| Boundary::of(below, walk, k).jet(0.5, false).map(|jet| jet.p);
+    let near = |j: usize, k: usize| {
+        let apart = middle(j).zip(middle(k)).map(|(a, b)| a.distance(b));
+        apart.is_some_and(|apart| apart <= BESIDE * surface.hull().diagonal())
+    };
+    let n = walk.borders.len();
+    let partner = |k: usize| (0..n).any(|j| j != k && on_seam(j) && near(j, k));
+    (0..n).map(|k| on_seam(k) && (matches!(walk.borders[k].side, Side::Seam) || partner(k))).collect()
+}
+
 impl Boundary {
+    /// Border `k` of a loop of the face over a surface.
+    fn of(below: &Surface, walk: &Walk, k: usize) -> Self {
+        Self { surface: below.clone(), side: walk.borders[k].side.clone(), course: walk.courses[k].clone(), part: (0.0, 1.0) }
+    }
+
     /// Parameters along the border, ends included, between which it has no corner.
     pub fn stops(&self) -> Vec<f64> {
         let inner: Vec<f64> = match (&self.course, &self.side) {
@@ -141,7 +156,7 @@ impl Boundary {
         let jet = self.surface.jet_lean(uv.x, uv.y, leans);
         let along = if before { -way } else { way };
         let turn = match slopes(&jet) {
-            Some((nu, nv)) if self.surface.normal_lean(uv.x, uv.y, leans).dot(normal) > 0.0 => nu * along.x + nv * along.y,
+            Some((nu, nv)) if normal.length_squared() > 0.0 => nu * along.x + nv * along.y,
             _ => self.difference(t, before, normal)?,
         };
         Some(BoundaryJet { p, d1, normal, turn })
@@ -168,12 +183,30 @@ impl Boundary {
         stops
     }
 
-    /// Place, point, derivative of the point and of the place.
-    fn place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
+    /// The point of [`Boundary::jet`] by itself: its foot and the normal there are many times the work.
+    pub fn point(&self, t: f64) -> Option<DVec3> {
+        let t = self.of_whole(t, false);
+        match (&self.course, &self.side) {
+            (Course::Pull(pull), Side::Chain { chain, .. }) => {
+                let (f, onwards) = (pull.fraction(t), pull.fraction(1.0) > pull.fraction(0.0));
+                Some(if onwards { chain.jet(f).p } else { chain.jet_before(f).p })
+            }
+            _ => self.whole_place(t, false).map(|place| place.1),
+        }
+    }
+
+    /// The parameter of the whole border.
+    fn of_whole(&self, t: f64, before: bool) -> f64 {
         let (from, to) = self.part;
         let whole = from + (to - from) * t;
         let beyond = whole > 1.0 || whole == 1.0 && !before && to > 1.0;
-        let (uv, p, d1, way) = self.whole_place(if beyond { whole - 1.0 } else { whole }, before)?;
+        if beyond { whole - 1.0 } else { whole }
+    }
+
+    /// Place, point, derivative of the point and of the place.
+    fn place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
+        let (from, to) = self.part;
+        let (uv, p, d1, way) = self.whole_place(self.of_whole(t, before), before)?;
         Some((uv, p, d1 * (to - from), way * (to - from)))
     }
 

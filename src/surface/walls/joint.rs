@@ -5,6 +5,8 @@ use std::collections::VecDeque;
 use glam::DVec3;
 
 use super::border::{Boundary, boundaries};
+use crate::base::bbox::Box3;
+use crate::base::boxtree::BoxTree;
 use crate::base::fault::{Result, WallEdge, WallFault};
 use crate::base::math;
 use crate::base::origin::Origin;
@@ -16,6 +18,8 @@ use crate::surface::with_loops;
 
 /// Borders that are no edge of two faces and yet everywhere within so many tolerances are not meant to be two.
 const BESIDE: f64 = 100.0;
+/// Tolerances within which ends of borders are one.
+const SAME: f64 = 2.0;
 /// Places along an edge at which the faces are compared.
 const PLACES: usize = 9;
 
@@ -76,60 +80,71 @@ impl Sheet {
             all.push(boundaries(face, &natural(face, tolerance)?, tolerance).into_iter().flatten().flatten().collect());
         }
         let all = parted(all, origin, tolerance)?;
-        let mut joints: Vec<Joint> = Vec::new();
+        let mut borders: Vec<(Use, Chain)> = Vec::new();
         for (face, own) in all.iter().enumerate() {
             for (boundary, border) in own.iter().enumerate() {
-                let chain = border.copy(0.0, origin, tolerance)?;
-                let found = joints.iter_mut().find(|joint| same(&joint.chain, &chain, tolerance));
-                match found {
-                    Some(joint) if joint.uses.len() > 1 => {
-                        let (a, b) = (faces[joint.uses[0].face].origin(), faces[face].origin());
-                        return Err(WallFault::Edge { wall: origin, a, b, at: chain.point(0.5), why: WallEdge::Three }.into());
-                    }
-                    Some(joint) => joint.uses.push(Use { face, boundary }),
-                    None => joints.push(Joint { uses: vec![Use { face, boundary }], bend: Bend::Free, chain }),
+                borders.push((Use { face, boundary }, border.copy(0.0, origin, tolerance)?));
+            }
+        }
+        let boxes: Vec<Box3> = borders.iter().map(|(_, chain)| chain.bbox()).collect();
+        let near_by = BoxTree::build(&boxes);
+        let mut joints: Vec<Joint> = Vec::new();
+        // The joints that borders are the first of.
+        let mut first: Vec<Option<usize>> = vec![None; borders.len()];
+        for (k, (at, chain)) in borders.into_iter().enumerate() {
+            let mut others = near_by.near(&boxes[k], SAME * tolerance.point).into_iter().filter_map(|j| first[j]);
+            match others.find(|j| same(&joints[*j].chain, &chain, tolerance)) {
+                Some(j) if joints[j].uses.len() > 1 => {
+                    let (a, b) = (faces[joints[j].uses[0].face].origin(), faces[at.face].origin());
+                    return Err(WallFault::Edge { wall: origin, a, b, at: chain.point(0.5), why: WallEdge::Three }.into());
+                }
+                Some(j) => joints[j].uses.push(at),
+                None => {
+                    first[k] = Some(joints.len());
+                    joints.push(Joint { uses: vec![at], bend: Bend::Free, chain });
                 }
             }
         }
-        let free: Vec<&Joint> = joints.iter().filter(|joint| joint.uses.len() == 1).collect();
-        for (k, a) in free.iter().enumerate() {
-            let part = |b: &&&Joint| {
-                a.uses[0].face != b.uses[0].face && (lies_on(&a.chain, &b.chain, tolerance) || lies_on(&b.chain, &a.chain, tolerance))
-            };
-            if let Some(b) = free[k + 1..].iter().find(part) {
-                let (at, of) = (a.chain.point(0.5), |joint: &Joint| faces[joint.uses[0].face].origin());
-                return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why: WallEdge::Part }.into());
-            }
+        let of = |joint: &Joint| faces[joint.uses[0].face].origin();
+        if let Some((a, b)) = overlap(&joints, tolerance) {
+            let at = a.chain.point(0.5);
+            return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why: WallEdge::Part }.into());
         }
         let glued = Tolerance { point: near.max(BESIDE * tolerance.point), ..*tolerance };
-        for (k, a) in free.iter().enumerate() {
-            let beside = |b: &&&Joint| {
-                a.uses[0].face != b.uses[0].face && (lies_on(&a.chain, &b.chain, &glued) || lies_on(&b.chain, &a.chain, &glued))
-            };
-            if let Some(b) = free[k + 1..].iter().find(beside) {
-                let of = |joint: &Joint| faces[joint.uses[0].face].origin();
-                let at = a.chain.point(0.5);
-                let why = WallEdge::Gap { apart: b.chain.closest(at).2 };
-                return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why }.into());
-            }
+        if let Some((a, b)) = overlap(&joints, &glued) {
+            let at = a.chain.point(0.5);
+            let why = WallEdge::Gap { apart: b.chain.closest(at).2 };
+            return Err(WallFault::Edge { wall: origin, a: of(a), b: of(b), at, why }.into());
         }
         Ok(Self { faces: faces.to_vec(), boundaries: all, joints })
     }
 
+    /// The joints of each face, ascending.
+    pub fn of_faces(&self) -> Vec<Vec<usize>> {
+        let mut own = vec![Vec::new(); self.faces.len()];
+        for (k, joint) in self.joints.iter().enumerate() {
+            joint.uses.iter().for_each(|at| own[at.face].push(k));
+        }
+        own.iter_mut().for_each(Vec::dedup);
+        own
+    }
+
     /// The first face of a second piece, if the faces do not all hang together.
     pub fn second_piece(&self) -> Option<&Surface> {
-        let mut of: Vec<usize> = (0..self.faces.len()).collect();
-        for _ in 0..self.faces.len() {
-            for joint in &self.joints {
-                let least = joint.uses.iter().map(|at| of[at.face]).min().unwrap_or(0);
-                joint.uses.iter().for_each(|at| of[at.face] = least);
+        let own = self.of_faces();
+        let mut reached = vec![false; self.faces.len()];
+        let mut open: Vec<usize> = (0..self.faces.len().min(1)).collect();
+        while let Some(face) = open.pop() {
+            if !std::mem::replace(&mut reached[face], true) {
+                open.extend(own[face].iter().flat_map(|k| &self.joints[*k].uses).map(|at| at.face));
             }
         }
-        of.iter().position(|piece| *piece != 0).map(|face| &self.faces[face])
+        reached.iter().position(|reached| !reached).map(|face| &self.faces[face])
     }
 
     /// The faces that must be flipped so that all look to the side of the first one of each piece.
     fn turned(&self) -> Vec<bool> {
+        let own = self.of_faces();
         let mut turned: Vec<Option<bool>> = vec![None; self.faces.len()];
         for start in 0..self.faces.len() {
             if turned[start].is_some() {
@@ -138,10 +153,10 @@ impl Sheet {
             turned[start] = Some(false);
             let mut open = VecDeque::from([start]);
             while let Some(face) = open.pop_front() {
-                for joint in self.joints.iter().filter(|joint| joint.uses.len() == 2) {
+                for joint in own[face].iter().map(|k| &self.joints[*k]).filter(|joint| joint.uses.len() == 2) {
                     let (a, b) = (joint.uses[0], joint.uses[1]);
                     let next = if a.face == face { b } else { a };
-                    if a.face != face && b.face != face || turned[next.face].is_some() {
+                    if turned[next.face].is_some() {
                         continue;
                     }
                     turned[next.face] = Some(turned[face].unwrap_or(false) != self.along(joint));
@@ -203,30 +218,31 @@ impl Sheet {
 /// Borders cut at their corners and where borders of other faces end on them.
 fn parted(all: Vec<Vec<Boundary>>, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Vec<Boundary>>> {
     let mut chains: Vec<Vec<Chain>> = Vec::new();
-    let mut vertices: Vec<DVec3> = Vec::new();
-    let add = |vertices: &mut Vec<DVec3>, p: DVec3| {
-        if !vertices.iter().any(|q| tolerance.same_point(*q, p)) {
-            vertices.push(p);
-        }
-    };
+    let mut places: Vec<DVec3> = Vec::new();
     for own in &all {
         let mut row = Vec::new();
         for boundary in own {
             let chain = boundary.copy(0.0, origin, tolerance)?;
             let corner = || tolerance.is_kink(chain.jet_before(1.0).d1, chain.jet(0.0).d1);
             if !chain.is_closed(tolerance) || corner() {
-                add(&mut vertices, chain.start());
-                add(&mut vertices, chain.end());
+                places.extend([chain.start(), chain.end()]);
             }
-            boundary.corners(tolerance).into_iter().filter_map(|t| boundary.jet(t, false)).for_each(|jet| add(&mut vertices, jet.p));
+            places.extend(boundary.corners(tolerance).into_iter().filter_map(|t| boundary.point(t)));
             row.push(chain);
         }
         chains.push(row);
     }
+    let near_by = BoxTree::build(&places.iter().map(|p| Box3::of([*p])).collect::<Vec<_>>());
+    let mut kept = vec![false; places.len()];
+    for k in 0..places.len() {
+        let same = |j: &usize| kept[*j] && tolerance.same_point(places[*j], places[k]);
+        kept[k] = !near_by.near(&Box3::of([places[k]]), SAME * tolerance.point).iter().any(same);
+    }
     let parts = |boundary: &Boundary, chain: &Chain| -> Vec<Boundary> {
-        let on = |p: &&DVec3| chain.closest(**p).2 <= 2.0 * tolerance.point;
-        let at_end = |p: DVec3, f: f64| chain.point(f).distance(p) <= 2.0 * tolerance.point;
-        let here: Vec<DVec3> = vertices.iter().filter(on).copied().collect();
+        let on = |p: &DVec3| chain.closest(*p).2 <= SAME * tolerance.point;
+        let at_end = |p: DVec3, f: f64| chain.point(f).distance(p) <= SAME * tolerance.point;
+        let vertices = near_by.near(&chain.bbox(), SAME * tolerance.point).into_iter().filter(|k| kept[*k]).map(|k| places[k]);
+        let here: Vec<DVec3> = vertices.filter(on).collect();
         let inner = here.iter().filter(|p| !at_end(**p, 0.0) && !at_end(**p, 1.0));
         let mut cuts: Vec<f64> = inner.map(|p| nearest(boundary, *p)).collect();
         cuts.sort_by(f64::total_cmp);
@@ -253,18 +269,39 @@ fn parted(all: Vec<Vec<Boundary>>, origin: Origin, tolerance: &Tolerance) -> Res
 /// The parameter of a border nearest to a point: by places, then by halving steps.
 pub(super) fn nearest(boundary: &Boundary, p: DVec3) -> f64 {
     const STEPS: usize = 32;
-    let off = |t: f64| boundary.jet(t, false).map_or(f64::INFINITY, |jet| jet.p.distance(p));
-    let mut best = (0..=STEPS).map(|k| k as f64 / STEPS as f64).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0.0);
-    let mut step = 0.5 / STEPS as f64;
-    while step > crate::base::tolerance::NEAREST {
-        let next = [best - step, best + step].into_iter().filter(|t| (0.0..=1.0).contains(t)).min_by(|a, b| off(*a).total_cmp(&off(*b)));
-        match next {
-            Some(t) if off(t) < off(best) => best = t,
-            _ => step *= 0.5,
+    // Each place is looked at once: this is asked at many places of every edge.
+    let off = |t: f64| (t, boundary.point(t).map_or(f64::INFINITY, |q| q.distance(p)));
+    let least = |a: &(f64, f64), b: &(f64, f64)| a.1.total_cmp(&b.1);
+    let start = (0..=STEPS).map(|k| off(k as f64 / STEPS as f64)).min_by(least).unwrap_or_default();
+    let nearer = |(mut best, mut apart): (f64, f64)| {
+        let mut step = 0.5 / STEPS as f64;
+        while step > crate::base::tolerance::NEAREST {
+            let next = [best - step, best + step].into_iter().filter(|t| (0.0..=1.0).contains(t)).map(off).min_by(least);
+            match next {
+                Some(next) if next.1 < apart => (best, apart) = next,
+                _ => step *= 0.5,
+            }
         }
-    }
+        (best, apart)
+    };
+    // A closed border comes to its start from both sides.
+    let ends = (start.0 == 0.0 || start.0 == 1.0).then(|| off(1.0 - start.0));
+    let best = std::iter::once(start).chain(ends).map(nearer).min_by(least).unwrap_or_default().0;
     // A corner to the last bit: on its other side the border has another direction.
     boundary.stops().into_iter().find(|t| (*t - best).abs() <= NUDGE).unwrap_or(best)
+}
+
+/// The first two free borders of different faces of which one lies on the other.
+fn overlap<'a>(joints: &'a [Joint], tolerance: &Tolerance) -> Option<(&'a Joint, &'a Joint)> {
+    let free: Vec<&Joint> = joints.iter().filter(|joint| joint.uses.len() == 1).collect();
+    let boxes: Vec<Box3> = free.iter().map(|joint| joint.chain.bbox()).collect();
+    let near_by = BoxTree::build(&boxes);
+    (0..free.len()).find_map(|k| {
+        let (a, others) = (free[k], near_by.near(&boxes[k], tolerance.point));
+        let lies = |b: &Joint| lies_on(&a.chain, &b.chain, tolerance) || lies_on(&b.chain, &a.chain, tolerance);
+        let other = others.into_iter().filter(|j| *j > k).map(|j| free[j]).find(|b| a.uses[0].face != b.uses[0].face && lies(b));
+        other.map(|b| (a, b))
+    })
 }
 
 /// Whether all of a chain is on another one.
@@ -274,7 +311,7 @@ fn lies_on(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
 
 /// Whether two chains are one: the ends and places between them.
 fn same(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
-    let near = |p: DVec3, q: DVec3| p.distance(q) <= 2.0 * tolerance.point;
+    let near = |p: DVec3, q: DVec3| p.distance(q) <= SAME * tolerance.point;
     let ends = near(a.start(), b.start()) && near(a.end(), b.end()) || near(a.start(), b.end()) && near(a.end(), b.start());
     let closed = a.is_closed(tolerance) && b.is_closed(tolerance);
     (ends || closed) && lies_on(a, b, tolerance) && lies_on(b, a, tolerance)

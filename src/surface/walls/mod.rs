@@ -6,8 +6,8 @@ mod joint;
 mod longer;
 mod shell;
 
-pub(super) use border::whole;
 use border::{Boundary, boundaries, curve};
+pub(super) use border::{border_chains, whole};
 pub(super) use carried::trimmed;
 use carried::with_loops;
 

@@ -5,17 +5,21 @@ use glam::{DMat3, DVec2, DVec3};
 use super::border::whole;
 use super::joint::{Bend, Joint, Sheet, Use};
 use super::longer::longer;
+use crate::base::bbox::Box3;
+use crate::base::boxtree::BoxTree;
 use crate::base::fault::{Fault, Result, WallEdge, WallFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::build::line;
 use crate::network::{Chain, meet};
+use crate::surface::closest::Nearest;
 use crate::surface::core::{Domain, Side, Surface};
 use crate::surface::divide;
 use crate::surface::meet::with_surfaces;
 
-/// Faces run on beyond their borders by this many distances.
+/// Faces run on beyond their borders by this many distances, or so many times as far as moved faces meet from where the faces do.
 const REACH: f64 = 4.0;
+const BEYOND: f64 = 1.5;
 /// Places in each direction at which the middle of a face is looked for.
 const PLACES: usize = 12;
 /// Sine of the angle from which two curves cross clearly.
@@ -40,6 +44,11 @@ struct Making<'a> {
     origin: Origin,
     tolerance: &'a Tolerance,
     longer: Vec<Surface>,
+    /// How far they run on, model units.
+    reach: f64,
+    /// Both ends of each edge of the sheet.
+    ends: Vec<DVec3>,
+    near_by: BoxTree,
 }
 
 /// The faces of a sheet at a distance; E671 where those of neighbours do not meet.
@@ -51,17 +60,19 @@ pub(super) fn layer(sheet: &Sheet, distance: f64, origin: Origin, tolerance: &To
             notes: Vec::new(),
         });
     }
-    let reach = REACH * distance.abs();
-    let (mut ground, mut notes) = (Vec::new(), Vec::new());
+    let mut notes = Vec::new();
+    let ends: Vec<DVec3> = sheet.joints.iter().flat_map(|joint| [joint.chain.start(), joint.chain.end()]).collect();
+    let near_by = BoxTree::build(&ends.iter().map(|p| Box3::of([*p])).collect::<Vec<_>>());
+    let mut making = Making { sheet, distance, origin, tolerance, longer: Vec::new(), reach: 0.0, ends, near_by };
+    making.reach = making.farthest();
     for face in &sheet.faces {
-        let (made, more) = longer(face, distance, reach, origin, tolerance)?;
-        ground.push(made);
+        let (made, more) = longer(face, distance, making.reach, origin, tolerance)?;
+        making.longer.push(made);
         notes.extend(more);
     }
-    let making = Making { sheet, distance, origin, tolerance, longer: ground };
     let whole: Result<Vec<Chain>> = sheet.joints.iter().map(|joint| making.edge(joint)).collect();
     let edges = making.cut(&whole?)?;
-    let faces: Result<Vec<Surface>> = (0..sheet.faces.len()).map(|face| making.face(face, &edges)).collect();
+    let faces: Result<Vec<Surface>> = sheet.of_faces().into_iter().enumerate().map(|(face, own)| making.face(face, &own, &edges)).collect();
     Ok(Layer { faces: faces?, edges, notes })
 }
 
@@ -112,7 +123,7 @@ impl Making<'_> {
     /// A copy of a free border with more at its ends, straight in the parameters of the longer face.
     fn run_on(&self, copy: &Chain, face: usize) -> Result<Chain> {
         let ground = &self.longer[face];
-        let reach = REACH * self.distance.abs();
+        let reach = self.reach;
         let mut parts = vec![copy.clone()];
         for (last, end, way) in [(false, copy.start(), -copy.jet(0.0).d1), (true, copy.end(), copy.jet_before(1.0).d1)] {
             let to = end + way.normalize_or_zero() * reach;
@@ -198,12 +209,26 @@ impl Making<'_> {
         Ok(Chain::of_curve(&on))
     }
 
-    /// Where the edges at a corner of the sheet meet now.
-    fn vertex(&self, p: DVec3, joint: usize, whole: &[Chain]) -> Result<DVec3> {
+    /// How far the faces have to run on: moved ones of a sharp edge or a sharp tip meet far from it, but none farther than all is wide.
+    fn farthest(&self) -> f64 {
+        let middle = |joint: &Joint| {
+            let p = joint.chain.point(0.5);
+            self.corner(&joint.uses.iter().map(|at| self.sheet.normal(*at, p)).collect::<Vec<_>>())
+        };
+        let ends = |joint: &Joint| [joint.chain.start(), joint.chain.end()].map(|p| self.around(p).1);
+        let wide = self.sheet.faces.iter().fold(Box3::EMPTY, |all, face| all.union(face.hull())).diagonal();
+        let ways = self.sheet.joints.iter().flat_map(|joint| ends(joint).into_iter().chain([middle(joint)]));
+        let meet = ways.map(DVec3::length).fold(0.0, f64::max);
+        (BEYOND * meet).min(wide).max(REACH * self.distance.abs())
+    }
+
+    /// The edges that end at a corner of the sheet, and the way from there to where the moved faces meet, as planes.
+    fn around(&self, p: DVec3) -> (Vec<usize>, DVec3) {
         let joints = &self.sheet.joints;
-        let ends = |joint: &Joint| [joint.chain.start(), joint.chain.end()];
-        let here: Vec<usize> =
-            (0..joints.len()).filter(|k| ends(&joints[*k]).iter().any(|q| q.distance(p) <= ROOM * self.tolerance.point)).collect();
+        let room = ROOM * self.tolerance.point;
+        let ends = self.near_by.near(&Box3::of([p]), room);
+        let mut here: Vec<usize> = ends.into_iter().filter(|k| self.ends[*k].distance(p) <= room).map(|k| k / 2).collect();
+        here.dedup();
         let mut faces: Vec<(usize, DVec3)> = Vec::new();
         for at in here.iter().flat_map(|k| &joints[*k].uses) {
             let normal = self.sheet.normal(*at, p);
@@ -213,7 +238,14 @@ impl Making<'_> {
             }
         }
         let normals: Vec<DVec3> = faces.iter().map(|f| f.1).collect();
-        let expected = p + self.corner(&normals);
+        (here, self.corner(&normals))
+    }
+
+    /// Where the edges at a corner of the sheet meet now.
+    fn vertex(&self, p: DVec3, joint: usize, whole: &[Chain]) -> Result<DVec3> {
+        let joints = &self.sheet.joints;
+        let (here, offset) = self.around(p);
+        let expected = p + offset;
         // The two curves that cross most clearly; free borders can give way.
         let way = |k: usize| whole[k].jet(whole[k].closest(expected).0).d1.normalize_or_zero();
         let held = |k: usize| joints[k].bend != Bend::Free;
@@ -229,7 +261,10 @@ impl Making<'_> {
         let Some((a, b)) = clearest else { return Ok(expected) };
         let met = meet(&whole[a], &whole[b], self.tolerance)?;
         let hits = met.iter().map(|m| m.point).min_by(|x, y| x.distance(expected).total_cmp(&y.distance(expected)));
-        let mut at = hits.filter(|x| x.distance(expected) <= REACH * self.distance.abs());
+        // One edge that goes on past the corner, as across the seam of a face: all of it is common.
+        let goes_on = met.iter().any(|m| m.shared_to.is_some());
+        let found = if goes_on { Some(whole[a].closest(expected).1) } else { hits };
+        let mut at = found.filter(|x| x.distance(expected) <= self.reach);
         if at.is_none() && !(held(a) && held(b)) {
             // Borders that miss each other on the faces that they belong to: the corner is on the edge, nearest to where it would be.
             let edge = here.iter().find(|k| held(**k));
@@ -241,9 +276,8 @@ impl Making<'_> {
     }
 
     /// A moved face between its edges.
-    fn face(&self, face: usize, edges: &[Chain]) -> Result<Surface> {
+    fn face(&self, face: usize, own: &[usize], edges: &[Chain]) -> Result<Surface> {
         let joints = &self.sheet.joints;
-        let own: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].uses.iter().any(|at| at.face == face)).collect();
         let cutters: Vec<Chain> = own.iter().map(|k| edges[*k].clone()).collect();
         let ground = &self.longer[face];
         if cutters.is_empty() {
@@ -253,7 +287,7 @@ impl Making<'_> {
             let k = own.first().copied().unwrap_or_default();
             self.fault(&joints[k].uses, joints[k].chain.point(0.5), WallEdge::Gone { distance: self.distance })
         };
-        let keep = self.middle(face, &own, edges).ok_or_else(gone)?;
+        let keep = self.middle(face, own, edges).ok_or_else(gone)?;
         let kept = divide(ground, &cutters, keep, self.origin, self.tolerance)?;
         let length: f64 = cutters.iter().map(Chain::length).sum();
         let free = |k: usize| match kept.side(k) {
@@ -304,8 +338,8 @@ impl Making<'_> {
             let seam = sides.iter().filter(|other| other.joint == side.joint).count() > 1;
             (seam || side.inside(f, *p - q)).then_some(off)
         };
-        let ground = &self.longer[face];
-        let on_face = points.into_iter().map(|p| super::super::closest::closest(ground, p).point);
+        let ground = Nearest::new(&self.longer[face]);
+        let on_face = points.into_iter().map(|p| ground.at(p).point);
         on_face.filter_map(|p| Some((room(&p)?, p))).max_by(|x, y| x.0.total_cmp(&y.0)).map(|best| best.1)
     }
 
