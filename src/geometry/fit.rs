@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::build::{all_different, composite, enough, finite_points};
 use super::curve::{Curve, Kind, Shape};
+use super::fewest::{finer, swings, turns};
 use super::least_squares::{Cubics, DEGREE, Problem};
 use super::nurbs::Nurbs;
 use super::spline::{open_slopes, periodic_slopes, through};
@@ -19,8 +20,8 @@ use crate::base::origin::Origin;
 
 /// Rounds of correcting parameters for one set of knots.
 const ROUNDS: usize = 3;
-/// Spans up to which knots come one at a time.
-const SINGLE: usize = 32;
+/// Shares of the way from a datum to the next one at which a curve is looked at.
+const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 /// Spans of a closed curve to begin with.
 const AROUND: usize = 4;
 
@@ -138,47 +139,26 @@ impl Search<'_> {
         let mut found = self.best(Cubics { breaks, closed: self.closed }, &parameters)?;
         while !self.is_near(&found) {
             job::look();
-            let cubics = self.refined(&found)?;
-            found = self.best(cubics, &found.parameters)?;
+            let more = finer(&found.cubics.breaks, &found.parameters, &found.off).into_iter();
+            found = more.map(|breaks| Cubics { breaks, closed: self.closed }).find_map(|cubics| self.best(cubics, &found.parameters))?;
         }
         Some(self.spared(found).curve)
     }
 
+    /// Whether all data are within the tolerance, and nothing swings out between them.
     fn is_near(&self, found: &Found) -> bool {
-        found.off.iter().all(|off| *off <= self.tolerance)
+        found.off.iter().all(|off| *off <= self.tolerance) && self.is_calm(found)
     }
 
-    /// One more knot in the worst span, or in every bad one of many; none where no span has data left to part.
-    fn refined(&self, found: &Found) -> Option<Cubics> {
-        let breaks = &found.cubics.breaks;
-        let inside = |i: usize| {
-            let low = found.parameters.partition_point(|t| *t < breaks[i]);
-            (low, found.parameters.partition_point(|t| *t < breaks[i + 1]).max(low))
+    /// Whether it runs near the chords between the data, as far as these let it.
+    fn is_calm(&self, found: &Found) -> bool {
+        let turns = turns(self.points, self.closed);
+        let calm = |k: usize| {
+            let (a, b, turn) = (self.points[k], self.points[k + 1], turns[k].max(turns[k + 1]));
+            let (s, t) = (found.parameters[k], found.parameters[k + 1]);
+            BETWEEN.iter().all(|f| !swings(found.curve.jet(s + (t - s) * f).p, a.lerp(b, *f), turn, self.tolerance))
         };
-        let mut bad: Vec<(f64, f64)> = Vec::new();
-        for i in 0..breaks.len() - 1 {
-            let (low, high) = inside(i);
-            let worst = found.off[low..high].iter().copied().fold(0.0, f64::max);
-            if worst > self.tolerance && high - low >= 2 {
-                // Half of the squared error to either side.
-                let total: f64 = found.off[low..high].iter().map(|x| x * x).sum();
-                let mut sum = 0.0;
-                let passed = |x: &&f64| {
-                    sum += **x * **x;
-                    sum < 0.5 * total
-                };
-                let k = (low + found.off[low..high].iter().take_while(passed).count()).clamp(low + 1, high - 1);
-                bad.push((worst, 0.5 * (found.parameters[k - 1] + found.parameters[k])));
-            }
-        }
-        if breaks.len() <= SINGLE {
-            bad.sort_by(|a, b| b.0.total_cmp(&a.0));
-            bad.truncate(1);
-        }
-        let mut finer = breaks.clone();
-        finer.extend(bad.iter().map(|b| b.1).filter(|t| breaks.iter().all(|x| x != t)));
-        finer.sort_by(f64::total_cmp);
-        (finer.len() > breaks.len()).then_some(Cubics { breaks: finer, closed: self.closed })
+        (0..turns.len() - 1).all(calm)
     }
 
     /// Without the knots that are not needed.

@@ -10,6 +10,7 @@ pub mod closest;
 pub mod composite;
 mod convert;
 pub mod curve;
+pub mod fewest;
 pub mod fillet;
 pub mod fit;
 pub mod helix;

@@ -1,7 +1,7 @@
 //! Surfaces through or near gridded points: bicubic nets of math notes §11.3, or within a tolerance with fewest spans.
 //!
-//! Near points: least squares along the rows, then along the columns of what that gives. Each direction gets knots where its own
-//! error is largest; both together are then judged at every point.
+//! Near points: least squares along the rows, then along the columns of what that gives, judged at every point. The direction whose
+//! own error is larger gets knots where that is largest, until all points are near; then every knot goes that is not needed.
 
 use glam::{DVec3, DVec4};
 
@@ -13,6 +13,7 @@ use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::fewest::{finer, swings, turns};
 use crate::geometry::fit::{bessel, bessel_last};
 use crate::geometry::least_squares::{Cubics, DEGREE, Problem};
 
@@ -46,12 +47,32 @@ struct Search<'a> {
     rows: &'a [Vec<DVec3>],
     columns: Vec<Vec<DVec3>>,
     parameters: (Vec<f64>, Vec<f64>),
+    /// How much the points turn there, along rows and columns, row by row.
+    turns: Vec<Vec<f64>>,
     within: f64,
+}
+
+/// How far the lines of one direction are from their points.
+struct Off {
+    /// At each parameter.
+    largest: Vec<f64>,
+    /// The root of the mean square of all.
+    mean: f64,
+}
+
+impl Off {
+    fn worst(&self) -> f64 {
+        self.largest.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 impl<'a> Search<'a> {
     fn new(rows: &'a [Vec<DVec3>], spans: &Spans, within: f64) -> Self {
-        let columns = (0..rows[0].len()).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
+        let columns: Vec<Vec<DVec3>> = (0..rows[0].len()).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
+        let mut turned: Vec<Vec<f64>> = rows.iter().map(|row| turns(row, false)).collect();
+        for (i, column) in columns.iter().enumerate() {
+            turned.iter_mut().zip(turns(column, false)).for_each(|(row, turn)| row[i] = row[i].max(turn));
+        }
         let shares = |spans: &[f64]| {
             let total: f64 = spans.iter().sum();
             let mut sum = 0.0;
@@ -62,49 +83,54 @@ impl<'a> Search<'a> {
             let inner: Vec<f64> = inner.collect();
             [0.0].into_iter().chain(inner).chain([1.0]).collect::<Vec<f64>>()
         };
-        Self { rows, columns, parameters: (shares(&spans.0), shares(&spans.1)), within }
+        Self { rows, columns, parameters: (shares(&spans.0), shares(&spans.1)), turns: turned, within }
     }
 
     /// The net of fewest spans that was found; none where that would be as many as there are points.
     fn nearest(&self) -> Option<NurbsSurface> {
         let one = || Cubics { breaks: vec![0.0, 1.0], closed: false };
         let (mut u, mut v) = (one(), one());
-        let mut share = 0.5;
-        let net = loop {
-            job::look();
-            // Each direction may use its share; together they are judged at the points.
-            u = self.near(u, (self.rows, &self.parameters.0), share * self.within)?;
-            v = self.near(v, (&self.columns, &self.parameters.1), share * self.within)?;
-            match self.net(&u, &v) {
-                Some(net) if self.off(&net) <= self.within => break net,
-                _ => share *= 0.5,
-            }
-        };
-        Some(self.spared(u, v, net))
-    }
-
-    /// Finer breaks until every line is within a distance of its points.
-    fn near(&self, mut cubics: Cubics, (lines, parameters): (&[Vec<DVec3>], &[f64]), within: f64) -> Option<Cubics> {
         loop {
             job::look();
-            let problem = Problem::new(&cubics, parameters)?;
-            let knots = cubics.knots();
-            let mut off = vec![0.0_f64; parameters.len()];
-            for line in lines {
-                let poles = problem.solve(line);
-                for ((off, t), p) in off.iter_mut().zip(parameters).zip(line) {
-                    let (first, shares) = cubics.shares(&knots, *t);
-                    let at: DVec3 = (0..=DEGREE).map(|k| poles[first + k] * shares[k]).sum();
-                    *off = off.max(at.distance(*p));
-                }
+            let (off_u, off_v) = (self.own_off(&u, true)?, self.own_off(&v, false)?);
+            // Both together are hardly nearer than half of what either is off alone.
+            if 0.5 * off_u.mean.max(off_v.mean) <= self.within
+                && let Some(net) = self.net(&u, &v).filter(|net| self.is_near(net))
+            {
+                return Some(self.spared(u, v, net));
             }
-            if off.iter().all(|off| *off <= within) {
-                return Some(cubics);
+            let parted = |along_u: bool| {
+                let (cubics, off, parameters) = if along_u { (&u, &off_u, &self.parameters.0) } else { (&v, &off_v, &self.parameters.1) };
+                let mut more = finer(&cubics.breaks, parameters, &off.largest).into_iter().map(|breaks| Cubics { breaks, closed: false });
+                more.find(|made| Problem::new(made, parameters).is_some()).map(|made| (along_u, made))
+            };
+            let worse = off_u.worst() >= off_v.worst();
+            match parted(worse).or_else(|| parted(!worse))? {
+                (true, made) => u = made,
+                (false, made) => v = made,
             }
-            let at = knot_for(&cubics.breaks, parameters, &off, within)?;
-            cubics.breaks.push(at);
-            cubics.breaks.sort_by(f64::total_cmp);
         }
+    }
+
+    /// How far lines along u, or along v, are from their points by themselves.
+    fn own_off(&self, cubics: &Cubics, along_u: bool) -> Option<Off> {
+        let (lines, parameters) = if along_u { (self.rows, &self.parameters.0) } else { (&self.columns[..], &self.parameters.1) };
+        let problem = Problem::new(cubics, parameters)?;
+        let knots = cubics.knots();
+        let mut largest = vec![0.0_f64; parameters.len()];
+        let mut squares = 0.0;
+        for line in lines {
+            let poles = problem.solve(line);
+            for ((largest, t), p) in largest.iter_mut().zip(parameters).zip(line) {
+                let (first, shares) = cubics.shares(&knots, *t);
+                let at: DVec3 = (0..=DEGREE).map(|k| poles[first + k] * shares[k]).sum();
+                let off = at.distance(*p);
+                *largest = largest.max(off);
+                squares += off * off;
+            }
+        }
+        let count = (lines.len() * parameters.len()) as f64;
+        Some(Off { largest, mean: (squares / count).sqrt() })
     }
 
     fn net(&self, u: &Cubics, v: &Cubics) -> Option<NurbsSurface> {
@@ -121,11 +147,35 @@ impl<'a> Search<'a> {
         Some(NurbsSurface { degree: (DEGREE, DEGREE), knots: (u.knots(), v.knots()), poles, counts: (nu, nv) })
     }
 
+    /// Whether all points are within the distance of their own places on the net, and nothing swings out between them.
+    fn is_near(&self, net: &NurbsSurface) -> bool {
+        self.off(net) <= self.within && self.is_calm(net)
+    }
+
+    fn at(net: &NurbsSurface, u: f64, v: f64) -> DVec3 {
+        net.jet(u, v, (Lean::After, Lean::After)).p
+    }
+
     /// Largest distance of a point from its own place on the net: no less than from the surface.
     fn off(&self, net: &NurbsSurface) -> f64 {
         let places =
             self.rows.iter().zip(&self.parameters.1).flat_map(|(row, v)| row.iter().zip(&self.parameters.0).map(move |(p, u)| (p, *u, *v)));
-        places.map(|(p, u, v)| net.jet(u, v, (Lean::After, Lean::After)).p.distance(*p)).fold(0.0, f64::max)
+        places.map(|(p, u, v)| Self::at(net, u, v).distance(*p)).fold(0.0, f64::max)
+    }
+
+    /// Whether it runs near the middle of neighbours, along u, along v and across, as far as these let it.
+    fn is_calm(&self, net: &NurbsSurface) -> bool {
+        let (us, vs) = &self.parameters;
+        let middle = |all: &[f64], i: usize, on: usize| 0.5 * (all[i] + all[i + on]);
+        let calm = |i: usize, j: usize| {
+            [(1, 0), (0, 1), (1, 1)].into_iter().filter(|(k, l)| i + k < us.len() && j + l < vs.len()).all(|(k, l)| {
+                let corners = [(i, j), (i + k, j), (i, j + l), (i + k, j + l)];
+                let beside = corners.map(|(i, j)| self.rows[j][i]).into_iter().sum::<DVec3>() / 4.0;
+                let turn = corners.map(|(i, j)| self.turns[j][i]).into_iter().fold(0.0, f64::max);
+                !swings(Self::at(net, middle(us, i, k), middle(vs, j, l)), beside, turn, self.within)
+            })
+        };
+        (0..vs.len()).all(|j| (0..us.len()).all(|i| calm(i, j)))
     }
 
     /// Without the knots that are not needed, of either direction.
@@ -141,7 +191,7 @@ impl<'a> Search<'a> {
                 let mut fewer = old.clone();
                 fewer.breaks.remove(i);
                 let tried = if along_u { self.net(&fewer, &v) } else { self.net(&u, &fewer) };
-                match tried.filter(|net| self.off(net) <= self.within) {
+                match tried.filter(|net| self.is_near(net)) {
                     Some(better) => {
                         net = better;
                         *(if along_u { &mut u } else { &mut v }) = fewer;
@@ -152,24 +202,4 @@ impl<'a> Search<'a> {
         }
         net
     }
-}
-
-/// A knot in the worst span, with half of its squared error to either side; none where no span has data left to part.
-fn knot_for(breaks: &[f64], parameters: &[f64], off: &[f64], within: f64) -> Option<f64> {
-    let spans = breaks.windows(2).filter_map(|ends| {
-        let low = parameters.partition_point(|t| *t < ends[0]);
-        let high = parameters.partition_point(|t| *t < ends[1]).max(low);
-        let worst = off[low..high].iter().copied().fold(0.0, f64::max);
-        (worst > within && high - low >= 2).then_some((worst, low, high))
-    });
-    let (_, low, high) = spans.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let total: f64 = off[low..high].iter().map(|x| x * x).sum();
-    let mut sum = 0.0;
-    let passed = |x: &&f64| {
-        sum += **x * **x;
-        sum < 0.5 * total
-    };
-    let k = (low + off[low..high].iter().take_while(passed).count()).clamp(low + 1, high - 1);
-    let at = 0.5 * (parameters[k - 1] + parameters[k]);
-    breaks.iter().all(|x| *x != at).then_some(at)
 }
