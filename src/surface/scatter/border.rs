@@ -1,12 +1,13 @@
-//! The border of a triangulation: what rounding left along the hull is peeled off, sides on one line are one, and the surface gets its loop.
+//! The border of a triangulation: what is thin along the hull is peeled off, sides on one line are one, and the surface gets its loop.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::field::Field;
 use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::curve::Shape as CurveShape;
@@ -28,26 +29,14 @@ pub struct Side {
     pub piece: usize,
 }
 
-/// The triangles without those along the border that are no higher than `least` over their side there (points that are on the
-/// hull but for rounding), and the sides of the border counter-clockwise, beginning with the first point.
+/// A triangle over a side of the border whose angles there have no larger tangent (about 3°) is no part of the surface: its points are
+/// about in a row, as those of a grid are where the plane leans, and in its narrow height the surface would bend without bounds.
+const THIN: f64 = 0.05;
+
+/// The triangles without thin ones along the border, and those no higher than `least` (points that are in a row but for rounding), and
+/// the sides of the border counter-clockwise, beginning with the first point.
 pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[usize; 3]>, Vec<Side>) {
-    let height = |t: &[usize; 3], k: usize| {
-        let (a, b, c) = (flat[t[k]], flat[t[(k + 1) % 3]], flat[t[(k + 2) % 3]]);
-        (b - a).perp_dot(c - a) / a.distance(b)
-    };
-    let mut left = triangles;
-    loop {
-        let sides = outer(&left);
-        let on_border: Vec<usize> = sides.keys().map(|side| side.0).collect();
-        let thin = |(&(from, _), &t): (&(usize, usize), &usize)| {
-            let k = left[t].iter().position(|p| *p == from)?;
-            let apex = left[t][(k + 2) % 3];
-            (height(&left[t], k) <= least && on_border.binary_search(&apex).is_err()).then_some(t)
-        };
-        // One at a time: what was inside may be on the border then.
-        let Some(gone) = sides.iter().find_map(thin) else { break };
-        left.remove(gone);
-    }
+    let left = without_thin(triangles, flat, least);
     let mut next: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
     for ((from, to), t) in outer(&left) {
         let k = left[t].iter().position(|p| *p == from).unwrap_or(0);
@@ -61,6 +50,28 @@ pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[u
         from = to;
     }
     (left, sides)
+}
+
+/// The triangles that are left where thin ones go from the border inwards, one at a time: each takes a point to the border.
+fn without_thin(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> Vec<[usize; 3]> {
+    let of_side: BTreeMap<(usize, usize), usize> =
+        triangles.iter().enumerate().flat_map(|(n, t)| [((t[0], t[1]), n), ((t[1], t[2]), n), ((t[2], t[0]), n)]).collect();
+    let mut open: BTreeSet<(usize, usize)> = outer(&triangles).into_keys().collect();
+    let mut on_border: BTreeSet<usize> = open.iter().map(|side| side.0).collect();
+    let mut gone = vec![false; triangles.len()];
+    while let Some((a, b)) = open.pop_first() {
+        job::look();
+        let Some(&t) = of_side.get(&(a, b)) else { continue };
+        let Some(&apex) = triangles[t].iter().find(|p| **p != a && **p != b) else { continue };
+        let (side, arm) = (flat[b] - flat[a], flat[apex] - flat[a]);
+        let length = side.length();
+        let (height, foot) = (side.perp_dot(arm) / length, side.dot(arm) / length);
+        if height <= least.max(THIN * foot.min(length - foot)) && on_border.insert(apex) {
+            gone[t] = true;
+            open.extend([(a, apex), (apex, b)]);
+        }
+    }
+    triangles.into_iter().zip(gone).filter_map(|(t, gone)| (!gone).then_some(t)).collect()
 }
 
 /// Sides that one triangle has alone, as it turns, with that triangle.
