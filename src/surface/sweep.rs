@@ -112,7 +112,10 @@ impl Sweep {
                 let turned = Turned::new(axis, Self::angle_at(angle, u));
                 let arm = turned.carry(g.p - about);
                 let (dv, dvv) = (turned.carry(g.d1), turned.carry(g.d2));
-                let du = axis.cross(arm) * angle;
+                // An end that rounding put beside the axis, or across it, is on it: there nothing turns.
+                let across = axis.cross(arm);
+                let on_axis = across.length() <= EPSILON * (arm.length() + g.d1.length());
+                let du = if on_axis { DVec3::ZERO } else { across * angle };
                 Jet2 { p: about + arm, du, dv, duu: axis.cross(du) * angle, duv: axis.cross(dv) * angle, dvv }
             }
         }

@@ -79,9 +79,12 @@ impl Maker<'_> {
                 Ok(net) => net,
                 Err(trouble) => return Ok(Err(trouble)),
             };
-            worst = self.lower(field, &net)?;
-            let room = if worst.limit == "size" && round >= STRICT { ROOM } else { 1.0 };
-            if worst.over <= room {
+            let side = self.too_long(&net);
+            let bend = self.lower(field, &net, side)?;
+            // Only sides have room: how much too long one is says nothing of limits that are proved.
+            let room = if round >= STRICT { ROOM } else { 1.0 };
+            worst = if bend.over > 1.0 && bend.over * room >= side.over { bend } else { side };
+            if side.over <= room && bend.over <= 1.0 {
                 if round >= WHOLE || !has_concave(&net) {
                     return Ok(Ok(net));
                 }
@@ -194,11 +197,11 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// Lowers lengths where elements break a limit; what is the worst of them.
-    fn lower(&self, field: &mut Blend, net: &Net) -> Result<Worst> {
-        let mut worst = self.too_long(net);
-        if worst.over > 1.0 {
-            field.spacing *= (1.0 / worst.over).clamp(MOST_LESS, LESS);
+    /// Lowers lengths where the longest side or an element breaks a limit; what breaks one of chord error or angle most, 0 where nothing does.
+    fn lower(&self, field: &mut Blend, net: &Net, side: Worst) -> Result<Worst> {
+        let mut worst = Worst { over: 0.0, limit: "chord_error", ..side };
+        if side.over > 1.0 {
+            field.spacing *= (1.0 / side.over).clamp(MOST_LESS, LESS);
         }
         if field.background.is_none() {
             return Ok(worst);
