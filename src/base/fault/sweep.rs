@@ -116,7 +116,7 @@ pub enum SweepFault {
         at: DVec3,
         /// Fraction of its arc length.
         fraction: f64,
-        /// It has no direction there, but does not turn back.
+        /// It turns at once there, but not back.
         still: bool,
     },
     /// E306: a run of a path that ends in a mitred corner is bent.
@@ -213,10 +213,13 @@ impl Describe for SweepFault {
             .at(*section, "the nearest section to that station")
             .help("draw one more section there"),
             F::GuideCusp { guide, at, fraction, still } => {
-                let what = if *still { "has no direction" } else { "turns back on itself" };
+                let what = if *still { "bends beyond all bounds" } else { "turns back on itself" };
                 let (which, share) = (say.quoted(*guide, "the path"), decimals(100.0 * fraction, 1));
                 Report::new("E636", format!("{which} {what} at {}, {share}% of its length", say.point(*at)))
-                    .at(*guide, "has no direction there that a section could follow")
+                    .at(
+                        *guide,
+                        if *still { "no section can follow it there" } else { "has no direction there that a section could follow" },
+                    )
                     .help(if *still {
                         "control points that follow each other coincide there: leave one of them out"
                     } else {

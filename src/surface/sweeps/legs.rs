@@ -7,7 +7,7 @@ use super::matrices::Matrices;
 use crate::base::fault::{Fault, Result, SweepFault};
 use crate::base::job;
 use crate::base::math;
-use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::network::Chain;
 
 /// A frame is carried over at most this share of the path at once, and over as much as turns the tangent by so many radians.
@@ -38,17 +38,13 @@ fn bisector(before: DVec3, after: DVec3) -> DVec3 {
     (before + after).normalize_or_zero()
 }
 
-/// E636 for a stretch of a path along which no frame can be carried: it stands still at an end of it, or turns back.
+/// E636 for a stretch of a path along which no frame can be carried: at the end of it where it turns more at once.
 pub fn no_frame(path: &Chain, (a, b): (f64, f64)) -> Fault {
-    let stands = |f: f64, before: bool| place(path, f, before).1 == DVec3::ZERO;
-    let (fraction, still) = if stands(a, false) {
-        (a, true)
-    } else if stands(b, true) {
-        (b, true)
-    } else {
-        (a, false)
-    };
-    SweepFault::GuideCusp { guide: path.origin(), at: path.point(fraction), fraction, still }.into()
+    let step = NUDGE * (b - a);
+    let turn = |f: f64, g: f64| place(path, f, false).1.dot(place(path, g, true).1);
+    let (first, last) = (turn(a, a + step), turn(b - step, b));
+    let (fraction, cosine) = if first <= last { (a, first) } else { (b, last) };
+    SweepFault::GuideCusp { guide: path.origin(), at: path.point(fraction), fraction, still: cosine > 0.0 }.into()
 }
 
 impl<'a> Legs<'a> {
