@@ -68,7 +68,8 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
         return Err(ValueFault::OutsideRange { argument: "closed", found, range }.into());
     }
     let (nodes, length) = distances(&aligned, settings.closed, round);
-    if let Some(k) = nodes.windows(2).position(|w| !((w[1] - w[0]) * length > tolerance.point.max(tolerance.parameter * length))) {
+    let least = tolerance.point.max(tolerance.parameter * length);
+    if let Some(k) = nodes.windows(2).position(|w| length <= least || (w[1] - w[0]) * length <= least) {
         let origin = |k: usize| if let Section::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
         let closing = k + 1 == sections.len();
         let (a, b) = if closing { (origin(0), origin(k)) } else { (origin(k), origin(k + 1)) };

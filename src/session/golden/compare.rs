@@ -280,7 +280,9 @@ fn excess(kind: Kind, old: &Value, new: &Value, allowance: Allowance) -> Option<
             pairs.filter_map(|(a, b)| allowance.excess(Measure::Length(1), *a, *b)).reduce(f64::max)
         }
         (Kind::List(measure), Value::List(a, old_unit), Value::List(b, new_unit)) if old_unit == new_unit && a.len() == b.len() => {
-            a.iter().zip(b).filter_map(|(a, b)| allowance.excess(measure, *a, *b)).reduce(f64::max)
+            // All are written as far as the largest of them needs.
+            let most = a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
+            a.iter().zip(b).filter_map(|(a, b)| exceeding((b - a).abs(), allowance.of(measure, most))).reduce(f64::max)
         }
         (Kind::Source, Value::Word(a), Value::Word(b)) => (tokens(a) != tokens(b)).then_some(f64::INFINITY),
         (Kind::Cells, Value::Cells(a), Value::Cells(b)) => cells::excess(a, b, &|measure, old, new| allowance.excess(measure, old, new)),
