@@ -93,7 +93,7 @@ fn planes_and_quadratics_come_back() {
             (p.z - bowl(p.x, p.y)).abs()
         };
         let most = surface.triangles().into_iter().map(off).fold(0.0, f64::max);
-        assert!(most <= 1e-5, "case {case}: {most:e}");
+        assert!(most <= 1e-4, "case {case}: {most:e}");
         damped += usize::from(most > 1e-8);
     }
     assert!(damped * 100 <= cases(200), "{damped} of {}", cases(200));
