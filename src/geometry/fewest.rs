@@ -10,7 +10,7 @@ const BAD: f64 = 0.5;
 /// Breaks with knots more, what helps most first: where there are many spans one in each bad one, then one in a single span, the worst
 /// first; none where no span has data left to part. They follow from the data alone, so that a smaller tolerance goes on from where a
 /// larger one ends.
-pub fn finer(breaks: &[f64], parameters: &[f64], off: &[f64]) -> Vec<Vec<f64>> {
+pub fn finer<'a>(breaks: &'a [f64], parameters: &[f64], off: &[f64]) -> impl Iterator<Item = Vec<f64>> + 'a {
     let spans = breaks.windows(2).filter_map(|ends| {
         // The data at the ends of an open row are met whatever the knots: they settle nothing.
         let low = parameters.partition_point(|t| *t <= ends[0]);
@@ -21,14 +21,14 @@ pub fn finer(breaks: &[f64], parameters: &[f64], off: &[f64]) -> Vec<Vec<f64>> {
     });
     let mut spans: Vec<(f64, f64)> = spans.collect();
     spans.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let with = |more: &[(f64, f64)]| {
+    let with = move |more: &[(f64, f64)]| {
         let mut all: Vec<f64> = breaks.iter().copied().chain(more.iter().map(|span| span.1)).collect();
         all.sort_by(f64::total_cmp);
         all
     };
     let bad = spans.partition_point(|span| span.0 >= BAD * spans[0].0);
     let many = (breaks.len() > SINGLE && bad > 1).then(|| with(&spans[..bad]));
-    many.into_iter().chain(spans.chunks(1).map(with)).collect()
+    many.into_iter().chain(spans.into_iter().map(move |span| with(&[span])))
 }
 
 /// The parameter with half of the squared error of some data to either side.

@@ -98,7 +98,7 @@ fn run(points: &[DVec3], tolerance: Option<f64>, tangents: [Option<DVec3>; 2]) -
         let ends = [tangents[0].unwrap_or_else(|| bessel(points, &spans)), tangents[1].unwrap_or_else(|| bessel_last(points, &spans))];
         through(points, &spans, &open_slopes(points, &spans, ends.map(Some)))
     };
-    tolerance.and_then(|tolerance| Search { points, tolerance, closed: false }.nearest()).unwrap_or_else(whole)
+    tolerance.and_then(|tolerance| Search::new(points, tolerance, false).nearest()).unwrap_or_else(whole)
 }
 
 /// Closed, without corners.
@@ -108,7 +108,7 @@ fn ring(points: &[DVec3], tolerance: Option<f64>) -> Nurbs {
         let spans = chords(&around);
         through(&around, &spans, &periodic_slopes(&around, &spans))
     };
-    tolerance.and_then(|tolerance| Search { points: &around, tolerance, closed: true }.nearest()).unwrap_or_else(whole)
+    tolerance.and_then(|tolerance| Search::new(&around, tolerance, true).nearest()).unwrap_or_else(whole)
 }
 
 /// Points to come near to; a closed row repeats the first one at its end.
@@ -116,6 +116,8 @@ struct Search<'a> {
     points: &'a [DVec3],
     tolerance: f64,
     closed: bool,
+    /// How much the points turn.
+    turns: Vec<f64>,
 }
 
 /// A curve with the parameters of the points on it and how far it is from each.
@@ -126,7 +128,11 @@ struct Found {
     off: Vec<f64>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(points: &'a [DVec3], tolerance: f64, closed: bool) -> Self {
+        Self { points, tolerance, closed, turns: turns(points, closed) }
+    }
+
     /// The curve of fewest spans that was found within the tolerance; none where it would need as many as there are points.
     fn nearest(&self) -> Option<Nurbs> {
         let mut parameters = vec![0.0];
@@ -139,8 +145,9 @@ impl Search<'_> {
         let mut found = self.best(Cubics { breaks, closed: self.closed }, &parameters)?;
         while !self.is_near(&found) {
             job::look();
-            let more = finer(&found.cubics.breaks, &found.parameters, &found.off).into_iter();
-            found = more.map(|breaks| Cubics { breaks, closed: self.closed }).find_map(|cubics| self.best(cubics, &found.parameters))?;
+            let more = finer(&found.cubics.breaks, &found.parameters, &found.off);
+            let next = more.map(|breaks| Cubics { breaks, closed: self.closed }).find_map(|cubics| self.best(cubics, &found.parameters));
+            found = next?;
         }
         Some(self.spared(found).curve)
     }
@@ -152,7 +159,7 @@ impl Search<'_> {
 
     /// Whether it runs near the chords between the data, as far as these let it.
     fn is_calm(&self, found: &Found) -> bool {
-        let turns = turns(self.points, self.closed);
+        let turns = &self.turns;
         let calm = |k: usize| {
             let (a, b, turn) = (self.points[k], self.points[k + 1], turns[k].max(turns[k + 1]));
             let (s, t) = (found.parameters[k], found.parameters[k + 1]);

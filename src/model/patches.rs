@@ -333,11 +333,12 @@ impl Cutter<'_> {
     /// Whether a line inside lies on a chain: its corners and the quarters between them do, one after the other. A ring that begins
     /// elsewhere than the chain is none of it.
     fn lies_on(&self, chain: &Chain, corners: &[((f64, f64), usize)]) -> Option<OnChain> {
+        const QUARTERS: usize = 4;
         let curve = chain.to_curve().ok()?;
-        let (mut fractions, mut places) = (Vec::new(), Vec::new());
+        let mut places = Vec::new();
         for w in corners.windows(2) {
-            for step in 0..4 {
-                let t = f64::from(step) / 4.0;
+            for step in 0..QUARTERS {
+                let t = step as f64 / QUARTERS as f64;
                 let (a, b) = (w[0].0, w[1].0);
                 let p = self.surface.point(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
                 let foot = closest(&curve, p);
@@ -345,9 +346,6 @@ impl Cutter<'_> {
                     return None;
                 }
                 places.push(curve.length_at(foot.t) / curve.length());
-                if step == 0 {
-                    fractions.extend(places.last());
-                }
             }
         }
         let (u, v) = corners.last()?.0;
@@ -356,10 +354,9 @@ impl Cutter<'_> {
             return None;
         }
         places.push(curve.length_at(foot.t) / curve.length());
-        fractions.extend(places.last());
         let ascending = places.windows(2).all(|w| w[0] < w[1]);
         let descending = places.windows(2).all(|w| w[0] > w[1]);
-        (ascending || descending).then(|| OnChain::new(chain, fractions, self.network, self.tolerance))
+        (ascending || descending).then(|| OnChain::new(chain, places.into_iter().step_by(QUARTERS).collect(), self.network, self.tolerance))
     }
 
     /// The run of the chain between corners `n` and `n + 1` of a line, by links where the network has them.

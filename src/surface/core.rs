@@ -11,7 +11,7 @@ use super::reparam::Map;
 use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::digest::{Content, Digester};
-use crate::base::fault::Making;
+use crate::base::fault::Construction;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, POLE_STEP, SINGULAR, SLIVER, Tolerance};
 use crate::base::work::Once;
@@ -77,11 +77,11 @@ pub enum SurfaceKind {
 
 impl SurfaceKind {
     /// How it is made, for what helps where it folds.
-    pub fn making(self) -> Making {
+    pub fn construction(self) -> Construction {
         match self {
-            Self::Skin => Making::Sections,
-            Self::Extrude | Self::Revolve | Self::Along => Making::Carried,
-            _ => Making::Curves,
+            Self::Skin => Construction::Sections,
+            Self::Extrude | Self::Revolve | Self::Along => Construction::Carried,
+            _ => Construction::Curves,
         }
     }
 

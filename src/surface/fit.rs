@@ -101,7 +101,7 @@ impl<'a> Search<'a> {
             }
             let parted = |along_u: bool| {
                 let (cubics, off, parameters) = if along_u { (&u, &off_u, &self.parameters.0) } else { (&v, &off_v, &self.parameters.1) };
-                let mut more = finer(&cubics.breaks, parameters, &off.largest).into_iter().map(|breaks| Cubics { breaks, closed: false });
+                let mut more = finer(&cubics.breaks, parameters, &off.largest).map(|breaks| Cubics { breaks, closed: false });
                 more.find(|made| Problem::new(made, parameters).is_some()).map(|made| (along_u, made))
             };
             let worse = off_u.worst() >= off_v.worst();

@@ -44,7 +44,8 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     let end = |k: usize| [0, samples + 1].contains(&(k % (samples + 2)));
     if let Some(k) = (0..jets.len()).find(|&k| !end(k % us.len()) && !end(k / us.len()) && singular(k)) {
         found.push(
-            SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p, made: surface.kind().making() }.into(),
+            SurfaceFault::PatchSingular { surface: surface.origin(), uv: place(k), at: jets[k].p, made: surface.kind().construction() }
+                .into(),
         );
     }
     // A fold turns the normal by more than a right angle between neighbours of one smooth piece, however near they come;
@@ -72,7 +73,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     }
     if let Some((turn, k)) = worst {
         found.push(
-            SurfaceFault::PatchFolded { surface: surface.origin(), uv: place(k), at: jets[k].p, turn, made: surface.kind().making() }
+            SurfaceFault::PatchFolded { surface: surface.origin(), uv: place(k), at: jets[k].p, turn, made: surface.kind().construction() }
                 .into(),
         );
     }

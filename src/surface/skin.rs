@@ -10,7 +10,7 @@ use super::rail::{Lean, Rail};
 use super::skin_align::{Read, aligned, distances, runs_back};
 use super::skin_ends::{Spanned, ended};
 use super::skin_fit::fitted;
-use crate::base::fault::{Fault, NetFault, Result, SurfaceFault, ValueFault};
+use crate::base::fault::{Construction, Fault, NetFault, Result, SurfaceFault, ValueFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -54,7 +54,7 @@ pub struct Settings {
     pub origin: Origin,
 }
 
-/// The surface through sections in the order given, u along them, with warnings (W614, N677).
+/// The surface through sections in the order given, u along them, with warnings (W607, W614, N677).
 ///
 /// Every section is read in the direction, and every closed one from the start, in which it runs nearest to the section
 /// before; v goes with the mean distance between sections. Needs two sections, three where they close; the curves are all
@@ -121,7 +121,7 @@ fn turned_back(surface: &Surface) -> Option<Fault> {
     vs.iter().find_map(|&v| {
         let at = |k: usize| (k as f64 + 0.5) / PLACES as f64;
         let least = (0..PLACES).map(|k| turn(v, at(k))).fold(f64::INFINITY, f64::min);
-        let made = SurfaceKind::Skin.making();
+        let made = Construction::Sections;
         let fault =
             || SurfaceFault::PatchFolded { surface: surface.origin(), uv: (at(0), v), at: surface.point(at(0), v), turn: least, made };
         (least > BACK).then(|| fault().into())

@@ -9,6 +9,7 @@ use super::ring::{PLACES, Ring};
 use super::skin::Section;
 use crate::base::fault::Result;
 use crate::base::job;
+use crate::base::quadrature::gauss_legendre;
 use crate::base::solve;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::network::Chain;
@@ -17,8 +18,8 @@ use crate::network::Chain;
 const STARTS: usize = 64;
 /// Stretches over which squared distances are integrated, beside those between corners.
 const PANELS: usize = 16;
-/// Nodes and weights of Gauss's rule of three over −1…1.
-const GAUSS: [(f64, f64); 3] = [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+/// Points of the rule for each of them.
+const ORDER: usize = 3;
 
 /// A section as it is read.
 #[derive(Clone, Debug)]
@@ -115,11 +116,9 @@ struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool) -> Self {
-        let [a, b] = [before, (section, turned)].map(|(chain, turned)| {
-            let ring = Ring::of(chain);
-            if turned { ring.turned() } else { ring }
-        });
+    /// `a` and `b` are the rings of both, the second one as it is drawn.
+    fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool, (a, b): (Ring, Ring)) -> Self {
+        let b = if turned { b.turned() } else { b };
         Self { before, section, turned, turn: a.rotation_to(&b), centers: (a.center, b.center) }
     }
 
@@ -135,7 +134,7 @@ impl<'a> Pair<'a> {
     }
 
     /// Half the derivative of the integral of squared distances by the start, and its own; exact beside corners.
-    fn slope(&self, start: f64, corners: &[Vec<f64>; 2]) -> (f64, f64) {
+    fn slope(&self, start: f64, corners: &[Vec<f64>; 2], rule: &[(f64, f64)]) -> (f64, f64) {
         let own = |f: &f64| if self.turned { start - f } else { f - start };
         let first = |f: &f64| if self.before.1 { 1.0 - f } else { *f };
         let mut stops: Vec<f64> = corners[0].iter().map(first).chain(corners[1].iter().map(own)).map(|x| x.rem_euclid(1.0)).collect();
@@ -143,7 +142,7 @@ impl<'a> Pair<'a> {
         stops.sort_by(f64::total_cmp);
         let (mut value, mut rise) = (0.0, 0.0);
         for w in stops.windows(2).filter(|w| w[1] > w[0]) {
-            for (node, weight) in GAUSS {
+            for (node, weight) in rule {
                 let x = 0.5 * (w[0] + w[1]) + 0.5 * (w[1] - w[0]) * node;
                 let f = (if self.turned { 1.0 - x } else { x }) + start;
                 let jet = self.section.jet(f.rem_euclid(1.0));
@@ -165,11 +164,12 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     let corners = [before.0, section].map(|chain| chain.kinks(tolerance).into_iter().filter(|f| *f < 1.0).collect::<Vec<_>>());
     let kinked = corners[0].len() == corners[1].len() && !corners[1].is_empty();
     let starts = if kinked { corners[1].clone() } else { (0..STARTS).map(|k| k as f64 / STARTS as f64).collect() };
-    let ring = Ring::of(before.0);
-    let against = if before.1 { ring.turned() } else { ring }.runs_against(&Ring::of(section));
+    let (ring, own) = (Ring::of(before.0), Ring::of(section));
+    let ring = if before.1 { ring.turned() } else { ring };
+    let against = ring.runs_against(&own);
     let mut best: Option<(f64, f64, Pair)> = None;
     for turned in against.map_or(vec![false, true], |turned| vec![turned]) {
-        let pair = Pair::new(before, section, turned);
+        let pair = Pair::new(before, section, turned, (ring, own));
         let wanted: Vec<DVec3> = (0..PLACES).map(|k| pair.wanted(k as f64 / PLACES as f64)).collect();
         let off = starts.iter().map(|start| (pair.apart(&wanted, *start), *start));
         let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 * (1.0 - tolerance.parameter) { b } else { a };
@@ -180,10 +180,11 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     }
     let Some((_, mut start, pair)) = best else { return Ok(Read::Curve(section.clone(), false)) };
     if !kinked && start != 0.0 {
-        let step = 2.0 / STARTS as f64;
+        let (step, rule) = (2.0 / STARTS as f64, gauss_legendre(ORDER));
+        let slope = |start: f64| pair.slope(start, &corners, &rule);
         let (low, high) = (start - step, start + step);
-        if pair.slope(low, &corners).0 < 0.0 && pair.slope(high, &corners).0 > 0.0 {
-            start = solve::bracketed(low, high, EPSILON, |start| pair.slope(start, &corners)).rem_euclid(1.0);
+        if slope(low).0 < 0.0 && slope(high).0 > 0.0 {
+            start = solve::bracketed(low, high, EPSILON, slope).rem_euclid(1.0);
         }
     }
     let turned = pair.turned;

@@ -114,7 +114,7 @@ impl Sweep {
                 let (dv, dvv) = (turned.carry(g.d1), turned.carry(g.d2));
                 // An end that rounding put beside the axis, or across it, is on it: there nothing turns.
                 let across = axis.cross(arm);
-                let on_axis = across.length() <= EPSILON * (arm.length() + g.d1.length());
+                let on_axis = across.length_squared() <= EPSILON * EPSILON * (arm.length_squared() + g.d1.length_squared());
                 let du = if on_axis { DVec3::ZERO } else { across * angle };
                 Jet2 { p: about + arm, du, dv, duu: axis.cross(du) * angle, duv: axis.cross(dv) * angle, dvv }
             }

@@ -41,7 +41,7 @@ pub use nets::NetFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;
 pub use scatter::ScatterFault;
-pub use surface::{Making, SurfaceFault, Touching};
+pub use surface::{Construction, SurfaceFault, Touching};
 pub use sweep::SweepFault;
 pub use values::{LengthRange, ValueFault};
 pub use walls::{WallEdge, WallFault};

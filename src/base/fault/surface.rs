@@ -25,7 +25,7 @@ pub enum Touching {
 
 /// How a surface is made, for what helps where it folds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Making {
+pub enum Construction {
     /// From curves around it and across.
     Curves,
     /// Through sections in an order.
@@ -101,7 +101,7 @@ pub enum SurfaceFault {
         /// Where in space.
         at: DVec3,
         /// How the surface is made.
-        made: Making,
+        made: Construction,
     },
     /// W607: the normal flips inside.
     PatchFolded {
@@ -114,7 +114,7 @@ pub enum SurfaceFault {
         /// Angle between the normal there and that of the neighbouring sample.
         turn: f64,
         /// How the surface is made.
-        made: Making,
+        made: Construction,
     },
     /// W669: a surface crosses itself, or two faces made together cross.
     CrossesItself {

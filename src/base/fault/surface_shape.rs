@@ -1,6 +1,6 @@
 //! Words of what can go wrong with one surface: its shape, its loops, what carries it.
 
-use super::surface::{Making, SurfaceFault};
+use super::surface::{Construction, SurfaceFault};
 use super::{Edit, Report, Say, Subject};
 use crate::base::text::{decimals, real};
 
@@ -18,9 +18,9 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
             Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
                 .at(*surface, "its two directions fall together there")
                 .help(match made {
-                    Making::Curves => "let no two borders be tangent to each other at a corner, or take the corner as `pole:`",
-                    Making::Sections => IN_ORDER,
-                    Making::Carried => ACROSS,
+                    Construction::Curves => "let no two borders be tangent to each other at a corner, or take the corner as `pole:`",
+                    Construction::Sections => IN_ORDER,
+                    Construction::Carried => ACROSS,
                 })
         }
         F::PatchFolded { surface, uv: place, at, turn, made } => Report::new(
@@ -35,9 +35,9 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
         )
         .at(*surface, "the map runs back over itself there")
         .help(match made {
-            Making::Curves => "add a curve across the fold, or divide the surface in two",
-            Making::Sections => IN_ORDER,
-            Making::Carried => ACROSS,
+            Construction::Curves => "add a curve across the fold, or divide the surface in two",
+            Construction::Sections => IN_ORDER,
+            Construction::Carried => ACROSS,
         }),
         F::CrossesItself { surface, uv: places, at } => {
             let (name, at) = (say.quoted(*surface, "this surface"), say.point(*at));

@@ -221,7 +221,7 @@ impl Describe for SweepFault {
                         if *still { "no section can follow it there" } else { "has no direction there that a section could follow" },
                     )
                     .help(if *still {
-                        "control points that follow each other coincide there: leave one of them out"
+                        "leave out control points that coincide there, or draw a wider bend"
                     } else {
                         "take the runs before and after it, `c[0..P]` and `c[P..1]`, or draw the cusp as a bend"
                     })

@@ -50,7 +50,6 @@ pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tol
         }
         None => framed(profile, path, settings, tolerance)?,
     };
-    sweeps_area(&surface, profile, tolerance)?;
     let notes = folds(&surface, path, &Some, tolerance);
     Ok((surface, notes))
 }
@@ -66,6 +65,7 @@ fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Toler
     let corners = turned.corners.iter().map(|c| c.0).collect();
     let frame = Frame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
     let surface = along_way(profile, path, (way, &turned.crossings), frame, settings.origin, tolerance);
+    sweeps_area(&surface, profile, tolerance)?;
     let mut notes = folds(&surface, path, &|u| turned.fraction(u), tolerance);
     if let (Some((at, reach)), true) = (turned.inside, notes.is_empty()) {
         notes.push(SweepFault::SelfIntersects { surface: settings.origin, path: path.origin(), at, reach, radius: Some(0.0) }.into());
@@ -93,7 +93,9 @@ fn framed(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolera
     let turn = legs.mitred()?;
     let closed = legs.closes(settings.twist, tolerance);
     let frame = Frame { turn, last: legs.last(), corners: legs.corners(), cut: legs.cut_at_start(), closed };
-    Ok(made(profile, path, frame, origin, tolerance))
+    let surface = made(profile, path, frame, origin, tolerance);
+    sweeps_area(&surface, profile, tolerance)?;
+    Ok(surface)
 }
 
 /// A profile that is moved along a path by a smooth function of its fraction; W639 is not looked for.
