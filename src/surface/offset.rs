@@ -143,12 +143,23 @@ pub(super) fn level(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     if ground.domain() != Domain::Square {
         return None;
     }
-    let places: Vec<f64> = (0..ALONG).map(|k| k as f64 / (ALONG - 1) as f64).collect();
-    let mut points = vec![DVec3::ZERO; ALONG * ALONG];
-    ground.grid(&places, &places, &mut points);
     let normal = math::unit(ground.normal(0.5, 0.5), 0.0)?;
-    let within = |p: &DVec3| (*p - points[0]).dot(normal).abs() <= tolerance.rounding;
-    points.iter().all(within).then_some(normal)
+    let foot = ground.point(0.0, 0.0);
+    let flat = |us: &[f64], vs: &[f64]| {
+        let mut points = vec![DVec3::ZERO; us.len() * vs.len()];
+        ground.grid(us, vs, &mut points);
+        points.iter().all(|p| (*p - foot).dot(normal).abs() <= tolerance.rounding)
+    };
+    // All over it, and then in each of its pieces: a short one may be bent.
+    let (us, vs) = ground.breaks();
+    let places = |breaks: &[f64]| -> Vec<f64> {
+        let stops = [&[0.0], breaks, &[1.0]].concat();
+        let piece = |w: &[f64]| (0..ALONG).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / (ALONG - 1) as f64)).collect::<Vec<_>>();
+        stops.windows(2).flat_map(piece).collect()
+    };
+    let everywhere = places(&[]);
+    let pieces = || us.is_empty() && vs.is_empty() || flat(&places(&us), &places(&vs));
+    (flat(&everywhere, &everywhere) && pieces()).then_some(normal)
 }
 
 /// A profile with the unit normal of its plane.

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::station::{Station, station};
+use super::station::{Place, Station, station};
 use crate::base::fault::{BlendFault, NoBlend, Result};
 use crate::base::math;
 use crate::base::origin::Origin;
@@ -15,12 +15,9 @@ use crate::surface::plane;
 use crate::surface::with_loops;
 
 /// Places along the edge at which a radius is tried.
-const STARTS: usize = 16;
+pub(super) const STARTS: usize = 16;
 /// Steps in which the radius grows to the one that is asked for.
 const GROWTH: usize = 8;
-/// Balls round a closed edge at most, and the cosine of the largest turn of the centre's way from one to the next.
-const MOST_AROUND: usize = 1024;
-const TURN: f64 = 0.75;
 /// A surface counts as running on in a direction when a step that way leaves it by no more than this share of the step.
 const RUNS_ON: f64 = 0.05;
 /// Steps by which directions are tried, as a share of the edge's length.
@@ -64,6 +61,21 @@ impl Face {
         let (au, av) = (jet.duu * d.x + jet.duv * d.y, jet.duv * d.x + jet.dvv * d.y);
         let p = jet.p + (jet.du + au * 0.5) * d.x + (jet.dv + av * 0.5) * d.y;
         Jet2 { p, du: jet.du + au, dv: jet.dv + av, ..jet }
+    }
+
+    /// Where the whole surface is less than smooth: lines of constant u, of constant v; where it closes, there too.
+    pub fn breaks(&self) -> [Vec<f64>; 2] {
+        let ((us, vs), closed) = (self.ground.breaks(), self.ground.closed());
+        let with_seam = |mut all: Vec<f64>, closed: bool| {
+            all.extend(closed.then_some(0.0));
+            all
+        };
+        [with_seam(us, closed.0), with_seam(vs, closed.1)]
+    }
+
+    /// Whether it closes in u (`axis` 0) or v (1).
+    pub fn is_closed(&self, axis: usize) -> bool {
+        if axis == 0 { self.ground.closed().0 } else { self.ground.closed().1 }
     }
 
     /// The nearest place at which it may be evaluated: not far beyond the borders.
@@ -135,8 +147,8 @@ fn flat_height(surface: &Surface, normal: DVec3) -> f64 {
 const MIDDLE: (f64, f64) = (0.25, 0.25);
 
 /// A place of the edge from which the ball starts.
-struct Start {
-    at: DVec3,
+pub(super) struct Start {
+    pub at: DVec3,
     along: DVec3,
     uv: [DVec2; 2],
     /// Unit directions on both surfaces, across the edge, to where the ball touches.
@@ -156,7 +168,7 @@ pub(super) struct Ball {
     pub closed: bool,
     pub origins: [Origin; 2],
     pub tolerance: Tolerance,
-    starts: Vec<Start>,
+    pub starts: Vec<Start>,
 }
 
 impl Ball {
@@ -240,70 +252,8 @@ impl Ball {
         Ok(())
     }
 
-    /// The balls of a radius at places along the edge; where there is none, the place.
-    pub fn stations(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
-        let found = self.beside_starts(radius);
-        let even = |all: &[Station]| all.windows(2).all(|w| w[0].way.dot(w[1].way) >= TURN);
-        if self.closed && !found.as_ref().is_ok_and(|all| even(all)) {
-            return self.around(radius);
-        }
-        found
-    }
-
-    /// The same in planes across the edge at equal steps.
-    fn beside_starts(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
-        let mut all = Vec::with_capacity(self.starts.len());
-        for start in &self.starts {
-            crate::base::job::look();
-            all.push(self.grown(start, radius).ok_or(start.at)?);
-        }
-        if self.closed {
-            all[STARTS] = all[0];
-        }
-        let kept: Vec<bool> = all.iter().map(|s| self.holds(s) && self.leaves(s)).collect();
-        // Towards the ends of an open edge it may leave the surfaces for good.
-        let gone = |k: usize| if k < STARTS / 2 { kept[..k].iter().all(|x| !x) } else { kept[k..].iter().all(|x| !x) };
-        let within = |k: usize| kept[k] || !self.closed && k != STARTS / 2 && gone(k);
-        match (0..=STARTS).find(|k| !within(*k) || !self.fits(&all[*k], radius)) {
-            Some(k) => Err(self.starts[k].at),
-            None => Ok(all),
-        }
-    }
-
-    /// The balls of a radius along a closed edge, the last one the first: from one of them on in the direction of its centre's way. A
-    /// large ball's centre runs on a small closed curve, and not past the places of the edge one after the other.
-    fn around(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
-        let beside = |p: DVec3| self.edge.closest(p).1;
-        let first = self.starts[..STARTS].iter().find_map(|start| self.grown(start, radius)).ok_or(self.starts[0].at)?;
-        let longest = self.edge.length() / STARTS as f64;
-        let (mut step, mut all) = (longest, vec![first]);
-        while all.len() < MOST_AROUND {
-            crate::base::job::look();
-            let last = all[all.len() - 1];
-            if !(self.holds(&last) && self.leaves(&last) && self.fits(&last, radius)) {
-                return Err(beside(last.center));
-            }
-            let back = first.center - last.center;
-            if back.dot(last.way) > 0.0 && back.length() <= step && first.way.dot(last.way) >= TURN {
-                all.push(first);
-                return Ok(all);
-            }
-            let guess = Guess { uv: last.uv, points: [0, 1].map(|k: usize| last.feet[k] + last.rates[k] * step) };
-            let next = self.station(radius, (last.center + last.way * step, last.way), &guess);
-            match next.filter(|next| next.way.dot(last.way) >= TURN && next.center.distance(last.center) <= 2.0 * step) {
-                Some(next) => {
-                    all.push(next);
-                    step = (2.0 * step).min(longest);
-                }
-                None if step <= self.tolerance.point => break,
-                None => step *= 0.5,
-            }
-        }
-        Err(beside(all[all.len() - 1].center))
-    }
-
     /// The ball beside a place of the edge, grown step by step.
-    fn grown(&self, start: &Start, radius: f64) -> Option<Station> {
+    pub fn grown(&self, start: &Start, radius: f64) -> Option<Station> {
         let half = 0.5 * math::angle_between(start.out[0], start.out[1]);
         let first = radius / GROWTH as f64 / math::tan(half);
         let step = |k: usize| {
@@ -325,7 +275,12 @@ impl Ball {
 
     /// The ball whose centre is in a plane.
     pub fn station(&self, radius: f64, plane: (DVec3, DVec3), guess: &Guess) -> Option<Station> {
-        let from = |uv: [DVec2; 2]| station(&self.faces, radius, plane, uv, self.tolerance.rounding);
+        self.at(radius, &Place::Plane(plane.0, plane.1), guess)
+    }
+
+    /// The ball at a place.
+    pub fn at(&self, radius: f64, place: &Place, guess: &Guess) -> Option<Station> {
+        let from = |uv: [DVec2; 2]| station(&self.faces, radius, place, uv, self.tolerance.rounding);
         // A step in (u, v) says little beside a pole: there the points say more.
         from(guess.uv).or_else(|| from([0, 1].map(|k: usize| self.faces[k].uv_of(guess.points[k]))))
     }
@@ -336,13 +291,13 @@ impl Ball {
     }
 
     /// Whether something is left of both surfaces beyond where it touches them.
-    fn leaves(&self, station: &Station) -> bool {
+    pub fn leaves(&self, station: &Station) -> bool {
         let step = LEFT * self.tolerance.point;
         self.at_end(station) || (0..2).all(|k| self.faces[k].runs_on(station.feet[k], self.away(station, k), step))
     }
 
     /// Whether a ball reaches into no surface, and its feet run forwards.
-    fn fits(&self, station: &Station, radius: f64) -> bool {
+    pub fn fits(&self, station: &Station, radius: f64) -> bool {
         (0..2).all(|k| {
             let forward = station.rates[k].dot(station.way) > NUDGE;
             forward && self.faces[k].distance(station.center) >= radius - self.tolerance.point

@@ -1,5 +1,7 @@
 //! The balls along an edge, and the largest radius for which there are some.
 
+use glam::DVec3;
+
 use super::ball::Ball;
 use super::station::Station;
 use crate::base::fault::{BlendFault, Fault, NoBlend, Result};
@@ -11,21 +13,17 @@ const SMALLER: usize = 24;
 const BETWEEN: usize = 32;
 
 /// Halvings in search of one with which surfaces can be made, where the largest ball that fits makes none; each makes them.
-const MADE: usize = 8;
+const MADE: usize = 12;
 /// Share of a radius that is told, at the least: three digits of it, rounded down.
 const TOLD: f64 = 1.0 - 1.0 / 1024.0;
+
+/// Share of a radius from which on a smaller one is searched, where its balls are found and the rounding is not.
+const FROM: f64 = 0.5;
 
 /// The balls of a radius at places along the edge; E673 with the largest radius where they do not fit: one with which `is_made`
 /// says that the rounding can be made.
 pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl Fn(Vec<Station>, f64) -> bool) -> Result<Vec<Station>> {
-    let of = |radius: f64| {
-        ball.stations(radius).map(|mut all| {
-            if !ball.closed {
-                ball.run_out(radius, &mut all);
-            }
-            all
-        })
-    };
+    let of = |radius: f64| all(ball, radius);
     of(radius).map_err(|at| {
         let mut fits = radius;
         for _ in 0..SMALLER {
@@ -54,7 +52,39 @@ pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl F
         if low == 0.0 {
             return ball.fault(NoBlend::NoRadius { at });
         }
-        let (a, b) = (ball.origins[0], ball.origins[1]);
-        Fault::from(BlendFault::TooLarge { blend: origin, a, b, radius, largest: low, at })
+        too_large(ball, (radius, low), at, origin)
     })
+}
+
+/// E673 for a radius whose balls are found and whose rounding is not, where that of a smaller one is; `at` is where it was lost.
+pub(super) fn above_made(
+    ball: &Ball,
+    (radius, at): (f64, DVec3),
+    origin: Origin,
+    is_made: impl Fn(Vec<Station>, f64) -> bool,
+) -> Option<Fault> {
+    let makes = |radius: f64| all(ball, radius).is_ok_and(|all| is_made(all, radius));
+    let (mut low, mut high) = (FROM * radius, radius);
+    if !makes(low) {
+        return None;
+    }
+    for _ in 0..MADE {
+        let middle = 0.5 * (low + high);
+        if makes(middle) { low = middle } else { high = middle }
+    }
+    Some(too_large(ball, (radius, low), ball.edge.closest(at).1, origin))
+}
+
+/// The balls of a radius, beyond the ends of an open edge too; where there are none, the place.
+fn all(ball: &Ball, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
+    let mut all = ball.stations(radius)?;
+    if !ball.closed {
+        ball.run_out(radius, &mut all);
+    }
+    Ok(all)
+}
+
+fn too_large(ball: &Ball, (radius, largest): (f64, f64), at: DVec3, origin: Origin) -> Fault {
+    let (a, b) = (ball.origins[0], ball.origins[1]);
+    BlendFault::TooLarge { blend: origin, a, b, radius, largest, at }.into()
 }

@@ -3,6 +3,7 @@
 use glam::{DVec3, DVec4};
 
 use super::ball::{Ball, Guess};
+use super::breaks::{with_breaks, with_middles, with_sides};
 use super::station::Station;
 use crate::base::fault::{CurveFault, Result};
 use crate::base::job;
@@ -36,11 +37,16 @@ pub(super) struct Roll {
 pub(super) fn rolled(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Roll> {
     let stations = turned(ball, stations);
     let (tolerance, at) = (&ball.tolerance, stations[0].center);
-    let surface = match straight(&stations, origin, tolerance)? {
+    let pieces = with_breaks(ball, radius, &stations);
+    let all = with_middles(ball, radius, &pieces);
+    let surface = match straight(&all, origin, tolerance)? {
         Some(surface) => surface,
-        None => match round(&stations, ball.closed, origin, tolerance)? {
+        None => match round(&stations, &all, ball.closed, origin, tolerance)? {
             Some(surface) => surface,
-            None => net(&refined(ball, radius, stations, origin)?, radius).surface(SurfaceKind::Blend, origin, tolerance),
+            None => {
+                let sides = with_sides(ball, radius, &pieces);
+                net(&refined(ball, radius, sides, origin)?, radius).surface(SurfaceKind::Blend, origin, tolerance)
+            }
         },
     };
     let surface = Surface::new(Parts { kind: SurfaceKind::Blend, ..surface.parts().clone() });
@@ -86,8 +92,8 @@ fn straight(stations: &[Station], origin: Origin, tolerance: &Tolerance) -> Resu
     extrude(&arc(first, origin)?, by, origin, tolerance).map(Some)
 }
 
-/// The revolution of one arc, where all others are the same one turned about an axis.
-fn round(stations: &[Station], closed: bool, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+/// The revolution of one arc, where all others are the same one turned about an axis: `stations`, by which it is found, and `all`.
+fn round(stations: &[Station], all: &[Station], closed: bool, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
     let n = stations.len() - 1;
     let (a, b, c) = (stations[0].center, stations[n / 3].center, stations[2 * n / 3].center);
     let Ok(circle) = arc_through(a, c, b, origin) else { return Ok(None) };
@@ -106,7 +112,7 @@ fn round(stations: &[Station], closed: bool, origin: Origin, tolerance: &Toleran
     let same = |s: &Station| near(s.center, a) && (0..2).all(|k| near(s.feet[k], stations[0].feet[k]));
     // The arc stands in a plane through the axis.
     let upright = stations[0].way.dot(direction).abs() * stations[0].center.distance(axis.about) <= EXACT * tolerance.point;
-    if !upright || !stations.iter().all(same) {
+    if !upright || !all.iter().all(same) {
         return Ok(None);
     }
     let out = |s: &Station| (s.center - axis.about).reject_from_normalized(direction);
@@ -127,9 +133,13 @@ fn refined(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> 
     while let Some(next) = open.pop() {
         job::look();
         let last = done[done.len() - 1];
+        if next.center == last.center {
+            done.push(next);
+            continue;
+        }
         match off(ball, radius, &last, &next).ok_or_else(|| lost(last.center))? {
             None => done.push(next),
-            Some(_) if done.len() + open.len() > MOST || last.center.distance(next.center) <= ball.tolerance.point => {
+            Some(_) if done.len() + open.len() > MOST || length_between(&last, &next) <= ball.tolerance.point => {
                 return Err(lost(next.center).into());
             }
             Some(middle) => open.extend([next, middle]),
@@ -138,7 +148,7 @@ fn refined(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> 
     Ok(done)
 }
 
-/// The ball in the middle between two stations, where the net between them is off at some place; outer none where there is no ball.
+/// A ball between two stations, about in the middle, where the net between them is off at some place; outer none where none is found.
 fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Station>> {
     const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
     let piece = net(&[*a, *b], radius);
@@ -151,7 +161,9 @@ fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Stat
         let ends = [piece.jet(u, 0.0, lean), piece.jet(u, 1.0, lean)];
         let plane = (between(a, b, u), (ends[0].du + ends[1].du).normalize_or_zero());
         let uv = [0, 1].map(|k: usize| a.uv[k].lerp(ball.faces[k].turned_to(b.uv[k], a.uv[k]), u));
-        let found = ball.station(radius, plane, &Guess { uv, points: ends.map(|e| e.p) })?;
+        let Some(found) = ball.station(radius, plane, &Guess { uv, points: ends.map(|e| e.p) }) else {
+            return nearer(ball, radius, a, b).map(Some);
+        };
         let on_ball = |jet: &Jet2| (jet.p.distance(found.center) - radius).abs() <= allowed;
         near &= jets.iter().all(on_ball) && (0..2).all(|k| ends[k].p.distance(found.feet[k]) <= allowed);
         if u == 0.5 {
@@ -161,22 +173,35 @@ fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Stat
     Some(if near { None } else { middle })
 }
 
+/// A ball between two stations, from the first one on in steps that become smaller until one is found.
+fn nearer(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Station> {
+    const SMALLER: i32 = 8;
+    let whole = length_of((a.center, a.way), (b.center, b.way));
+    (1..=SMALLER).find_map(|k| ball.ahead(radius, a, whole * math::powi(0.5, k)))
+}
+
 /// The centre between two stations, cubic.
 fn between(a: &Station, b: &Station, u: f64) -> DVec3 {
-    let h = way_between(a, b);
-    let (p, q) = (a.center + a.way * (h / 3.0), b.center - b.way * (h / 3.0));
+    let h = length_between(a, b) / 3.0;
+    let (p, q) = (a.center + a.way * (h / a.speed()), b.center - b.way * (h / b.speed()));
     let w = 1.0 - u;
     a.center * (w * w * w) + p * (3.0 * w * w * u) + q * (3.0 * w * u * u) + b.center * (u * u * u)
 }
 
-/// About the length of the centre's way from one station to the next: of the circle that touches both directions.
-fn way_between(a: &Station, b: &Station) -> f64 {
-    let chord = a.center.distance(b.center);
-    let half = 0.5 * math::angle_between(a.way, b.way);
+/// Mean length that the centre and both points go from one station to the next.
+fn length_between(a: &Station, b: &Station) -> f64 {
+    let feet = |k: usize| length_of((a.feet[k], a.rates[k]), (b.feet[k], b.rates[k]));
+    (length_of((a.center, a.way), (b.center, b.way)) + feet(0) + feet(1)) / 3.0
+}
+
+/// About the length of a way from one point to another: of the circle that touches both directions.
+fn length_of(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> f64 {
+    let chord = a.0.distance(b.0);
+    let half = 0.5 * math::angle_between(a.1, b.1);
     if half > 0.0 { chord * half / math::sin(half) } else { chord }
 }
 
-/// The three homogeneous poles of a station's arc and their derivatives by the length of the centre's way.
+/// The three homogeneous poles of a station's arc and their derivatives by the mean length of the ways.
 fn poles(s: &Station, radius: f64) -> [(DVec4, DVec4); 3] {
     let middle = s.feet[0] + s.feet[1] - s.center * 2.0;
     let rate = s.rates[0] + s.rates[1] - s.way * 2.0;
@@ -187,25 +212,26 @@ fn poles(s: &Station, radius: f64) -> [(DVec4, DVec4); 3] {
     let apex = s.center * weight + middle * (radius / length);
     let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (stretch / length)) * (radius / length);
     let foot = |k: usize| (s.feet[k].extend(1.0), s.rates[k].extend(0.0));
-    [foot(0), (apex.extend(weight), apex_rate.extend(weight_rate)), foot(1)]
+    [foot(0), (apex.extend(weight), apex_rate.extend(weight_rate)), foot(1)].map(|(p, d)| (p, d / s.speed()))
 }
 
-/// The net through some stations: arcs along v, cubics with continuous derivatives along u.
+/// The net through some stations: arcs along v, cubics along u. Their derivatives are continuous, but where a station is there twice
+/// each side has its own.
 fn net(stations: &[Station], radius: f64) -> NurbsSurface {
-    let steps: Vec<f64> = stations.windows(2).map(|w| way_between(&w[0], &w[1])).collect();
+    let steps: Vec<f64> = stations.windows(2).map(|w| length_between(&w[0], &w[1])).collect();
     let total: f64 = steps.iter().sum();
     let rows: Vec<_> = stations.iter().map(|s| poles(s, radius)).collect();
-    let n = stations.len();
+    let (n, twice) = (stations.len(), |i: usize| stations[i].center == stations[i + 1].center);
     let mut all = Vec::with_capacity(6 * n);
     for k in 0..3 {
         for (i, row) in rows.iter().enumerate() {
             let (p, d) = row[k];
             if i == 0 {
                 all.push(p);
-            } else {
+            } else if !twice(i - 1) {
                 all.push(p - d * (steps[i - 1] / 3.0));
             }
-            if i + 1 == n {
+            if i + 1 == n || twice(i) {
                 all.push(p);
             } else {
                 all.push(p + d * (steps[i] / 3.0));
@@ -214,11 +240,12 @@ fn net(stations: &[Station], radius: f64) -> NurbsSurface {
     }
     let mut knots = vec![0.0; 4];
     let mut way = 0.0;
-    for step in &steps[..n - 2] {
+    for (i, step) in steps.iter().enumerate().take(n - 2) {
         way += step;
-        knots.extend([way / total; 2]);
+        // Of a station that is there twice, two knots come with the first and one with the second.
+        knots.extend(std::iter::repeat_n(way / total, if twice(i) { 1 } else { 2 }));
     }
     knots.extend([1.0; 4]);
     let across = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    NurbsSurface { degree: (3, 2), knots: (knots, across), poles: all, counts: (2 * n, 3) }
+    NurbsSurface { degree: (3, 2), counts: (all.len() / 3, 3), knots: (knots, across), poles: all }
 }

@@ -2,8 +2,11 @@
 //!
 //! Its centre runs along the curve in which the offsets of both meet; its arcs end where it touches. Straight and round rolls are
 //! extrusions and revolutions, exactly. Others are nets through arcs at stations, cubic between them in the direction of the roll.
+//! Where a surface changes its curvature at once, so do the speeds of the points that touch: there a net has two stations in one place.
 
+mod along;
 mod ball;
+mod breaks;
 mod cut;
 mod ends;
 mod largest;
@@ -19,7 +22,7 @@ use made::rolled;
 use super::core::Surface;
 use super::meet::with_surfaces;
 use super::plane;
-use crate::base::fault::{BlendFault, NoBlend, Result};
+use crate::base::fault::{BlendFault, CurveFault, Fault, NoBlend, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
@@ -40,8 +43,18 @@ pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: 
         let side = |k: usize| cut_back(&ball, k, &roll.contacts[k], origin);
         Ok(vec![side(0)?.cut_from(std::slice::from_ref(a)), roll.surface, side(1)?.cut_from(std::slice::from_ref(b))])
     };
-    let stations = largest::stations(&ball, radius, origin, |stations, radius| made(stations, radius).is_ok())?;
-    made(stations, radius)
+    let is_made = |stations, radius: f64| made(stations, radius).is_ok();
+    let stations = largest::stations(&ball, radius, origin, is_made)?;
+    made(stations, radius).map_err(|fault| {
+        let lost = match &fault {
+            Fault::Curve(of) => match **of {
+                CurveFault::NotConverged { at, .. } => Some(at),
+                _ => None,
+            },
+            _ => None,
+        };
+        lost.and_then(|at| largest::above_made(&ball, (radius, at), origin, is_made)).unwrap_or(fault)
+    })
 }
 
 /// The one curve in which two surfaces meet; it may have no corners.

@@ -24,9 +24,46 @@ pub(super) struct Station {
 }
 
 impl Station {
+    /// Mean length that the centre and both points go per length of the centre's way.
+    pub fn speed(&self) -> f64 {
+        (1.0 + self.rates[0].length() + self.rates[1].length()) / 3.0
+    }
+
     /// Looks the other way.
     pub fn turn(&mut self) {
         (self.way, self.rates) = (-self.way, self.rates.map(|r| -r));
+    }
+}
+
+/// Which one of the balls.
+pub(super) enum Place {
+    /// The one with its centre in a plane: a point of it, and its normal on the side to which the centre travels.
+    Plane(DVec3, DVec3),
+    /// The one that touches surface `face` on a line of constant u (`axis` 0) or v (1); the centre travels about in direction `along`.
+    Line { face: usize, axis: usize, at: f64, along: DVec3 },
+}
+
+impl Place {
+    /// What is missed, and its derivatives by the places on both surfaces (u, v of the first, u, v of the second).
+    fn miss(&self, [x, y]: [&Raised; 2], uv: &[DVec2; 2]) -> (f64, [f64; 4]) {
+        match *self {
+            Self::Plane(p, normal) => ((x.center - p).dot(normal), [x.cu.dot(normal), x.cv.dot(normal), 0.0, 0.0]),
+            Self::Line { face, axis, at, .. } => {
+                // In lengths, as the other conditions are.
+                let raised = if face == 0 { x } else { y };
+                let scale = if axis == 0 { raised.du } else { raised.dv }.length();
+                let mut row = [0.0; 4];
+                row[2 * face + axis] = scale;
+                ((uv[face][axis] - at) * scale, row)
+            }
+        }
+    }
+
+    fn along(&self) -> DVec3 {
+        match *self {
+            Self::Plane(_, normal) => normal,
+            Self::Line { along, .. } => along,
+        }
     }
 }
 
@@ -49,8 +86,8 @@ fn raised(face: &Face, uv: DVec2, radius: f64) -> Option<Raised> {
     Some(Raised { p: jet.p, normal, du: jet.du, dv: jet.dv, center: jet.p + normal * d, cu: jet.du + nu * d, cv: jet.dv + nv * d })
 }
 
-/// The ball whose centre lies in a plane, from guesses of the places where it touches; none where Newton's method finds none.
-pub(super) fn station(faces: &[Face; 2], radius: f64, plane: (DVec3, DVec3), guess: [DVec2; 2], rounding: f64) -> Option<Station> {
+/// The ball at a place, from guesses of where it touches; none where Newton's method finds none.
+pub(super) fn station(faces: &[Face; 2], radius: f64, place: &Place, guess: [DVec2; 2], rounding: f64) -> Option<Station> {
     const STEPS: usize = 24;
     /// What is left over after the last step, in roundings.
     const LEFT: f64 = 256.0;
@@ -59,7 +96,7 @@ pub(super) fn station(faces: &[Face; 2], radius: f64, plane: (DVec3, DVec3), gue
     for _ in 0..STEPS {
         let (x, y) = (raised(&faces[0], uv[0], radius)?, raised(&faces[1], uv[1], radius)?);
         let apart = x.center - y.center;
-        let off = (x.center - plane.0).dot(plane.1);
+        let (off, row) = place.miss([&x, &y], &uv);
         let miss = apart.length().max(off.abs());
         match best {
             // No longer nearer: rounding, or no such ball.
@@ -75,7 +112,7 @@ pub(super) fn station(faces: &[Face; 2], radius: f64, plane: (DVec3, DVec3), gue
                 }
             }
         }
-        (rows[12], rows[13]) = (x.cu.dot(plane.1), x.cv.dot(plane.1));
+        rows[12..].copy_from_slice(&row);
         let mut right = [-apart.x, -apart.y, -apart.z, -off];
         if !solve::dense(&mut rows, &mut right) || right.iter().any(|x| !x.is_finite()) {
             return None;
@@ -85,7 +122,7 @@ pub(super) fn station(faces: &[Face; 2], radius: f64, plane: (DVec3, DVec3), gue
     let (_, uv) = best.filter(|(miss, _)| *miss <= LEFT * rounding)?;
     let (x, y) = (raised(&faces[0], uv[0], radius)?, raised(&faces[1], uv[1], radius)?);
     let across = x.normal.cross(y.normal).try_normalize()?;
-    let way = if across.dot(plane.1) < 0.0 { -across } else { across };
+    let way = if across.dot(place.along()) < 0.0 { -across } else { across };
     let rate = |r: &Raised| step(r.cu, r.cv, way).map(|s| r.du * s.x + r.dv * s.y);
     Some(Station { center: 0.5 * (x.center + y.center), uv, feet: [x.p, y.p], way, rates: [rate(&x)?, rate(&y)?] })
 }
