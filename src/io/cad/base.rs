@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::carry::{carried, carried_pole, check_reach};
 use super::damage::{Damage, damage};
+use super::lying::Lying;
 use super::nets::ruled_net;
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
@@ -219,6 +220,16 @@ impl Base {
         let (low, high) = (if *slope > 0.0 { low.max(apex) } else { low }, if *slope < 0.0 { high.min(apex) } else { high });
         let at = |h: f64| axis.about + axis.direction * h + *reference * (radius + slope * h).max(0.0);
         Ok(Some((build::line(at(low), at(high), origin)?, *axis)))
+    }
+
+    /// The box that the surface must reach for the loops that lie on it: of a cone that they run round up to its apex.
+    pub fn reach(&self, lying: &Lying) -> Box3 {
+        match self {
+            Self::Unbounded { axis, radius, slope, .. } if *slope != 0.0 && lying.run_round(axis) => {
+                lying.reach.with(axis.about - axis.direction * (radius / slope))
+            }
+            _ => lying.reach,
+        }
     }
 
     /// The point at the file's (u, v).

@@ -10,6 +10,7 @@ pub mod damage;
 pub mod face;
 pub mod healing;
 pub mod interior;
+pub mod lying;
 mod natural;
 pub mod nets;
 pub mod part;

@@ -19,6 +19,7 @@ mod places;
 mod reach;
 mod reader;
 mod rectangles;
+mod revolved;
 mod rows;
 mod shapes;
 mod sniff;

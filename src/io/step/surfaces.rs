@@ -9,21 +9,22 @@ use super::splines::{self, Netted};
 use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, PARALLEL};
+use crate::geometry::Curve;
 use crate::geometry::nurbs::weighted;
-use crate::geometry::{Curve, build};
 use crate::io::cad::base::Base;
 use crate::io::cad::carry::check_weights;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::lying::Lying;
 use crate::io::cad::nets::trimmed_net;
 use crate::surface::NurbsSurface;
 use crate::surface::revolve::Axis;
 
 /// How far surfaces without ends reach beyond what lies on them, as a share of its size.
-const BEYOND: f64 = 0.1;
+pub const BEYOND: f64 = 0.1;
 
 impl Step<'_> {
-    /// The surface that an entity is, where it has no ends around a box.
-    pub fn base(&mut self, k: u32, reach: &Box3, depth: usize) -> Result<Base, Damage> {
+    /// The surface that an entity is; one without ends reaches about as far as what lies on it.
+    pub fn base(&mut self, k: u32, lying: &Lying, depth: usize) -> Result<Base, Damage> {
         if depth > NESTED {
             return Err(damage("surfaces are nested too deep, or are made of themselves"));
         }
@@ -63,14 +64,14 @@ impl Step<'_> {
             b"SURFACE_OF_LINEAR_EXTRUSION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let along = self.vector(row.entity(2)?)?;
-                self.extruded(&of, along, reach)
+                self.extruded(&of, along, &lying.reach)
             }
             b"SURFACE_OF_REVOLUTION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let frame = self.frame(row.entity(2)?)?;
-                self.revolved(&of, &axis(&frame), reach)
+                self.revolved(&of, &axis(&frame), lying)
             }
-            b"OFFSET_SURFACE" => self.beside(k, reach, depth),
+            b"OFFSET_SURFACE" => self.beside(k, lying, depth),
             b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
                 Err(damage(format!("{} stands where a whole surface should", self.said(k))))
             }
@@ -79,7 +80,7 @@ impl Step<'_> {
     }
 
     /// The offset of a surface, along the normals of the file.
-    fn beside(&mut self, k: u32, reach: &Box3, depth: usize) -> Result<Base, Damage> {
+    fn beside(&mut self, k: u32, lying: &Lying, depth: usize) -> Result<Base, Damage> {
         let row = self.file.parameters(k);
         let (of, distance) = (row.entity(1)?, row.number(2)? * self.scale);
         let inner = self.file.parameters(of);
@@ -100,18 +101,15 @@ impl Step<'_> {
         if self.file.name(of) == b"RECTANGULAR_TRIMMED_SURFACE" && inner.flag(6, true) != inner.flag(7, true) {
             return Err(damage(format!("{} is turned over by one of its senses", self.said(of))));
         }
-        let around = if reach.is_empty() {
-            *reach
-        } else {
-            Box3 { min: reach.min - DVec3::splat(distance.abs()), max: reach.max + DVec3::splat(distance.abs()) }
-        };
+        let around = lying.beside(distance);
         let base = match self.file.name(of) {
             b"RECTANGULAR_TRIMMED_SURFACE" => self.within_parameters(of)?,
             _ => self.base(of, &around, depth + 1)?,
         };
         // The net of an extruded surface has the direction first, the file the curve.
         let distance = if matches!(base, Base::Swept { .. }) { -distance } else { distance };
-        let (base, folds) = base.beside(distance, &around, self.origin, &self.tolerance)?;
+        let reach = base.reach(&around);
+        let (base, folds) = base.beside(distance, &reach, self.origin, &self.tolerance)?;
         if folds {
             self.warn(k, "it turns back over itself where its surface bends tighter than its distance");
         }
@@ -171,50 +169,24 @@ impl Step<'_> {
         Ok(Base::Swept { profile: profile.moved(&start), by })
     }
 
+    /// The parameters of an endless curve near a box, with some room.
+    pub fn range(of: &Endless, reach: &Box3) -> (f64, f64) {
+        let at: Vec<f64> = corners(reach).iter().map(|p| of.parameter(*p)).collect();
+        let (a, b) = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(*t), b.max(*t)));
+        let room = BEYOND * (b - a);
+        (a - room, b + room)
+    }
+
     /// The stretch of a curve near a box: all of one with ends.
     fn within(&mut self, of: &Course, reach: &Box3) -> Result<Curve, Damage> {
         match of {
             Course::Bounded(curve) => Ok(curve.clone()),
             Course::Endless(endless) if endless.closes() => endless.part(0.0, std::f64::consts::TAU, self.origin),
             Course::Endless(endless) => {
-                let at: Vec<f64> = corners(reach).iter().map(|p| endless.parameter(*p)).collect();
-                let (a, b) = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(*t), b.max(*t)));
-                let room = BEYOND * (b - a);
-                endless.part(a - room, b + room, self.origin)
+                let (a, b) = Self::range(endless, reach);
+                endless.part(a, b, self.origin)
             }
         }
-    }
-
-    fn revolved(&mut self, of: &Course, axis: &Axis, reach: &Box3) -> Result<Base, Damage> {
-        let Course::Endless(Endless::Line(p, d)) = *of else {
-            let profile = self.within(of, reach)?;
-            return Ok(Base::Turned { axis: *axis, profile, angles: (0.0, std::f64::consts::TAU), first: None });
-        };
-        let d = math::unit(d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
-        let rise = d.dot(axis.direction);
-        if rise.abs() <= PARALLEL {
-            return Err(damage("its line turns in a plane without end"));
-        }
-        if reach.is_empty() {
-            return Err(damage("its line has no ends"));
-        }
-        let (low, high) = stretch(reach, axis.about, axis.direction);
-        let room = BEYOND * (high - low).max(reach.diagonal() * BEYOND);
-        let at = |h: f64| (h - (p - axis.about).dot(axis.direction)) / rise;
-        let (a, b) = (at(low - room), at(high + room));
-        let (mut a, mut b) = (a.min(b), a.max(b));
-        // A line that meets the axis makes two cones; the one beside the box is meant.
-        let (foot, across) = ((p - axis.about).reject_from_normalized(axis.direction), d.reject_from_normalized(axis.direction));
-        let meets = -foot.dot(across) / across.length_squared();
-        if meets.is_finite() && (foot + across * meets).length() <= self.tolerance.rounding && a < meets && meets < b {
-            if 0.5 * (a + b) > meets {
-                a = meets;
-            } else {
-                b = meets;
-            }
-        }
-        let profile = build::line(p + d * a, p + d * b, self.origin)?;
-        Ok(Base::Turned { axis: *axis, profile, angles: (0.0, std::f64::consts::TAU), first: None })
     }
 }
 
@@ -235,7 +207,7 @@ fn corners(b: &Box3) -> [DVec3; 8] {
 }
 
 /// How far a box reaches along a direction from a point.
-fn stretch(reach: &Box3, from: DVec3, direction: DVec3) -> (f64, f64) {
+pub fn stretch(reach: &Box3, from: DVec3, direction: DVec3) -> (f64, f64) {
     let along = corners(reach).map(|p| (p - from).dot(direction));
     (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max))
 }
