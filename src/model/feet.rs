@@ -11,6 +11,8 @@ use crate::base::job;
 
 /// Samples of a track for finding points on it; its spacing bounds how far a near point is from a sample.
 const SAMPLES: usize = 32;
+/// Length of a track over the distance of its ends, up to which it cannot come back to them unseen by the samples.
+const NEARLY_STRAIGHT: f64 = 1.0 + 0.5 / SAMPLES as f64;
 /// Projections before a foot point is taken as it is.
 const ROUNDS: usize = 20;
 /// Visits of one point nearer than this many reaches along the track are one.
@@ -40,6 +42,9 @@ type Foot = (f64, usize, f64);
 /// Empty for a track that is no longer than its reach and ends where it starts.
 pub fn stations(part: &Part, ends: (usize, usize), index: &Index) -> Vec<(f64, usize)> {
     let length = part.track.length();
+    if ends.0 != ends.1 && is_met_at_ends_only(part, index) {
+        return vec![(0.0, ends.0), (length, ends.1)];
+    }
     let mut at: Vec<f64> = (0..=SAMPLES).map(|k| length * k as f64 / SAMPLES as f64).chain(part.cuts.iter().copied()).collect();
     at.sort_by(f64::total_cmp);
     let samples: Vec<(f64, DVec3)> = at.into_iter().map(|s| (s, part.track.point(s))).collect();
@@ -61,6 +66,23 @@ pub fn stations(part: &Part, ends: (usize, usize), index: &Index) -> Vec<(f64, u
     }
     // A track that stays where it starts is no border of anything.
     if ends.0 == ends.1 && length <= ONE_VISIT * part.near { Vec::new() } else { visits(found, ONE_VISIT * part.near) }
+}
+
+/// Whether no point but those at its own ends is within reach of a track, found without looking along it: a curve of length L whose
+/// ends are c apart stays in the ellipsoid about them with the half axes L / 2 and √(L² − c²) / 2. Nearly straight tracks only.
+fn is_met_at_ends_only(part: &Part, index: &Index) -> bool {
+    let length = part.track.length();
+    let ends = [part.track.point(0.0), part.track.point(length)];
+    let apart = ends[0].distance(ends[1]);
+    if length > NEARLY_STRAIGHT * apart {
+        return false;
+    }
+    let aside = 0.5 * (length * length - apart * apart).max(0.0).sqrt();
+    let mut only = true;
+    index.tree.query(&Box3::of(ends), aside + part.near, |n| {
+        only = only && ends.iter().any(|end| end.distance(index.points[n].point) <= part.near);
+    });
+    only
 }
 
 /// One station for each visit of a junction: where a point of it comes nearest, an end before all.
