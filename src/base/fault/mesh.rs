@@ -427,7 +427,9 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
             let report = Report::new("E217", format!("the mesh `{name}` takes more work than it may")).at(*of, "asked for here");
             let most = format!("most of it goes into {}", say.quoted(*surface, "this face"));
             let report = if surface.is_some() { report.at(*surface, most) } else { report };
-            report.help("a value that suits the size of the face, and points that are not far off by mistake")
+            report
+                .note("this limit follows from the elements asked for; `--max-work` does not change it")
+                .help("a value that suits the size of the face, and points that are not far off by mistake")
         }
         F::TooManySteps { of, name, limit } => Report::new("E217", format!("the steps of the mesh `{name}` along a border are too many"))
             .at(*of, "asked for here")

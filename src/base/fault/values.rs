@@ -275,6 +275,7 @@ impl Describe for ValueFault {
             }
             Self::Work => Report::new("E217", "this takes more work than it may")
                 .label(Subject::Call, "made here")
+                .note("the limit of one call is fixed; `--max-work` does not change it")
                 .help("fewer or simpler parts, and points that are not far off by mistake"),
             Self::StageWork { what } => Report::new("E217", format!("{what} takes more work than it may"))
                 .help("fewer or simpler curves and surfaces, and points that are not far off by mistake"),
