@@ -15,6 +15,7 @@ import shutil
 import subprocess
 import sys
 
+import more_parts
 import parts
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
@@ -176,7 +177,7 @@ def table(loft, work, chosen=()):
     IGESControl_Controller.Init_s()
     STEPControl_Controller.Init_s()
     jobs = []
-    for name, make in parts.PARTS:
+    for name, make in parts.PARTS + more_parts.PARTS:
         if chosen and name not in chosen:
             continue
         shape = make()

@@ -61,7 +61,7 @@ impl Step<'_> {
     }
 
     /// The stretch of a conic that is turned: all of it near what lies on it or, of one that crosses the axis, the part that the loops
-    /// lie beside. A symmetric one makes its surface twice; then the part along which a loop runs, if any, tells the normal.
+    /// lie beside. Of several parts beside which they lie the one along which a loop runs is meant, else the one with the conic's start.
     fn turned_conic(&self, conic: &Endless, axis: &Axis, lying: &Lying) -> Result<Curve, Damage> {
         let (a, b) = if conic.closes() { (FIRST, FIRST + TURN) } else { Self::range(conic, &lying.reach) };
         let crossings = self.crossings(conic, (a, b), axis);
@@ -98,7 +98,9 @@ impl Step<'_> {
         let rated: Vec<(f64, usize, (f64, f64))> = parts.iter().map(rate).collect();
         let least = rated.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
         let room = slack * lying.points().count() as f64;
-        let best = rated.iter().filter(|r| r.0 <= least + room).max_by(|a, b| a.1.cmp(&b.1).then((b.2.0).total_cmp(&a.2.0)));
+        let has_start = |part: (f64, f64)| part.0 < 0.0 && 0.0 < part.1 || part.0 < TURN && TURN < part.1;
+        let key = |r: &(f64, usize, (f64, f64))| (r.1, has_start(r.2));
+        let best = rated.iter().rev().filter(|r| r.0 <= least + room).max_by_key(|r| key(r));
         let (t0, t1) = best.map_or((a, b), |r| r.2);
         conic.part(t0, t1, self.origin)
     }
