@@ -10,7 +10,7 @@ use super::build::Input;
 use super::counts::steps;
 use super::edges::Limits;
 use super::explain::Why;
-use super::free::{bound, face};
+use super::free::{bound, face, poles};
 use super::gaps::{self, Beside, PLACES};
 use super::inside::trace;
 use super::layout::Layout;
@@ -550,14 +550,18 @@ fn by_curve(points: &[DVec3], i: usize, limits: &Limits) -> f64 {
 fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits): (f64, &Limits)) -> Vec<f64> {
     let (surface, last) = (surfaces.0, row.places.len() - 1);
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
+    let tangents = |at: DVec2| surface.tangents_by(surfaces.1, at.x, at.y);
     let length = |i: usize, off: f64| {
-        let at = row.places[i];
-        let jet = surface.jet_by(surfaces.1, at.0, at.1);
         let chord = limits.chord.map(|limit| gaps::left(limit, off));
-        let plain = bound::wanted(&jet, chord, limits.angle).min(size / face::FILLED);
-        let along = jet.du * step(i).x + jet.dv * step(i).y;
-        let sure = |limit| bound::surely(surfaces, (DVec2::from(at), &jet), along, (limit, plain));
-        ROOM * face::FILLED * chord.map_or(plain, sure)
+        let wanted = |at: DVec2| {
+            let jet = surface.jet_by(surfaces.1, at.x, at.y);
+            let plain = bound::wanted(&jet, chord, limits.angle).min(size / face::FILLED);
+            let along = jet.du * step(i).x + jet.dv * step(i).y;
+            let sure = |limit| bound::surely(surfaces, (at, &jet), along, (limit, plain));
+            ROOM * face::FILLED * chord.map_or(plain, sure)
+        };
+        let at = DVec2::from(row.places[i]);
+        poles::at_tip(surface, &tangents, at, &wanted).unwrap_or_else(|| wanted(at))
     };
     let within = |i: usize, h: f64| {
         let reach = (h / apart).ceil().min(last as f64) as usize;
@@ -579,6 +583,10 @@ fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, li
     let length = |i: usize| {
         let at = row.places[i];
         let jet = surface.jet_by(ready.1, at.0, at.1);
+        // At a pole there is nothing across, and what is beside it decides.
+        if poles::is_pole(&|_| [jet.p, jet.du, jet.dv], at.into()) {
+            return size;
+        }
         let along = jet.du * step(i).x + jet.dv * step(i).y;
         let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
         bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), wide).min(size)

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::ground::Spot;
 use super::grow::TALL;
+use super::poles;
 use crate::base::range::Ranges;
 use crate::base::tolerance::NUDGE;
 use crate::surface::quick::{Bends, Quick};
@@ -78,12 +79,29 @@ pub fn chord(of: (&Surface, Option<&Quick>), (uv, second): ([DVec2; 3], Option<[
     if normal == DVec3::ZERO {
         return in_any_direction(of.0, uv);
     }
-    let first = above_plane(of, uv, (p[0], normal), wanted);
-    match second {
-        Some(second) if first <= wanted => first.max(above_plane(of, second, (p[0], normal), wanted)),
-        _ => first,
-    }
+    let most = |of| {
+        let first = above_plane(of, uv, (p[0], normal), wanted);
+        match second {
+            Some(second) if first <= wanted => first.max(above_plane(of, second, (p[0], normal), wanted)),
+            _ => first,
+        }
+    };
+    let found = most(of);
+    if found > wanted && of.1.is_some() && goes_round_tip(of, uv) { found.min(most((of.0, None))) } else { found }
 }
+
+/// Whether a triangle goes a good part of the way round a tip: bounds of third derivatives are those of a whole box, and do not get less
+/// with the distance from it.
+fn goes_round_tip(of: (&Surface, Option<&Quick>), uv: [DVec2; 3]) -> bool {
+    let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
+    let middle = 0.5 * (low + high);
+    let tangents = |at: DVec2| of.0.tangents_by(of.1, at.x, at.y);
+    let at = [DVec2::new(middle.x, middle.y.round()), DVec2::new(middle.x.round(), middle.y)];
+    (high - low).max_element() > ROUND && at.into_iter().any(|at| poles::tip(of.0, &tangents, at).is_some())
+}
+
+/// Width in (u, v) from which a triangle goes round a tip.
+const ROUND: f64 = 0.03;
 
 /// The most that the surface over a triangle of (u, v) is off a plane in which its corners are.
 fn above_plane(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], (on, normal): (DVec3, DVec3), wanted: f64) -> f64 {

@@ -12,7 +12,7 @@ use super::sides;
 use super::web::Web;
 use crate::base::math::angle_between;
 use crate::base::par;
-use crate::base::tolerance::{PARALLEL, SINGULAR};
+use crate::base::tolerance::PARALLEL;
 use crate::mesh::edges::Limits;
 use crate::mesh::gaps;
 
@@ -204,27 +204,14 @@ fn of_places(sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limi
         (bound::chord(surface, under, p, limit - beside) + beside) / limit
     });
     let angle = limits.angle.map_or(0.0, |limit| {
-        let columns = from_pole(&|at| sheet.tangents(at.into()), places);
-        let normals = [0, 1, 2].map(|k| pole_normal(sheet, columns[k]).unwrap_or_else(|| sheet.spot(xy[k]).normal()));
+        let tangents = |at: DVec2| sheet.tangents(at.into());
+        let columns = from_pole(&tangents, places);
+        let normals = [0, 1, 2]
+            .map(|k| poles::normal(sheet.surface(), &tangents, columns[k]).unwrap_or_else(|| sheet.spot(xy[k]).normal()));
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
         turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
     });
     Load { chord, angle }
-}
-
-/// The normal of a pole on the way to it along its column: where the surface is smooth there they are one, and round a tip
-/// each column has its own. `None` where a place is no pole.
-fn pole_normal(sheet: &Sheet, at: DVec2) -> Option<DVec3> {
-    if at.cmpgt(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all() {
-        return None;
-    }
-    let [_, du, dv] = sheet.tangents(at.into());
-    let along = [(du, dv, 1), (dv, du, 0)].into_iter().find(|(none, all, _)| none.length() <= SINGULAR * all.length())?.2;
-    let jet = sheet.surface().jet(at.x, at.y);
-    // A step inwards, the vanishing derivative is the mixed one times that step.
-    let inwards = if at[along] > 0.5 { -jet.duv } else { jet.duv };
-    let normal = if along == 1 { inwards.cross(jet.dv) } else { jet.du.cross(inwards) };
-    Some(normal.normalize_or_zero())
 }
 
 /// How far a border node is from the surface: glued edges run beside it.

@@ -11,6 +11,9 @@ const LINES: (usize, usize) = (12, 384);
 /// Distance of grid lines over the mean length wanted.
 const APART: f64 = 2.0;
 
+/// Ratio of the lengths round a cell from which they are not one.
+const UNEVEN: f64 = 2.0;
+
 /// Lengths at the nodes of a grid, read between them by the mean of the four round a place.
 #[derive(Clone, Debug)]
 pub struct Background {
@@ -52,12 +55,15 @@ impl Background {
         field
     }
 
-    /// Lowers the length round a place to at most `size`.
+    /// Lowers the length round a place to at most `size`; where lengths round it differ, as beside a tip, all by the same share.
     pub fn lower(&mut self, xy: DVec2, size: f64) {
         let at = ((xy - self.low) / self.cell).max(DVec2::ZERO);
         let (i, j) = ((at.x as usize).min(self.n.0 - 2), (at.y as usize).min(self.n.1 - 2));
-        for k in [j * self.n.0 + i, j * self.n.0 + i + 1, (j + 1) * self.n.0 + i, (j + 1) * self.n.0 + i + 1] {
-            self.size[k] = self.size[k].min(size);
+        let round = [j * self.n.0 + i, j * self.n.0 + i + 1, (j + 1) * self.n.0 + i, (j + 1) * self.n.0 + i + 1];
+        let [least, most] = [f64::min, f64::max].map(|f| round.into_iter().map(|k| self.size[k]).reduce(f).unwrap_or(size));
+        let share = (most > UNEVEN * least).then(|| (size / self.size(xy, DVec3::ZERO)).min(1.0));
+        for k in round {
+            self.size[k] = self.size[k].min(share.map_or(size, |share| share * self.size[k]));
         }
     }
 

@@ -19,6 +19,7 @@ use crate::mesh::free::ground::{Even, Field};
 use crate::mesh::free::improve::{Care, FINEST, Guard};
 use crate::mesh::free::loads::{Loads, load};
 use crate::mesh::free::outline::Outline;
+use crate::mesh::free::poles;
 use crate::mesh::free::sheet::Sheet;
 use crate::mesh::free::size::{Background, Blend};
 use crate::mesh::free::web::Web;
@@ -208,13 +209,16 @@ impl Fit<'_> {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
         let surface = (self.surface, self.sheet.quick());
-        let wanted = |xy: DVec2| {
-            let jet = self.sheet.jet(xy);
+        let tangents = |at: DVec2| self.sheet.tangents(at.into());
+        let wanted = |at: DVec2| {
+            let jet = self.surface.jet_by(self.sheet.quick(), at.x, at.y);
             let plain = bound::wanted(&jet, limits.chord, limits.angle).min(size / FILLED);
-            let at = (DVec2::from(self.sheet.uv(xy)), &jet);
-            FILLED * limits.chord.map_or(plain, |limit| bound::likely(surface, at, jet.du, (limit, plain)))
+            FILLED * limits.chord.map_or(plain, |limit| bound::likely(surface, (at, &jet), jet.du, (limit, plain)))
         };
-        let of = |xy: DVec2| wanted(xy).min(size);
+        let of = |xy: DVec2| {
+            let at = DVec2::from(self.sheet.uv(xy));
+            poles::at_tip(self.surface, &tangents, at, &wanted).unwrap_or_else(|| wanted(at)).min(size)
+        };
         Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &of)
     }
 

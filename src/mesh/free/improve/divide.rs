@@ -10,6 +10,8 @@ use crate::mesh::free::pending::Pending;
 const DIVISIONS: usize = 64;
 /// Divisions before lengths are squeezed where a limit is still broken: what is mended there would break it again and again.
 const PATIENCE: usize = 2;
+/// Divisions after which nothing is mended that would break a limit.
+const TOO_OFTEN: usize = 16;
 /// What lengths are squeezed by.
 const SQUEEZE: f64 = 0.93;
 /// What is wanted less of the quality while more than one triangle in so many breaks a limit.
@@ -39,10 +41,11 @@ impl<'a> Gardener<'a> {
     /// Where changes can be asked about ahead, only rough triangles are mended while many are divided, for what mending breaks has
     /// to be divided again; when all keep their limits, the others are mended so that none breaks one anew.
     pub fn divide(&mut self, guard: &'a dyn Guard, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
-        let wanted = self.care.wanted;
+        let (wanted, mut settled) = (self.care.wanted, false);
         for round in 0..DIVISIONS {
             bad = self.broken(guard, &bad);
-            if bad.is_empty() && guard.foresees() && self.guard.is_none() && self.care.smooth > 0 {
+            if bad.is_empty() && guard.foresees() && !settled && self.care.smooth > 0 {
+                settled = true;
                 (self.guard, self.care.wanted) = (Some(guard), wanted);
                 self.changed = Pending::all(self.web.p.len());
                 self.mend_last(job)?;
@@ -68,6 +71,10 @@ impl<'a> Gardener<'a> {
             self.flip_all();
             let rough = guard.foresees() && round > 0 && bad.len() * SOME > self.web.tri.len();
             self.care.wanted = if rough { wanted - ROUGH } else { wanted };
+            // What goes to and fro is mended within the limits from now on.
+            if round >= TOO_OFTEN && guard.foresees() && self.guard.is_none() {
+                self.guard = Some(guard);
+            }
             self.mend();
             job.go_on()?;
         }
