@@ -294,7 +294,7 @@ fn surely_tall(
 }
 
 /// How far the surface is from a triangle in the middles of its sides and in its own.
-fn sampled(point: &impl Fn(DVec2) -> DVec3, uv: [DVec2; 3], p: [DVec3; 3]) -> f64 {
+pub fn sampled(point: &impl Fn(DVec2) -> DVec3, uv: [DVec2; 3], p: [DVec3; 3]) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     let middle = |i: usize, j: usize| 0.5 * (uv[i] + uv[j]);
     let places = [middle(0, 1), middle(1, 2), middle(2, 0), (uv[0] + uv[1] + uv[2]) / 3.0];

@@ -72,6 +72,11 @@ impl Net {
     }
 }
 
+/// The least quality of some faces.
+pub fn least_quality(net: &Net, faces: &[u32]) -> f64 {
+    faces.iter().map(|f| net.quality(*f as usize)).fold(f64::INFINITY, f64::min)
+}
+
 /// What a net is made of.
 pub struct Raw<'a> {
     /// Triangles over the cells' border.

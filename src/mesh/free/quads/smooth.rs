@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::net::{NONE, Net};
+use super::net::{NONE, Net, least_quality};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::work;
@@ -31,6 +31,9 @@ const STRAINED: f64 = 0.75;
 
 /// Length of the side between two nodes over what is allowed there.
 pub type Over<'a> = dyn Fn(&Net, usize, usize) -> f64 + 'a;
+
+/// How good some faces of a net are together.
+pub type Score<'a> = dyn Fn(&Net, &[u32]) -> f64 + 'a;
 
 /// A place of a node.
 #[derive(Clone, Copy)]
@@ -93,7 +96,7 @@ impl<'a> Smoother<'a> {
 
     /// The least quality round a node.
     fn worst(&self, node: usize) -> f64 {
-        self.faces(node).iter().map(|f| self.net.quality(*f as usize)).fold(f64::INFINITY, f64::min)
+        least_quality(self.net, self.faces(node))
     }
 
     fn place(&self, node: usize) -> Place {
@@ -282,7 +285,7 @@ impl<'a> Smoother<'a> {
                 job.go_on()?;
                 for n in self.net.face[f] {
                     if n != NONE && n >= self.net.fixed && self.net.quality(f) < wanted {
-                        gained |= self.climb(n as usize);
+                        gained |= self.climb(n as usize, (&least_quality, f64::INFINITY));
                     }
                 }
             }
@@ -293,22 +296,22 @@ impl<'a> Smoother<'a> {
         Ok(())
     }
 
-    /// Searches round a node for the place where the worst element is best.
-    fn climb(&mut self, node: usize) -> bool {
+    /// Searches round a node for the place where the `score` of the faces round it is largest, or `enough`; whether it moved.
+    pub fn climb(&mut self, node: usize, (score, enough): (&Score, f64)) -> bool {
         work::spend(CLIMB_WORK);
         let size = self.mean_side(node);
-        let start = self.worst(node);
+        let start = score(self.net, self.faces(node));
         let (mut best, mut place) = (start, self.place(node));
         let mut reach = STEPS.0;
-        while reach > STEPS.1 {
+        while reach > STEPS.1 && best < enough {
             let (ahead, aside) = self.frame(node, place);
             let (mut found, short) = (false, self.shortest(node).min(SHORT * size));
             for (x, y) in EIGHT {
                 let trial = self.foot(node, place.p + (ahead * x + aside * y) * (reach * size));
                 self.put(node, trial);
-                let worst = self.worst(node);
-                if worst > best + GAIN * reach && self.shortest(node) >= short {
-                    (best, place, found) = (worst, trial, true);
+                let now = score(self.net, self.faces(node));
+                if now > best + GAIN * reach && self.shortest(node) >= short {
+                    (best, place, found) = (now, trial, true);
                     break;
                 }
             }

@@ -1,11 +1,13 @@
 //! Nets of quads made for wanted lengths, bounded, and made again with shorter ones until one keeps the limits.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
 
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::{self, Job};
+use crate::mesh::faces::allow;
 use crate::mesh::free::build::{Lattice, Task, Trouble, plant};
 use crate::mesh::free::face::fit::{Fit, LESS};
 use crate::mesh::free::face::longest::longest_side;
@@ -26,6 +28,8 @@ use crate::mesh::plan::{Elements, Method};
 use crate::mesh::shape_check::is_concave;
 use crate::mesh::wanted::floor_keeps;
 
+/// Work that an element is worth over those of triangles: nets are smoothed, split and smoothed again, and made several times.
+const WORTH: u64 = 4;
 /// Quality of pairs that is better than two triangles: of `mixed`.
 const MIXED: Alone = Alone { least: 0.5, worth: 0.5 };
 /// The same for cells that are halved: triangles become three quads each.
@@ -49,7 +53,7 @@ const TRIES: usize = 20;
 /// Tries after which concave quads are told, and no longer made anew with shorter lengths.
 const WHOLE: usize = 8;
 /// Rounds in which lengths are lowered only where a limit is broken.
-const LOCAL: usize = 2;
+const LOCAL: usize = 4;
 /// The least that all lengths are lowered to at once, over what they were.
 const MOST_LESS: f64 = 0.9;
 
@@ -60,6 +64,8 @@ type Fitted = Result<std::result::Result<Net, Trouble>>;
 pub(super) struct Maker<'a> {
     pub(super) fit: &'a Fit<'a>,
     pub(super) halves: &'a Halves,
+    /// What the elements were worth that it was allowed work for.
+    pub(super) worth: Cell<u64>,
 }
 
 /// What breaks a limit most.
@@ -75,12 +81,16 @@ impl Maker<'_> {
         let plan = self.fit.made.input.plan;
         let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
         for round in 0..TRIES {
-            let net = match self.net(field, job)? {
+            let mut net = match self.net(field, job)? {
                 Ok(net) => net,
                 Err(trouble) => return Ok(Err(trouble)),
             };
+            let mut loads = Loads::default();
+            if field.background.is_some() {
+                self.mend(&mut net, field, &mut loads, job)?;
+            }
             let side = self.too_long(&net);
-            let bend = self.lower(field, &net, side)?;
+            let bend = self.lower(field, &net, (side, &mut loads))?;
             // Only sides have room: how much too long one is says nothing of limits that are proved.
             let room = if round >= STRICT { ROOM } else { 1.0 };
             worst = if bend.over > 1.0 && bend.over * room >= side.over { bend } else { side };
@@ -123,6 +133,9 @@ impl Maker<'_> {
             Ok(web) => web,
             Err(trouble) => return Ok(Err(trouble)),
         };
+        let mut worth = self.worth.get();
+        allow(WORTH * if quads { 2 } else { 1 } * web.tri.len() as u64, &mut worth);
+        self.worth.set(worth);
         let mut gardener = Gardener::new(web, ground, cells, self.fit.care);
         gardener.flip_all();
         let mut web = gardener.web;
@@ -198,7 +211,7 @@ impl Maker<'_> {
     }
 
     /// Lowers lengths where the longest side or an element breaks a limit; what breaks one of chord error or angle most, 0 where nothing does.
-    fn lower(&self, field: &mut Blend, net: &Net, side: Worst) -> Result<Worst> {
+    fn lower(&self, field: &mut Blend, net: &Net, (side, loads): (Worst, &mut Loads)) -> Result<Worst> {
         let mut worst = Worst { over: 0.0, limit: "chord_error", ..side };
         if side.over > 1.0 {
             field.spacing *= (1.0 / side.over).clamp(MOST_LESS, LESS);
@@ -207,7 +220,6 @@ impl Maker<'_> {
             return Ok(worst);
         }
         let web = nodes(net);
-        let mut loads = Loads::default();
         let all: Vec<u32> = (0..web.tri.len() as u32).collect();
         loads.update(self.fit.sheet, &web, &all, &self.fit.limits);
         let least = self.fit.made.wanted.written;

@@ -1,0 +1,112 @@
+//! Elements that break a chord error or an angle, mended where they are: a quad is cut along its other diagonal, and nodes are moved.
+//!
+//! A face that is made anew has other bad places, one element in a thousand: were lengths made shorter for each of them, there would be no
+//! end to it.
+
+use std::cell::Cell;
+
+use super::maker::{Maker, nodes};
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::mesh::free::loads::{Loads, likely, load_of};
+use crate::mesh::free::quads::net::{NONE, Net, least_quality};
+use crate::mesh::free::quads::smooth::Smoother;
+use crate::mesh::free::size::Blend;
+
+/// Rounds of moves.
+const ROUNDS: usize = 5;
+/// Where more than one element in so many breaks a limit, lengths are wrong.
+const FEW: usize = 12;
+/// Quality, 0 to 1, below which no element gets for it.
+const STRAINED: f64 = 0.65;
+/// So many elements are moved by their bounds, more by samples, for a twentieth of the work.
+const BOUNDED: usize = 24;
+/// Loads that are enough, by bounds and by samples: what is left over is more than these two differ.
+const ENOUGH: (f64, f64) = (0.98, 0.9);
+
+impl Maker<'_> {
+    /// Mends elements that break a limit where they are few; what is left of them is for shorter lengths.
+    pub(super) fn mend(&self, net: &mut Net, field: &Blend, loads: &mut Loads, job: &Job) -> Result<()> {
+        for round in 0..=ROUNDS {
+            let over = self.over(net, loads);
+            if over.is_empty() || over.len() * FEW > net.face.len() || round == ROUNDS {
+                break;
+            }
+            self.ease(net, field, &over, job)?;
+        }
+        Ok(())
+    }
+
+    /// Elements that break a limit whichever way they are cut; the others are cut so that they keep it.
+    fn over(&self, net: &mut Net, loads: &mut Loads) -> Vec<usize> {
+        let turn = |net: &mut Net, f: usize, by: usize| {
+            if net.face[f][3] != NONE {
+                net.face[f].rotate_left(by);
+            }
+        };
+        let first = self.loaded(net, loads);
+        first.iter().for_each(|(_, f)| turn(net, *f, 1));
+        let second = self.loaded(net, loads);
+        let other = |f: usize| second.binary_search_by_key(&f, |found| found.1).map_or(0.0, |k| second[k].0);
+        first.iter().filter(|(load, f)| other(*f) >= *load).for_each(|(_, f)| turn(net, *f, 3));
+        second.iter().map(|found| found.1).collect()
+    }
+
+    /// Elements that break a limit as they are cut, with their loads.
+    fn loaded(&self, net: &Net, loads: &mut Loads) -> Vec<(f64, usize)> {
+        let web = nodes(net);
+        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
+        loads.update(self.fit.sheet, &web, &all, &self.fit.limits);
+        let mut next = 0;
+        let load = |f: usize| {
+            let own = next..next + net.corners(f).len() as u32 - 2;
+            next = own.end;
+            (own.map(|t| loads.of(t).worst()).fold(0.0, f64::max), f)
+        };
+        (0..net.face.len()).map(load).filter(|found| found.0 > 1.0).collect()
+    }
+
+    /// Moves nodes of some elements to where the worst load round them is least.
+    fn ease(&self, net: &mut Net, field: &Blend, over: &[usize], job: &Job) -> Result<()> {
+        let bounded = over.len() <= BOUNDED;
+        let enough = if bounded { ENOUGH.0 } else { ENOUGH.1 };
+        let load = |net: &Net, f: usize| {
+            let half = |corners: [u32; 3]| {
+                let c = corners.map(|n| n as usize);
+                let (sheet, at, limits) = (self.fit.sheet, (c.map(|n| net.xy[n]), c.map(|n| net.p[n])), &self.fit.limits);
+                if bounded { load_of(sheet, at, limits).worst() } else { likely(sheet, at, limits) }
+            };
+            let [a, b, c, d] = net.face[f];
+            if d == NONE {
+                return half([a, b, c]);
+            }
+            let cut = half([a, b, c]).max(half([a, c, d]));
+            if cut <= enough { cut } else { cut.min(half([b, c, d]).max(half([b, d, a]))) }
+        };
+        let mut smoother = Smoother::new(net, self.fit.sheet, field);
+        for f in over.iter().copied() {
+            for n in smoother.net.face[f] {
+                if n == NONE || n < smoother.net.fixed || load(smoother.net, f) <= enough {
+                    continue;
+                }
+                let least = least_quality(smoother.net, smoother.faces(n as usize)).min(STRAINED);
+                let best = Cell::new(f64::INFINITY);
+                let score = |net: &Net, faces: &[u32]| {
+                    let mut most = if least_quality(net, faces) < least { f64::INFINITY } else { 0.0 };
+                    for f in faces {
+                        // Once it is no better than another place, that is all there is to know.
+                        if most > best.get() {
+                            break;
+                        }
+                        most = load(net, *f as usize).max(most);
+                    }
+                    best.set(most.min(best.get()));
+                    -most
+                };
+                smoother.climb(n as usize, (&score, -enough));
+                job.go_on()?;
+            }
+        }
+        Ok(())
+    }
+}
