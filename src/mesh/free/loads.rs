@@ -211,8 +211,8 @@ fn turned(sheet: &Sheet, (xy, places): ([DVec2; 3], [DVec2; 3]), limits: &Limits
     limits.angle.map_or(0.0, |limit| {
         let tangents = |at: DVec2| sheet.tangents(at.into());
         let columns = from_pole(&tangents, places);
-        let normals = [0, 1, 2]
-            .map(|k| poles::normal(sheet.surface(), &tangents, columns[k]).unwrap_or_else(|| sheet.spot(xy[k]).normal()));
+        let normals =
+            [0, 1, 2].map(|k| poles::normal(sheet.surface(), &tangents, columns[k]).unwrap_or_else(|| sheet.spot(xy[k]).normal()));
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
         turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
     })
