@@ -2,7 +2,6 @@
 
 import math
 
-from OCP.BOPAlgo import BOPAlgo_Builder
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeChamfer, BRepFilletAPI_MakeFillet
@@ -17,7 +16,6 @@ from OCP.Geom import (
     Geom_ConicalSurface,
     Geom_CylindricalSurface,
     Geom_OffsetSurface,
-    Geom_SurfaceOfLinearExtrusion,
     Geom_SurfaceOfRevolution,
 )
 from OCP.Geom2d import Geom2d_Line
@@ -31,7 +29,6 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Circ, gp_Dir, gp_Dir2d, gp_Elips, 
 from parts import (
     O,
     X,
-    Y,
     Z,
     _hills,
     _side,
@@ -225,14 +222,6 @@ def pipe_law():
     return m.Shape()
 
 
-def sphere_split():
-    b = BOPAlgo_Builder()
-    b.AddArgument(ball(10))
-    b.AddArgument(face(circle(20, at(0, 0, 0, (1, 1, 1)))))
-    b.Perform()
-    return [s for s in [b.Shape()]][0]
-
-
 def rev_of_line_skew():
     """Hyperboloid: a skew line revolved (as a revolution surface)."""
     c = GC_MakeSegment(gp_Pnt(8, 0, 0), gp_Pnt(0, 8, 20)).Value()
@@ -274,12 +263,6 @@ def hyper_bell():
     return revolved(face(wire(c, segment(b, (0, 0, b[2])), segment((0, 0, b[2]), (0, 0, a[2])), segment((0, 0, a[2]), a))))
 
 
-def offset_extr_trim():
-    """Trimmed offset of an extrusion, cut with a hole."""
-    f = beside(Geom_SurfaceOfLinearExtrusion(_side(), Y), 1.0, 0.1, 0.9, -10.0, 10.0)
-    return cut(f, prism(face(circle(3, at(0, 0, 20, (1, 0, 0)))), 40, 0, 0))
-
-
 def offset_rev_trim():
     f = beside(Geom_SurfaceOfRevolution(_side(), gp_Ax1(O, Z)), 1.0, 0.3, 2.8, 0.1, 0.9)
     return cut(f, prism(face(circle(3, at(0, 0, 20, (0, 1, 0)))), 0, 40, 0))
@@ -302,7 +285,6 @@ def thick_loft():
 def _flat_at(f, z):
     b = Bnd_Box()
     BRepBndLib.Add_s(f, b)
-    c = b.Get() if not hasattr(b, "CornerMin") else None
     lo, hi = (b.CornerMin(), b.CornerMax())
     return abs(lo.Z() - z) < 0.001 and abs(hi.Z() - z) < 0.001
 
@@ -577,7 +559,6 @@ PARTS = [
         lemon,
         pipe_aux,
         pipe_law,
-        sphere_split,
         rev_of_line_skew,
         rev_of_ellipse,
         ellipsoid_cut,
@@ -586,7 +567,6 @@ PARTS = [
         rev_ell_tilted_cut,
         parab_dish,
         hyper_bell,
-        offset_extr_trim,
         offset_rev_trim,
         offset_cone,
         offset_offset,

@@ -93,6 +93,32 @@ fn surfaces() -> Vec<(&'static str, String, f64)> {
     let trimmed = |entity: &str, others: &str, [a, b, c, d]: [f64; 4]| {
         of(&format!("RECTANGULAR_TRIMMED_SURFACE('',#20,{a:?},{b:?},{c:?},{d:?},.T.,.T.)"), &format!("{others}#20={entity};"))
     };
+    // Below a circle about z at a height, with or without a loop that is only the vertex #110.
+    let below = |entity: &str, (radius, height): (f64, f64), vertex: &str| {
+        let text = format!(
+            "{FRAME}#90=CARTESIAN_POINT('',(0.,0.,{height:?}));\n#91=AXIS2_PLACEMENT_3D('',#90,#2,#3);\n#92=CIRCLE('',#91,{radius:?});\n\
+             #93=CARTESIAN_POINT('',({radius:?},0.,{height:?}));\n#94=VERTEX_POINT('',#93);\n#95=EDGE_CURVE('',#94,#94,#92,.T.);\n\
+             #96=ORIENTED_EDGE('',*,*,#95,.F.);\n#97=EDGE_LOOP('',(#96));\n#98=FACE_BOUND('',#97,.T.);\n#100={entity};\n\
+             #104=ADVANCED_FACE('',(#98{vertex}),#100,.T.);\n#105=OPEN_SHELL('',(#104));\n#106=SHELL_BASED_SURFACE_MODEL('',(#105));\n\
+             #110=VERTEX_POINT('',#1);\n#111=VERTEX_LOOP('',#110);\n#112=FACE_BOUND('',#111,.T.);\n\
+             #120=AXIS1_PLACEMENT('',#1,#2);\n#121=DIRECTION('',(0.,-1.,0.));\n#122=AXIS2_PLACEMENT_3D('',#1,#121,#2);\n"
+        );
+        file(&text, "#106")
+    };
+    // A conic about a point of x turned about z: the plane of the conic is seen against y, or along it.
+    let turned = |conic: &str, x: f64, seen: &str| {
+        let others = format!(
+            "\n#120=AXIS1_PLACEMENT('',#1,#2);\n#121=DIRECTION('',(0.,{seen},0.));\n#122=CARTESIAN_POINT('',({x:?},0.,0.));\n\
+             #123=AXIS2_PLACEMENT_3D('',#122,#121,#2);\n#124={conic}"
+        );
+        closed(&format!("SURFACE_OF_REVOLUTION('',#124,#120);{others}"))
+    };
+    let steep = "CONICAL_SURFACE('',#4,0.,0.4636476090008061)";
+    let line = "SURFACE_OF_REVOLUTION('',#130,#120);\n#130=LINE('',#1,#131);\n#131=VECTOR('',#132,1.);\n#132=DIRECTION('',(1.,0.,2.))";
+    let spheroid = {
+        let e = (1.0_f64 - 4.0 / 9.0).sqrt();
+        18.0 * PI + 4.0 * PI / e * ((1.0 + e) / (1.0 - e)).ln()
+    };
     let net = "((#10,#13),(#21,#22))";
     let others = "#21=CARTESIAN_POINT('',(0.,0.,3.));#22=CARTESIAN_POINT('',(4.,0.,3.));";
     let apple: f64 = {
@@ -104,6 +130,17 @@ fn surfaces() -> Vec<(&'static str, String, f64)> {
         ("sphere", closed("SPHERICAL_SURFACE('',#4,3.)"), 36.0 * PI),
         ("torus", closed("TOROIDAL_SURFACE('',#4,5.,2.)"), 4.0 * PI * PI * 10.0),
         ("apple", closed("DEGENERATE_TOROIDAL_SURFACE('',#4,1.,2.,.T.)"), apple),
+        ("cone below one loop", below(steep, (2.0, 4.0), ""), 2.0 * PI * 20.0_f64.sqrt()),
+        ("cone below a loop and above a vertex", below(steep, (2.0, 4.0), ",#112"), 2.0 * PI * 20.0_f64.sqrt()),
+        ("turned line below one loop", below(line, (2.0, 4.0), ""), 2.0 * PI * 20.0_f64.sqrt()),
+        (
+            "turned parabola below one loop",
+            below("SURFACE_OF_REVOLUTION('',#130,#120);\n#130=PARABOLA('',#122,1.)", (4.0, 4.0), ""),
+            8.0 * PI / 3.0 * (5.0_f64.powf(1.5) - 1.0),
+        ),
+        ("ellipse turned about its diameter", turned("ELLIPSE('',#123,2.,3.)", 0.0, "-1."), spheroid),
+        ("outer part of a circle across the axis", turned("CIRCLE('',#123,2.)", 1.0, "-1."), apple),
+        ("inner part of a circle across the axis", turned("CIRCLE('',#123,2.)", 1.0, "1."), 4.0 * PI * (12.0_f64.sqrt() - 2.0 * PI / 3.0)),
         ("plane part", trimmed("PLANE('',#4)", "", [1.0, 4.0, -1.0, 1.0]), 6.0),
         ("cylinder part", trimmed("CYLINDRICAL_SURFACE('',#4,2.)", "", [0.5, 2.0, 0.0, 3.0]), 9.0),
         ("cylinder over its seam", trimmed("CYLINDRICAL_SURFACE('',#4,2.)", "", [6.0, 1.0, 0.0, 3.0]), 6.0 * (2.0 * PI - 5.0)),

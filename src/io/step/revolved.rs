@@ -61,7 +61,8 @@ impl Step<'_> {
     }
 
     /// The stretch of a conic that is turned: all of it near what lies on it or, of one that crosses the axis, the part that the loops
-    /// lie beside. Of several parts beside which they lie the one along which a loop runs is meant, else the one with the conic's start.
+    /// lie beside. Of several parts beside which they lie the one along which a loop runs is meant, else the one that runs up the axis, so
+    /// that the normals point away from it.
     fn turned_conic(&self, conic: &Endless, axis: &Axis, lying: &Lying) -> Result<Curve, Damage> {
         let (a, b) = if conic.closes() { (FIRST, FIRST + TURN) } else { Self::range(conic, &lying.reach) };
         let crossings = self.crossings(conic, (a, b), axis);
@@ -98,9 +99,8 @@ impl Step<'_> {
         let rated: Vec<(f64, usize, (f64, f64))> = parts.iter().map(rate).collect();
         let least = rated.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
         let room = slack * lying.points().count() as f64;
-        let has_start = |part: (f64, f64)| part.0 < 0.0 && 0.0 < part.1 || part.0 < TURN && TURN < part.1;
-        let key = |r: &(f64, usize, (f64, f64))| (r.1, has_start(r.2));
-        let best = rated.iter().rev().filter(|r| r.0 <= least + room).max_by_key(|r| key(r));
+        let runs_up = |part: (f64, f64)| (conic.point(part.1) - conic.point(part.0)).dot(axis.direction) > 0.0;
+        let best = rated.iter().rev().filter(|r| r.0 <= least + room).max_by_key(|r| (r.1, runs_up(r.2)));
         let (t0, t1) = best.map_or((a, b), |r| r.2);
         conic.part(t0, t1, self.origin)
     }
