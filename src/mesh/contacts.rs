@@ -18,8 +18,10 @@ use super::nodes::Nodes;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::{BoxTree, PAIR};
 use crate::base::fault::{Result, SurfaceFault};
+use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::par;
 use crate::base::tolerance::SINGULAR;
+use crate::base::work;
 use crate::model::SurfaceId;
 use crate::surface::meet::with_surfaces;
 use crate::surface::{Closest, Nearest, SurfaceKind};
@@ -431,6 +433,10 @@ impl Known<'_> {
         let surface = |face: usize| &scan.input.model.surfaces[scan.surface_of(face).index()].surface;
         let mut pairs: Vec<(usize, usize)> = quiet.into_iter().filter(|(a, b)| !self.touches.contains_key(&scan.key(*a, *b))).collect();
         pairs.dedup_by_key(|(a, b)| (scan.surface_of(*a), scan.surface_of(*b)));
+        // Walls of a thin shell: as many pairs as faces, each to be told apart.
+        if let Some(budget) = work::budget() {
+            budget.allow(pairs.len() as u64 * WORK_OF_A_SURFACE);
+        }
         let found = par::map(pairs.len(), |n| {
             let (a, b) = (surface(pairs[n].0), surface(pairs[n].1));
             let common = with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), scan.input.plan.origin, scan.input.tolerance);
