@@ -45,7 +45,7 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; raising one is a change of its own with the reason. `base` holds the words of every
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
-/// results and what goldens hold of every thing, `draw` an alphabet, `mesh` proofs of its limits, what it takes over, how places of
+/// results, what goldens hold of every thing and which bodies a mesh keeps apart, `draw` an alphabet, `mesh` proofs of its limits, what it takes over, how places of
 /// borders are followed, what a map is foreseen to give and the check of every mesh,
 /// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves, each other and themselves, and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, the forms of other languages it knows, and the formatter.
@@ -59,7 +59,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("io", 14_800),
     ("draw", 3_000),
     ("lang", 29_150),
-    ("session", 11_600),
+    ("session", 11_650),
     ("cli", 4_900),
 ];
 

@@ -11,6 +11,7 @@ use super::later;
 use super::lookalikes;
 use super::module::bound;
 use super::origins::NO_MEMBER;
+use super::part::Skin;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::room::flat_len;
 use super::settings::{self, Setting};
@@ -25,7 +26,6 @@ use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::base::text::article;
 use crate::mesh::{Elements, Method};
-use crate::surface::Surface;
 
 /// A setting as resolved: its key, its value, the expression that says it.
 pub(super) struct Resolved {
@@ -112,6 +112,12 @@ impl Cx<'_> {
                     let asked = said(&settings, "imprint", truth).filter(|said| said.0);
                     let mut imprint = asked.map(|said| said.1);
                     let things = things.unwrap_or_default();
+                    // What is of one body alone is that body.
+                    let body = match (skins.as_slice(), things.as_slice()) {
+                        ([(_, body)], _) => *body,
+                        (_, [(Value::Shell(s), _)]) => s.body,
+                        _ => None,
+                    };
                     let mut surfaces = Vec::with_capacity(things.len());
                     for (thing, _) in things {
                         match thing {
@@ -126,7 +132,7 @@ impl Cx<'_> {
                     }
                     if skins.len() > 1 {
                         let mut shells = Vec::with_capacity(skins.len());
-                        for (k, mut surfaces) in skins.into_iter().enumerate() {
+                        for (k, (mut surfaces, body)) in skins.into_iter().enumerate() {
                             let mut member = member;
                             let free = member.iter().position(|m| *m == NO_MEMBER).unwrap_or(1);
                             member[free] = k as u32;
@@ -135,7 +141,7 @@ impl Cx<'_> {
                                 surfaces = pieces(cx, surfaces, origin)?;
                             }
                             let name = format!("{name}[{k}]").into();
-                            let shell = ShellValue { name, module: code.module, origin, surfaces, snap, imprint, flip };
+                            let shell = ShellValue { name, module: code.module, origin, surfaces, snap, imprint, flip, body };
                             shells.push(Value::Shell(Arc::new(shell)));
                         }
                         return Ok(Value::list(shells));
@@ -143,7 +149,7 @@ impl Cx<'_> {
                     if let Some((_, origin)) = asked {
                         surfaces = pieces(cx, surfaces, origin)?;
                     }
-                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap, imprint, flip })))
+                    Ok(Value::Shell(Arc::new(ShellValue { name, module: code.module, origin, surfaces, snap, imprint, flip, body })))
                 }
                 Keyword::Mesh => {
                     let settings = gather.take(cx.settings(code, "mesh", settings::MESH, settings));
@@ -286,7 +292,7 @@ impl Cx<'_> {
     }
 
     /// The skins of a part that a shell alone is of: several become a shell each.
-    fn skins(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Vec<Surface>>, Stop> {
+    fn skins(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Skin>, Stop> {
         let [thing] = things else { return Ok(Vec::new()) };
         if !matches!(code.expr(*thing), Expr::Name(_) | Expr::Field { .. } | Expr::Index { .. }) {
             return Ok(Vec::new());

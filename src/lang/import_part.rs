@@ -1,5 +1,6 @@
 //! `import "part.igs" as part`, `import "part.step" as part`: points, curves, surfaces and groups of a CAD file as values.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -125,6 +126,8 @@ struct Faces {
     all: Vec<Surface>,
     /// For each face of the file those made of it.
     places: Vec<Range<usize>>,
+    /// Of each solid of the file what was made of its faces.
+    solids: Vec<Vec<usize>>,
     /// Faces of which none was made, by their place.
     unusable: Vec<(Option<usize>, Unusable)>,
 }
@@ -159,7 +162,9 @@ impl Faces {
             repairs: part.repairs.clone(),
             notes,
         };
-        Self { name, file: Arc::new(file), all, places, unusable }
+        let mut faces = Self { name, file: Arc::new(file), all, places, solids: Vec::new(), unusable };
+        faces.solids = part.solids.iter().map(|group| faces.flat(&group.surfaces)).collect();
+        faces
     }
 
     /// What was made of one face: a surface, several, or nothing.
@@ -182,16 +187,38 @@ impl Faces {
         let flat = self.flat(faces);
         let name: Arc<str> = name.into();
         let is_body = matches!(kind, "solids" | "shells") && !flat.is_empty();
-        let body = Body { name: name.clone(), faces: (0..flat.len()).collect(), solid: kind == "solids" };
+        let bodies = if is_body {
+            vec![Body { name: name.clone(), faces: (0..flat.len()).collect(), solid: kind == "solids" }]
+        } else if kind == "shells" {
+            Vec::new()
+        } else {
+            self.solids_in(&flat)
+        };
         // Of one that came to nothing when it was read nobody knows where it belongs.
         let unusable = self.unusable.iter().filter(|(face, _)| face.is_none_or(|k| faces.contains(&k)));
         PartValue {
             name,
             file: self.file.clone(),
             faces: flat.iter().map(|k| self.all[*k].clone()).collect(),
-            bodies: if is_body { vec![body] } else { Vec::new() },
+            bodies,
             unusable: unusable.map(|(_, face)| face.clone()).collect(),
         }
+    }
+
+    /// Solids of which all faces are among some, by the places of their faces there; of solids with a face in common the first.
+    fn solids_in(&self, flat: &[usize]) -> Vec<Body> {
+        let mut places: BTreeMap<usize, usize> = flat.iter().enumerate().map(|(place, face)| (*face, place)).collect();
+        let mut bodies = Vec::new();
+        for (k, solid) in self.solids.iter().enumerate().filter(|(_, solid)| !solid.is_empty()) {
+            let own: Option<Vec<usize>> = solid.iter().map(|face| places.get(face).copied()).collect();
+            if let Some(faces) = own {
+                for face in solid {
+                    places.remove(face);
+                }
+                bodies.push(Body { name: format!("{}.solids[{k}]", self.name).into(), faces, solid: true });
+            }
+        }
+        bodies
     }
 
     /// All of it: solids, then shells that belong to none.

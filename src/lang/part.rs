@@ -8,7 +8,7 @@ use super::module::State;
 use super::origins::{NO_MEMBER, Place};
 use super::symbols::counted;
 use super::types::{FromValue, Ty};
-use super::value::{ModuleId, ShellValue, Value};
+use super::value::{BodyKind, ModuleId, ShellValue, Value};
 use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 
@@ -72,16 +72,26 @@ pub struct PartValue {
     pub unusable: Vec<Unusable>,
 }
 
+/// Faces that make a skin, with the kind of body that they are.
+pub type Skin = (Vec<Surface>, Option<BodyKind>);
+
+impl Body {
+    /// What the file calls it.
+    pub fn kind(&self) -> BodyKind {
+        if self.solid { BodyKind::Solid } else { BodyKind::Shell }
+    }
+}
+
 impl PartValue {
     /// A body as a shell.
     pub fn shell(&self, body: &Body) -> Value {
         let surfaces = body.faces.iter().filter_map(|k| self.faces.get(*k)).cloned().collect();
-        self.shell_of(body.name.clone(), surfaces)
+        self.shell_of(body.name.clone(), (surfaces, Some(body.kind())))
     }
 
-    fn shell_of(&self, name: Arc<str>, surfaces: Vec<Surface>) -> Value {
+    fn shell_of(&self, name: Arc<str>, (surfaces, body): Skin) -> Value {
         let (module, origin) = (self.file.module, self.file.origin);
-        Value::Shell(Arc::new(ShellValue { name, module, origin, surfaces, snap: None, imprint: None, flip: false }))
+        Value::Shell(Arc::new(ShellValue { name, module, origin, surfaces, snap: None, imprint: None, flip: false, body }))
     }
 
     /// Its faces in no body.
@@ -98,9 +108,9 @@ impl PartValue {
     }
 
     /// Skins: a body each, and all faces in no body as one.
-    pub fn skins(&self) -> Vec<Vec<Surface>> {
-        let body = |body: &Body| body.faces.iter().filter_map(|k| self.faces.get(*k)).cloned().collect();
-        let loose = Some(self.loose()).filter(|loose| !loose.is_empty());
+    pub fn skins(&self) -> Vec<Skin> {
+        let body = |body: &Body| (body.faces.iter().filter_map(|k| self.faces.get(*k)).cloned().collect(), Some(body.kind()));
+        let loose = Some((self.loose(), None)).filter(|loose: &Skin| !loose.0.is_empty());
         self.bodies.iter().map(body).chain(loose).collect()
     }
 

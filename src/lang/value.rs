@@ -183,6 +183,17 @@ pub struct ShellValue {
     pub imprint: Option<Origin>,
     /// Whether it shows the other side: a closed one points inwards, an open one away from where its first surface does.
     pub flip: bool,
+    /// The kind of body of an imported part that it is as a whole: meshes keep those apart.
+    pub body: Option<BodyKind>,
+}
+
+/// What a file calls faces that it keeps together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// Faces round a volume.
+    Solid,
+    /// A skin, which may be open.
+    Shell,
 }
 
 /// A mesh: of a `mesh` declaration, or data (imported, moved).

@@ -78,7 +78,11 @@ impl Outline {
             input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
         let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
         let layouts = if input.plan.conforming {
-            vec![Layout::new(input, &patches, true)]
+            // What is of no body, with the curves and points, then each body.
+            let of = |p: &PatchId| input.plan.bodies.get(&input.model.patches[p.index()].surface).copied();
+            let all: BTreeSet<Option<usize>> = input.plan.bodies.values().copied().map(Some).chain([None]).collect();
+            let lot = |body| patches.iter().copied().filter(|(p, _)| of(p) == body).collect::<Vec<_>>();
+            all.into_iter().map(|body| Layout::new(input, &lot(body), body.is_none())).collect()
         } else {
             // Each face by itself, then the curves and points.
             let lines = std::iter::once_with(|| Layout::new(input, &[], true));
@@ -113,9 +117,13 @@ impl Outline {
 
     fn built(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
         let known = reuse.map(|reuse| Known { reuse, surfaces: &self.surfaces });
-        let mut parts: Vec<Part> = Vec::new();
+        let (mut parts, mut made): (Vec<Part>, u64) = (Vec::new(), 0);
         for layout in self.layouts {
             parts.push(assemble(input, layout, self.size, (known.as_ref(), job))?);
+            made += parts.last().map_or(0, |part| (part.mesh.triangles.len() + part.mesh.quads.len()) as u64);
+            if made > input.plan.most_elements {
+                return Err(faces::too_many(input.plan, input.plan.size_origin(), None));
+            }
         }
         let mut remarks = Vec::new();
         if let Some((first, others)) = parts.split_first_mut() {
@@ -123,8 +131,8 @@ impl Outline {
             remarks = first.sizing.remarks();
             remarks.extend(first.layout.lost.iter().chain(others.iter().flat_map(|part| &part.layout.lost)).copied().map(Remark::Lost));
             // Faces that were asked not to share nodes touch as they were asked to.
-            if input.plan.conforming {
-                let touches = contacts::look(input, &first.layout, &first.nodes, &first.mesh);
+            for part in parts.iter().filter(|_| input.plan.conforming) {
+                let touches = contacts::look(input, &part.layout, &part.nodes, &part.mesh);
                 contacts::refuse_overlaps(input, &touches)?;
                 remarks.extend(touches.into_iter().map(Remark::Touch));
             }

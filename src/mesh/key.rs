@@ -29,21 +29,8 @@ pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<Surf
     to.finish()
 }
 
-crate::content_of_word!(Elements);
+crate::content_of_word!(Elements, Method);
 crate::content!(Border { uses, pole, length });
-
-impl Content for Method {
-    fn tell(&self, to: &mut Digester) {
-        match self {
-            Self::Auto => 0u8.tell(to),
-            Self::Mapped => 1u8.tell(to),
-            Self::Isoline => 2u8.tell(to),
-            Self::Delaunay => 3u8.tell(to),
-            Self::Quadtree => 4u8.tell(to),
-            Self::Display => 5u8.tell(to),
-        }
-    }
-}
 
 struct Teller<'a> {
     input: &'a Input<'a>,
@@ -74,6 +61,7 @@ impl Teller<'_> {
             imprint,
             // The tracks and faces of the layouts tell it.
             glue: _,
+            bodies: _,
             rules,
             refines,
             groups,

@@ -29,14 +29,14 @@ pub enum Method {
     Auto,
     /// Mapped, or an error.
     Mapped,
+    /// Cells between lines of constant u and v, triangles beside borders.
+    Isoline,
     /// Nodes grown over the surface, Delaunay triangles improved in space.
     Delaunay,
     /// Nodes at the corners of a quadtree's cells, Delaunay triangles improved in space.
     Quadtree,
     /// As few triangles as keep the limits, however long.
     Display,
-    /// Cells between lines of constant u and v, triangles beside borders.
-    Isoline,
 }
 
 impl Method {
@@ -185,6 +185,8 @@ pub struct Plan {
     /// How far apart borders of a surface and of its neighbours may be and still be one edge, model units; the tolerance for
     /// surfaces that are not listed.
     pub glue: BTreeMap<SurfaceId, f64>,
+    /// The body of each surface that shares nodes with its own body alone; those that are not listed share with each other.
+    pub bodies: BTreeMap<SurfaceId, usize>,
     /// Rules in order of writing.
     pub rules: Vec<Rule>,
     /// `near` and `in` clauses in order of writing.
@@ -221,6 +223,7 @@ impl Plan {
             conforming: true,
             imprint: None,
             glue: BTreeMap::new(),
+            bodies: BTreeMap::new(),
             rules: Vec::new(),
             refines: Vec::new(),
             groups: Vec::new(),

@@ -1,5 +1,6 @@
 //! Floor 8: a model from script to files, as commands and other programs use it.
 
+mod bodies;
 pub mod cache;
 mod canonical;
 mod collect;

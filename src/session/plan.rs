@@ -9,7 +9,7 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Stop};
 use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::Scene;
-use crate::lang::value::{Home, ModuleId, Value};
+use crate::lang::value::{BodyKind, Home, ModuleId, Value};
 use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::carry::Stage;
@@ -33,6 +33,8 @@ struct Faces {
     closed: BTreeSet<SurfaceId>,
     /// What asks a shell among them to join faces that touch.
     imprint: Option<Origin>,
+    /// Those of each solid or closed shell of an imported part.
+    bodies: Vec<BTreeSet<SurfaceId>>,
 }
 
 /// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
@@ -120,6 +122,8 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
             let imprint = scene.model.imprint(&faces, origin, (&scene.network, &tolerance), cx.job)?;
             plan.imprint = Some((imprint, origin));
         }
+    } else {
+        plan.bodies = super::bodies::apart(&plan, &faces.bodies, &scene, &tolerance);
     }
     let scene = super::cuts::along_curves(cx, scene, &mut plan)?;
     Ok((plan, scene))
@@ -208,6 +212,9 @@ impl Finder<'_> {
                 for (surface, _) in &built.surfaces {
                     let near = plan.glue.entry(*surface).or_insert(built.near);
                     *near = near.max(built.near);
+                }
+                if shell.body == Some(BodyKind::Solid) || shell.body.is_some() && built.closed {
+                    faces.bodies.push(built.surfaces.iter().map(|s| s.0).collect());
                 }
                 if built.closed {
                     faces.closed.extend(built.surfaces.iter().map(|s| s.0));
