@@ -207,7 +207,7 @@ impl NurbsSurface {
 }
 
 /// Most points of a piece of a net of the degrees that most surfaces keep to.
-pub(super) const POINTS: usize = (COMMON_DEGREE + 1) * (COMMON_DEGREE + 1);
+const POINTS: usize = (COMMON_DEGREE + 1) * (COMMON_DEGREE + 1);
 
 #[cfg(test)]
 mod tests {

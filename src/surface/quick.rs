@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::Jet2;
 use super::core::Surface;
-use super::net_spread::{NetStrip, POINTS};
+use super::net_spread::NetStrip;
 use super::nurbs::{NurbsSurface, multiplicity, quotient};
 use super::rail::Lean;
 use super::shape::Shape;
@@ -21,6 +21,8 @@ use crate::geometry::nurbs::{COMMON_DEGREE, projected};
 
 /// Boxes along each side of a span for which third derivatives are bounded apart.
 const BOXES: usize = 3;
+/// Highest degree in powers: about the middle of a span they lose a factor of 2 a degree, here 4e-12 of the size.
+const HIGHEST: usize = 14;
 
 /// A net, ready.
 #[derive(Clone, Debug)]
@@ -50,14 +52,16 @@ struct Powers {
 struct Stops {
     at: Vec<f64>,
     by: Vec<f64>,
+    /// Where in a span, from 0 to 1, its powers are taken.
+    about: f64,
 }
 
 impl Stops {
-    fn new(at: Vec<f64>) -> Self {
-        Self { by: at.windows(2).map(|w| 1.0 / (w[1] - w[0])).collect(), at }
+    fn new(at: Vec<f64>, degree: usize) -> Self {
+        Self { by: at.windows(2).map(|w| 1.0 / (w[1] - w[0])).collect(), at, about: about(degree) }
     }
 
-    /// The span of a parameter, the place in it from 0 to 1, and one over its width.
+    /// The span of a parameter, the place in it, from 0 to 1 less where its powers are taken, and one over its width.
     fn place(&self, x: f64) -> (usize, f64, f64) {
         let (stops, n) = (&self.at, self.by.len());
         // Even knots are met at once.
@@ -68,7 +72,7 @@ impl Stops {
         while k + 1 < n && x >= stops[k + 1] {
             k += 1;
         }
-        (k, (x - stops[k]) * self.by[k], self.by[k])
+        (k, (x - stops[k]) * self.by[k] - self.about, self.by[k])
     }
 }
 
@@ -130,7 +134,7 @@ impl Surface {
     /// The net made ready; `None` for surfaces that are none.
     pub fn quick(&self) -> Option<Quick> {
         match &self.parts().shape {
-            Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= COMMON_DEGREE => {
+            Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= HIGHEST => {
                 Some(Quick { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) })
             }
             _ => None,
@@ -179,7 +183,7 @@ impl Powers {
             thirds: OnceLock::new(),
             corners: (corners(true, &rough.0), corners(false, &rough.1)),
             rough,
-            stops: (Stops::new(stops.0), Stops::new(stops.1)),
+            stops: (Stops::new(stops.0, net.degree.0), Stops::new(stops.1, net.degree.1)),
         }
     }
 }
@@ -355,6 +359,7 @@ impl Quick {
     fn most_thirds(&self, (low, high): (DVec2, DVec2), along: DVec3) -> [f64; 4] {
         let range = |stops: &Stops, a: f64, b: f64| {
             let ((i, s, _), (j, t, _)) = (stops.place(a), stops.place(b));
+            let (s, t) = (s + stops.about, t + stops.about);
             let boxed = |k: usize, s: f64| k * BOXES + ((s.max(0.0) * BOXES as f64) as usize).min(BOXES - 1);
             (boxed(i, s), boxed(j, t))
         };
@@ -397,11 +402,14 @@ fn divided(stops: &[f64]) -> Vec<f64> {
 fn powers(net: &[Vec<DVec4>]) -> Vec<DVec4> {
     let one = |points: &[DVec4]| -> Vec<DVec4> {
         let p = points.len() - 1;
-        let term = |k: usize, i: usize| {
+        let at_start = |k: usize, i: usize| {
             let sign = if (k - i).is_multiple_of(2) { 1.0 } else { -1.0 };
             points[i] * (sign * binomial(p, k) * binomial(k, i))
         };
-        (0..=p).map(|k| (0..=k).map(|i| term(k, i)).sum()).collect()
+        if about(p) == 0.0 {
+            return (0..=p).map(|k| (0..=k).map(|i| at_start(k, i)).sum()).collect();
+        }
+        (0..=p).map(|k| (0..=p).map(|i| points[i] * from_middle(p, i, k)).sum()).collect()
     };
     let rows: Vec<Vec<DVec4>> = net.iter().map(|row| one(row)).collect();
     let n = rows[0].len();
@@ -409,25 +417,42 @@ fn powers(net: &[Vec<DVec4>]) -> Vec<DVec4> {
     (0..rows.len()).flat_map(|j| columns.iter().map(move |c| c[j])).collect()
 }
 
+/// Where in a span, from 0 to 1, the powers of a degree are taken: at its start while that loses nothing to speak of, else in its middle.
+fn about(degree: usize) -> f64 {
+    if degree <= COMMON_DEGREE { 0.0 } else { 0.5 }
+}
+
+/// The coefficient of x^k in the i-th Bernstein polynomial of degree p at ½ + x.
+fn from_middle(p: usize, i: usize, k: usize) -> f64 {
+    let term = |m: usize| {
+        let sign = if (k - m).is_multiple_of(2) { 1.0 } else { -1.0 };
+        sign * binomial(i, m) * binomial(p - i, k - m)
+    };
+    let first = k.saturating_sub(p - i);
+    let sum: f64 = (first..=k.min(i)).map(term).sum();
+    (0..p - k).fold(binomial(p, i) * sum, |x, _| 0.5 * x)
+}
+
 impl NurbsSurface {
     /// Bounds of the third derivatives over a rectangle inside one span: hulls of differences, and the quotient rule
     /// about the first point; apart along the normal in the middle, where a change of parameters adds nothing.
     fn third(&self, u: &NetStrip, v: &NetStrip, normal: DVec3) -> Third {
         let (n, rows) = (self.degree.0 + 1, self.degree.1 + 1);
-        let mut net = [DVec4::ZERO; POINTS];
+        let mut net = vec![DVec4::ZERO; n * rows];
         self.piece_into(u, v, &mut net);
-        let light = net[..n * rows].iter().map(|q| q.w).fold(f64::INFINITY, f64::min);
+        let light = net.iter().map(|q| q.w).fold(f64::INFINITY, f64::min);
         let origin = projected(net[0]);
         let (mut points, reach) = ((0.0_f64, 0.0_f64), |q: DVec3| (q.dot(normal).abs(), q.length()));
-        for q in &mut net[..n * rows] {
+        for q in &mut net {
             *q = (q.truncate() - origin * q.w).extend(q.w);
             let (up, whole) = reach(projected(*q));
             points = (points.0.max(up), points.1.max(whole));
         }
         // Bounds of the i-th difference along u and the j-th along v: normal and whole numerator, weight.
         let (mut a, mut b, mut w) = ([[0.0_f64; 4]; 4], [[0.0_f64; 4]; 4], [[0.0_f64; 4]; 4]);
+        let mut in_v = net.clone();
         for i in 0..4_usize.min(n) {
-            let mut in_v = net;
+            in_v.copy_from_slice(&net);
             for j in 0..(4 - i).min(rows) {
                 for q in (0..rows - j).flat_map(|r| &in_v[r * n..r * n + n - i]) {
                     let (up, whole) = reach(q.truncate());
