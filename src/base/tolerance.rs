@@ -73,6 +73,9 @@ pub const BEFORE_KNOT: f64 = 1e-13;
 pub const TOLD_APART: f64 = 4.0;
 /// A free end that misses a curve by at most this many tolerances gets a warning.
 pub const NEAR_MISS: f64 = 10.0;
+/// A loop of a file within this share of the tolerance of a surface's own border is that border: two such borders of one curve are then
+/// within the tolerance of each other. Beyond that the curve is the border, for every face that has it.
+pub const ONE_BORDER: f64 = 0.5;
 /// Borders of imported faces are glued over this many times the widest gap inside the borders of one face (math notes §14.2).
 pub const GAP_ROOM: f64 = 10.0;
 /// Free borders that run along each other within this many times the stated glue distance were meant to be one.

@@ -31,9 +31,13 @@ impl Model {
     /// How far apart borders of some surfaces may be and still be one edge, model units: what is stated, else ten times the
     /// widest gap within the borders that a face came with, and the tolerance at the least.
     pub fn reach(&self, surfaces: impl IntoIterator<Item = SurfaceId>, stated: Option<f64>, tolerance: &Tolerance) -> f64 {
-        let own = || surfaces.into_iter().map(|s| self.surfaces[s.index()].surface.gap()).fold(0.0, f64::max);
         // What is just as far apart as stated is within it.
-        stated.map_or_else(|| GAP_ROOM * own(), |d| d + tolerance.rounding).max(tolerance.point)
+        stated.map_or_else(|| GAP_ROOM * self.own_gap(surfaces), |d| d + tolerance.rounding).max(tolerance.point)
+    }
+
+    /// The widest gap within the borders that a face came with, model units.
+    pub(super) fn own_gap(&self, surfaces: impl IntoIterator<Item = SurfaceId>) -> f64 {
+        surfaces.into_iter().map(|s| self.surfaces[s.index()].surface.gap()).fold(0.0, f64::max)
     }
 }
 

@@ -38,8 +38,7 @@ impl Model {
     /// E617 (three faces at an edge), E618 (open and not connected) or E711 (borders just beyond a stated reach).
     pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
         let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
-        let near = self.reach(members.iter().copied(), request.snap.map(|s| s.0), tolerance);
-        let (edges, joins) = self.joins(&members, near, network, tolerance);
+        let (near, (edges, joins)) = self.sewn(request, &members, network, tolerance);
         let pieces = &joins.pieces;
         let slivers = self.slivers(&members, (&edges, pieces), near);
         let usages = usages(self, (&edges, pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
@@ -67,6 +66,28 @@ impl Model {
             closed: free.is_empty() && usages.iter().all(|u| u.len() <= 2),
             free,
         })
+    }
+
+    /// How far borders of a shell may be apart with its edges so joined: [`Model::reach`], or where nothing is stated and every edge
+    /// finds its other face within the widest gap of one face's borders, that alone: what is small beside a wide gap then stays.
+    fn sewn(
+        &self,
+        request: &ShellRequest,
+        members: &BTreeSet<SurfaceId>,
+        network: &Network,
+        tolerance: &Tolerance,
+    ) -> (f64, (Vec<EdgeId>, Joins)) {
+        let most = self.reach(members.iter().copied(), request.snap.map(|s| s.0), tolerance);
+        let least = self.own_gap(members.iter().copied()).max(tolerance.point);
+        if request.snap.is_none() && least < most {
+            let (edges, joins) = self.joins(members, least, network, tolerance);
+            let slivers = self.slivers(members, (&edges, &joins.pieces), least);
+            let usages = usages(self, (&edges, &joins.pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
+            if usages.iter().all(|users| matches!(users.len(), 0 | 2)) {
+                return (least, (edges, joins));
+            }
+        }
+        (most, self.joins(members, most, network, tolerance))
     }
 
     /// Edges of some surfaces, cut into atoms; borders up to `near` apart are one.

@@ -51,16 +51,22 @@ impl Part {
 
 impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
-    /// the file has them.
+    /// the file has them: as they were found to be, else what it says that may lie between two points that are one.
     pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
-        let tolerance = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
+        let found = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
+        let said = Tolerance { point: self.slack, ..*tolerance };
+        self.within(origin, &found)
+            .or_else(|why| if said.point > found.point { self.within(origin, &said).map_err(|_| why) } else { Err(why) })
+    }
+
+    fn within(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
         if self.outer.is_none() && self.holes.is_empty() {
             return Ok((vec![self.turned(self.base.clone())], Vec::new()));
         }
         let trimmed = || {
             let outer = self.outer.as_deref().map(chains).unwrap_or_default();
             let holes: Vec<Vec<Chain>> = self.holes.iter().map(|hole| chains(hole)).collect();
-            trim(&self.base, &outer, &holes, origin, &tolerance).map(|surface| (vec![surface], Vec::new()))
+            trim(&self.base, &outer, &holes, origin, tolerance).map(|surface| (vec![surface], Vec::new()))
         };
         let bounded = || {
             let loops: Vec<Vec<Chain>> = self.outer.iter().chain(&self.holes).map(|border| chains(border)).collect();
@@ -69,7 +75,7 @@ impl Face {
                 &loops,
                 Outlined { has_outer: self.outer.is_some(), inside: self.inside, against: self.against },
                 origin,
-                &tolerance,
+                tolerance,
             )
         };
         // Where nothing closes each loop bounds a part alone, in whatever order its curves are.

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::base::Base;
 use super::healing::{Off, Rule};
-use super::natural::{is_natural, matched};
+use super::natural::{Rooms, is_natural, matched};
 use crate::base::bbox::Box3;
-use crate::base::tolerance::{NEAR_MISS, Tolerance};
+use crate::base::tolerance::{NEAR_MISS, ONE_BORDER, Tolerance};
 use crate::geometry::{Curve, Motion, closest};
 use crate::surface::{Nearest, Side, Surface};
 
@@ -39,6 +39,8 @@ pub struct Face {
     pub inside: Option<DVec3>,
     /// Largest distance found of its curves from the base, and of the end of each from the start of the next, model units.
     pub off: Off,
+    /// What may lie between two points that the file calls one, model units.
+    pub slack: f64,
 }
 
 /// What is known of a face beside its surface and the curves of its loops.
@@ -58,27 +60,27 @@ impl Face {
     /// All of a surface.
     pub fn whole(base: &Base, surface: Surface, tolerance: &Tolerance) -> Self {
         let (flat, against) = (base.is_flat(tolerance), base.is_against());
-        Self { base: surface, outer: None, holes: Vec::new(), flipped: false, flat, against, inside: None, off: Off::NONE }
+        Self { base: surface, outer: None, holes: Vec::new(), flipped: false, flat, against, inside: None, off: Off::NONE, slack: 0.0 }
     }
 
     /// The part of a surface inside its loops.
     pub fn inside(base: &Base, surface: Surface, mut loops: Vec<Vec<Border>>, known: Known, tolerance: &Tolerance) -> Self {
         if let ([outer], true) = (loops.as_slice(), known.has_outer)
-            && let Some(gap) = matched(base, &surface, outer, known.slack, tolerance)
+            && let Some(gap) = matched(base, &surface, outer, ONE_BORDER * tolerance.point, tolerance)
         {
             let off = Off { distance: gap, place: outer[0].space.start(), rule: Rule::Border };
-            return Self { against: known.against, inside: known.inside, off, ..Self::whole(base, surface, tolerance) };
+            return Self { against: known.against, inside: known.inside, off, slack: known.slack, ..Self::whole(base, surface, tolerance) };
         }
         let off = off(&surface, &loops);
         for border in &mut loops {
             cut_at_poles(&surface, border, NEAR_MISS * known.slack);
         }
         let mut loops = loops.into_iter();
-        let room = known.slack.max(2.0 * off.distance);
         let outer = if known.has_outer { loops.next() } else { None };
         // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
         let tells = surface.closed() != (false, false) && loops.len() > 0;
-        let outer = outer.filter(|outer| tells || !is_natural(base, &surface, outer, room, tolerance));
+        let rooms = Rooms { along: known.slack.max(2.0 * off.distance), free: ONE_BORDER * tolerance.point };
+        let outer = outer.filter(|outer| tells || !is_natural(base, &surface, outer, rooms, tolerance));
         Self {
             base: surface,
             outer,
@@ -88,6 +90,7 @@ impl Face {
             against: known.against,
             inside: known.inside,
             off,
+            slack: known.slack,
         }
     }
 }
@@ -106,6 +109,7 @@ impl Face {
             flipped: self.flipped != motion.mirrors(),
             against: self.against != motion.mirrors(),
             inside: self.inside.map(|p| motion.point(p)),
+            slack: self.slack * motion.scale(),
             off: Off { distance: self.off.distance * motion.scale(), place: motion.point(self.off.place), ..self.off },
             ..*self
         }

@@ -13,14 +13,22 @@ use crate::surface::{Side, Surface};
 /// Places compared along each curve.
 const SAMPLES: usize = 16;
 
-/// Whether a loop runs along the sides of a surface and covers all of them that are free; places within `room` are one.
-pub fn is_natural(base: &Base, surface: &Surface, outer: &[Border], room: f64, tolerance: &Tolerance) -> bool {
+/// How far a loop may be from the sides of a surface, model units.
+#[derive(Clone, Copy, Debug)]
+pub struct Rooms {
+    /// From seams: nothing else is joined there.
+    pub along: f64,
+    /// From free sides, which other faces have too, and they from it.
+    pub free: f64,
+}
+
+/// Whether a loop runs along the sides of a surface and covers all of them that are free.
+pub fn is_natural(base: &Base, surface: &Surface, outer: &[Border], rooms: Rooms, tolerance: &Tolerance) -> bool {
     let Some(sides) = sides(base, surface, tolerance) else { return false };
-    let lines: Vec<&Curve> = sides.iter().map(|s| &s.0).collect();
-    let curves: Vec<&Curve> = outer.iter().map(|b| &b.space).collect();
-    let near = |p: DVec3, among: &[&Curve]| among.iter().any(|c| closest(c, p).distance <= room);
-    curves.iter().all(|c| places(c).all(|p| near(p, &lines)))
-        && sides.iter().filter(|s| s.1).all(|(side, _)| places(side).all(|p| near(p, &curves)))
+    let room = |is_free: bool| if is_free { rooms.free } else { rooms.along };
+    let on_side = |p: DVec3| sides.iter().any(|(side, is_free)| closest(side, p).distance <= room(*is_free));
+    let on_curve = |p: DVec3| outer.iter().any(|b| closest(&b.space, p).distance <= rooms.free);
+    outer.iter().all(|b| places(&b.space).all(on_side)) && sides.iter().filter(|s| s.1).all(|(side, _)| places(side).all(on_curve))
 }
 
 /// The largest distance of a loop from the sides of a surface where each of its curves is one side, run evenly; none where that is
