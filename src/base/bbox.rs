@@ -50,6 +50,11 @@ impl Box3 {
         if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
     }
 
+    /// Distance from the origin to the farthest corner, 0 when empty.
+    pub fn furthest(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).length() }
+    }
+
     /// Middle of the box.
     pub fn center(&self) -> DVec3 {
         (self.min + self.max) * 0.5

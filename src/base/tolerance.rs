@@ -94,6 +94,8 @@ const MOST_PLACES: f64 = 300.0;
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;
 const POINT_SHARE: f64 = 1e-6;
+/// How many times the rounding of coordinates the tolerance is at the least.
+const KEPT: f64 = 10.0;
 /// What arithmetic may have done to a coordinate, as a share of the model's size.
 pub const ROUNDING_SHARE: f64 = 1e-12;
 /// The nearest pair of two curves is the nearest one to this share of its distance.
@@ -135,6 +137,19 @@ impl Tolerance {
             exponent += 1;
         }
         Self::new(power_of_ten(exponent), diagonal)
+    }
+
+    /// The same for a model that reaches so far from the origin, model units: not below what rounding does to coordinates there.
+    pub fn at_distance(self, furthest: f64) -> Self {
+        let rounding = EPSILON * furthest;
+        if !(rounding > self.rounding && rounding.is_finite()) {
+            return self;
+        }
+        let (mut exponent, least) = (super::math::log10(rounding).floor() as i32, KEPT * rounding);
+        while power_of_ten(exponent) < least {
+            exponent += 1;
+        }
+        Self { point: self.point.max(power_of_ten(exponent)), rounding, ..self }
     }
 
     /// The same with another angle that separates kinks from smooth turns, radians.
@@ -195,5 +210,13 @@ mod tests {
             assert_eq!(Tolerance::from_diagonal(diagonal, 1.0).point, expected, "{diagonal}");
         }
         assert_eq!(Tolerance::from_diagonal(0.0, 0.001).point, 0.001);
+    }
+
+    #[test]
+    fn far_from_the_origin_the_size_decides_until_rounding_does() {
+        for (diagonal, furthest, expected) in [(70.0, 3.7e5, 1e-5), (70.0, 0.0, 1e-5), (1.0, 1e9, 1e-4), (1.0, 3e9, 1e-3)] {
+            let tolerance = Tolerance::from_diagonal(diagonal, 1.0).at_distance(furthest);
+            assert_eq!(tolerance.point, expected, "{diagonal} {furthest}");
+        }
     }
 }

@@ -185,23 +185,26 @@ impl Cx<'_> {
     /// The tolerance that is written, or the one for the size of the model. E306 for one that rounding does not keep; the smallest one that
     /// it does is gone on with.
     fn fix_tolerance(&mut self, said: Option<Said>) {
-        let diagonal = self.seen.diagonal();
+        let (diagonal, furthest) = (self.seen.diagonal(), self.seen.furthest());
         let Some(Said { point, angle, at: (index, expr) }) = said else {
             let fallback = units::convert(FALLBACK_MM, units::MILLIMETRE, self.unit, 1);
-            self.tolerance = Some(Tolerance::from_diagonal(diagonal, fallback));
+            self.tolerance = Some(Tolerance::from_diagonal(diagonal, fallback).at_distance(furthest));
             return;
         };
-        let (mut tolerance, least) = (Tolerance::new(point, diagonal), EPSILON * diagonal);
+        let mut tolerance = Tolerance::new(point, diagonal).at_distance(furthest);
+        // Far from the origin the coordinates round more than the size does.
+        let (least, is_far) = if tolerance.point > point { (tolerance.point, true) } else { (EPSILON * diagonal, false) };
         if least > point && least.is_finite() {
             let (shown, found) = (self.length(least), self.length(point));
             let script = self.machine.at(ModuleId::MAIN).script.clone();
             let code = Code { nodes: &script.declarations[index as usize].nodes, module: ModuleId::MAIN, declaration: index };
             let text = format!("the tolerance must be at least {shown}, got {found}");
-            let why = format!("the model is {} across, and rounding moves its points by up to 1e-14 of that", self.length(diagonal));
+            let (size, reaches) = if is_far { (furthest, "from the origin") } else { (diagonal, "across") };
+            let why = format!("the model is {} {reaches}, and rounding moves its points by up to 1e-14 of that", self.length(size));
             self.error(code, "E306", text, code.span(expr), found).note(why).say();
             let said = std::mem::take(&mut self.sink);
             self.machine.filed.extend(said.into_iter().map(|d| (Some((ModuleId::MAIN, index)), d)));
-            tolerance = Tolerance::new(least, diagonal);
+            tolerance = Tolerance::new(least, diagonal).at_distance(furthest);
         }
         self.tolerance = Some(angle.map_or(tolerance, |angle| tolerance.with_angle(angle)));
     }

@@ -72,17 +72,23 @@ impl Opened {
     /// A box that holds about all its points, model units: for the tolerance of the model.
     pub fn reach(&self) -> Box3 {
         let mut reach = Box3::EMPTY;
-        // Axes and the ground of faces reach beyond what is offered.
+        // Axes, the places of endless surfaces and the ground of faces reach beyond what is offered.
         let mut hidden = BTreeSet::new();
         for decoded in &self.book.decoded {
             job::look();
             match &decoded.data {
                 Data::Revolution { axis, .. } => hidden.insert(*axis),
+                Data::PlaneSurface { at, .. } | Data::Round { kind: 192 | 194, at, .. } => hidden.insert(*at),
                 Data::Trimmed { surface, outer: Some(_), .. } | Data::Face { surface, has_outer: true, .. } => hidden.insert(*surface),
                 Data::CurveOnSurface { uv, .. } => hidden.insert(*uv),
                 _ => false,
             };
         }
+        // What the ground is made of is placed with it; what a border is made of counts all the same.
+        let spaces =
+            self.book.decoded.iter().filter_map(|d| if let Data::CurveOnSurface { space, .. } = d.data { Some(space) } else { None });
+        let shown = self.with_parts(spaces.collect());
+        let hidden: BTreeSet<Pointer> = self.with_parts(hidden).difference(&shown).copied().collect();
         for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
             job::look();
             if entry.status.purpose == 5 || hidden.contains(&entry.d) {
@@ -109,6 +115,24 @@ impl Opened {
             }
         }
         reach
+    }
+
+    /// Entities with all that they are made of: profiles, axes, rails, pieces.
+    fn with_parts(&self, mut all: BTreeSet<Pointer>) -> BTreeSet<Pointer> {
+        let mut open: Vec<Pointer> = all.iter().copied().collect();
+        while let Some(d) = open.pop() {
+            job::look();
+            let parts = match self.book.data(d) {
+                Ok(Data::Composite(pieces)) => pieces.clone(),
+                Ok(Data::Revolution { axis, profile, .. }) => vec![*axis, *profile],
+                Ok(Data::Ruled { rails, .. }) => rails.to_vec(),
+                Ok(Data::Tabulated { profile, .. }) => vec![*profile],
+                Ok(Data::OffsetCurve { base, .. } | Data::OffsetSurface { base, .. }) => vec![*base],
+                _ => Vec::new(),
+            };
+            open.extend(parts.into_iter().filter(|part| all.insert(*part)));
+        }
+        all
     }
 
     /// Makes curves and surfaces of the entities.

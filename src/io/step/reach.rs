@@ -23,6 +23,8 @@ impl Step<'_> {
             let see = |reach: Box3, point: u32| self.point(point).map_or(reach, |p| reach.with(p));
             match name {
                 b"CARTESIAN_POINT" => reach = see(reach, k),
+                // Where something is placed is no part of it.
+                b"AXIS1_PLACEMENT" | b"AXIS2_PLACEMENT_2D" | b"AXIS2_PLACEMENT_3D" => continue,
                 b"PCURVE" | b"DIRECTION" | b"VECTOR" | b"PLANE" | b"LINE" => continue,
                 b"CYLINDRICAL_SURFACE" | b"CONICAL_SURFACE" | b"SURFACE_OF_REVOLUTION" | b"SURFACE_OF_LINEAR_EXTRUSION" => continue,
                 b"TOROIDAL_SURFACE" | b"SPHERICAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE" | b"CIRCLE" | b"ELLIPSE" => {
@@ -53,6 +55,10 @@ impl Step<'_> {
                             || !matches!(file.name(surface), b"TOROIDAL_SURFACE" | b"SPHERICAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE"))
                     {
                         open.push(surface);
+                        // A whole turned surface has no edges: its profile says how large it is.
+                        if is_whole && file.name(surface) == b"SURFACE_OF_REVOLUTION" {
+                            open.extend(file.parameters(surface).entity(1));
+                        }
                     }
                     continue;
                 }
