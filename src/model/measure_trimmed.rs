@@ -75,6 +75,7 @@ pub fn trimmed_integral<const N: usize>(
         .collect();
     let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
+    let closed_v = surface.closed().1;
     let quick = surface.quick();
     let dear = if surface.is_scattered() { DEAR } else { 0 };
     let jet = |u, v| {
@@ -95,7 +96,9 @@ pub fn trimmed_integral<const N: usize>(
     let strips = if inside { Strips::new((&breaks_u, &breaks_v), &across, &|u, v| f(&jet(u, v))) } else { None };
     let inner = |base: f64, at: DVec2| -> Sums<N> {
         if let Some(strips) = &strips {
-            return strips.from(strips.nearest(base), at, |low, high| part(low, high, at.y));
+            // The table holds one turn: where a border runs over the seam it is the same a turn away.
+            let turn = if closed_v && !(0.0..=1.0).contains(&at.y) { at.y.floor() } else { 0.0 };
+            return strips.from(strips.nearest(base), at - DVec2::new(0.0, turn), |low, high| part(low, high, at.y));
         }
         let mut sum = [0.0; N];
         let (first, last) = (base.min(at.x), base.max(at.x));
@@ -141,7 +144,7 @@ pub fn trimmed_integral<const N: usize>(
     };
     let mut open: Vec<Run> = Vec::new();
     for (border, (_, way)) in ways.iter().enumerate() {
-        let stops = way.stops(&breaks_v);
+        let stops = way.stops(&breaks_v, closed_v);
         open.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
     }
     open.reverse();
@@ -187,11 +190,17 @@ pub fn trimmed_integral<const N: usize>(
 
 impl Way {
     /// Shares of the way at which it is less than smooth, ends included.
-    fn stops(&self, breaks_v: &[f64]) -> Vec<f64> {
+    fn stops(&self, breaks_v: &[f64], closed_v: bool) -> Vec<f64> {
         let mut stops = vec![0.0, 1.0];
         match self {
             Self::Chain(_, chain, from, to) => stops.extend(chain_breaks(chain).into_iter().map(|f| (f - from) / (to - from))),
-            Self::Line(a, b) => stops.extend(breaks_v.iter().map(|v| (v - a.1) / (b.1 - a.1)).filter(|t| t.is_finite())),
+            Self::Line(a, b) => {
+                // Breaks repeat, and the seam is one, where the surface closes and the line runs over its seam.
+                let turns = if closed_v { a.1.min(b.1).floor() as i64..=a.1.max(b.1).ceil() as i64 } else { 0..=0 };
+                let seam = closed_v.then_some(0.0);
+                let all = turns.flat_map(|n| breaks_v.iter().copied().chain(seam).map(move |v| v + n as f64));
+                stops.extend(all.map(|v| (v - a.1) / (b.1 - a.1)).filter(|t| t.is_finite()));
+            }
         }
         stops.retain(|t| (0.0..=1.0).contains(t));
         stops.sort_by(f64::total_cmp);
