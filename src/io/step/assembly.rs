@@ -21,6 +21,8 @@ const DEEP: usize = 64;
 pub struct Placed {
     /// The item.
     pub item: u32,
+    /// The representation that has it.
+    pub representation: u32,
     /// The context of its representation, that says the units.
     pub units: Units,
     /// From the item's frame to the model's; lengths in model units.
@@ -49,6 +51,20 @@ pub struct Assembly {
     pub placed: Vec<Placed>,
     /// Products at their places; parents before their parts.
     pub instances: Vec<Instance>,
+}
+
+impl Assembly {
+    /// What places an item, from its representation up: that, mapped items, occurrences and products.
+    pub fn way(&self, placed: &Placed) -> Vec<u32> {
+        let mut way = vec![placed.representation];
+        let mut at = Some(placed.instance);
+        while let Some(instance) = at.and_then(|k| self.instances.get(k)) {
+            way.push(instance.entity);
+            way.extend(instance.product);
+            at = instance.parent;
+        }
+        way
+    }
 }
 
 /// A product in another one.
@@ -293,7 +309,7 @@ impl Walk<'_, '_> {
             if self.found.placed.len() >= limits::PART_INSTANCES {
                 return self.too_many(item);
             }
-            self.found.placed.push(Placed { item, units, motion: *motion, instance });
+            self.found.placed.push(Placed { item, representation, units, motion: *motion, instance });
         }
     }
 

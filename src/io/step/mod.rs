@@ -10,6 +10,7 @@
 
 mod assembly;
 mod conics;
+mod contexts;
 mod curves;
 mod faces;
 mod looks;

@@ -150,12 +150,11 @@ impl Maker<'_> {
                 self.step.warn(placed.item, format!("skipped: {why}"));
                 break;
             }
-            let instance = &assembly.instances[placed.instance];
             let alone = of_instance[placed.instance] == 1;
             if last {
-                self.put(shape, placed, instance, alone);
+                self.put(shape, placed, assembly, alone);
             } else {
-                self.put(shape.clone(), placed, instance, alone);
+                self.put(shape.clone(), placed, assembly, alone);
                 shapes.insert(placed.item, (placed.units, shape));
             }
         }
@@ -175,18 +174,18 @@ impl Maker<'_> {
     }
 
     /// Puts a placed item into the part.
-    fn put(&mut self, shape: Shape, placed: &Placed, instance: &Instance, alone: bool) {
+    fn put(&mut self, shape: Shape, placed: &Placed, assembly: &Assembly, alone: bool) {
         let still = placed.motion == Motion::translation(DVec3::ZERO);
         let (points, curves, faces) = (self.part.points.len(), self.part.curves.len(), self.part.surfaces.len());
-        let solid = placed.item;
+        let (solid, way) = (placed.item, assembly.way(placed));
         for (entity, p) in shape.points {
-            let color = self.looks.curve(&[entity, solid]).cloned();
+            let color = self.looks.curve(&[entity, solid], &way).cloned();
             let at = Place::Point(self.part.points.len());
             let item = self.named(entity, "point", self.part.points.len(), color, at, vec![placed.motion.point(p)]);
             self.part.points.push(item);
         }
         for (entity, curve) in shape.curves {
-            let color = self.looks.curve(&[entity, solid]).cloned();
+            let color = self.looks.curve(&[entity, solid], &way).cloned();
             let curve = if still { curve } else { curve.moved(&placed.motion) };
             if curve.length() <= self.step.tolerance.point {
                 self.step.warn(entity, "skipped: it is shorter than the tolerance");
@@ -197,7 +196,7 @@ impl Maker<'_> {
             self.part.curves.push(item);
         }
         for (entity, face, shell) in shape.faces {
-            let color = self.looks.surface(&[entity, shell.unwrap_or(entity), solid]).cloned();
+            let color = self.looks.surface(&[entity, shell.unwrap_or(entity), solid], &way).cloned();
             let at = Place::Surface(self.part.surfaces.len());
             let face = if still { face } else { face.moved(&placed.motion) };
             let item = self.named(entity, "surface", self.part.surfaces.len(), color, at, face);
@@ -216,7 +215,7 @@ impl Maker<'_> {
             if group.is_empty() {
                 continue;
             }
-            self.bundle(bundle, group, &mut solid_name, (placed.instance, instance), alone);
+            self.bundle(bundle, group, &mut solid_name, (placed.instance, &assembly.instances[placed.instance]), alone);
         }
     }
 
