@@ -215,6 +215,28 @@ fn colours_of_imported_faces_go_out_again() {
 }
 
 #[test]
+fn names_layers_and_colours_of_an_imported_assembly_go_out_again() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("painted");
+    fs::create_dir_all(&folder).unwrap();
+    let part = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/imports/parts/painted.step");
+    fs::copy(part, folder.join("part.step")).unwrap();
+    let import = format!("units mm\nimport \"{}\" as part\n", folder.join("part.step").display());
+    let files = run("painted", &format!("{import}export part to \"out.step\"\nexport part to \"out.igs\"\n"));
+    let all = records(&files["out.step"]);
+    let count = |kind: &str, what: &str| of_type(&all, kind).iter().filter(|(_, record)| record.contains(what)).count();
+    assert_eq!((count("MANIFOLD_SOLID_BREP", "'left'"), count("MANIFOLD_SOLID_BREP", "'single'")), (2, 1));
+    assert_eq!((count("ADVANCED_FACE", "'wall'"), count("ADVANCED_FACE", "'sides'")), (6, 24));
+    let on =
+        |layer: &str| references(of_type(&all, "PRESENTATION_LAYER_ASSIGNMENT").iter().find(|(_, r)| r.contains(layer)).unwrap().1).len();
+    assert_eq!((on("'blocks'"), on("'bores'")), (6, 6), "solids on the one, faces on the other");
+    // A style for each solid, and one for its bore.
+    assert_eq!((of_type(&all, "STYLED_ITEM").len(), of_type(&all, "OVER_RIDING_STYLED_ITEM").len()), (6, 6));
+    for name in ["left", "left_2", "single", "wall"] {
+        assert!(files["out.igs"].contains(&format!("406,1,{}H{name};", name.len())), "{name}");
+    }
+}
+
+#[test]
 fn a_parted_seam_is_one_edge() {
     let model = "units mm
 surface ball = revolve(arc((0, 0, -10), (0, 0, 10), through: (10, 0, 0)))

@@ -139,25 +139,44 @@ impl Faces {
         for (group, _) in &part.colors {
             group.surfaces.iter().for_each(|k| colors[*k] = Some(&group.name));
         }
+        let mut layers: Vec<Vec<Arc<str>>> = vec![Vec::new(); part.surfaces.len()];
+        for layer in &part.layers {
+            let name: Arc<str> = layer.own.as_ref().unwrap_or(&layer.name).as_str().into();
+            layer.surfaces.iter().for_each(|k| layers[*k].push(name.clone()));
+        }
         let place = cx.origins.place(file.origin);
-        for ((item, built), color) in part.surfaces.iter().zip(&part.built).zip(colors) {
+        for ((item, built), (color, layers)) in part.surfaces.iter().zip(&part.built).zip(colors.into_iter().zip(layers)) {
             let first = all.len();
             for surface in built {
                 let member = [all.len() as u32, NO_MEMBER];
                 let origin = place.map_or(file.origin, |place| cx.origins.add(Place { member, ..place }));
                 all.push(surface.with_origin(origin));
                 let color = color.zip(item.color).map(|(name, rgb)| (name.into(), rgb));
-                said.push(Said { name: item.name.as_str().into(), color, entity: format!("{}{}", part.mark, item.id).into() });
+                said.push(Said {
+                    name: item.name.as_str().into(),
+                    own: item.own.as_deref().map(Arc::from),
+                    layers: layers.clone(),
+                    color,
+                    entity: format!("{}{}", part.mark, item.id).into(),
+                });
             }
             places.push(first..all.len());
         }
         let name = place.map_or_else(String::new, |place| cx.declaration_name(place.module, place.declaration));
         let unusable: Vec<(Option<usize>, Unusable)> = part.unusable.iter().map(|face| (face.face, face.clone())).collect();
+        let mut bodies = BTreeMap::new();
+        for (kind, list) in [("solids", &part.solids), ("shells", &part.shells)] {
+            for (k, group) in list.iter().enumerate() {
+                let names = group.own.as_deref().map(|own| [own.into(), group.name.as_str().into()]);
+                bodies.extend(names.map(|names| (format!("{name}.{kind}[{k}]").into(), names)));
+            }
+        }
         let file = PartFile {
             path: file.path.into(),
             origin: place.map_or(file.origin, |place| cx.origins.add(Place { member: [NO_MEMBER; 2], expr: None, ..place })),
             module: cx.module(),
             said,
+            bodies,
             total: part.n_faces(),
             repairs: part.repairs.clone(),
             notes,

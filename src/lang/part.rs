@@ -1,6 +1,6 @@
 //! An imported part as a value: its faces, the bodies that they make, and what of the file could not be used.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::cx::Cx;
@@ -21,6 +21,10 @@ use crate::surface::Surface;
 pub struct Said {
     /// The file's name for it.
     pub name: Arc<str>,
+    /// The name as it stands in the file, where it has one; others may have the same.
+    pub own: Option<Arc<str>>,
+    /// Layers of the file that it lies on.
+    pub layers: Vec<Arc<str>>,
     /// Name of its colour in the file, and red, green and blue from 0 to 1.
     pub color: Option<(Arc<str>, [f64; 3])>,
     /// Where it stands in the file: `#36`, `D45`.
@@ -49,6 +53,9 @@ pub struct PartFile {
     pub module: ModuleId,
     /// Of each surface, in the order of the part's faces.
     pub said: Vec<Said>,
+    /// Names of solids and shells by those of scripts (`part.solids[0]`), where the file has one: as it stands there, and that of which
+    /// there is one only.
+    pub bodies: BTreeMap<Arc<str>, [Arc<str>; 2]>,
     /// How many faces the file has.
     pub total: usize,
     /// What was repaired.
@@ -189,6 +196,17 @@ impl Cx<'_> {
     /// What a file says of a face that was imported.
     pub fn said_of(&self, face: &Surface) -> Option<&Said> {
         self.part_of(face).and_then(|(part, face)| part.file.said.get(face))
+    }
+
+    /// The name of a face in the file that it was imported from, where it has one there.
+    pub fn name_in_file(&self, face: &Surface) -> Option<String> {
+        self.said_of(face)?.own.as_deref().map(str::to_owned)
+    }
+
+    /// The names that a file has for a body, as imported or moved: as it stands there, and that of which there is one only.
+    pub fn body_said(&self, shell: &ShellValue) -> Option<&[Arc<str>; 2]> {
+        let (part, _) = self.part_of(shell.surfaces.first()?)?;
+        part.file.bodies.get(&*shell.name)
     }
 
     /// A part, or a body of one, that lacks faces while all others of it are among these surfaces.

@@ -287,6 +287,10 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
         };
         Thing { name: cx.name(of), group: String::new(), color, shown }
     };
+    let face = |cx: &Cx, surface: &Surface| {
+        let thing = one(cx, surface.origin(), Shown::Surface(surface.clone()));
+        Thing { name: cx.name_in_file(surface).unwrap_or(thing.name), ..thing }
+    };
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
         match value {
@@ -299,11 +303,10 @@ fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Sto
                 let name = super::plan::edge_name(cx, &chain, edge);
                 things.push(Thing { name, ..one(cx, *origin, Shown::Curve(chain)) });
             }
-            Value::Surface(surface) => things.push(one(cx, surface.origin(), Shown::Surface(surface.clone()))),
+            Value::Surface(surface) => things.push(face(cx, surface)),
             Value::Shell(shell) => {
-                let surfaces = shell.surfaces.iter();
-                let group = |s: &Surface| Thing { group: shell.name.to_string(), ..one(cx, s.origin(), Shown::Surface(s.clone())) };
-                things.extend(surfaces.map(group));
+                let group = cx.body_said(shell).map_or(&shell.name, |[_, only]| only);
+                things.extend(shell.surfaces.iter().map(|s| Thing { group: group.to_string(), ..face(cx, s) }));
             }
             other => {
                 let what = format!("IGES holds points, curves, surfaces and shells, not {}", other.ty().words());

@@ -1,5 +1,7 @@
 //! `export … to "x.step"`: what is written becomes faces with the edges they share.
 
+use std::collections::BTreeMap;
+
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
 use crate::base::fault::{FileFault, Say};
 use crate::base::origin::Origin;
@@ -33,11 +35,12 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             }
             Value::Surface(surface) => {
                 let measured = Measured { area: Some(measure::area(surface)), volume: None };
-                (cx.surface_name(surface), lone(&scene, surface, (&setup, &colors))?, measured)
+                let name = cx.name_in_file(surface).unwrap_or_else(|| cx.surface_name(surface));
+                (name, lone(cx, &scene, surface, (&setup, &colors))?, measured)
             }
             Value::Shell(shell) => {
-                let (shown, measured) = whole(&scene, shell, (&setup, &colors))?;
-                (shell.name.to_string(), shown, measured)
+                let (shown, measured) = whole(cx, &scene, shell, (&setup, &colors))?;
+                (cx.body_said(shell).map_or(&shell.name, |[own, _]| own).to_string(), shown, measured)
             }
             other => {
                 return Err(unsupported(*origin, format!("STEP holds points, curves, surfaces and shells, not {}", other.ty().words())));
@@ -68,16 +71,18 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 /// A surface by itself: its patches share their edges with each other only.
-fn lone(scene: &Scene, surface: &Surface, (setup, colors): (&Setup, &Colors)) -> Result<Shown, Stop> {
+fn lone(cx: &Cx, scene: &Scene, surface: &Surface, (setup, colors): (&Setup, &Colors)) -> Result<Shown, Stop> {
     let (id, other) = scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
     let near = scene.model.reach([id], None, &setup.scale.tolerance);
     let shell = Shell { name: String::new(), origin: surface.origin(), surfaces: vec![(id, other)], near, closed: false, free: Vec::new() };
     let colors = colors.of_surface(surface).map(|rgb| (id, rgb)).into_iter().collect();
-    Ok(Shown::Faces(Box::new(Faces { model: scene.model.clone(), network: scene.network.clone(), shell, solid: false, colors })))
+    let names = cx.name_in_file(surface).map(|name| (id, name)).into_iter().collect();
+    let (model, network) = (scene.model.clone(), scene.network.clone());
+    Ok(Shown::Faces(Box::new(Faces { model, network, shell, solid: false, colors, names, layers: BTreeMap::new() })))
 }
 
 /// A shell: a solid where it closes.
-fn whole(scene: &Scene, shell: &ShellValue, (setup, colors): (&Setup, &Colors)) -> Result<(Shown, Measured), Stop> {
+fn whole(cx: &Cx, scene: &Scene, shell: &ShellValue, (setup, colors): (&Setup, &Colors)) -> Result<(Shown, Measured), Stop> {
     // What is to be said of it was said where it is declared.
     let built = scene.shell(shell, &setup.scale.tolerance, &mut Vec::new())?;
     let faces: Vec<(Surface, bool)> =
@@ -85,13 +90,43 @@ fn whole(scene: &Scene, shell: &ShellValue, (setup, colors): (&Setup, &Colors)) 
     let area = faces.iter().map(|(surface, _)| measure::area(surface)).sum();
     let volume = built.closed.then(|| measure::solid(&faces).volume.abs());
     let solid = built.closed;
-    let of_face = |surface: &Surface| Some((scene.find(surface)?.0, colors.of_surface(surface)?));
-    let colors = shell.surfaces.iter().filter_map(of_face).collect();
-    let faces = Faces { model: scene.model.clone(), network: scene.network.clone(), shell: built, solid, colors };
+    let common = file_layers(cx, shell.surfaces.iter());
+    let mut faces = Faces {
+        model: scene.model.clone(),
+        network: scene.network.clone(),
+        shell: built,
+        solid,
+        colors: BTreeMap::new(),
+        names: BTreeMap::new(),
+        layers: BTreeMap::new(),
+    };
+    for surface in &shell.surfaces {
+        let Some((id, _)) = scene.find(surface) else { continue };
+        faces.colors.extend(colors.of_surface(surface).map(|rgb| (id, rgb)));
+        let Some(said) = cx.said_of(surface) else { continue };
+        faces.names.extend(said.own.as_ref().map(|own| (id, own.to_string())));
+        let own: Vec<String> = said.layers.iter().map(|layer| layer.to_string()).filter(|layer| !common.contains(layer)).collect();
+        if !own.is_empty() {
+            faces.layers.insert(id, own);
+        }
+    }
     Ok((Shown::Faces(Box::new(faces)), Measured { area: Some(area), volume }))
 }
 
-/// The groups of the script that a value belongs to.
+/// The layers of an imported file that all of some surfaces lie on.
+fn file_layers<'s>(cx: &Cx, surfaces: impl Iterator<Item = &'s Surface>) -> Vec<String> {
+    let mut common: Option<Vec<String>> = None;
+    for surface in surfaces {
+        let own = cx.said_of(surface).map_or(&[][..], |said| &said.layers);
+        common = Some(match common {
+            None => own.iter().map(|layer| layer.to_string()).collect(),
+            Some(all) => all.into_iter().filter(|layer| own.iter().any(|known| **known == **layer)).collect(),
+        });
+    }
+    common.unwrap_or_default()
+}
+
+/// The groups of the script that a value belongs to, and the layers that it was on in the file that it comes from.
 fn layers(cx: &mut Cx, value: &Value) -> Result<Vec<String>, Stop> {
     let same = |a: &Value, b: &Value| match (a, b) {
         (Value::Surface(a), Value::Surface(b)) => side_of(a, b).is_some(),
@@ -103,5 +138,8 @@ fn layers(cx: &mut Cx, value: &Value) -> Result<Vec<String>, Stop> {
     };
     let groups = cx.groups(ModuleId::MAIN)?;
     let holds = |members: &[Value]| members.iter().any(|member| same(member, value));
-    Ok(groups.iter().filter(|group| holds(&group.value)).map(|group| group.name.to_string()).collect())
+    let mut layers: Vec<String> = groups.iter().filter(|group| holds(&group.value)).map(|group| group.name.to_string()).collect();
+    let of_file = file_layers(cx, surfaces_of(value).into_iter());
+    layers.extend(of_file.into_iter().filter(|layer| !groups.iter().any(|group| *group.name == **layer)));
+    Ok(layers)
 }

@@ -76,6 +76,8 @@ impl Names {
 pub struct Item<T> {
     /// The file's name for it, or its kind and number (`curve3`); no two of a file are the same.
     pub name: String,
+    /// The name as the file has it, where it has one.
+    pub own: Option<String>,
     /// Red, green and blue from 0 to 1, where the file gives it a colour.
     pub color: Option<[f64; 3]>,
     /// Its number in the file.
@@ -91,6 +93,8 @@ pub struct Item<T> {
 pub struct Group {
     /// The file's name for it, or `group` and its number.
     pub name: String,
+    /// The name as the file has it, where it has one.
+    pub own: Option<String>,
     /// Of [`Part::points`].
     pub points: Vec<usize>,
     /// Of [`Part::curves`].
@@ -155,6 +159,8 @@ pub struct Part {
     pub shells: Vec<Group>,
     /// Solids.
     pub solids: Vec<Group>,
+    /// Layers, by the names that the file has for them.
+    pub layers: Vec<Group>,
     /// What has the same colour, with red, green and blue from 0 to 1.
     pub colors: Vec<(Group, [f64; 3])>,
     /// What the file states of its parts, to be compared.

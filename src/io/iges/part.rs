@@ -268,16 +268,16 @@ impl Maker {
     }
 
     fn item<T>(&mut self, d: Pointer, word: &str, before: usize, value: T) -> Item<T> {
-        let name = self.name(d, word, before);
+        let (name, own) = self.name(d, word, before);
         let color = self.color(d);
         if let (Some((rgb, color_name)), Some(made)) = (&color, self.made.get(&d).copied()) {
             self.shades.group(&mut self.part.colors, *rgb, color_name).put(made);
         }
-        Item { name, color: color.map(|c| c.0), id: u64::from(d), line: self.book.line(d), value }
+        Item { name, own, color: color.map(|c| c.0), id: u64::from(d), line: self.book.line(d), value }
     }
 
-    /// The name property, else the label, else a word and a number; with another number where it is taken.
-    fn name(&mut self, d: Pointer, word: &str, before: usize) -> String {
+    /// The name property, else the label, else a word and a number; with another number where it is taken. Behind it what the file has.
+    fn name(&mut self, d: Pointer, word: &str, before: usize) -> (String, Option<String>) {
         let given = self.book.place(d).ok().and_then(|k| {
             let names = self.book.decoded[k].properties.iter().filter_map(|p| match self.book.data(*p) {
                 Ok(Data::Name(name)) if !name.is_empty() => Some(name.clone()),
@@ -289,8 +289,9 @@ impl Maker {
             0 => e.label.clone(),
             n => format!("{}{n}", e.label),
         });
-        let wanted = given.or(label).unwrap_or_else(|| format!("{word}{}", before + 1));
-        self.names.give(&wanted)
+        let own = given.or(label);
+        let wanted = own.clone().unwrap_or_else(|| format!("{word}{}", before + 1));
+        (self.names.give(&wanted), own)
     }
 
     /// Colour with the file's name for it.
@@ -321,7 +322,7 @@ impl Maker {
             Ok(Data::Shell(_)) => "shell",
             _ => "group",
         };
-        group.name = self.name(d, word, self.part.groups.len());
+        (group.name, group.own) = self.name(d, word, self.part.groups.len());
         self.bodies(d, &group);
         self.part.groups.push(group);
     }
@@ -333,7 +334,7 @@ impl Maker {
             Ok(Data::Solid { shells }) => {
                 for shell in shells.clone() {
                     let Ok(Data::Shell(faces)) = self.book.data(shell) else { continue };
-                    let mut skin = Group { name: group.name.clone(), ..Group::default() };
+                    let mut skin = Group { name: group.name.clone(), own: group.own.clone(), ..Group::default() };
                     faces.iter().filter_map(|(face, _)| self.made.get(face)).for_each(|made| skin.put(*made));
                     self.part.shells.push(skin);
                 }

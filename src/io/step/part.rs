@@ -227,7 +227,8 @@ impl Maker<'_> {
         let members: Vec<Place> = all.iter().zip(members).flat_map(|(kind, list)| list.iter().map(|k| kind(*k))).collect();
         self.made.entry(bundle.entity).or_default().extend(members);
         if bundle.sort == Sort::Skin {
-            group.name = own.unwrap_or_else(|| solid.clone());
+            group.name = own.clone().unwrap_or_else(|| solid.clone());
+            group.own = own;
             self.part.shells.push(group);
             return;
         }
@@ -241,6 +242,7 @@ impl Maker<'_> {
             _ => "shell",
         };
         let before = self.part.groups.len();
+        group.own.clone_from(&wanted);
         let wanted = wanted.unwrap_or_else(|| format!("{word}{}", before + 1));
         group.name = self.names.give(&wanted);
         solid.clone_from(&group.name);
@@ -258,12 +260,13 @@ impl Maker<'_> {
     fn named<T>(&mut self, entity: u32, word: &str, before: usize, color: Option<Color>, at: Place, value: T) -> Item<T> {
         self.made.entry(entity).or_default().push(at);
         let file = self.step.file;
-        let wanted = given(file.parameters(entity).text(0)).unwrap_or_else(|| format!("{word}{}", before + 1));
+        let own = given(file.parameters(entity).text(0));
+        let wanted = own.clone().unwrap_or_else(|| format!("{word}{}", before + 1));
         if let Some((rgb, name)) = &color {
             self.shades.group(&mut self.part.colors, *rgb, name).put(at);
         }
         let name = self.names.give(&wanted);
-        Item { name, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
+        Item { name, own, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
     }
 
     /// Gives each product what its parts have.
@@ -356,7 +359,9 @@ impl Maker<'_> {
             if group.is_empty() {
                 continue;
             }
-            group.name = self.names.give(&given(name).unwrap_or_else(|| format!("layer{}", self.step.file.id(k))));
+            group.own = given(name);
+            group.name = self.names.give(&group.own.clone().unwrap_or_else(|| format!("layer{}", self.step.file.id(k))));
+            self.part.layers.push(group.clone());
             self.part.groups.push(group);
         }
     }
@@ -389,5 +394,5 @@ fn is_body(file: &File, k: u32) -> bool {
 /// The members of a bundle in the lists of the part.
 fn moved(bundle: &Bundle, first: [usize; 3]) -> Group {
     let list = |k: usize| (first[k] + bundle.ranges[k].0..first[k] + bundle.ranges[k].1).collect();
-    Group { name: String::new(), points: list(0), curves: list(1), surfaces: list(2) }
+    Group { points: list(0), curves: list(1), surfaces: list(2), ..Group::default() }
 }

@@ -1,4 +1,6 @@
-//! Colours of faces and curves.
+//! Colours of solids, faces and curves.
+
+use std::collections::BTreeMap;
 
 use super::product::Context;
 use super::text::{Id, Records, Values};
@@ -9,28 +11,38 @@ const WIDTH: f64 = 0.1;
 /// Something with red, green and blue from 0 to 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Painted {
-    /// The face or curve.
+    /// The solid, face or curve.
     pub item: Id,
     /// Its colour.
     pub rgb: [f64; 3],
     /// It is a curve.
     pub curve: bool,
+    /// The solid whose colour it overrides; that stands before it.
+    pub over: Option<Id>,
 }
 
 /// Writes the styles of all that has a colour; equal ones stand once.
 pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
     let mut styles: Vec<([f64; 3], bool, Id)> = Vec::new();
     let mut styled = Vec::with_capacity(painted.len());
-    for Painted { item, rgb, curve } in painted {
+    let mut of_item: BTreeMap<Id, Id> = BTreeMap::new();
+    for Painted { item, rgb, curve, over } in painted {
         let known = styles.iter().find(|known| known.0 == *rgb && known.1 == *curve).map(|known| known.2);
         let style = known.unwrap_or_else(|| {
             let style = style(records, *rgb, *curve);
             styles.push((*rgb, *curve, style));
             style
         });
-        styled.push(records.put("STYLED_ITEM", |v| {
+        let over = over.and_then(|solid| of_item.get(&solid).copied());
+        let entity = if over.is_some() { "OVER_RIDING_STYLED_ITEM" } else { "STYLED_ITEM" };
+        let made = records.put(entity, |v| {
             v.text("color").ids(&[style]).id(*item);
-        }));
+            over.iter().for_each(|over| {
+                v.id(*over);
+            });
+        });
+        of_item.insert(*item, made);
+        styled.push(made);
     }
     if !styled.is_empty() {
         records.put("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION", |v| {

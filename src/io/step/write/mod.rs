@@ -6,7 +6,7 @@
 //! | surface, open shell | `SHELL_BASED_SURFACE_MODEL` of faces that share edges |
 //! | closed shell | `MANIFOLD_SOLID_BREP`, with cavities `BREP_WITH_VOIDS` |
 //! | group | `PRESENTATION_LAYER_ASSIGNMENT` |
-//! | colour of a face or curve | `STYLED_ITEM` |
+//! | colour of a solid, face or curve | `STYLED_ITEM`, of a face that differs from its solid `OVER_RIDING_STYLED_ITEM` |
 //! | tolerance | `UNCERTAINTY_MEASURE_WITH_UNIT` |
 
 mod curves;
@@ -91,7 +91,7 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
     let context = product::context(&mut records, setup.unit, setup.scale.tolerance.point / setup.scale.model);
     let product = product::product(&mut records, setup.schema, name);
     let (mut solids, mut sheets, mut wires) = (Vec::new(), Vec::new(), Vec::new());
-    let mut layers: Vec<(&str, Vec<Id>)> = Vec::new();
+    let mut layers: Vec<(String, Vec<Id>)> = Vec::new();
     let (mut off, mut thin_area) = ((0.0_f64, false), 0.0);
     let (mut painted, mut left_out) = (Vec::new(), Vec::new());
     for thing in things {
@@ -100,11 +100,9 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
             .map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
         off = (off.0.max(own.off.0), off.1 || own.off.1);
         let all = [own.solids.as_slice(), &own.sheets, &own.wires].concat();
-        for layer in &thing.layers {
-            match layers.iter_mut().find(|known| known.0 == layer) {
-                Some(known) => known.1.extend_from_slice(&all),
-                None => layers.push((layer, all.clone())),
-            }
+        thing.layers.iter().for_each(|layer| on_layer(&mut layers, layer, &all));
+        for (face, own) in &own.layered {
+            own.iter().for_each(|layer| on_layer(&mut layers, layer, &[*face]));
         }
         solids.extend(own.solids);
         sheets.extend(own.sheets);
@@ -123,7 +121,7 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
     product::shape(&mut records, (product, name), context, kind, &all);
     for (layer, members) in layers {
         records.put("PRESENTATION_LAYER_ASSIGNMENT", |v| {
-            v.text(layer).text("").ids(&members);
+            v.text(&layer).text("").ids(&members);
         });
     }
     looks::put(&mut records, &painted, context);
@@ -135,6 +133,14 @@ pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, Strin
     Ok(Sheet { records, remark, left_out })
 }
 
+/// Puts items on a layer.
+fn on_layer(layers: &mut Vec<(String, Vec<Id>)>, layer: &str, items: &[Id]) {
+    match layers.iter_mut().find(|known| known.0 == layer) {
+        Some(known) => known.1.extend_from_slice(items),
+        None => layers.push((layer.to_owned(), items.to_vec())),
+    }
+}
+
 /// What became of a thing.
 #[derive(Default)]
 struct Put {
@@ -143,6 +149,7 @@ struct Put {
     wires: Vec<Id>,
     off: (f64, bool),
     painted: Vec<Painted>,
+    layered: Vec<(Id, Vec<String>)>,
     left_out: Vec<String>,
     thin_area: f64,
 }
@@ -153,8 +160,8 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
         Shown::Faces(faces) => {
             let made = faces.put(records, &thing.name, scale)?;
             let left_out = thin_faces(faces, &thing.name, &made.thin).into_iter().collect();
-            let Made { solids, sheets, off, painted, thin_area, .. } = made;
-            return Ok(Put { solids, sheets, off, painted, left_out, thin_area, ..Put::default() });
+            let Made { solids, sheets, off, painted, layered, thin_area, .. } = made;
+            return Ok(Put { solids, sheets, off, painted, layered, left_out, thin_area, ..Put::default() });
         }
         Shown::Point(p) => records.point(*p / scale.model),
         Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, &thing.name, scale)?,
@@ -162,7 +169,7 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     let set = records.put("GEOMETRIC_CURVE_SET", |v| {
         v.text(&thing.name).ids(&[geometry]);
     });
-    let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true });
+    let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true, over: None });
     Ok(Put { wires: vec![set], painted: painted.into_iter().collect(), ..Put::default() })
 }
 

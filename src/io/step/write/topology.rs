@@ -6,7 +6,7 @@
 //!   surface model ─ shell ┘   └─ surface                          └─ curve
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::curves::{self, Scale};
@@ -37,6 +37,10 @@ pub struct Faces {
     pub solid: bool,
     /// Red, green and blue from 0 to 1 of surfaces that have a colour.
     pub colors: BTreeMap<SurfaceId, [f64; 3]>,
+    /// Names of surfaces that have another one in the file than in the model.
+    pub names: BTreeMap<SurfaceId, String>,
+    /// Layers of surfaces that lie on others than all of the faces do.
+    pub layers: BTreeMap<SurfaceId, Vec<String>>,
 }
 
 /// What became of faces.
@@ -52,8 +56,10 @@ pub struct Made {
     pub thin: Vec<SurfaceId>,
     /// Area of those of which no face is left, model units.
     pub thin_area: f64,
-    /// Faces with their colours.
+    /// Faces and solids with their colours.
     pub painted: Vec<Painted>,
+    /// Faces with their layers.
+    pub layered: Vec<(Id, Vec<String>)>,
 }
 
 impl Faces {
@@ -81,7 +87,7 @@ impl Faces {
                 })
                 .collect();
             let own = named(writer.made.solids.len());
-            writer.made.solids.push(if voids.is_empty() {
+            let solid = if voids.is_empty() {
                 records.put("MANIFOLD_SOLID_BREP", |v| {
                     v.text(&own).id(outer);
                 })
@@ -89,7 +95,10 @@ impl Faces {
                 records.put("BREP_WITH_VOIDS", |v| {
                     v.text(&own).id(outer).ids(&voids);
                 })
-            });
+            };
+            let skins = body.skins.iter().enumerate().filter(|(n, s)| *n == k || s.within == Some(k));
+            writer.paint(solid, &skins.flat_map(|(_, s)| s.faces.iter().map(|face| faces[*face])).collect());
+            writer.made.solids.push(solid);
         }
         let sheets: Vec<Id> = body.skins.iter().filter(|s| !is_solid(s)).map(|skin| shell(records, skin, &faces)).collect();
         if !sheets.is_empty() {
@@ -137,10 +146,29 @@ impl Writer<'_> {
             }
             let item = self.face(records, face, ground)?;
             let rgb = self.faces.colors.get(&face.surface).copied();
-            self.made.painted.extend(rgb.map(|rgb| Painted { item, rgb, curve: false }));
+            self.made.painted.extend(rgb.map(|rgb| Painted { item, rgb, curve: false, over: None }));
+            self.made.layered.extend(self.faces.layers.get(&face.surface).map(|layers| (item, layers.clone())));
             made.push(item);
         }
         Ok(made)
+    }
+
+    /// Gives a solid of which all faces have a colour that of most of them; the others override it.
+    fn paint(&mut self, solid: Id, faces: &BTreeSet<Id>) {
+        let (own, others): (Vec<Painted>, Vec<Painted>) = self.made.painted.drain(..).partition(|painted| faces.contains(&painted.item));
+        self.made.painted = others;
+        let mut counts: Vec<([f64; 3], usize)> = Vec::new();
+        for painted in &own {
+            match counts.iter_mut().find(|known| known.0 == painted.rgb) {
+                Some(known) => known.1 += 1,
+                None => counts.push((painted.rgb, 1)),
+            }
+        }
+        let most = counts.iter().rev().max_by_key(|known| known.1).filter(|_| own.len() == faces.len());
+        let Some((rgb, _)) = most.copied() else { return self.made.painted.extend(own) };
+        self.made.painted.push(Painted { item: solid, rgb, curve: false, over: None });
+        let over = own.into_iter().filter(|painted| painted.rgb != rgb);
+        self.made.painted.extend(over.map(|painted| Painted { over: Some(solid), ..painted }));
     }
 
     fn ground(&self, face: &BodyFace) -> Result<Ground, Damage> {
@@ -220,7 +248,7 @@ impl Writer<'_> {
                 v.text("").id(around).flag(true);
             }));
         }
-        let name = &self.faces.model.surfaces[face.surface.index()].name;
+        let name = self.faces.names.get(&face.surface).unwrap_or(&self.faces.model.surfaces[face.surface.index()].name);
         Ok(records.put("ADVANCED_FACE", |v| {
             v.text(name).ids(&bounds).id(surface).flag(along != face.other);
         }))
