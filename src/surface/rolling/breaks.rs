@@ -9,7 +9,7 @@ use crate::base::tolerance::NUDGE;
 /// Stations this near to each other, in tolerances, are one.
 const NEAR: f64 = 64.0;
 /// A station this near to a break, in tolerances, is on it.
-const SAME: f64 = 1e-3;
+const SAME: f64 = 1.0 / 1024.0;
 /// Share of the tolerance by which the centre leaves a station to find the speeds on each side.
 const BESIDE: f64 = 1.0 / 64.0;
 
