@@ -58,8 +58,8 @@ const CEILINGS: &[(&str, usize)] = &[
     ("mesh", 23_300),
     ("io", 14_800),
     ("draw", 3_000),
-    ("lang", 29_150),
-    ("session", 11_650),
+    ("lang", 29_250),
+    ("session", 11_750),
     ("cli", 4_900),
 ];
 
