@@ -398,7 +398,7 @@ fn nearest_points_of_the_peers() {
 
 /// A net with weights that go up and down from point to point: parameters run unevenly where the surface hardly bends.
 fn uneven_net(degree: usize, repeated: usize) -> Surface {
-    let (n, m) = (9, 8);
+    let (n, m) = ((degree + 3).max(9), (degree + 2).max(8));
     let at = |i: usize, j: usize| {
         let (x, y) = (i as f64, j as f64);
         p(x, y + 0.2 * (x * 0.7).sin(), 1.5 * (x * 0.9).sin() * (y * 0.6).cos())
@@ -418,7 +418,8 @@ fn uneven_net(degree: usize, repeated: usize) -> Surface {
 
 #[test]
 fn nets_made_ready_are_the_nets_and_their_bends_are_bounded() {
-    for surface in [uneven_net(3, 1), uneven_net(4, 2), uneven_net(2, 1), uneven_net(3, 1).flipped()] {
+    for surface in [uneven_net(3, 1), uneven_net(4, 2), uneven_net(2, 1), uneven_net(3, 1).flipped(), uneven_net(11, 1), uneven_net(14, 1)]
+    {
         let quick = surface.quick().unwrap();
         let mut seed = 7_u64;
         let mut random = || {

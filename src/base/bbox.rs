@@ -55,6 +55,20 @@ impl Box3 {
         if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).length() }
     }
 
+    /// The eight corners; of an empty box none is a point.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|k| {
+            let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
+            DVec3::new(pick(0, self.min.x, self.max.x), pick(1, self.min.y, self.max.y), pick(2, self.min.z, self.max.z))
+        })
+    }
+
+    /// How far it reaches along a unit vector from a point, least and most, model units.
+    pub fn stretch(&self, from: DVec3, direction: DVec3) -> (f64, f64) {
+        let along = self.corners().map(|p| (p - from).dot(direction));
+        (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max))
+    }
+
     /// Middle of the box.
     pub fn center(&self) -> DVec3 {
         (self.min + self.max) * 0.5

@@ -94,8 +94,8 @@ const MOST_PLACES: f64 = 300.0;
 const DEFAULT_ANGLE_DEG: f64 = 0.1;
 const DEFAULT_PARAMETER: f64 = 1e-9;
 const POINT_SHARE: f64 = 1e-6;
-/// How many times the rounding of coordinates the tolerance is at the least.
-const KEPT: f64 = 10.0;
+/// Least tolerance over the rounding of coordinates.
+const ROUNDINGS: f64 = 10.0;
 /// What arithmetic may have done to a coordinate, as a share of the model's size.
 pub const ROUNDING_SHARE: f64 = 1e-12;
 /// The nearest pair of two curves is the nearest one to this share of its distance.
@@ -145,7 +145,7 @@ impl Tolerance {
         if !(rounding > self.rounding && rounding.is_finite()) {
             return self;
         }
-        let (mut exponent, least) = (super::math::log10(rounding).floor() as i32, KEPT * rounding);
+        let (mut exponent, least) = (super::math::log10(rounding).floor() as i32, ROUNDINGS * rounding);
         while power_of_ten(exponent) < least {
             exponent += 1;
         }

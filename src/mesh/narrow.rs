@@ -19,7 +19,7 @@ use crate::base::job;
 use crate::base::par;
 use crate::base::predicates::orient;
 use crate::base::triangulate_points::{PointsFault, Triangles, points};
-use crate::model::glue::root;
+use crate::model::glue::{join, root};
 
 /// A place of a stretch where steps have to be shorter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -203,8 +203,7 @@ impl Gaze<'_> {
         let (corners, at) = (self.corners(), self.edges_at());
         let mut joined: Vec<usize> = (0..p.len()).collect();
         for [a, b] in self.outline.edges() {
-            let (a, b) = (root(&mut joined, a as usize), root(&mut joined, b as usize));
-            joined[a.max(b)] = a.min(b);
+            join(&mut joined, a as usize, b as usize);
         }
         let mut narrow = Vec::new();
         for (over, [a, b], gap) in close {

@@ -2,7 +2,7 @@
 
 use super::data::Mesh;
 use crate::base::job;
-use crate::model::glue::root;
+use crate::model::glue::join;
 
 impl Mesh {
     /// Number of parts that share no node with each other: elements joined by nodes are one part, and a node that is an element of
@@ -10,17 +10,16 @@ impl Mesh {
     pub fn parts(&self) -> usize {
         let mut parent: Vec<usize> = (0..self.nodes.len()).collect();
         let mut used = vec![false; self.nodes.len()];
-        let mut join = |corners: &[u32]| {
+        let mut one = |corners: &[u32]| {
             for pair in corners.windows(2) {
-                let (a, b) = (root(&mut parent, pair[0] as usize), root(&mut parent, pair[1] as usize));
-                parent[a.max(b)] = a.min(b);
+                join(&mut parent, pair[0] as usize, pair[1] as usize);
             }
             corners.iter().for_each(|n| used[*n as usize] = true);
         };
-        self.lines.iter().for_each(|e| join(e));
-        job::looking(&self.triangles).for_each(|e| join(e));
-        job::looking(&self.quads).for_each(|e| join(e));
-        self.points.iter().for_each(|n| join(&[*n]));
+        self.lines.iter().for_each(|e| one(e));
+        job::looking(&self.triangles).for_each(|e| one(e));
+        job::looking(&self.quads).for_each(|e| one(e));
+        self.points.iter().for_each(|n| one(&[*n]));
         (0..self.nodes.len()).filter(|n| used[*n] && parent[*n] == *n).count()
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::glue::root;
+use super::glue::{join, root};
 use super::measure;
 use super::shared::EdgePart;
 use super::sides::Component;
@@ -214,8 +214,7 @@ impl Body {
                 let (step, next) = (around[k], around[(k + 1) % around.len()]);
                 let (a, b) = (self.ends(step.0, step.1).1, self.ends(next.0, next.1).0);
                 if a != b && 2.0 * self.vertices[a].distance(self.vertices[b]) < length(step.0).min(length(next.0)) {
-                    let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-                    parent[a.max(b)] = a.min(b);
+                    join(&mut parent, a, b);
                 }
             }
         }
@@ -291,8 +290,7 @@ impl Body {
         }
         let mut parent: Vec<usize> = (0..self.faces.len()).collect();
         for pair in users.iter().filter(|u| u.len() == 2) {
-            let (a, b) = (root(&mut parent, pair[0].0), root(&mut parent, pair[1].0));
-            parent[a.max(b)] = a.min(b);
+            join(&mut parent, pair[0].0, pair[1].0);
         }
         let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
         for k in 0..self.faces.len() {

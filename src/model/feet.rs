@@ -11,7 +11,8 @@ use crate::base::job;
 
 /// Samples of a track for finding points on it; its spacing bounds how far a near point is from a sample.
 const SAMPLES: usize = 32;
-/// Length of a track over the distance of its ends, up to which it cannot come back to them unseen by the samples.
+/// Largest ratio of the length of a track to the distance of its ends for which it is nearly straight: a loop of what is left over is
+/// shorter than the spacing of the samples, which would not show it either.
 const NEARLY_STRAIGHT: f64 = 1.0 + 0.5 / SAMPLES as f64;
 /// Projections before a foot point is taken as it is.
 const ROUNDS: usize = 20;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::glue::root;
+use super::glue::{join, root};
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::job;
@@ -40,8 +40,7 @@ pub fn gather(points: &[Station], least: f64) -> Vec<usize> {
                 continue;
             }
             for pair in group.windows(2) {
-                let (a, b) = (root(&mut parent, pair[0]), root(&mut parent, pair[1]));
-                parent[a.max(b)] = a.min(b);
+                join(&mut parent, pair[0], pair[1]);
             }
         }
     }

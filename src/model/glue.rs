@@ -63,6 +63,12 @@ pub fn root(parent: &mut [usize], mut n: usize) -> usize {
     n
 }
 
+/// Joins the trees of two members; the smaller root stays one.
+pub fn join(parent: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(parent, a), root(parent, b));
+    parent[a.max(b)] = a.min(b);
+}
+
 /// How one edge lies on another with the same end vertices: `Some(true)` the other way round, `None` not at all.
 fn same_run(a: &[DVec3; 3], b: &[DVec3; 3], tolerance: &Tolerance) -> Option<bool> {
     if !tolerance.same_point(a[1], b[1]) {

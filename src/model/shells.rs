@@ -22,6 +22,19 @@ pub(super) struct Joins {
     pub pieces: Atoms,
 }
 
+/// Surfaces with their edges joined.
+pub(super) struct Sewn {
+    /// How far borders that are one edge may be apart, model units.
+    pub near: f64,
+    /// The edges, ascending.
+    pub edges: Vec<EdgeId>,
+    pub joins: Joins,
+    /// Patches thinner than that, ascending.
+    pub slivers: Vec<PatchId>,
+    /// Who uses each atom of the edges; slivers do not.
+    pub usages: Vec<Vec<Usage>>,
+}
+
 impl Joins {
     /// The point in the middle of an atom.
     pub fn middle(&self, atom: usize) -> DVec3 {
@@ -38,10 +51,8 @@ impl Model {
     /// E617 (three faces at an edge), E618 (open and not connected) or E711 (borders just beyond a stated reach).
     pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
         let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
-        let (near, (edges, joins)) = self.sewn(request, &members, network, tolerance);
+        let Sewn { near, edges, joins, slivers, usages } = self.sewn(request, &members, network, tolerance);
         let pieces = &joins.pieces;
-        let slivers = self.slivers(&members, (&edges, pieces), near);
-        let usages = usages(self, (&edges, pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
         let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
         let seams = Seams { model: self, edges: &edges, joins: &joins };
         seams.refuse_gaps(request, &free)?;
@@ -68,26 +79,26 @@ impl Model {
         })
     }
 
-    /// How far borders of a shell may be apart with its edges so joined: [`Model::reach`], or where nothing is stated and every edge
-    /// finds its other face within the widest gap of one face's borders, that alone: what is small beside a wide gap then stays.
-    fn sewn(
-        &self,
-        request: &ShellRequest,
-        members: &BTreeSet<SurfaceId>,
-        network: &Network,
-        tolerance: &Tolerance,
-    ) -> (f64, (Vec<EdgeId>, Joins)) {
+    /// The edges of a shell, joined over [`Model::reach`], or where nothing is stated and every edge finds its other face within the widest
+    /// gap of one face's borders, over that alone: what is small beside a wide gap then stays.
+    fn sewn(&self, request: &ShellRequest, members: &BTreeSet<SurfaceId>, network: &Network, tolerance: &Tolerance) -> Sewn {
         let most = self.reach(members.iter().copied(), request.snap.map(|s| s.0), tolerance);
         let least = self.own_gap(members.iter().copied()).max(tolerance.point);
         if request.snap.is_none() && least < most {
-            let (edges, joins) = self.joins(members, least, network, tolerance);
-            let slivers = self.slivers(members, (&edges, &joins.pieces), least);
-            let usages = usages(self, (&edges, &joins.pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
-            if usages.iter().all(|users| matches!(users.len(), 0 | 2)) {
-                return (least, (edges, joins));
+            let sewn = self.sewn_over(members, least, network, tolerance);
+            if sewn.usages.iter().all(|users| matches!(users.len(), 0 | 2)) {
+                return sewn;
             }
         }
-        (most, self.joins(members, most, network, tolerance))
+        self.sewn_over(members, most, network, tolerance)
+    }
+
+    /// Edges of some surfaces, joined where their borders are up to `near` apart, model units.
+    pub(super) fn sewn_over(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Sewn {
+        let (edges, joins) = self.joins(members, near, network, tolerance);
+        let slivers = self.slivers(members, (&edges, &joins.pieces), near);
+        let usages = usages(self, (&edges, &joins.pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
+        Sewn { near, edges, joins, slivers, usages }
     }
 
     /// Edges of some surfaces, cut into atoms; borders up to `near` apart are one.

@@ -115,11 +115,9 @@ impl Model {
         tolerance: &Tolerance,
     ) -> Result<Vec<(SurfaceId, bool)>> {
         let members = listed.iter().map(|s| s.0).collect();
-        let (edges, joins) = self.joins(&members, near, network, tolerance);
-        let slivers = self.slivers(&members, (&edges, &joins.pieces), near);
-        let usages = usages(self, (&edges, &joins.pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
-        let whole: Vec<SurfaceId> = members.iter().copied().filter(|s| !self.is_thin(*s, &slivers)).collect();
-        let mut components = components(&whole, &usages);
+        let sewn = self.sewn_over(&members, near, network, tolerance);
+        let whole: Vec<SurfaceId> = members.iter().copied().filter(|s| !self.is_thin(*s, &sewn.slivers)).collect();
+        let mut components = components(&whole, &sewn.usages);
         components.retain(|c| c.closed && c.one_sided.is_none());
         self.turn_outwards(&mut components, tolerance)?;
         let sides: BTreeMap<SurfaceId, bool> = components.into_iter().flat_map(|c| c.faces).collect();

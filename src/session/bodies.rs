@@ -9,7 +9,7 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::scene::Scene;
 use crate::mesh::Plan;
 use crate::model::SurfaceId;
-use crate::model::glue::root;
+use crate::model::glue::{join, root};
 use crate::surface::Nearest;
 
 /// Places along a curve at which it is looked for on a surface, besides its start.
@@ -45,18 +45,18 @@ pub fn apart(plan: &Plan, bodies: &[BTreeSet<SurfaceId>], scene: &Scene, toleran
             }
         }
     }
-    for points in stations(plan) {
-        let around = Box3::of(points.iter().copied());
-        for (surface, own) in &place {
-            let near = plan.glue.get(surface).copied().unwrap_or(tolerance.point);
-            let surface = &scene.model.surfaces[surface.index()].surface;
-            if root(&mut parent, *own) == root(&mut parent, lines) || !surface.hull().touches(&around, near) {
-                continue;
-            }
-            let nearest = Nearest::new(surface);
-            if points.iter().any(|p| nearest.at(*p).distance <= near) {
-                join(&mut parent, lines, *own);
-            }
+    let lines_at: Vec<(Box3, Vec<DVec3>)> = stations(plan).map(|points| (Box3::of(points.iter().copied()), points)).collect();
+    for (surface, own) in &place {
+        let near = plan.glue.get(surface).copied().unwrap_or(tolerance.point);
+        let surface = &scene.model.surfaces[surface.index()].surface;
+        let hull = surface.hull();
+        let beside: Vec<&[DVec3]> = lines_at.iter().filter(|(around, _)| hull.touches(around, near)).map(|l| l.1.as_slice()).collect();
+        if beside.is_empty() || root(&mut parent, *own) == root(&mut parent, lines) {
+            continue;
+        }
+        let nearest = Nearest::new(surface);
+        if beside.into_iter().flatten().any(|p| nearest.at(*p).distance <= near) {
+            join(&mut parent, lines, *own);
         }
     }
     let with_lines = root(&mut parent, lines);
@@ -69,9 +69,4 @@ fn stations(plan: &Plan) -> impl Iterator<Item = Vec<DVec3>> + '_ {
     let along = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64);
     let curves = plan.curves.iter().map(move |(_, chain)| along.clone().map(|f| chain.point(f)).collect());
     curves.chain(plan.points.iter().map(|p| vec![*p]))
-}
-
-fn join(parent: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    parent[a.max(b)] = a.min(b);
 }

@@ -250,9 +250,7 @@ fn corners(around: &Box3) -> Vec<DVec3> {
     if around.is_empty() {
         return Vec::new();
     }
-    let pick = |k: u32, bit: u32, low: f64, high: f64| if k & bit == 0 { low } else { high };
-    let (a, b) = (around.min, around.max);
-    (0..8).map(|k| DVec3::new(pick(k, 1, a.x, b.x), pick(k, 2, a.y, b.y), pick(k, 4, a.z, b.z))).collect()
+    around.corners().to_vec()
 }
 
 /// The box of what is zoomed to; around a point a part of the model.

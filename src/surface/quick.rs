@@ -170,7 +170,9 @@ impl Powers {
         let stops = |inner: Vec<f64>| [vec![0.0], inner, vec![1.0]].concat();
         let stops = (stops(us), stops(vs));
         let (u_spans, v_spans) = (spans(net, true, &stops.0), spans(net, false, &stops.1));
-        let powers = v_spans.iter().flat_map(|v| u_spans.iter().map(move |u| (u, v))).flat_map(|(u, v)| powers(&net.piece(u, v)));
+        let coefficients = (coefficients(net.degree.0), coefficients(net.degree.1));
+        let pieces = v_spans.iter().flat_map(|v| u_spans.iter().map(move |u| net.piece(u, v)));
+        let powers = pieces.flat_map(|piece| powers(&piece, &coefficients));
         let repeated = |stops: &[f64], knots: &[f64], wanted: &dyn Fn(usize) -> bool| -> Vec<f64> {
             stops[1..stops.len() - 1].iter().copied().filter(|x| wanted(multiplicity(knots, *x))).collect()
         };
@@ -399,22 +401,30 @@ fn divided(stops: &[f64]) -> Vec<f64> {
 }
 
 /// Coefficients of powers from Bézier points, in both directions.
-fn powers(net: &[Vec<DVec4>]) -> Vec<DVec4> {
-    let one = |points: &[DVec4]| -> Vec<DVec4> {
-        let p = points.len() - 1;
-        let at_start = |k: usize, i: usize| {
-            let sign = if (k - i).is_multiple_of(2) { 1.0 } else { -1.0 };
-            points[i] * (sign * binomial(p, k) * binomial(k, i))
-        };
-        if about(p) == 0.0 {
-            return (0..=p).map(|k| (0..=k).map(|i| at_start(k, i)).sum()).collect();
-        }
-        (0..=p).map(|k| (0..=p).map(|i| points[i] * from_middle(p, i, k)).sum()).collect()
+fn powers(net: &[Vec<DVec4>], (in_u, in_v): &(Vec<Vec<f64>>, Vec<Vec<f64>>)) -> Vec<DVec4> {
+    let one = |points: &[DVec4], coefficients: &[Vec<f64>]| -> Vec<DVec4> {
+        coefficients.iter().map(|row| points.iter().zip(row).map(|(point, x)| *point * *x).sum()).collect()
     };
-    let rows: Vec<Vec<DVec4>> = net.iter().map(|row| one(row)).collect();
+    let rows: Vec<Vec<DVec4>> = net.iter().map(|row| one(row, in_u)).collect();
     let n = rows[0].len();
-    let columns: Vec<Vec<DVec4>> = (0..n).map(|i| one(&rows.iter().map(|row| row[i]).collect::<Vec<_>>())).collect();
+    let columns: Vec<Vec<DVec4>> = (0..n).map(|i| one(&rows.iter().map(|row| row[i]).collect::<Vec<_>>(), in_v)).collect();
     (0..rows.len()).flat_map(|j| columns.iter().map(move |c| c[j])).collect()
+}
+
+/// For each power, ascending, what it has of each Bézier point; points beyond the last entry have no share.
+fn coefficients(degree: usize) -> Vec<Vec<f64>> {
+    let from_start = |k: usize, i: usize| {
+        let sign = if (k - i).is_multiple_of(2) { 1.0 } else { -1.0 };
+        sign * binomial(degree, k) * binomial(k, i)
+    };
+    let row = |k: usize| -> Vec<f64> {
+        if about(degree) == 0.0 {
+            (0..=k).map(|i| from_start(k, i)).collect()
+        } else {
+            (0..=degree).map(|i| from_middle(degree, i, k)).collect()
+        }
+    };
+    (0..=degree).map(row).collect()
 }
 
 /// Where in a span, from 0 to 1, the powers of a degree are taken: at its start while that loses nothing to speak of, else in its middle.

@@ -41,7 +41,6 @@ from parts import (
     cone,
     cut,
     drop,
-    edges,
     ellipse,
     face,
     faces,
@@ -51,6 +50,7 @@ from parts import (
     loft,
     moved,
     offset,
+    on_edges,
     polygon,
     prism,
     revolved,
@@ -68,20 +68,12 @@ from parts import (
 )
 
 
-def chamfered(shape, d, chosen=None):
-    m = BRepFilletAPI_MakeChamfer(shape)
-    for k, e in enumerate(edges(shape)):
-        if chosen is None or k in chosen:
-            m.Add(d, e)
-    return m.Shape()
+def chamfered(shape, d):
+    return on_edges(BRepFilletAPI_MakeChamfer(shape), shape, [d])
 
 
 def var_fillet(shape, r1, r2, chosen):
-    m = BRepFilletAPI_MakeFillet(shape)
-    for k, e in enumerate(edges(shape)):
-        if k in chosen:
-            m.Add(r1, r2, e)
-    return m.Shape()
+    return on_edges(BRepFilletAPI_MakeFillet(shape), shape, [r1, r2], chosen)
 
 
 def helix_edge(r, pitch, turns, cone_angle=0.0):

@@ -15,7 +15,7 @@ from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_Sewing,
     BRepBuilderAPI_Transform,
 )
-from OCP.BRepFilletAPI import BRepFilletAPI_MakeChamfer, BRepFilletAPI_MakeFillet
+from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 from OCP.BRepOffset import BRepOffset_Skin
 from OCP.BRepOffsetAPI import BRepOffsetAPI_MakeOffsetShape, BRepOffsetAPI_MakePipe, BRepOffsetAPI_MakeThickSolid, BRepOffsetAPI_ThruSections
 from OCP.BRepPrimAPI import (
@@ -134,12 +134,16 @@ def faces(shape):
     return [TopoDS.Face_s(f) for f in parts_of(shape, TopAbs_FACE)]
 
 
-def filleted(shape, radius, chosen=None):
-    maker = BRepFilletAPI_MakeFillet(shape)
+def on_edges(maker, shape, sizes, chosen=None):
+    """What a maker of fillets or chamfers with these sizes makes of some edges, or of all."""
     for k, edge in enumerate(edges(shape)):
         if chosen is None or k in chosen:
-            maker.Add(radius, edge)
+            maker.Add(*sizes, edge)
     return maker.Shape()
+
+
+def filleted(shape, radius, chosen=None):
+    return on_edges(BRepFilletAPI_MakeFillet(shape), shape, [radius], chosen)
 
 
 def wire(*pieces):

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::carry::{carried, carried_pole, check_reach};
 use super::damage::{Damage, damage};
-use super::lying::Lying;
+use super::face_loops::FaceLoops;
 use super::nets::ruled_net;
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
@@ -222,13 +222,13 @@ impl Base {
         Ok(Some((build::line(at(low), at(high), origin)?, *axis)))
     }
 
-    /// The box that the surface must reach for the loops that lie on it: of a cone that they run round up to its apex.
-    pub fn reach(&self, lying: &Lying) -> Box3 {
+    /// The box that the surface must reach for the loops that lie on it: of a cone about whose axis they wind up to its apex.
+    pub fn reach(&self, loops: &FaceLoops) -> Box3 {
         match self {
-            Self::Unbounded { axis, radius, slope, .. } if *slope != 0.0 && lying.run_round(axis) => {
-                lying.reach.with(axis.about - axis.direction * (radius / slope))
+            Self::Unbounded { axis, radius, slope, .. } if *slope != 0.0 && loops.wind_about(axis) => {
+                loops.reach.with(axis.about - axis.direction * (radius / slope))
             }
-            _ => lying.reach,
+            _ => loops.reach,
         }
     }
 
@@ -293,7 +293,7 @@ fn carried_net(net: NurbsSurface, m: &DAffine3) -> NurbsSurface {
 }
 
 /// How far surfaces without ends reach beyond what lies on them, as a share of its size.
-const BEYOND: f64 = 0.1;
+pub const BEYOND: f64 = 0.1;
 
 /// Stretch of an axis beside a box, with room around.
 fn along(axis: &Axis, reach: &Box3) -> Result<(f64, f64), Damage> {
@@ -301,15 +301,6 @@ fn along(axis: &Axis, reach: &Box3) -> Result<(f64, f64), Damage> {
         return Err(damage("it is a cylinder or cone without ends"));
     }
     let room = BEYOND * reach.diagonal();
-    let along = corners(reach).map(|p| (p - axis.about).dot(axis.direction));
-    let low = along.into_iter().fold(f64::INFINITY, f64::min);
-    let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = reach.stretch(axis.about, axis.direction);
     Ok((low - room, high + room))
-}
-
-fn corners(b: &Box3) -> [DVec3; 8] {
-    std::array::from_fn(|k| {
-        let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-        DVec3::new(pick(0, b.min.x, b.max.x), pick(1, b.min.y, b.max.y), pick(2, b.min.z, b.max.z))
-    })
 }

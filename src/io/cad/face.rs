@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::base::Base;
 use super::healing::{Off, Rule};
-use super::natural::{Rooms, is_natural, matched};
+use super::natural::{Allowance, is_natural, matched};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::{NEAR_MISS, ONE_BORDER, Tolerance};
 use crate::geometry::{Curve, Motion, closest};
@@ -79,8 +79,8 @@ impl Face {
         let outer = if known.has_outer { loops.next() } else { None };
         // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
         let tells = surface.closed() != (false, false) && loops.len() > 0;
-        let rooms = Rooms { along: known.slack.max(2.0 * off.distance), free: ONE_BORDER * tolerance.point };
-        let outer = outer.filter(|outer| tells || !is_natural(base, &surface, outer, rooms, tolerance));
+        let allowed = Allowance { seam: known.slack.max(2.0 * off.distance), free: ONE_BORDER * tolerance.point };
+        let outer = outer.filter(|outer| tells || !is_natural(base, &surface, outer, allowed, tolerance));
         Self {
             base: surface,
             outer,

@@ -15,19 +15,19 @@ const SAMPLES: usize = 16;
 
 /// How far a loop may be from the sides of a surface, model units.
 #[derive(Clone, Copy, Debug)]
-pub struct Rooms {
+pub struct Allowance {
     /// From seams: nothing else is joined there.
-    pub along: f64,
+    pub seam: f64,
     /// From free sides, which other faces have too, and they from it.
     pub free: f64,
 }
 
 /// Whether a loop runs along the sides of a surface and covers all of them that are free.
-pub fn is_natural(base: &Base, surface: &Surface, outer: &[Border], rooms: Rooms, tolerance: &Tolerance) -> bool {
+pub fn is_natural(base: &Base, surface: &Surface, outer: &[Border], allowed: Allowance, tolerance: &Tolerance) -> bool {
     let Some(sides) = sides(base, surface, tolerance) else { return false };
-    let room = |is_free: bool| if is_free { rooms.free } else { rooms.along };
+    let room = |is_free: bool| if is_free { allowed.free } else { allowed.seam };
     let on_side = |p: DVec3| sides.iter().any(|(side, is_free)| closest(side, p).distance <= room(*is_free));
-    let on_curve = |p: DVec3| outer.iter().any(|b| closest(&b.space, p).distance <= rooms.free);
+    let on_curve = |p: DVec3| outer.iter().any(|b| closest(&b.space, p).distance <= allowed.free);
     outer.iter().all(|b| places(&b.space).all(on_side)) && sides.iter().filter(|s| s.1).all(|(side, _)| places(side).all(on_curve))
 }
 

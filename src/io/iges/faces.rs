@@ -13,8 +13,8 @@ use crate::io::cad::carry::carried;
 use crate::io::cad::compose::composed;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::{Border, Face, Known, backwards, pieces};
+use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::interior::inside;
-use crate::io::cad::lying::Lying;
 use crate::surface::Surface;
 
 /// Curves of a loop, and all that the file has of it in (u, v), those along poles too.
@@ -75,7 +75,7 @@ impl Book {
             outlines.push(made.outline);
         }
         let base = self.sided(surface, base, &loops)?;
-        let surface = base.surface(&base.reach(&Lying::of(&loops)), self.origin, &self.tolerance)?;
+        let surface = base.surface(&base.reach(&FaceLoops::of(&loops)), self.origin, &self.tolerance)?;
         let inside = if has_outer { inside(&base, &outlines) } else { None };
         self.settle(d, &base, &surface, &mut loops);
         let known = Known { has_outer, against: base.is_against(), inside, slack: self.slack() };

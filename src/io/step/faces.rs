@@ -10,7 +10,7 @@ use crate::geometry::{Curve, build};
 use crate::io::cad::base::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::{Border, Face, Known, backwards, pieces};
-use crate::io::cad::lying::Lying;
+use crate::io::cad::face_loops::FaceLoops;
 
 impl Step<'_> {
     /// The face that an entity is, looking the other way where it is `turned`.
@@ -66,12 +66,12 @@ impl Step<'_> {
         if outer < loops.len() {
             loops[..=outer].rotate_right(1);
         }
-        let lying = Lying::of(&loops);
+        let around = FaceLoops::of(&loops);
         let base = match surface {
-            Some(of) => self.base(of, &lying, 0).map_err(|Damage(why)| damage(format!("its surface {}: {why}", self.said(of))))?,
+            Some(of) => self.base(of, &around, 0).map_err(|Damage(why)| damage(format!("its surface {}: {why}", self.said(of))))?,
             None => plane_of(loops.first().map_or(&[], Vec::as_slice))?,
         };
-        let surface = base.surface(&base.reach(&lying), self.origin, &self.tolerance)?;
+        let surface = base.surface(&base.reach(&around), self.origin, &self.tolerance)?;
         let mut made = if loops.is_empty() {
             Face::whole(&base, surface, &self.tolerance)
         } else {
@@ -149,14 +149,14 @@ impl Step<'_> {
                     let curve = self.bounded(boundary, 0)?;
                     loops.push(pieces(&curve).into_iter().map(|space| Border { space, uv: None }).collect::<Vec<Border>>());
                 }
-                let lying = Lying::of(&loops);
-                let base = self.base(row.entity(1)?, &lying, 0)?;
-                let surface = base.surface(&base.reach(&lying), self.origin, &self.tolerance)?;
+                let around = FaceLoops::of(&loops);
+                let base = self.base(row.entity(1)?, &around, 0)?;
+                let surface = base.surface(&base.reach(&around), self.origin, &self.tolerance)?;
                 let known = Known { has_outer: !row.flag(3, false), against: false, inside: None, slack: self.slack() };
                 Ok(Face::inside(&base, surface, loops, known, &self.tolerance))
             }
             _ => {
-                let base = self.base(k, &Lying::NOTHING, 0)?;
+                let base = self.base(k, &FaceLoops::NONE, 0)?;
                 let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
                 Ok(Face::whole(&base, surface, &self.tolerance))
             }

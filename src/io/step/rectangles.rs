@@ -10,7 +10,7 @@ use crate::geometry::{Curve, Motion, build};
 use crate::io::cad::base::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::Face;
-use crate::io::cad::lying::Lying;
+use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::nets::trimmed_net;
 use crate::surface::revolve::Axis;
 
@@ -84,7 +84,7 @@ impl Step<'_> {
                 let frame = self.frame(row.entity(2)?)?;
                 whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, self.over(&of, v0, v1)?)
             }
-            _ => match self.base(k, &Lying::NOTHING, 0)? {
+            _ => match self.base(k, &FaceLoops::NONE, 0)? {
                 Base::Net(net, [a, b, c, d]) if a.is_finite() => {
                     let ((u0, u1), (v0, v1)) = (ordered(u0, u1), ordered(v0, v1));
                     let share = |x: f64, a: f64, b: f64| ((x - a) / (b - a)).clamp(0.0, 1.0);

@@ -11,20 +11,17 @@ use crate::base::math;
 use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::Curve;
 use crate::geometry::nurbs::weighted;
-use crate::io::cad::base::Base;
+use crate::io::cad::base::{BEYOND, Base};
 use crate::io::cad::carry::check_weights;
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::lying::Lying;
+use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::nets::trimmed_net;
 use crate::surface::NurbsSurface;
 use crate::surface::revolve::Axis;
 
-/// How far surfaces without ends reach beyond what lies on them, as a share of its size.
-pub const BEYOND: f64 = 0.1;
-
 impl Step<'_> {
     /// The surface that an entity is; one without ends reaches about as far as what lies on it.
-    pub fn base(&mut self, k: u32, lying: &Lying, depth: usize) -> Result<Base, Damage> {
+    pub fn base(&mut self, k: u32, loops: &FaceLoops, depth: usize) -> Result<Base, Damage> {
         if depth > NESTED {
             return Err(damage("surfaces are nested too deep, or are made of themselves"));
         }
@@ -64,14 +61,14 @@ impl Step<'_> {
             b"SURFACE_OF_LINEAR_EXTRUSION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let along = self.vector(row.entity(2)?)?;
-                self.extruded(&of, along, &lying.reach)
+                self.extruded(&of, along, &loops.reach)
             }
             b"SURFACE_OF_REVOLUTION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let frame = self.frame(row.entity(2)?)?;
-                self.revolved(&of, &axis(&frame), lying)
+                self.revolved(&of, &axis(&frame), loops)
             }
-            b"OFFSET_SURFACE" => self.beside(k, lying, depth),
+            b"OFFSET_SURFACE" => self.beside(k, loops, depth),
             b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
                 Err(damage(format!("{} stands where a whole surface should", self.said(k))))
             }
@@ -80,7 +77,7 @@ impl Step<'_> {
     }
 
     /// The offset of a surface, along the normals of the file.
-    fn beside(&mut self, k: u32, lying: &Lying, depth: usize) -> Result<Base, Damage> {
+    fn beside(&mut self, k: u32, loops: &FaceLoops, depth: usize) -> Result<Base, Damage> {
         let row = self.file.parameters(k);
         let (of, distance) = (row.entity(1)?, row.number(2)? * self.scale);
         let inner = self.file.parameters(of);
@@ -101,7 +98,7 @@ impl Step<'_> {
         if self.file.name(of) == b"RECTANGULAR_TRIMMED_SURFACE" && inner.flag(6, true) != inner.flag(7, true) {
             return Err(damage(format!("{} is turned over by one of its senses", self.said(of))));
         }
-        let around = lying.beside(distance);
+        let around = loops.beside(distance);
         let base = match self.file.name(of) {
             b"RECTANGULAR_TRIMMED_SURFACE" => self.within_parameters(of)?,
             _ => self.base(of, &around, depth + 1)?,
@@ -158,10 +155,10 @@ impl Step<'_> {
             return Err(damage("it is swept without end"));
         }
         let profile = self.within(of, reach)?;
-        let (low, high) = stretch(reach, profile.start(), direction);
+        let (low, high) = reach.stretch(profile.start(), direction);
         // The profile itself reaches along the direction too.
         let own = profile.bbox();
-        let (first, last) = stretch(&own, profile.start(), direction);
+        let (first, last) = own.stretch(profile.start(), direction);
         let (low, high) = (low - last.max(0.0), high - first.min(0.0));
         let room = BEYOND * (high - low);
         let by = direction * (high - low + 2.0 * room);
@@ -171,7 +168,7 @@ impl Step<'_> {
 
     /// The parameters of an endless curve near a box, with some room.
     pub fn range(of: &Endless, reach: &Box3) -> (f64, f64) {
-        let at: Vec<f64> = corners(reach).iter().map(|p| of.parameter(*p)).collect();
+        let at: Vec<f64> = reach.corners().iter().map(|p| of.parameter(*p)).collect();
         let (a, b) = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(*t), b.max(*t)));
         let room = BEYOND * (b - a);
         (a - room, b + room)
@@ -196,18 +193,4 @@ fn is_knotless(name: &[u8]) -> bool {
 
 fn axis(frame: &Frame) -> Axis {
     Axis { about: frame.at, direction: frame.z }
-}
-
-/// The corners of a box.
-fn corners(b: &Box3) -> [DVec3; 8] {
-    std::array::from_fn(|k| {
-        let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-        DVec3::new(pick(0, b.min.x, b.max.x), pick(1, b.min.y, b.max.y), pick(2, b.min.z, b.max.z))
-    })
-}
-
-/// How far a box reaches along a direction from a point.
-pub fn stretch(reach: &Box3, from: DVec3, direction: DVec3) -> (f64, f64) {
-    let along = corners(reach).map(|p| (p - from).dot(direction));
-    (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max))
 }

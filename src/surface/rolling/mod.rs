@@ -46,14 +46,13 @@ pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: 
     let is_made = |stations, radius: f64| made(stations, radius).is_ok();
     let stations = largest::stations(&ball, radius, origin, is_made)?;
     made(stations, radius).map_err(|fault| {
-        let lost = match &fault {
-            Fault::Curve(of) => match **of {
-                CurveFault::NotConverged { at, .. } => Some(at),
-                _ => None,
-            },
-            _ => None,
-        };
-        lost.and_then(|at| largest::above_made(&ball, (radius, at), origin, is_made)).unwrap_or(fault)
+        // What is lost on the way may be too large for it.
+        if let Fault::Curve(of) = &fault
+            && let CurveFault::NotConverged { at, .. } = **of
+        {
+            return largest::above_made(&ball, (radius, at), origin, is_made).unwrap_or(fault);
+        }
+        fault
     })
 }
 

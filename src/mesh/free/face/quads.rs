@@ -2,12 +2,10 @@
 
 mod halved;
 mod maker;
-mod mended;
+mod repaired;
 
 pub(in crate::mesh) use halved::halved;
 pub(super) use halved::odd;
-
-use std::cell::Cell;
 
 use glam::DVec2;
 use maker::{Maker, nodes};
@@ -97,7 +95,7 @@ fn fitting(
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
-    let maker = Maker { fit: &fit, halves, worth: Cell::default() };
+    let maker = Maker { fit: &fit, halves };
     Ok(maker.fitted(&mut field, job)?.map(|net| {
         let deciders = fit.deciders(&field, &nodes(&net));
         (net, deciders)

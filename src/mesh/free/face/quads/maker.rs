@@ -1,6 +1,5 @@
 //! Nets of quads made for wanted lengths, bounded, and made again with shorter ones until one keeps the limits.
 
-use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
@@ -28,8 +27,8 @@ use crate::mesh::plan::{Elements, Method};
 use crate::mesh::shape_check::is_concave;
 use crate::mesh::wanted::floor_keeps;
 
-/// Work that an element is worth over those of triangles: nets are smoothed, split and smoothed again, and made several times.
-const WORTH: u64 = 4;
+/// Work of an element over that of a triangle: nets are smoothed, split and smoothed again, and made several times.
+const WORK_OF_QUADS: u64 = 4;
 /// Quality of pairs that is better than two triangles: of `mixed`.
 const MIXED: Alone = Alone { least: 0.5, worth: 0.5 };
 /// The same for cells that are halved: triangles become three quads each.
@@ -64,8 +63,6 @@ type Fitted = Result<std::result::Result<Net, Trouble>>;
 pub(super) struct Maker<'a> {
     pub(super) fit: &'a Fit<'a>,
     pub(super) halves: &'a Halves,
-    /// What the elements were worth that it was allowed work for.
-    pub(super) worth: Cell<u64>,
 }
 
 /// What breaks a limit most.
@@ -80,14 +77,15 @@ impl Maker<'_> {
     pub(super) fn fitted(&self, field: &mut Blend, job: &Job) -> Fitted {
         let plan = self.fit.made.input.plan;
         let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
+        let mut allowed = 0;
         for round in 0..TRIES {
-            let mut net = match self.net(field, job)? {
+            let mut net = match self.net(field, &mut allowed, job)? {
                 Ok(net) => net,
                 Err(trouble) => return Ok(Err(trouble)),
             };
             let mut loads = Loads::default();
             if field.background.is_some() {
-                self.mend(&mut net, field, &mut loads, job)?;
+                self.repair(&mut net, field, &mut loads, job)?;
             }
             let side = self.too_long(&net);
             let bend = self.lower(field, &net, (side, &mut loads))?;
@@ -117,8 +115,8 @@ impl Maker<'_> {
         Err(MeshFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
     }
 
-    /// One net for these lengths.
-    fn net(&self, field: &Blend, job: &Job) -> Fitted {
+    /// One net for these lengths; `allowed` is the work that the elements of nets before were allowed.
+    fn net(&self, field: &Blend, allowed: &mut u64, job: &Job) -> Fitted {
         let same = Even(field.spacing * self.fit.face.size.0);
         let plain = field.sources.is_empty() && field.background.is_none();
         let wanted: &dyn Field = if plain { &same } else { field };
@@ -133,9 +131,7 @@ impl Maker<'_> {
             Ok(web) => web,
             Err(trouble) => return Ok(Err(trouble)),
         };
-        let mut worth = self.worth.get();
-        allow(WORTH * if quads { 2 } else { 1 } * web.tri.len() as u64, &mut worth);
-        self.worth.set(worth);
+        allow(WORK_OF_QUADS * if quads { 2 } else { 1 } * web.tri.len() as u64, allowed);
         let mut gardener = Gardener::new(web, ground, cells, self.fit.care);
         gardener.flip_all();
         let mut web = gardener.web;

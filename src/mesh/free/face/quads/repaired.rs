@@ -1,4 +1,4 @@
-//! Elements that break a chord error or an angle, mended where they are: a quad is cut along its other diagonal, and nodes are moved.
+//! Elements that break a chord error or an angle, repaired where they are: a quad is cut along its other diagonal, and nodes are moved.
 //!
 //! A face that is made anew has other bad places, one element in a thousand: were lengths made shorter for each of them, there would be no
 //! end to it.
@@ -17,22 +17,22 @@ use crate::mesh::free::size::Blend;
 const ROUNDS: usize = 5;
 /// Where more than one element in so many breaks a limit, lengths are wrong.
 const FEW: usize = 12;
-/// Quality, 0 to 1, below which no element gets for it.
-const STRAINED: f64 = 0.65;
+/// Least quality, 0 to 1, of elements that a move changes, unless it was lower.
+const MIN_QUALITY: f64 = 0.65;
 /// So many elements are moved by their bounds, more by samples, for a twentieth of the work.
 const BOUNDED: usize = 24;
 /// Loads that are enough, by bounds and by samples: what is left over is more than these two differ.
 const ENOUGH: (f64, f64) = (0.98, 0.9);
 
 impl Maker<'_> {
-    /// Mends elements that break a limit where they are few; what is left of them is for shorter lengths.
-    pub(super) fn mend(&self, net: &mut Net, field: &Blend, loads: &mut Loads, job: &Job) -> Result<()> {
+    /// Repairs elements that break a limit where they are few; what is left of them needs shorter lengths.
+    pub(super) fn repair(&self, net: &mut Net, field: &Blend, loads: &mut Loads, job: &Job) -> Result<()> {
         for round in 0..=ROUNDS {
             let over = self.over(net, loads);
             if over.is_empty() || over.len() * FEW > net.face.len() || round == ROUNDS {
                 break;
             }
-            self.ease(net, field, &over, job)?;
+            self.move_nodes(net, field, &over, job)?;
         }
         Ok(())
     }
@@ -67,7 +67,7 @@ impl Maker<'_> {
     }
 
     /// Moves nodes of some elements to where the worst load round them is least.
-    fn ease(&self, net: &mut Net, field: &Blend, over: &[usize], job: &Job) -> Result<()> {
+    fn move_nodes(&self, net: &mut Net, field: &Blend, over: &[usize], job: &Job) -> Result<()> {
         let bounded = over.len() <= BOUNDED;
         let enough = if bounded { ENOUGH.0 } else { ENOUGH.1 };
         let load = |net: &Net, f: usize| {
@@ -89,7 +89,7 @@ impl Maker<'_> {
                 if n == NONE || n < smoother.net.fixed || load(smoother.net, f) <= enough {
                     continue;
                 }
-                let least = least_quality(smoother.net, smoother.faces(n as usize)).min(STRAINED);
+                let least = least_quality(smoother.net, smoother.faces(n as usize)).min(MIN_QUALITY);
                 let best = Cell::new(f64::INFINITY);
                 let score = |net: &Net, faces: &[u32]| {
                     let mut most = if least_quality(net, faces) < least { f64::INFINITY } else { 0.0 };

@@ -1,4 +1,4 @@
-//! What lies on a surface of a file, known before the surface is made: the loops of its face.
+//! The loops of a face of a file, known before its surface is made.
 
 use glam::DVec3;
 
@@ -12,15 +12,15 @@ const SAMPLES: usize = 32;
 
 /// The loops of a face and the box around them.
 #[derive(Clone, Copy, Debug)]
-pub struct Lying<'l> {
+pub struct FaceLoops<'l> {
     /// The box around the loops, model units.
     pub reach: Box3,
     loops: &'l [Vec<Border>],
 }
 
-impl<'l> Lying<'l> {
-    /// Nothing is known.
-    pub const NOTHING: Lying<'static> = Lying { reach: Box3::EMPTY, loops: &[] };
+impl<'l> FaceLoops<'l> {
+    /// No loops.
+    pub const NONE: FaceLoops<'static> = FaceLoops { reach: Box3::EMPTY, loops: &[] };
 
     /// The loops of a face.
     pub fn of(loops: &'l [Vec<Border>]) -> Self {
@@ -47,8 +47,8 @@ impl<'l> Lying<'l> {
         self.loops.iter().flat_map(|border| Self::points_of(border))
     }
 
-    /// Whether the loops together run round an axis, so that of a cone the apex lies inside them.
-    pub fn run_round(&self, axis: &Axis) -> bool {
+    /// Whether the loops together wind about an axis: of a cone the apex then lies inside them.
+    pub fn wind_about(&self, axis: &Axis) -> bool {
         let first = math::any_normal(axis.direction);
         let second = axis.direction.cross(first);
         let turn = |border: &Vec<Border>| {
