@@ -70,15 +70,15 @@ def volume(shape):
 
 
 def free_edges(shape):
-    """Edges that one face uses once."""
+    """The edges that one face uses once."""
     uses = TopTools_IndexedDataMapOfShapeListOfShape()
     TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, uses)
-    free = 0
+    free = []
     for k in range(1, uses.Extent() + 1):
         edge = TopoDS.Edge_s(uses.FindKey(k))
         if uses.FindFromIndex(k).Size() == 1 and not BRep_Tool.Degenerated_s(edge):
             face = TopoDS.Face_s(uses.FindFromIndex(k).First())
-            free += not BRep_Tool.IsClosed_s(edge, face)
+            free += [] if BRep_Tool.IsClosed_s(edge, face) else [edge]
     return free
 
 
@@ -197,7 +197,7 @@ def row(path, label, kind, thing, size, patches):
     cells["area"] = sum(area(f) for f in faces) / (thing["area"] * size**2)
     if abs(cells["area"] - 1) > AREA:
         why.append("area")
-    cells["free"] = sum(free_edges(root) for root in roots)
+    cells["free"] = sum(len(free_edges(root)) for root in roots)
     if kind == "shell" and thing["closed"]:
         if not solids:
             why.append("no solid")
