@@ -69,7 +69,14 @@ impl Surface {
             Course::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
             Course::Pull(pull) => {
                 let Some(chain) = chain else { return 0.0 };
-                pull.stations().windows(2).map(|w| self.turn_of(chain, w[0], w[1], p, DEEPEST)).sum()
+                let turned = |(at, (low, high)): (&[(f64, DVec2)], (DVec2, DVec2))| {
+                    // About a place outside the box that holds a way, the way turns as its chord does.
+                    if p.cmplt(low).any() || p.cmpgt(high).any() {
+                        return angle(at[0].1, at[at.len() - 1].1, p);
+                    }
+                    at.windows(2).map(|w| self.turn_of(chain, w[0], w[1], p, DEEPEST)).sum()
+                };
+                pull.stretches().map(turned).sum()
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Where a curve that lies on a surface runs in (u, v): followed step by step, so that it never jumps to another sheet.
 
 use std::cell::Cell;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 
@@ -22,6 +22,8 @@ const BEND: f64 = 0.25;
 
 /// How much more than at the stations beside it a way may bend between two of them.
 const BENT: f64 = 4.0;
+/// Steps of a stretch that has a box of its own.
+const STRETCH: usize = 16;
 
 /// What a border of a trimmed surface is in (u, v), from its start to its end in the loop's direction.
 #[derive(Clone, Debug)]
@@ -39,7 +41,7 @@ impl Course {
             Self::Line(a, b) => Self::Line(turn(*b), turn(*a)),
             Self::Pull(pull) => {
                 let at = pull.at.iter().rev().map(|(f, uv)| (*f, turn((uv.x, uv.y)).into()));
-                Self::Pull(Arc::new(Pull { at: at.collect(), off: pull.off }))
+                Self::Pull(Arc::new(Pull::new(at.collect(), pull.off)))
             }
         }
     }
@@ -74,7 +76,7 @@ impl Course {
             Self::Line(a, b) => Self::Line(shift(*a), shift(*b)),
             Self::Pull(pull) => {
                 let at = pull.at.iter().map(|(f, uv)| (*f, *uv + by)).collect();
-                Self::Pull(Arc::new(Pull { at, off: pull.off }))
+                Self::Pull(Arc::new(Pull::new(at, pull.off)))
             }
         }
     }
@@ -94,6 +96,8 @@ pub(super) struct Pull {
     at: Vec<(f64, DVec2)>,
     /// The largest distance from the surface met on the way, model units.
     pub off: f64,
+    /// Boxes about stretches of [`STRETCH`] steps, made when first asked for.
+    boxes: OnceLock<Box<[(DVec2, DVec2)]>>,
 }
 
 /// Where a curve is too far from the surface.
@@ -106,6 +110,24 @@ pub(super) struct Off {
 }
 
 impl Pull {
+    fn new(at: Vec<(f64, DVec2)>, off: f64) -> Self {
+        Self { at, off, boxes: OnceLock::new() }
+    }
+
+    /// Stretches of the way, each with a box that holds it: about its stations, and farther by its longest step.
+    pub fn stretches(&self) -> impl Iterator<Item = (&[(f64, DVec2)], (DVec2, DVec2))> {
+        let stretch = |k: usize| &self.at[k * STRETCH..(k * STRETCH + STRETCH + 1).min(self.at.len())];
+        let boxed = |at: &[(f64, DVec2)]| {
+            let step = at.windows(2).map(|w| w[0].1.distance(w[1].1)).fold(0.0, f64::max);
+            let low = at.iter().fold(DVec2::INFINITY, |low, s| low.min(s.1));
+            let high = at.iter().fold(DVec2::NEG_INFINITY, |high, s| high.max(s.1));
+            (low - step, high + step)
+        };
+        let n = (self.at.len() - 1).div_ceil(STRETCH);
+        let boxes = self.boxes.get_or_init(|| (0..n).map(|k| boxed(stretch(k))).collect());
+        boxes.iter().enumerate().map(move |(k, held)| (stretch(k), *held))
+    }
+
     /// Follows a chain between two fractions from a place near its first point; fails where it is farther from the surface
     /// than `near`.
     ///
@@ -146,12 +168,12 @@ impl Pull {
                 walk(surface, chain, &mut at, f, &land, DEEPEST)?;
             }
         }
-        Ok(Self { at, off: widest.get() })
+        Ok(Self::new(at, widest.get()))
     }
 
     /// The same in the other direction.
     pub fn turned(&self) -> Self {
-        Self { at: self.at.iter().rev().copied().collect(), off: self.off }
+        Self::new(self.at.iter().rev().copied().collect(), self.off)
     }
 
     /// The first and the last place.
@@ -162,14 +184,14 @@ impl Pull {
     /// This way and then another that goes on from its end.
     pub fn then(mut self, more: &Self) -> Self {
         self.at.extend(more.at.iter().skip(1));
-        self
+        Self::new(self.at, self.off)
     }
 
     /// The same with an end, the last one or the first, at another place.
     pub fn ending(mut self, last: bool, place: DVec2) -> Self {
         let k = if last { self.at.len() - 1 } else { 0 };
         self.at[k].1 = place;
-        self
+        Self::new(self.at, self.off)
     }
 
     /// The same with its ends at poles where the way before them points: there every u (or v) is the same point.
@@ -201,11 +223,6 @@ impl Pull {
     /// About where a share of the way lies.
     pub fn share(&self, share: f64) -> DVec2 {
         self.guess(self.fraction(share))
-    }
-
-    /// Fractions with their places, in the order of the loop.
-    pub fn stations(&self) -> &[(f64, DVec2)] {
-        &self.at
     }
 
     /// About where a fraction of the chain lies.
