@@ -13,7 +13,9 @@ import traceback
 
 import jsonschema
 
+import cad_again
 import cad_in
+import cad_mesh
 import members
 import orders
 import read_back
@@ -139,10 +141,8 @@ def main():
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
     tally.check("roundings and walls by OpenCASCADE", lambda: rounded.check(lambda *a: run_loft(loft, *a), work))
-    wrong, n = cad_in.table(loft, os.path.join(work, "cad"))
-    tally.table(wrong, n)
-    wrong, n = step_out.table(loft, os.path.join(work, "step_out"))
-    tally.table(wrong, n)
+    for module in [cad_in, cad_mesh, cad_again, step_out]:
+        tally.table(*module.table(loft, os.path.join(work, module.__name__)))
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
     print("".join(f"FAILED {label}\n" for label in tally.wrong), end="")
     print(f"{tally.passed} passed, {len(tally.wrong)} failed")
