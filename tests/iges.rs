@@ -4,6 +4,7 @@
 mod entities;
 mod file;
 mod loops;
+mod solids;
 mod written;
 
 use std::f64::consts::PI;

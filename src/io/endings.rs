@@ -27,7 +27,9 @@ pub enum Sort {
 /// All sorts.
 const SORTS: [Sort; 7] = [Sort::Meshes, Sort::Curves, Sort::Surfaces, Sort::Shells, Sort::Points, Sort::Records, Sort::Pictures];
 /// Endings of CAD files.
-const CAD: [&str; 4] = ["igs", "iges", STEP[0], STEP[1]];
+const CAD: [&str; 4] = [IGES[0], IGES[1], STEP[0], STEP[1]];
+/// Endings of IGES files.
+pub const IGES: [&str; 2] = ["igs", "iges"];
 /// Endings of STEP files.
 pub const STEP: [&str; 2] = ["step", "stp"];
 /// Endings of lists of records.

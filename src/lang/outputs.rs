@@ -98,8 +98,8 @@ impl Cx<'_> {
         let things = things.unwrap_or_default();
         let elements = find(&settings, "element").map_or_else(Vec::new, |said| self.elements(code, written, &said.value, said.origin));
         let incomplete = said(&settings, "incomplete", truth).is_some_and(|said| said.0);
-        let (encoding, schema) = (word("encoding"), word("schema"));
-        Ok(ExportSpec { things, path, path_origin, encoding, elements, schema, incomplete, units, origin })
+        let (encoding, schema, shells) = (word("encoding"), word("schema"), word("shells"));
+        Ok(ExportSpec { things, path, path_origin, encoding, elements, schema, shells, incomplete, units, origin })
     }
 
     /// The words of `element:`; those of a list written out have their own places.

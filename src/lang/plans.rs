@@ -148,6 +148,8 @@ pub struct ExportSpec {
     pub elements: Vec<(Arc<str>, Origin)>,
     /// `schema:` as a word.
     pub schema: Said<Arc<str>>,
+    /// `shells:` as a word.
+    pub shells: Said<Arc<str>>,
     /// What lacks faces is written all the same.
     pub incomplete: bool,
     /// `units:` of the file.

@@ -12,6 +12,8 @@ pub const METHODS: &[&str] = &["auto", "mapped", "quadtree", "delaunay", "isolin
 pub const ENCODINGS: &[&str] = &["binary", "text"];
 /// Words of `schema:`.
 pub const SCHEMAS: &[&str] = crate::io::step::write::Schema::WORDS;
+/// Words of `shells:`.
+pub const SHELLS: &[&str] = &["solids", "faces"];
 /// Words of `units:` of an export.
 pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "inch", "ft"];
 /// Elements of decks.
@@ -177,6 +179,12 @@ pub const EXPORT: &[Setting] = &[
         ty: Ty::Bool,
     },
     Setting { key: "schema", docs: "Application protocol of a STEP file.", default: "ap242", ty: Ty::Choice(SCHEMAS) },
+    Setting {
+        key: "shells",
+        docs: "What shells are in an IGES file: `solids` where they close, else shells, of faces that share their edges; or `faces`, trimmed surfaces each by itself.",
+        default: "solids",
+        ty: Ty::Choice(SHELLS),
+    },
     Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS) },
 ];
 

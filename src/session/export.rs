@@ -10,9 +10,7 @@ use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
 use crate::io::curves::{Drawing, Polyline, curve_format_for};
-use crate::io::endings::{STEP, Sort, misfit};
-use crate::io::iges;
-use crate::io::iges::write::{Scale, Shown, Thing};
+use crate::io::endings::{IGES, STEP, Sort, misfit};
 use crate::io::json::{self, Json};
 use crate::io::table::{self, Cell, Table};
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
@@ -41,10 +39,10 @@ fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRo
     let Some(sort) = sort_of(first) else {
         return Err(unsupported(*origin, format!("{} cannot be exported", first.ty().words())));
     };
-    no_schema(spec)?;
+    no_misplaced(spec)?;
     complete(cx, spec)?;
     let (bytes, losses) = match (extension(&spec.path).as_str(), sort) {
-        ("igs" | "iges", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => cad(cx, spec, files)?,
+        ("igs" | "iges", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => super::export_iges::iges(cx, spec, files)?,
         ("step" | "stp", Sort::Points | Sort::Curves | Sort::Surfaces | Sort::Shells) => super::export_step::step(cx, spec, files)?,
         (_, Sort::Meshes) => mesh(cx, spec, files)?,
         (_, Sort::Curves) => curves(cx, spec, files)?,
@@ -209,15 +207,19 @@ pub(super) fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
     }
 }
 
-/// The application protocol is a matter of STEP files.
-fn no_schema(spec: &ExportSpec) -> Result<(), Stop> {
-    match &spec.schema {
-        Some((_, of)) if !STEP.contains(&extension(&spec.path).as_str()) => {
-            let what = "`schema:` is for STEP files".to_owned();
-            Err(FileFault::Unsupported { of: *of, what, help: Some("remove `schema:`".to_owned()), edits: vec![Edit::DropSetting] }.into())
+/// Settings that mean something for one format only.
+fn no_misplaced(spec: &ExportSpec) -> Result<(), Stop> {
+    let cases = [("schema", &spec.schema, STEP, "STEP"), ("shells", &spec.shells, IGES, "IGES")];
+    for (key, said, endings, format) in cases {
+        if let Some((_, of)) = said
+            && !endings.contains(&extension(&spec.path).as_str())
+        {
+            let what = format!("`{key}:` is for {format} files");
+            let help = Some(format!("remove `{key}:`"));
+            return Err(FileFault::Unsupported { of: *of, what, help, edits: vec![Edit::DropSetting] }.into());
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
@@ -271,58 +273,6 @@ fn points_along(chain: &Chain, tolerance: &crate::base::tolerance::Tolerance) ->
         points.push(chain.point(piece[1]));
     }
     points
-}
-
-/// Points, curves, surfaces and shells as an IGES file; a shell becomes a group.
-fn cad(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
-    no_mesh_settings(spec)?;
-    let (unit, scale) = unit_of(cx, spec);
-    let tolerance = cx.tolerance()?;
-    let colors = Colors::of(cx);
-    let one = |cx: &Cx, of: Origin, shown: Shown| {
-        let color = match &shown {
-            Shown::Point(_) => None,
-            Shown::Curve(chain) => colors.of_curve(chain),
-            Shown::Surface(surface) => colors.of_surface(surface),
-        };
-        Thing { name: cx.name(of), group: String::new(), color, shown }
-    };
-    let face = |cx: &Cx, surface: &Surface| {
-        let thing = one(cx, surface.origin(), Shown::Surface(surface.clone()));
-        Thing { name: cx.name_in_file(surface).unwrap_or(thing.name), ..thing }
-    };
-    let mut things = Vec::with_capacity(spec.things.len());
-    for (value, origin) in &spec.things {
-        match value {
-            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => {
-                things.push(Thing { name: String::new(), ..one(cx, *origin, Shown::Point(*p)) })
-            }
-            Value::Curve(chain) => things.push(one(cx, chain.origin(), Shown::Curve(chain.clone()))),
-            Value::Edge(home, edge) => {
-                let chain = super::plan::chain_of(cx, home, edge)?;
-                let name = super::plan::edge_name(cx, &chain, edge);
-                things.push(Thing { name, ..one(cx, *origin, Shown::Curve(chain)) });
-            }
-            Value::Surface(surface) => things.push(face(cx, surface)),
-            Value::Shell(shell) => {
-                let group = cx.body_said(shell).map_or(&shell.name, |[_, only]| only);
-                things.extend(shell.surfaces.iter().map(|s| Thing { group: group.to_string(), ..face(cx, s) }));
-            }
-            other => {
-                let what = format!("IGES holds points, curves, surfaces and shells, not {}", other.ty().words());
-                return Err(FileFault::Unsupported { of: *origin, what, help: None, edits: Vec::new() }.into());
-            }
-        }
-    }
-    let scale = Scale { unit, model: scale.unwrap_or(1.0), tolerance };
-    // Through scattered points there is one cubic a triangle, and no net of few strips where slopes differ much.
-    let scattered = things.iter().any(|thing| matches!(&thing.shown, Shown::Surface(surface) if surface.is_scattered()));
-    let help = scattered
-        .then(|| "export a mesh of it, made with a `chord_error:`, to a format of meshes: splines hold smooth points only".to_owned());
-    let unsupported = |what| FileFault::Unsupported { of: spec.path_origin, what, help, edits: Vec::new() };
-    let sheet = iges::write::sheet(&things, &scale).map_err(unsupported)?;
-    let name = spec.path.rsplit('/').next().unwrap_or(&spec.path);
-    put(spec, files, &mut |out| iges::write::write(&sheet, name, &scale, out))
 }
 
 fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {

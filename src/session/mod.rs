@@ -8,6 +8,8 @@ mod consumed;
 mod cuts;
 pub mod disk;
 mod export;
+mod export_faces;
+mod export_iges;
 mod export_step;
 pub mod golden;
 pub mod guard;

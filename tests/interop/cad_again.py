@@ -23,7 +23,7 @@ from OCP.TopAbs import TopAbs_SOLID
 import cad_in
 import more_parts
 import parts
-from step_out import free_edges
+from bodies import free_edges
 
 ENDINGS = ["step", "igs"]
 LONGEST = 240

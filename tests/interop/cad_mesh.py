@@ -33,7 +33,7 @@ from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 import cad_in
 import more_parts
 import parts
-from step_out import free_edges
+from bodies import free_edges
 
 METHODS = ["auto", "delaunay", "isoline", "quadtree", "display", "quads"]
 # The chord error as a share of the square root of the area.

@@ -1,12 +1,16 @@
-//! Work on nets of control points: the stretch of knots that counts, and nets between two curves.
+//! Work on nets of control points: the stretch of knots that counts, borders and poles, and nets between two curves.
 
-use glam::{DVec3, DVec4};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, DVec4};
 
 use super::damage::{Damage, damage};
 use crate::base::bbox::Box3;
+use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::Nurbs;
+use crate::geometry::curve::Shape;
 use crate::geometry::nurbs::{projected, weighted};
+use crate::geometry::{Curve, Kind, Nurbs};
 use crate::surface::NurbsSurface;
 
 /// The part of a surface over first and last u, first and last v, with full end knots, over 0…1.
@@ -31,6 +35,49 @@ pub fn trimmed_net(net: NurbsSurface, [u0, u1, v0, v1]: [f64; 4]) -> Result<Nurb
         poles = (0..counts.1).flat_map(|j| columns.iter().map(move |c| c.poles[j])).collect();
     }
     Ok(NurbsSurface { degree, knots: (unit(&knots_u), unit(&knots_v)), poles, counts })
+}
+
+/// A border of a net that is no point.
+#[derive(Clone, Debug)]
+pub struct NetBorder {
+    /// The border in space, by the parameter that runs along it.
+    pub curve: Curve,
+    /// It runs along v.
+    along_v: bool,
+    /// The other parameter.
+    at: f64,
+    /// That parameter ascends where the net is on the left.
+    pub ascends: bool,
+}
+
+impl NetBorder {
+    /// Parameters of the net at one of the curve.
+    pub fn at(&self, t: f64) -> DVec2 {
+        if self.along_v { DVec2::new(self.at, t) } else { DVec2::new(t, self.at) }
+    }
+}
+
+/// The borders of a net that are no points.
+pub fn borders(net: &NurbsSurface) -> Vec<NetBorder> {
+    let (nu, nv) = net.counts;
+    let along_u = |j: usize| Nurbs::new(net.degree.0, net.knots.0.clone(), (0..nu).map(|i| net.pole(i, j)).collect());
+    let along_v = |i: usize| Nurbs::new(net.degree.1, net.knots.1.clone(), (0..nv).map(|j| net.pole(i, j)).collect());
+    let is_pole = |curve: &Nurbs| curve.poles.iter().all(|q| projected(*q) == projected(curve.poles[0]));
+    let ends = |knots: &[f64]| (knots[0], knots[knots.len() - 1]);
+    let ((u0, u1), (v0, v1)) = (ends(&net.knots.0), ends(&net.knots.1));
+    let all = [
+        (along_v(0), true, u0, false),
+        (along_v(nu - 1), true, u1, true),
+        (along_u(0), false, v0, true),
+        (along_u(nv - 1), false, v1, false),
+    ];
+    let curved = all.into_iter().filter(|(curve, ..)| !is_pole(curve));
+    curved.map(|(curve, along_v, at, ascends)| NetBorder { curve: spline(curve, Origin::NONE), along_v, at, ascends }).collect()
+}
+
+/// A spline as a curve.
+pub fn spline(curve: Nurbs, origin: Origin) -> Curve {
+    Curve::new(Shape::Nurbs(Arc::new(curve)), Kind::Spline, origin)
 }
 
 /// A border row of a net that was made one point.

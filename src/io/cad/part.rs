@@ -207,6 +207,13 @@ impl Group {
         }
     }
 
+    /// All members.
+    pub fn members(&self) -> Vec<Place> {
+        let points = self.points.iter().map(|k| Place::Point(*k));
+        let curves = self.curves.iter().map(|k| Place::Curve(*k));
+        points.chain(curves).chain(self.surfaces.iter().map(|k| Place::Surface(*k))).collect()
+    }
+
     /// Whether nothing is in it.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty() && self.curves.is_empty() && self.surfaces.is_empty()

@@ -140,6 +140,10 @@ pub enum Data {
     Color { rgb: [f64; 3], name: String },
     /// 402.
     Group(Vec<Pointer>),
+    /// 406 form 1: numbers of levels.
+    Levels(Vec<i32>),
+    /// 406 form 3: the name of the level that it is on.
+    LevelName(String),
     /// 406 form 15.
     Name(String),
     /// 502.
@@ -216,6 +220,12 @@ pub fn decode(entry: &Entry, reader: &mut Reader) -> Result<Decoded, Damage> {
             let n = reader.count("count of members")?;
             Data::Group(reader.pointers(n, "members")?)
         }
+        // Geometry without its levels is geometry all the same.
+        406 if form == 1 => levels(reader).map_or(Data::Silent, Data::Levels),
+        406 if form == 3 => {
+            let (_count, _function) = (reader.real_or(0.0), reader.real_or(0.0));
+            Data::LevelName(reader.text())
+        }
         406 if form == 15 => {
             reader.count("count of values")?;
             Data::Name(reader.text())
@@ -231,6 +241,12 @@ pub fn decode(entry: &Entry, reader: &mut Reader) -> Result<Decoded, Damage> {
     };
     let (_, properties) = if matches!(data, Data::Silent | Data::Unknown) { Default::default() } else { reader.attached() };
     Ok(Decoded { data, properties })
+}
+
+fn levels(reader: &mut Reader) -> Result<Vec<i32>, Damage> {
+    let n = reader.count("count of levels")?;
+    reader.needs(n, 1, "levels")?;
+    (0..n).map(|_| Ok(reader.int("level")? as i32)).collect()
 }
 
 /// Rows of a rotation, each followed by its part of the translation.

@@ -16,6 +16,7 @@ mod entity_faces;
 mod entity_surfaces;
 mod faces;
 mod global;
+mod levels;
 mod lines;
 mod params;
 mod part;

@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::book::{Book, NESTED};
 use super::curves::Place;
 use super::entities::{Data, Pointer};
+use super::levels::Levels;
 use super::records;
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
@@ -139,7 +140,15 @@ impl Opened {
     pub fn part(mut self, tolerance: Tolerance) -> Part {
         self.book.tolerance = tolerance;
         let part = Part { unit: self.book.unit, model_unit: self.book.model_unit, mark: "D", ..Part::default() };
-        Maker { book: self.book, part, made: BTreeMap::new(), names: Names::default(), shades: Shades::default() }.run()
+        Maker {
+            book: self.book,
+            part,
+            made: BTreeMap::new(),
+            names: Names::default(),
+            shades: Shades::default(),
+            levels: Levels::default(),
+        }
+        .run()
     }
 }
 
@@ -149,6 +158,7 @@ struct Maker {
     made: BTreeMap<Pointer, Made>,
     names: Names,
     shades: Shades,
+    levels: Levels,
 }
 
 impl Maker {
@@ -190,6 +200,7 @@ impl Maker {
         }
         self.unknown();
         self.gaps();
+        self.part.layers = std::mem::take(&mut self.levels).layers(&self.book);
         self.part.warnings = std::mem::take(&mut self.book.warnings);
         self.part
     }
@@ -270,6 +281,9 @@ impl Maker {
     fn item<T>(&mut self, d: Pointer, word: &str, before: usize, value: T) -> Item<T> {
         let (name, own) = self.name(d, word, before);
         let color = self.color(d);
+        if let Some(made) = self.made.get(&d).copied() {
+            self.levels.put(&self.book, d, &[made]);
+        }
         if let (Some((rgb, color_name)), Some(made)) = (&color, self.made.get(&d).copied()) {
             self.shades.group(&mut self.part.colors, *rgb, color_name).put(made);
         }
@@ -323,6 +337,7 @@ impl Maker {
             _ => "group",
         };
         (group.name, group.own) = self.name(d, word, self.part.groups.len());
+        self.levels.put(&self.book, d, &group.members());
         self.bodies(d, &group);
         self.part.groups.push(group);
     }

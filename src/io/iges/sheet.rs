@@ -1,6 +1,6 @@
 //! Entities on their way into a file: numbered, laid out in 80 columns.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
 use glam::DVec3;
@@ -10,6 +10,9 @@ use crate::base::job;
 use crate::base::text::push_real;
 use crate::io::deck::{Loss, Renamed};
 use crate::io::romanize::in_ascii;
+
+/// Highest number of a level that a layer may have by its name.
+const HIGHEST_LEVEL: u32 = 9_999_999;
 
 /// Dependence and use of an entity, as the status field has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +25,16 @@ pub enum Role {
     InUv,
     /// A property, colour or group.
     Definition,
+    /// A point that places another entity.
+    Place,
+    /// A direction of another entity.
+    Direction,
+    /// The list of the edges of a solid.
+    List,
+    /// A solid or shell, whose faces have levels and colours of their own.
+    Body,
+    /// The same as a part of a solid.
+    ShellOfSolid,
 }
 
 impl Role {
@@ -31,6 +44,10 @@ impl Role {
             Self::Part => "00010000",
             Self::InUv => "00010500",
             Self::Definition => "00000200",
+            Self::Place => "00010400",
+            Self::Direction => "00010200",
+            Self::List | Self::ShellOfSolid => "00010001",
+            Self::Body => "00000001",
         }
     }
 }
@@ -110,6 +127,8 @@ struct Entity {
     role: Role,
     transform: u32,
     color: i64,
+    /// Number of its level, or below 0 a pointer to a list of such.
+    level: i64,
     values: Values,
     properties: Vec<u32>,
 }
@@ -133,6 +152,12 @@ pub struct Sheet {
     remarks: Vec<String>,
     /// Colours with the pointers to them.
     colors: Vec<([f64; 3], u32)>,
+    /// Layers with the numbers of their levels.
+    levels: BTreeMap<String, u32>,
+    /// Several levels with the pointers to their lists.
+    lists: BTreeMap<Vec<u32>, u32>,
+    /// What is not in the file, in words.
+    pub left_out: Vec<String>,
 }
 
 impl Sheet {
@@ -143,7 +168,7 @@ impl Sheet {
 
     /// Adds an entity; gives the pointer to it.
     pub fn add(&mut self, kind: u32, form: i32, role: Role, values: Values) -> u32 {
-        self.entities.push(Entity { kind, form, role, transform: 0, color: 0, values, properties: Vec::new() });
+        self.entities.push(Entity { kind, form, role, transform: 0, color: 0, level: 0, values, properties: Vec::new() });
         self.entities.len() as u32 * 2 - 1
     }
 
@@ -165,6 +190,15 @@ impl Sheet {
 
     /// Gives an entity a name.
     pub fn name(&mut self, d: u32, name: &str) {
+        let given = self.given(name);
+        let property = self.add(406, 15, Role::Definition, Values::new().int(1).text(&given));
+        if let Some(entity) = self.at(d) {
+            entity.properties.push(property);
+        }
+    }
+
+    /// A name as the file has it.
+    fn given(&mut self, name: &str) -> String {
         let ascii: String = in_ascii(name).chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect();
         let mut given = ascii.clone();
         let mut k = 2;
@@ -172,11 +206,8 @@ impl Sheet {
             given = format!("{ascii}_{k}");
             k += 1;
         }
-        let property = self.add(406, 15, Role::Definition, Values::new().int(1).text(&given));
-        self.names.insert(given, name.to_owned());
-        if let Some(entity) = self.at(d) {
-            entity.properties.push(property);
-        }
+        self.names.insert(given.clone(), name.to_owned());
+        given
     }
 
     /// Gives an entity a colour of red, green and blue from 0 to 1; equal ones stand once in the file.
@@ -189,6 +220,52 @@ impl Sheet {
         });
         if let Some(entity) = self.at(d) {
             entity.color = -i64::from(color);
+        }
+    }
+
+    /// Numbers all layers that things may be put on, and names their levels; a layer whose name is a number has that one.
+    pub fn layers<'a>(&mut self, names: impl Iterator<Item = &'a str>) {
+        let mut all: Vec<&str> = Vec::new();
+        names.for_each(|name| {
+            if !all.contains(&name) {
+                all.push(name)
+            }
+        });
+        let number = |name: &str| name.parse().ok().filter(|n: &u32| (1..=HIGHEST_LEVEL).contains(n) && n.to_string() == *name);
+        let (numbers, words): (Vec<&str>, Vec<&str>) = all.into_iter().partition(|name| number(name).is_some());
+        self.levels.extend(numbers.into_iter().filter_map(|name| Some((name.to_owned(), number(name)?))));
+        let taken: BTreeSet<u32> = self.levels.values().copied().collect();
+        let free = (1..).filter(|n| !taken.contains(n));
+        for (name, level) in words.into_iter().zip(free) {
+            let given = self.given(name);
+            let property = self.add(406, 3, Role::Definition, Values::new().int(2).int(0).text(&given));
+            self.levels.insert(name.to_owned(), level);
+            if let Some(entity) = self.at(property) {
+                entity.level = i64::from(level);
+            }
+        }
+    }
+
+    /// Puts an entity on layers.
+    pub fn put_on(&mut self, d: u32, layers: &[String]) {
+        let mut levels: Vec<u32> = layers.iter().filter_map(|name| self.levels.get(name).copied()).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let level = match levels[..] {
+            [] => return,
+            [one] => i64::from(one),
+            _ => {
+                let known = self.lists.get(&levels).copied();
+                let list = known.unwrap_or_else(|| {
+                    let list = self.add(406, 1, Role::Definition, Values::new().int(levels.len() as u32).ints(levels.iter().copied()));
+                    self.lists.insert(levels, list);
+                    list
+                });
+                -i64::from(list)
+            }
+        };
+        if let Some(entity) = self.at(d) {
+            entity.level = level;
         }
     }
 
@@ -221,9 +298,9 @@ impl Sheet {
         let mut first = 1;
         for (entity, parameters) in self.entities.iter().zip(&parameters) {
             job::look();
-            let Entity { kind, form, transform, color, role, .. } = entity;
+            let Entity { kind, form, transform, color, level, role, .. } = entity;
             let (n, status) = (parameters.len(), role.status());
-            lines.put(&format!("{kind:>8}{first:>8}{0:>8}{0:>8}{0:>8}{0:>8}{transform:>8}{0:>8}{status}", 0))?;
+            lines.put(&format!("{kind:>8}{first:>8}{0:>8}{0:>8}{level:>8}{0:>8}{transform:>8}{0:>8}{status}", 0))?;
             lines.put(&format!("{kind:>8}{:>8}{color:>8}{n:>8}{form:>8}{:>8}{:>8}{:>8}{:>8}", 0, "", "", "", 0))?;
             first += n;
         }

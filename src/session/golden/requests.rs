@@ -89,6 +89,7 @@ fn export(cx: &mut Cx, looks: &Looks, spec: &ExportSpec) -> super::line::Line {
         .maybe("encoding", said(&spec.encoding))
         .maybe("element", elements)
         .maybe("schema", said(&spec.schema))
+        .maybe("shells", said(&spec.shells))
         .maybe("units", spec.units.map(|u| Value::Word(u.0.name.to_owned())));
     let held = Held::of(cx, spec.things.iter().map(|t| &t.0).filter(|t| !is_declared_mesh(t)));
     made.all(held.pairs(unit)).0

@@ -141,6 +141,7 @@ const WRITTEN: Fields = &[
     field("encoding", Kind::Word),
     field("element", Kind::Word),
     field("schema", Kind::Word),
+    field("shells", Kind::Word),
     field("units", Kind::Word),
     field("pixels", Kind::Word),
     field("eye", Kind::List(Measure::Ratio)),

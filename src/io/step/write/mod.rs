@@ -11,7 +11,6 @@
 
 mod curves;
 mod looks;
-mod poles;
 mod product;
 mod properties;
 mod surfaces;
@@ -25,11 +24,10 @@ use glam::DVec3;
 pub use curves::Scale;
 pub use product::Schema;
 pub use properties::Measured;
-pub use topology::Faces;
 
 use crate::base::job;
+use crate::io::cad::bodies::Faces;
 use crate::io::cad::damage::Damage;
-use crate::model::SurfaceId;
 use crate::network::Chain;
 use looks::Painted;
 use text::{Id, Records};
@@ -158,9 +156,8 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     let scale = &setup.scale;
     let geometry = match &thing.shown {
         Shown::Faces(faces) => {
-            let made = faces.put(records, &thing.name, scale)?;
-            let left_out = thin_faces(faces, &thing.name, &made.thin).into_iter().collect();
-            let Made { solids, sheets, off, painted, layered, thin_area, .. } = made;
+            let Made { solids, sheets, off, painted, layered, left_out, thin_area } = topology::put(faces, records, &thing.name, scale)?;
+            let left_out = left_out.into_iter().collect();
             return Ok(Put { solids, sheets, off, painted, layered, left_out, thin_area, ..Put::default() });
         }
         Shown::Point(p) => records.point(*p / scale.model),
@@ -171,17 +168,6 @@ fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damag
     });
     let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true, over: None });
     Ok(Put { wires: vec![set], painted: painted.into_iter().collect(), ..Put::default() })
-}
-
-/// What faces that are too thin are called where they are left out.
-fn thin_faces(faces: &Faces, whole: &str, thin: &[SurfaceId]) -> Option<String> {
-    let name = |id: &SurfaceId| faces.model.surfaces[id.index()].name.clone();
-    let [first, others @ ..] = thin else { return None };
-    let (what, are) = match others.len() {
-        0 => (format!("the face `{}`", name(first)), "which is"),
-        n => (format!("{} faces, such as `{}`,", n + 1, name(first)), "which are"),
-    };
-    Some(format!("{what} of `{whole}`, {are} thinner than the distance within which edges are one"))
 }
 
 /// Writes a file; `name` stands in its head.

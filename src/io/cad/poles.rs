@@ -1,18 +1,14 @@
 //! Edges of nets whose poles were made points: they end at the poles that the file has, and run along the borders that it has.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
-use super::curves::Scale;
-use super::surfaces::Ground;
-use crate::base::origin::Origin;
-use crate::geometry::curve::Shape;
-use crate::geometry::nurbs::{projected, weighted};
-use crate::geometry::{Curve, Kind, Nurbs, closest};
-use crate::io::cad::damage::Damage;
+use super::damage::Damage;
+use super::ground::Ground;
+use super::nets::{borders, spline};
+use crate::base::tolerance::Tolerance;
+use crate::geometry::nurbs::weighted;
+use crate::geometry::{Curve, closest};
 use crate::model::Body;
-use crate::surface::NurbsSurface;
 
 /// Tolerances within which a vertex is a pole, and a seam the edge of a net: control points of a circle stand on a square round it.
 const REACH: f64 = 2.0;
@@ -33,8 +29,8 @@ pub struct Placed {
 
 impl Placed {
     /// Where the faces of a body have poles that were made points.
-    pub fn new(body: &Body, grounds: &[Ground], scale: &Scale) -> Self {
-        let room = REACH * scale.tolerance.point;
+    pub fn new(body: &Body, grounds: &[Ground], tolerance: &Tolerance) -> Self {
+        let room = REACH * tolerance.point;
         let mut placed =
             Self { vertices: body.vertices.clone(), moved: vec![false; body.vertices.len()], borders: vec![Vec::new(); body.edges.len()] };
         for (face, ground) in body.faces.iter().zip(grounds) {
@@ -50,7 +46,7 @@ impl Placed {
                     }
                 }
             }
-            let around = borders(net);
+            let around: Vec<Curve> = borders(net).into_iter().map(|border| border.curve).collect();
             for (edge, _) in face.loops.iter().flatten() {
                 placed.borders[*edge].extend(around.iter().cloned());
             }
@@ -59,11 +55,11 @@ impl Placed {
     }
 
     /// The curve of an edge between these vertices.
-    pub fn curve(&self, edge: usize, ends: (usize, usize), own: Curve, scale: &Scale) -> Result<Curve, Damage> {
+    pub fn curve(&self, edge: usize, ends: (usize, usize), own: Curve, tolerance: &Tolerance) -> Result<Curve, Damage> {
         let (start, end) = (self.vertices[ends.0], self.vertices[ends.1]);
         let (a, b) = own.domain();
         let places: Vec<DVec3> = (1..PLACES).map(|k| own.point(a + (b - a) * k as f64 / PLACES as f64)).collect();
-        let room = REACH * scale.tolerance.point;
+        let room = REACH * tolerance.point;
         for border in &self.borders[edge] {
             let [a, b] = [start, end].map(|p| closest(border, p));
             let is_near = |p: &DVec3| closest(border, *p).distance <= room;
@@ -76,7 +72,7 @@ impl Placed {
         if moved == [None, None] {
             return Ok(own);
         }
-        let whole = own.to_nurbs(&scale.tolerance)?;
+        let whole = own.to_nurbs(tolerance)?;
         let (a, b) = whole.domain();
         let mut curve = whole.part(a, b);
         let last = curve.poles.len() - 1;
@@ -85,18 +81,4 @@ impl Placed {
         }
         Ok(spline(curve, own.origin()))
     }
-}
-
-fn spline(curve: Nurbs, origin: Origin) -> Curve {
-    Curve::new(Shape::Nurbs(Arc::new(curve)), Kind::Spline, origin)
-}
-
-/// The border curves of a net that are no poles.
-fn borders(net: &NurbsSurface) -> Vec<Curve> {
-    let (nu, nv) = net.counts;
-    let along_u = |j: usize| Nurbs::new(net.degree.0, net.knots.0.clone(), (0..nu).map(|i| net.pole(i, j)).collect());
-    let along_v = |i: usize| Nurbs::new(net.degree.1, net.knots.1.clone(), (0..nv).map(|j| net.pole(i, j)).collect());
-    let is_pole = |curve: &Nurbs| curve.poles.iter().all(|q| projected(*q) == projected(curve.poles[0]));
-    let all = [along_v(0), along_v(nu - 1), along_u(0), along_u(nv - 1)];
-    all.into_iter().filter(|curve| !is_pole(curve)).map(|curve| spline(curve, Origin::NONE)).collect()
 }

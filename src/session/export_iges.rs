@@ -1,0 +1,91 @@
+//! `export … to "x.igs"`: shells become solids, or trimmed surfaces in a group.
+
+use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
+use super::export_faces::{layers, surfaces_of, whole};
+use crate::base::fault::{FileFault, Say};
+use crate::base::origin::Origin;
+use crate::io::Files;
+use crate::io::iges::write::{self, Scale, Shown, Thing};
+use crate::lang::cx::{Cx, Stop};
+use crate::lang::plans::ExportSpec;
+use crate::lang::scene::Scene;
+use crate::lang::value::{Dim, ModuleId, Value};
+use crate::surface::Surface;
+
+/// Points, curves, surfaces and shells as an IGES file.
+pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+    no_mesh_settings(spec)?;
+    let (unit, scale) = unit_of(cx, spec);
+    let tolerance = cx.tolerance()?;
+    let as_faces = spec.shells.as_ref().is_some_and(|(word, _)| **word == *"faces");
+    let shells = || spec.things.iter().map(|(value, _)| value).filter(|value| matches!(value, Value::Shell(_)) && !as_faces);
+    let scene = match shells().next() {
+        Some(_) => Some(Scene::of(cx, ModuleId::MAIN, shells().flat_map(surfaces_of))?),
+        None => None,
+    };
+    let colors = Colors::of(cx);
+    let one = |cx: &Cx, of: Origin, shown: Shown| {
+        let color = match &shown {
+            Shown::Curve(chain) => colors.of_curve(chain),
+            Shown::Surface(surface) => colors.of_surface(surface),
+            Shown::Point(_) | Shown::Faces(_) => None,
+        };
+        Thing { name: cx.name(of), group: String::new(), layers: Vec::new(), color, shown }
+    };
+    let face = |cx: &Cx, surface: &Surface| {
+        let thing = one(cx, surface.origin(), Shown::Surface(surface.clone()));
+        Thing { name: cx.name_in_file(surface).unwrap_or(thing.name), ..thing }
+    };
+    let mut things = Vec::with_capacity(spec.things.len());
+    for (value, origin) in &spec.things {
+        let layers = layers(cx, value)?;
+        let first = things.len();
+        match value {
+            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => {
+                things.push(Thing { name: String::new(), ..one(cx, *origin, Shown::Point(*p)) })
+            }
+            Value::Curve(chain) => things.push(one(cx, chain.origin(), Shown::Curve(chain.clone()))),
+            Value::Edge(home, edge) => {
+                let chain = super::plan::chain_of(cx, home, edge)?;
+                let name = super::plan::edge_name(cx, &chain, edge);
+                things.push(Thing { name, ..one(cx, *origin, Shown::Curve(chain)) });
+            }
+            Value::Surface(surface) => things.push(face(cx, surface)),
+            Value::Shell(shell) => match &scene {
+                Some(scene) => {
+                    let name = cx.body_said(shell).map_or(&shell.name, |[_, only]| only).to_string();
+                    let faces = whole(cx, scene, shell, (&tolerance, &colors))?;
+                    things.push(Thing { name, ..one(cx, *origin, Shown::Faces(Box::new(faces))) });
+                }
+                None => {
+                    let group = cx.body_said(shell).map_or(&shell.name, |[_, only]| only);
+                    things.extend(shell.surfaces.iter().map(|s| Thing { group: group.to_string(), ..face(cx, s) }));
+                }
+            },
+            other => {
+                let what = format!("IGES holds points, curves, surfaces and shells, not {}", other.ty().words());
+                return Err(FileFault::Unsupported { of: *origin, what, help: None, edits: Vec::new() }.into());
+            }
+        }
+        things[first..].iter_mut().for_each(|thing| thing.layers = layers.clone());
+    }
+    let scale = Scale { unit, model: scale.unwrap_or(1.0), tolerance };
+    let sheet = write::sheet(&things, &scale).map_err(|what| {
+        let help = help(spec, as_faces);
+        FileFault::Unsupported { of: spec.path_origin, what, help, edits: Vec::new() }
+    })?;
+    let name = spec.path.rsplit('/').next().unwrap_or(&spec.path);
+    put(spec, files, &mut |out| write::write(&sheet, name, &scale, out))
+}
+
+/// What may help where a thing has no place in the file.
+fn help(spec: &ExportSpec, as_faces: bool) -> Option<String> {
+    let values = || spec.things.iter().map(|(value, _)| value);
+    // Through scattered points there is one cubic a triangle, and no net of few strips where slopes differ much.
+    if values().flat_map(surfaces_of).any(Surface::is_scattered) {
+        let what = "export a mesh of it, made with a `chord_error:`, to a format of meshes: splines hold smooth points only";
+        return Some(what.to_owned());
+    }
+    let has_shell = !as_faces && values().any(|value| matches!(value, Value::Shell(_)));
+    has_shell.then(|| "`shells: faces` writes the surfaces of shells each by itself, without common edges".to_owned())
+}
