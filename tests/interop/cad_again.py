@@ -28,7 +28,19 @@ from bodies import free_edges
 ENDINGS = ["step", "igs"]
 LONGEST = 240
 # What is known not to hold: part and ending, and why.
-KNOWN = {}
+PROJECTED = "the other kernel projects edges of IGES files onto their surfaces within a tolerance of its own"
+POLE = "a border through a pole: the other kernel does not read its own file of it either"
+KNOWN = {
+    "ball_cap_tilted igs": PROJECTED,
+    "ball_cut_ball igs": PROJECTED,
+    "ball_pole_touch igs": POLE,
+    "ball_pole_touch step": POLE,
+    "ball_tangent_rod igs": PROJECTED,
+    "cut_oblique igs": PROJECTED,
+    "cut_oblique_cone igs": PROJECTED,
+    "steinmetz igs": PROJECTED,
+    "viviani_in igs": PROJECTED,
+}
 
 OUT = """units mm
 import "{name}.step" as part
@@ -83,7 +95,8 @@ def row(loft, folder, name, truth, ending, failed):
             why.append("area")
     if not BRepCheck_Analyzer(shape).IsValid():
         why.append("not valid")
-    if abs(cells["free"] - free) > 1e-4 * max(free, 1.0):
+    # The seam of a net that another kernel left open is closed.
+    if cells["free"] > free + 1e-4 * max(free, 1.0):
         why.append(f"free edges, {free:.3f} before")
     made = len(parts.parts_of(shape, TopAbs_SOLID))
     # A closed shell that is no solid becomes one.

@@ -19,19 +19,71 @@ pub struct Scale {
 }
 
 /// The geometry of an edge: without ends where it is a line or a circle.
-pub fn along(records: &mut Records, curve: &Curve, scale: &Scale) -> Result<Id> {
-    if let Some([a, b]) = corners(curve).as_deref() {
-        let (at, way) = (records.point(*a / scale.model), records.direction((*b - *a).normalize_or_zero()));
-        let vector = records.put("VECTOR", |v| {
-            v.text("").id(way).real(1.0);
-        });
-        return Ok(records.put("LINE", |v| {
-            v.text("").id(at).id(vector);
-        }));
+#[derive(Debug)]
+pub enum Along {
+    /// A line from one end to the other; its parameter is the length, units of the file.
+    Line(DVec3, DVec3),
+    /// A circle from where its arc begins; its parameter is the angle.
+    Circle(EllipticArc),
+    /// A spline.
+    Spline(Nurbs),
+}
+
+impl Along {
+    /// Of the curve of an edge.
+    pub fn of(curve: &Curve, scale: &Scale) -> Result<Self> {
+        if let Some([a, b]) = corners(curve).as_deref() {
+            return Ok(Self::Line(*a, *b));
+        }
+        match curve.shape() {
+            Shape::Arc(arc) if arc.radius.is_some() => Ok(Self::Circle(arc.clone())),
+            _ => {
+                let curve = curve.to_nurbs(&scale.tolerance)?;
+                let ((a, b), n) = (curve.domain(), curve.knots.len());
+                let is_full = curve.knots[0] == a && curve.knots[n - 1] == b;
+                Ok(Self::Spline(if is_full { curve } else { curve.part(a, b) }))
+            }
+        }
     }
-    match curve.shape() {
-        Shape::Arc(arc) if arc.radius.is_some() => Ok(circle(records, arc, "", scale)),
-        _ => Ok(spline(records, &curve.to_nurbs(&scale.tolerance)?, "", scale)),
+
+    /// Writes it.
+    pub fn put(&self, records: &mut Records, scale: &Scale) -> Id {
+        match self {
+            Self::Line(a, b) => {
+                let (at, way) = (records.point(*a / scale.model), records.direction((*b - *a).normalize_or_zero()));
+                let vector = records.put("VECTOR", |v| {
+                    v.text("").id(way).real(1.0);
+                });
+                records.put("LINE", |v| {
+                    v.text("").id(at).id(vector);
+                })
+            }
+            Self::Circle(arc) => circle(records, arc, "", scale),
+            Self::Spline(curve) => spline(records, curve, "", scale),
+        }
+    }
+
+    /// Whether it is a line or a circle.
+    pub fn is_conic(&self) -> bool {
+        !matches!(self, Self::Spline(_))
+    }
+
+    /// Parameters between which it is smooth, ascending; the first and the last are its ends.
+    pub fn knots(&self, scale: &Scale) -> Vec<f64> {
+        match self {
+            Self::Line(a, b) => vec![0.0, a.distance(*b) / scale.model],
+            Self::Circle(arc) => vec![0.0, arc.sweep],
+            Self::Spline(curve) => knots(&curve.knots).1,
+        }
+    }
+
+    /// The point at a parameter, model units.
+    pub fn point(&self, t: f64, scale: &Scale) -> DVec3 {
+        match self {
+            Self::Line(a, b) => *a + (*b - *a).normalize_or_zero() * (t * scale.model),
+            Self::Circle(arc) => arc.jet(t).p,
+            Self::Spline(curve) => curve.jet(t).p,
+        }
     }
 }
 
@@ -119,10 +171,15 @@ pub fn spline(records: &mut Records, curve: &Nurbs, name: &str, scale: &Scale) -
         &part
     };
     let points: Vec<Id> = (0..curve.poles.len()).map(|k| records.point(curve.pole(k) / scale.model)).collect();
+    spline_of(records, curve, &points, name)
+}
+
+/// A B-spline whose control points are written, in space or in the parameters of a surface.
+pub fn spline_of(records: &mut Records, curve: &Nurbs, points: &[Id], name: &str) -> Id {
     let closed = curve.pole(0) == curve.pole(curve.poles.len() - 1);
     let (times, places) = knots(&curve.knots);
     let shape = |v: &mut Values| {
-        v.int(curve.degree).ids(&points).word(".UNSPECIFIED.").flag(closed).word(".F.");
+        v.int(curve.degree).ids(points).word(".UNSPECIFIED.").flag(closed).word(".F.");
     };
     let parameters = |v: &mut Values| {
         v.ints(times.iter().copied()).reals(places.iter().copied()).word(".UNSPECIFIED.");

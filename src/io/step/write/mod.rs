@@ -11,6 +11,7 @@
 
 mod curves;
 mod looks;
+mod pcurves;
 mod product;
 mod properties;
 mod surfaces;

@@ -8,13 +8,14 @@
 
 use std::collections::BTreeSet;
 
-use super::curves::{self, Scale};
+use super::curves::{Along, Scale};
 use super::looks::Painted;
-use super::surfaces;
 use super::text::{Id, Records};
+use super::{pcurves, surfaces};
 use crate::base::job;
 use crate::io::cad::bodies::{Bodies, Faces, numbered};
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::ground::Ground;
 
 /// What became of faces.
 #[derive(Debug, Default)]
@@ -39,7 +40,7 @@ pub struct Made {
 pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> Result<Made, Damage> {
     let bodies = faces.bodies(&scale.tolerance)?;
     let made = Made { off: bodies.off, left_out: bodies.left_out(name), thin_area: bodies.thin_area, ..Made::default() };
-    let mut writer = Writer { bodies: &bodies, scale, edges: Vec::new(), made };
+    let mut writer = Writer { bodies: &bodies, scale, surfaces: Vec::new(), edges: Vec::new(), made };
     let faces = writer.faces(records)?;
     for solid in bodies.solids() {
         let outer = shell(records, &bodies, solid.outer, &faces);
@@ -85,6 +86,8 @@ fn shell(records: &mut Records, bodies: &Bodies, skin: usize, faces: &[Id]) -> I
 struct Writer<'b> {
     bodies: &'b Bodies<'b>,
     scale: &'b Scale,
+    /// The surface of each face.
+    surfaces: Vec<Id>,
     /// The record of each edge.
     edges: Vec<Option<Id>>,
     made: Made,
@@ -93,6 +96,7 @@ struct Writer<'b> {
 impl Writer<'_> {
     /// All faces, in the order of the body.
     fn faces(&mut self, records: &mut Records) -> Result<Vec<Id>, Damage> {
+        self.surfaces = self.bodies.grounds.iter().map(|ground| surfaces::put(records, ground, self.scale)).collect();
         self.edges = self.all_edges(records)?;
         let mut made = Vec::with_capacity(self.bodies.grounds.len());
         for k in 0..self.bodies.grounds.len() {
@@ -130,7 +134,11 @@ impl Writer<'_> {
     fn all_edges(&self, records: &mut Records) -> Result<Vec<Option<Id>>, Damage> {
         let mut vertices: Vec<Option<Id>> = vec![None; self.bodies.vertices.len()];
         let mut edges = Vec::with_capacity(self.bodies.curves.len());
-        for (edge, curve) in self.bodies.body.edges.iter().zip(&self.bodies.curves) {
+        let mut faces_of: Vec<Vec<usize>> = vec![Vec::new(); self.bodies.curves.len()];
+        for (face, found) in self.bodies.body.faces.iter().enumerate() {
+            found.loops.iter().flatten().for_each(|(edge, _)| faces_of[*edge].push(face));
+        }
+        for (k, (edge, curve)) in self.bodies.body.edges.iter().zip(&self.bodies.curves).enumerate() {
             let Some(curve) = curve else {
                 edges.push(None);
                 continue;
@@ -144,7 +152,9 @@ impl Writer<'_> {
                 })
             };
             let (from, to) = (vertex(edge.ends.0), vertex(edge.ends.1));
-            let geometry = curves::along(records, curve, self.scale)?;
+            let along = Along::of(curve, self.scale)?;
+            let own = along.put(records, self.scale);
+            let geometry = self.on_surfaces(records, &faces_of[k], (own, &along));
             edges.push(Some(records.put("EDGE_CURVE", |v| {
                 v.text("").id(from).id(to).id(geometry).flag(true);
             })));
@@ -152,8 +162,25 @@ impl Writer<'_> {
         Ok(edges)
     }
 
+    /// The curve of an edge with what it is in the parameters of its faces' surfaces, where readers need to be told.
+    fn on_surfaces(&self, records: &mut Records, faces: &[usize], (own, along): (Id, &Along)) -> Id {
+        let once = |face: &&usize| faces.iter().filter(|other| other == face).count() == 1;
+        let mut within = Vec::new();
+        for face in faces.iter().filter(once) {
+            if let Ground::Elementary(found) = &self.bodies.grounds[*face] {
+                within.extend(pcurves::put(records, self.surfaces[*face], found, along, self.scale));
+            }
+        }
+        if within.is_empty() {
+            return own;
+        }
+        records.put("SURFACE_CURVE", |v| {
+            v.text("").id(own).ids(&within).word(".CURVE_3D.");
+        })
+    }
+
     fn face(&self, records: &mut Records, k: usize) -> Result<Id, Damage> {
-        let surface = surfaces::put(records, &self.bodies.grounds[k], self.scale);
+        let surface = self.surfaces[k];
         let loops = self.bodies.loops(k);
         let mut bounds = Vec::with_capacity(loops.len());
         for (n, around) in loops.iter().enumerate() {
