@@ -13,6 +13,7 @@ import traceback
 
 import jsonschema
 
+import assembly_out
 import cad_in
 import members
 import orders
@@ -142,6 +143,8 @@ def main():
     wrong, n = cad_in.table(loft, os.path.join(work, "cad"))
     tally.table(wrong, n)
     wrong, n = step_out.table(loft, os.path.join(work, "step_out"))
+    tally.table(wrong, n)
+    wrong, n = assembly_out.table(loft, os.path.join(work, "assembly_out"))
     tally.table(wrong, n)
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
     print("".join(f"FAILED {label}\n" for label in tally.wrong), end="")
