@@ -224,16 +224,63 @@ fn names_layers_and_colours_of_an_imported_assembly_go_out_again() {
     let files = run("painted", &format!("{import}export part to \"out.step\"\nexport part to \"out.igs\"\n"));
     let all = records(&files["out.step"]);
     let count = |kind: &str, what: &str| of_type(&all, kind).iter().filter(|(_, record)| record.contains(what)).count();
-    assert_eq!((count("MANIFOLD_SOLID_BREP", "'left'"), count("MANIFOLD_SOLID_BREP", "'single'")), (2, 1));
-    assert_eq!((count("ADVANCED_FACE", "'wall'"), count("ADVANCED_FACE", "'sides'")), (6, 24));
+    // One product stands at five places; its solid is named as it is, the one that a mapped item places as that.
+    assert_eq!((count("MANIFOLD_SOLID_BREP", "'block'"), count("MANIFOLD_SOLID_BREP", "'mapped'")), (1, 1));
+    assert_eq!((count("ADVANCED_FACE", "'wall'"), count("ADVANCED_FACE", "'sides'")), (2, 8));
     let on =
         |layer: &str| references(of_type(&all, "PRESENTATION_LAYER_ASSIGNMENT").iter().find(|(_, r)| r.contains(layer)).unwrap().1).len();
-    assert_eq!((on("'blocks'"), on("'bores'")), (6, 6), "solids on the one, faces on the other");
-    // A style for each solid, and one for its bore.
-    assert_eq!((of_type(&all, "STYLED_ITEM").len(), of_type(&all, "OVER_RIDING_STYLED_ITEM").len()), (6, 6));
+    assert_eq!((on("'blocks'"), on("'bores'")), (2, 2), "solids on the one, faces on the other");
+    // A style for each solid, one for its bore, and one for each place where a solid has another colour.
+    assert_eq!((of_type(&all, "STYLED_ITEM").len(), of_type(&all, "OVER_RIDING_STYLED_ITEM").len()), (2, 6));
+    assert_eq!(of_type(&all, "PRESENTATION_STYLE_BY_CONTEXT").len(), 4);
+    for (id, record) in &all {
+        assert!(references(record).iter().all(|other| other < id && all.contains_key(other)), "#{id}={record}");
+    }
     for name in ["left", "left_2", "single", "wall"] {
         assert!(files["out.igs"].contains(&format!("406,1,{}H{name};", name.len())), "{name}");
     }
+}
+
+/// An assembly goes out as the tree that it was; what is read of that goes out as the same again.
+#[test]
+fn assemblies_keep_their_trees() {
+    let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/imports/parts");
+    let painted =
+        "export [for c in part.colors: {red: c.rgb[0], green: c.rgb[1], blue: c.rgb[2], faces: len(c.surfaces)}] to \"colors.json\"
+export [for g in part.groups: {name: g.name, faces: len(g.surfaces)}] to \"groups.json\"
+";
+    // Products, and the places at which they stand.
+    for (name, products, places) in [("assembly", 8, 8), ("painted", 4, 7)] {
+        let looks = if name == "painted" { painted } else { "" };
+        let model = |path: &Path| format!("units mm\nimport \"{}\" as part\nexport part to \"out.step\"\n{looks}", path.display());
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("tree_{name}.step"));
+        fs::copy(parts.join(format!("{name}.step")), &path).unwrap();
+        let mut files = run(&format!("tree_{name}"), &model(&path));
+        let once = files.remove("out.step").unwrap();
+        let count = |kind: &str| once.matches(kind).count();
+        assert_eq!((count("=PRODUCT("), count("=NEXT_ASSEMBLY_USAGE_OCCURRENCE(")), (products, places), "{name}");
+        fs::write(&path, &once).unwrap();
+        let mut again = run(&format!("tree_{name}_again"), &model(&path));
+        let twice = again.remove("out.step").unwrap();
+        // Frames that are turned round numbers.
+        assert!(if name == "painted" { twice == once } else { twice.lines().count() == once.lines().count() }, "{name}: the same again");
+        assert_eq!(again, files, "{name}: the same colours and groups");
+    }
+}
+
+/// One solid of an assembly is no assembly, and a copy that was moved is a product of its own.
+#[test]
+fn parts_of_assemblies_go_out_by_themselves() {
+    let part = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tree_parts.step");
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/imports/parts/painted.step"), &part).unwrap();
+    let model = format!(
+        "units mm\nimport \"{}\" as part\nexport part.solids[0] to \"one.step\"\nexport part.left, move(part.right, by: (0, 0, 9)) to \"two.step\"\n",
+        part.display()
+    );
+    let files = run("tree_parts", &model);
+    let count = |name: &str, kind: &str| files[name].matches(kind).count();
+    assert_eq!((count("one.step", "=PRODUCT("), count("one.step", "NEXT_ASSEMBLY")), (1, 0));
+    assert_eq!((count("two.step", "=MANIFOLD_SOLID_BREP("), count("two.step", "=NEXT_ASSEMBLY_USAGE_OCCURRENCE(")), (2, 3));
 }
 
 #[test]

@@ -53,6 +53,19 @@ impl Motion {
         Self { affine: next.affine * self.affine, scale: self.scale * next.scale, mirrors: self.mirrors != next.mirrors }
     }
 
+    /// The motion back.
+    pub fn inverse(&self) -> Self {
+        let matrix = self.affine.matrix3.transpose() * (1.0 / (self.scale * self.scale));
+        let translation = -(matrix * self.affine.translation);
+        Self { affine: DAffine3 { matrix3: matrix, translation }, scale: 1.0 / self.scale, mirrors: self.mirrors }
+    }
+
+    /// The same where lengths are told in units of this size.
+    pub fn in_units(&self, size: f64) -> Self {
+        let affine = DAffine3 { translation: self.affine.translation / size, ..self.affine };
+        Self { affine, ..*self }
+    }
+
     /// A point carried.
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.affine.transform_point3(p)

@@ -145,7 +145,7 @@ impl Faces {
             layer.surfaces.iter().for_each(|k| layers[*k].push(name.clone()));
         }
         let place = cx.origins.place(file.origin);
-        for ((item, built), (color, layers)) in part.surfaces.iter().zip(&part.built).zip(colors.into_iter().zip(layers)) {
+        for (k, ((item, built), (color, layers))) in part.surfaces.iter().zip(&part.built).zip(colors.into_iter().zip(layers)).enumerate() {
             let first = all.len();
             for surface in built {
                 let member = [all.len() as u32, NO_MEMBER];
@@ -158,6 +158,7 @@ impl Faces {
                     layers: layers.clone(),
                     color,
                     entity: format!("{}{}", part.mark, item.id).into(),
+                    node: part.standing.get(k).copied().flatten(),
                 });
             }
             places.push(first..all.len());
@@ -177,6 +178,7 @@ impl Faces {
             module: cx.module(),
             said,
             bodies,
+            tree: part.tree.clone(),
             total: part.n_faces(),
             repairs: part.repairs.clone(),
             notes,

@@ -12,6 +12,7 @@ use super::value::{BodyKind, ModuleId, ShellValue, Value};
 use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 
+use crate::io::cad::assembly::Node;
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::Unusable;
 use crate::surface::Surface;
@@ -29,6 +30,8 @@ pub struct Said {
     pub color: Option<(Arc<str>, [f64; 3])>,
     /// Where it stands in the file: `#36`, `D45`.
     pub entity: Arc<str>,
+    /// Of [`PartFile::tree`].
+    pub node: Option<usize>,
 }
 
 /// Faces that the file keeps together.
@@ -56,6 +59,8 @@ pub struct PartFile {
     /// Names of solids and shells by those of scripts (`part.solids[0]`), where the file has one: as it stands there, and that of which
     /// there is one only.
     pub bodies: BTreeMap<Arc<str>, [Arc<str>; 2]>,
+    /// Products at their places, where the file is an assembly.
+    pub tree: Vec<Node>,
     /// How many faces the file has.
     pub total: usize,
     /// What was repaired.
@@ -201,6 +206,12 @@ impl Cx<'_> {
     /// The name of a face in the file that it was imported from, where it has one there.
     pub fn name_in_file(&self, face: &Surface) -> Option<String> {
         self.said_of(face)?.own.as_deref().map(str::to_owned)
+    }
+
+    /// The file of an imported assembly that a face comes from, and the product of it at its place.
+    pub fn node_of(&self, face: &Surface) -> Option<(&Arc<PartFile>, usize)> {
+        let (part, face) = self.part_of(face)?;
+        Some((&part.file, part.file.said.get(face)?.node?))
     }
 
     /// The names that a file has for a body, as imported or moved: as it stands there, and that of which there is one only.

@@ -1,13 +1,17 @@
 //! `export … to "x.step"`: what is written becomes faces with the edges they share.
 
+use std::sync::Arc;
+
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
 use super::export_faces::{layers, lone, surfaces_of, whole};
 use crate::base::fault::{FileFault, Say};
 use crate::base::origin::Origin;
+use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
 use crate::io::step::write::{self, Measured, Scale, Schema, Setup, Shown, Thing};
 use crate::io::{Files, Loss};
 use crate::lang::cx::{Cx, Stop};
+use crate::lang::part::PartFile;
 use crate::lang::plans::ExportSpec;
 use crate::lang::scene::Scene;
 use crate::lang::value::{Dim, ModuleId, Value};
@@ -24,6 +28,7 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let surfaces: Vec<&Surface> = spec.things.iter().flat_map(|(value, _)| surfaces_of(value)).collect();
     let scene = Scene::of(cx, ModuleId::MAIN, surfaces)?;
     let colors = Colors::of(cx);
+    let mut tree = Tree::default();
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
         let (name, shown, measured) = match value {
@@ -48,11 +53,12 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             }
         };
         let color = if let Value::Curve(chain) = value { colors.of_curve(chain) } else { None };
-        things.push(Thing { name, layers: layers(cx, value)?, shown, color, measured });
+        let node = tree.node(cx, value);
+        things.push(Thing { name, layers: layers(cx, value)?, shown, color, measured, node });
     }
     let file = spec.path.rsplit('/').next().unwrap_or(&spec.path);
     let name = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
-    let sheet = write::sheet(&things, name, &setup).map_err(|what| unsupported(spec.path_origin, what))?;
+    let sheet = write::sheet(&things, &tree.nodes, name, &setup).map_err(|what| unsupported(spec.path_origin, what))?;
     put(spec, files, &mut |out| {
         write::write(&sheet, file, &setup, out).map(|()| sheet.left_out.iter().cloned().map(Loss::LeftOut).collect())
     })
@@ -69,4 +75,32 @@ fn measured(of: &Faces) -> Measured {
     let area = faces.iter().map(|(surface, _)| measure::area(surface)).sum();
     let volume = of.solid.then(|| measure::solid(&faces).volume.abs());
     Measured { area: Some(area), volume }
+}
+
+/// The products of all imported assemblies that something is of.
+#[derive(Default)]
+struct Tree {
+    nodes: Vec<Node>,
+    /// Files with the place of their first node.
+    files: Vec<(Arc<PartFile>, usize)>,
+}
+
+impl Tree {
+    /// The node of the product that all surfaces of a value are of.
+    fn node(&mut self, cx: &Cx, value: &Value) -> Option<usize> {
+        let mut found = surfaces_of(value).into_iter().map(|surface| cx.node_of(surface));
+        let (file, node) = found.next()??;
+        if !found.all(|other| other.is_some_and(|(own, place)| Arc::ptr_eq(own, file) && place == node)) {
+            return None;
+        }
+        let known = self.files.iter().find(|(known, _)| Arc::ptr_eq(known, file)).map(|(_, first)| *first);
+        let first = known.unwrap_or_else(|| {
+            let first = self.nodes.len();
+            let placed = |node: &Node| Node { of: node.of + first, parent: node.parent.map(|parent| parent + first), ..node.clone() };
+            self.nodes.extend(file.tree.iter().map(placed));
+            self.files.push((file.clone(), first));
+            first
+        });
+        Some(first + node)
+    }
 }

@@ -119,7 +119,7 @@ fn edges_of_closed_shells_are_used_once_each_way() {
     for (d, shell) in all.of_kind(514) {
         let form = all.0[&d].1;
         let mut seen: BTreeMap<(i64, i64), Vec<bool>> = BTreeMap::new();
-        for face in shell[1..].chunks(2) {
+        for face in shell[1..1 + 2 * shell[0] as usize].chunks(2) {
             let (face, along) = (all.values(face[0]), face[1] == 1.0);
             assert_eq!(
                 (face[1] as usize, face[2]),

@@ -13,6 +13,7 @@ import traceback
 
 import jsonschema
 
+import assembly_out
 import cad_again
 import cad_in
 import cad_mesh
@@ -141,7 +142,7 @@ def main():
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
     tally.check("roundings and walls by OpenCASCADE", lambda: rounded.check(lambda *a: run_loft(loft, *a), work))
-    for module in [cad_in, cad_mesh, cad_again, step_out]:
+    for module in [cad_in, cad_mesh, cad_again, step_out, assembly_out]:
         tally.table(*module.table(loft, os.path.join(work, module.__name__)))
     check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
     print("".join(f"FAILED {label}\n" for label in tally.wrong), end="")

@@ -2,6 +2,7 @@
 //! offers them by name. Readers of a format make [`face::Face`]s and put them into a [`part::Part`]; writers of solids take
 //! [`bodies::Bodies`], faces with the edges that they share.
 
+pub mod assembly;
 pub mod base;
 mod beside;
 pub mod bodies;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::assembly::Node;
 use super::face::Face;
 use super::healing::Repair;
 use crate::base::fault::Malformed;
@@ -161,6 +162,10 @@ pub struct Part {
     pub solids: Vec<Group>,
     /// Layers, by the names that the file has for them.
     pub layers: Vec<Group>,
+    /// Products at their places, where the file is an assembly.
+    pub tree: Vec<Node>,
+    /// The node of each of [`Part::surfaces`], where there is a tree.
+    pub standing: Vec<Option<usize>>,
     /// What has the same colour, with red, green and blue from 0 to 1.
     pub colors: Vec<(Group, [f64; 3])>,
     /// What the file states of its parts, to be compared.

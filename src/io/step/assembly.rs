@@ -11,6 +11,7 @@ use super::units::{Units, of_context};
 use crate::base::job;
 use crate::base::limits;
 use crate::geometry::Motion;
+use crate::io::cad::assembly::Node;
 use crate::io::cad::damage::{Damage, damage};
 
 /// Products and representations inside each other.
@@ -42,6 +43,8 @@ pub struct Instance {
     pub entity: u32,
     /// Its product definition.
     pub product: Option<u32>,
+    /// From its frame to the model's.
+    pub motion: Motion,
 }
 
 /// All that is shown, in file order.
@@ -54,6 +57,25 @@ pub struct Assembly {
 }
 
 impl Assembly {
+    /// Products at their places with the node of each instance, which may be that of what it is a part of; none where no product
+    /// stands in another one.
+    pub fn tree(&self, file: &File) -> (Vec<Node>, Vec<Option<usize>>) {
+        let (mut nodes, mut places): (Vec<Node>, Vec<Option<usize>>) = (Vec::new(), Vec::with_capacity(self.instances.len()));
+        let mut first: BTreeMap<u32, usize> = BTreeMap::new();
+        for instance in &self.instances {
+            let parent = instance.parent.and_then(|k| places[k]);
+            let Some(product) = instance.product else {
+                places.push(parent);
+                continue;
+            };
+            let of = *first.entry(product).or_insert(nodes.len());
+            places.push(Some(nodes.len()));
+            let (name, motion) = (instance.name.clone(), instance.motion);
+            nodes.push(Node { name, product: product_name(file, product), of, parent, motion });
+        }
+        if nodes.iter().all(|node| node.parent.is_none()) { (Vec::new(), vec![None; places.len()]) } else { (nodes, places) }
+    }
+
     /// What places an item, from its representation up: that, mapped items, occurrences and products.
     pub fn way(&self, placed: &Placed) -> Vec<u32> {
         let mut way = vec![placed.representation];
@@ -227,12 +249,12 @@ impl Walk<'_, '_> {
     }
 
     /// Adds an instance; none when there are too many.
-    fn instance(&mut self, name: String, parent: Option<usize>, entity: u32, product: Option<u32>) -> Option<usize> {
+    fn instance(&mut self, instance: Instance) -> Option<usize> {
         if self.found.instances.len() >= limits::PART_INSTANCES {
-            self.too_many(entity);
+            self.too_many(instance.entity);
             return None;
         }
-        self.found.instances.push(Instance { name, parent, entity, product });
+        self.found.instances.push(instance);
         Some(self.found.instances.len() - 1)
     }
 
@@ -254,7 +276,7 @@ impl Walk<'_, '_> {
         }
         let own = product_name(self.step.file, product);
         let name = if name.is_empty() || depth == 0 { own } else { name };
-        let Some(instance) = self.instance(name, parent, entity, Some(product)) else { return };
+        let Some(instance) = self.instance(Instance { name, parent, entity, product: Some(product), motion: *motion }) else { return };
         let first = self.tables.shapes.get(&product).cloned().unwrap_or_default();
         for representation in self.tables.one_with(&first, &self.owned) {
             self.representation(representation, instance, motion, depth);
@@ -286,7 +308,7 @@ impl Walk<'_, '_> {
         if items.iter().all(|k| file.name(*k).starts_with(b"AXIS")) {
             return;
         }
-        if let Some(instance) = self.instance(name, None, representation, None) {
+        if let Some(instance) = self.instance(Instance { name, parent: None, entity: representation, product: None, motion: *motion }) {
             self.representation(representation, instance, motion, 0);
         }
     }
@@ -329,7 +351,8 @@ impl Walk<'_, '_> {
         match placed {
             Ok((of, placed)) => {
                 let name = row.text(0);
-                let Some(instance) = self.instance(name, Some(instance), item, None) else { return };
+                let made = Instance { name, parent: Some(instance), entity: item, product: None, motion: *motion };
+                let Some(instance) = self.instance(made) else { return };
                 for representation in self.tables.one_with(&[of], &self.owned) {
                     self.representation(representation, instance, &placed.then(motion), depth + 1);
                 }

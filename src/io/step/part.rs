@@ -158,6 +158,7 @@ impl Maker<'_> {
                 shapes.insert(placed.item, (placed.units, shape));
             }
         }
+        self.stand(assembly);
         self.inherit(assembly);
         self.stated(assembly, &all_uses);
         self.instances(assembly);
@@ -267,6 +268,16 @@ impl Maker<'_> {
         }
         let name = self.names.give(&wanted);
         Item { name, own, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
+    }
+
+    /// Which product each face is of.
+    fn stand(&mut self, assembly: &Assembly) {
+        let (tree, places) = assembly.tree(self.step.file);
+        self.part.standing = vec![None; self.part.surfaces.len()];
+        for (held, place) in self.held.iter().zip(places) {
+            held.surfaces.iter().for_each(|k| self.part.standing[*k] = place);
+        }
+        self.part.tree = tree;
     }
 
     /// Gives each product what its parts have.

@@ -19,18 +19,20 @@ pub struct Painted {
     pub curve: bool,
     /// The solid whose colour it overrides; that stands before it.
     pub over: Option<Id>,
+    /// The representation of the place where it has this colour, other than everywhere else.
+    pub at: Option<Id>,
 }
 
 /// Writes the styles of all that has a colour; equal ones stand once.
 pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
-    let mut styles: Vec<([f64; 3], bool, Id)> = Vec::new();
+    let mut styles: Vec<([f64; 3], bool, Option<Id>, Id)> = Vec::new();
     let mut styled = Vec::with_capacity(painted.len());
     let mut of_item: BTreeMap<Id, Id> = BTreeMap::new();
-    for Painted { item, rgb, curve, over } in painted {
-        let known = styles.iter().find(|known| known.0 == *rgb && known.1 == *curve).map(|known| known.2);
+    for Painted { item, rgb, curve, over, at } in painted {
+        let known = styles.iter().find(|known| (known.0, known.1, known.2) == (*rgb, *curve, *at)).map(|known| known.3);
         let style = known.unwrap_or_else(|| {
-            let style = style(records, *rgb, *curve);
-            styles.push((*rgb, *curve, style));
+            let style = style(records, *rgb, *curve, *at);
+            styles.push((*rgb, *curve, *at, style));
             style
         });
         let over = over.and_then(|solid| of_item.get(&solid).copied());
@@ -41,7 +43,9 @@ pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
                 v.id(*over);
             });
         });
-        of_item.insert(*item, made);
+        if at.is_none() {
+            of_item.insert(*item, made);
+        }
         styled.push(made);
     }
     if !styled.is_empty() {
@@ -51,7 +55,7 @@ pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
     }
 }
 
-fn style(records: &mut Records, rgb: [f64; 3], curve: bool) -> Id {
+fn style(records: &mut Records, rgb: [f64; 3], curve: bool, at: Option<Id>) -> Id {
     let color = records.put("COLOUR_RGB", |v| {
         rgb.into_iter().fold(v.text(""), Values::real);
     });
@@ -80,7 +84,12 @@ fn style(records: &mut Records, rgb: [f64; 3], curve: bool) -> Id {
             v.word(".BOTH.").id(side);
         })
     };
-    one("PRESENTATION_STYLE_ASSIGNMENT", &|v| {
-        v.ids(&[look]);
-    })
+    match at {
+        Some(at) => one("PRESENTATION_STYLE_BY_CONTEXT", &|v| {
+            v.ids(&[look]).id(at);
+        }),
+        None => one("PRESENTATION_STYLE_ASSIGNMENT", &|v| {
+            v.ids(&[look]);
+        }),
+    }
 }

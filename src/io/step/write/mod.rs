@@ -5,6 +5,7 @@
 //! | point, curve | `GEOMETRIC_CURVE_SET` |
 //! | surface, open shell | `SHELL_BASED_SURFACE_MODEL` of faces that share edges |
 //! | closed shell | `MANIFOLD_SOLID_BREP`, with cavities `BREP_WITH_VOIDS` |
+//! | product of an imported assembly, at a place | `PRODUCT`, `NEXT_ASSEMBLY_USAGE_OCCURRENCE` |
 //! | group | `PRESENTATION_LAYER_ASSIGNMENT` |
 //! | colour of a solid, face or curve | `STYLED_ITEM`, of a face that differs from its solid `OVER_RIDING_STYLED_ITEM` |
 //! | tolerance | `UNCERTAINTY_MEASURE_WITH_UNIT` |
@@ -17,8 +18,10 @@ mod properties;
 mod surfaces;
 mod text;
 mod topology;
+mod tree;
 
 use std::io::{self, Write};
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -27,12 +30,14 @@ pub use product::Schema;
 pub use properties::Measured;
 
 use crate::base::job;
+use crate::geometry::Motion;
+use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
 use crate::io::cad::damage::Damage;
 use crate::network::Chain;
 use looks::Painted;
+use product::{Product, Shape};
 use text::{Id, Records};
-use topology::Made;
 
 /// One thing to write.
 #[derive(Clone, Debug)]
@@ -58,6 +63,8 @@ pub struct Thing {
     pub color: Option<[f64; 3]>,
     /// Area and volume that a reader can compare.
     pub measured: Measured,
+    /// The product of an imported assembly that it is of, by the place in the list of nodes.
+    pub node: Option<usize>,
 }
 
 /// What a file is to be.
@@ -80,56 +87,129 @@ pub struct Sheet {
     pub left_out: Vec<String>,
 }
 
-/// Makes the file of things; `name` is its product's, but one thing names its own. Fails for a thing that the format or the tolerance cannot hold, with its name.
-pub fn sheet(things: &[Thing], name: &str, setup: &Setup) -> Result<Sheet, String> {
+/// Makes the file of things; `name` is its product's, but one thing names its own, and an imported assembly, given by its nodes, has
+/// its products. Fails for a thing that the format or the tolerance cannot hold, with its name.
+pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Result<Sheet, String> {
     let mut records = Records::default();
     let name = match things {
         [one] if !one.name.is_empty() => one.name.as_str(),
         _ => name,
     };
     let context = product::context(&mut records, setup.unit, setup.scale.tolerance.point / setup.scale.model);
-    let product = product::product(&mut records, setup.schema, name);
-    let (mut solids, mut sheets, mut wires) = (Vec::new(), Vec::new(), Vec::new());
-    let mut layers: Vec<(String, Vec<Id>)> = Vec::new();
-    let (mut off, mut thin_area) = ((0.0_f64, false), 0.0);
-    let (mut painted, mut left_out) = (Vec::new(), Vec::new());
-    for thing in things {
-        job::look();
-        let own = put(&mut records, thing, setup)
-            .map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
-        off = (off.0.max(own.off.0), off.1 || own.off.1);
-        let all = [own.solids.as_slice(), &own.sheets, &own.wires].concat();
-        thing.layers.iter().for_each(|layer| on_layer(&mut layers, layer, &all));
-        for (face, own) in &own.layered {
-            own.iter().for_each(|layer| on_layer(&mut layers, layer, &[*face]));
+    let application = product::application(&mut records, setup.schema);
+    let tree = tree::products(things, nodes, name, &setup.scale.tolerance);
+    let uses = tree::uses(&tree);
+    let mut made = Made::default();
+    let mut shapes: Vec<(Product, Shape)> = Vec::with_capacity(tree.len());
+    let mut occurrences = 0;
+    for (own, uses) in tree.iter().zip(uses) {
+        let whole = product::product(&mut records, application, &own.name);
+        let painted = made.painted.len();
+        let items = made.put(&mut records, (things, own, uses), setup)?;
+        made.of_product.push(painted..made.painted.len());
+        let places: Vec<Motion> = own.parts.iter().map(|part| part.motion.in_units(setup.scale.model)).collect();
+        let shape = product::shape(&mut records, (whole, &own.name), context, (items.kind(), &items.all()), &places);
+        for (place, part) in own.parts.iter().enumerate() {
+            occurrences += 1;
+            let (of, inner) = &shapes[part.product];
+            let placed = product::occurrence(&mut records, (occurrences, &part.name), (*of, inner), (whole, &shape), place);
+            if let Some((from, rgb)) = part.repaint {
+                let at = Some(product::place(&mut records, placed, &shape, place, context));
+                let own = made.painted[made.of_product[part.product].clone()].iter().filter(|painted| painted.rgb == from);
+                made.repainted.extend(own.map(|painted| Painted { rgb, over: Some(painted.item), at, ..*painted }));
+            }
         }
-        solids.extend(own.solids);
-        sheets.extend(own.sheets);
-        wires.extend(own.wires);
-        painted.extend(own.painted);
-        left_out.extend(own.left_out);
-        thin_area += own.thin_area;
+        shapes.push((whole, shape));
     }
-    let all = [solids.as_slice(), &sheets, &wires].concat();
-    let kind = match [solids.is_empty(), sheets.is_empty(), wires.is_empty()] {
-        [false, true, true] => "ADVANCED_BREP_SHAPE_REPRESENTATION",
-        [true, false, true] => "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
-        [true, true, false] => "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION",
-        _ => "SHAPE_REPRESENTATION",
-    };
-    product::shape(&mut records, (product, name), context, kind, &all);
-    for (layer, members) in layers {
+    for (layer, members) in made.layers {
         records.put("PRESENTATION_LAYER_ASSIGNMENT", |v| {
             v.text(&layer).text("").ids(&members);
         });
     }
-    looks::put(&mut records, &painted, context);
-    properties::put(&mut records, (things, thin_area), (product, context), setup);
+    made.painted.append(&mut made.repainted);
+    looks::put(&mut records, &made.painted, context);
+    if let Some((whole, _)) = shapes.last() {
+        properties::put(&mut records, (things, made.thin_area), (whole.shape, context), setup);
+    }
+    let off = made.off;
     let remark = (off.0 > 0.0).then(|| {
         let how = if off.1 { ", as sampled" } else { "" };
         format!("Surfaces that are no B-splines are off by at most {:.2e} {}{how}", off.0 / setup.scale.model, setup.unit)
     });
-    Ok(Sheet { records, remark, left_out })
+    Ok(Sheet { records, remark, left_out: made.left_out })
+}
+
+/// What of all products stands behind them in the file, or in words.
+#[derive(Default)]
+struct Made {
+    layers: Vec<(String, Vec<Id>)>,
+    painted: Vec<Painted>,
+    /// Which of these are of each product.
+    of_product: Vec<Range<usize>>,
+    /// Colours that products have at some of their places only.
+    repainted: Vec<Painted>,
+    left_out: Vec<String>,
+    off: (f64, bool),
+    thin_area: f64,
+}
+
+/// What one product holds by itself.
+#[derive(Default)]
+struct Items {
+    solids: Vec<Id>,
+    sheets: Vec<Id>,
+    wires: Vec<Id>,
+}
+
+impl Made {
+    /// The things of a product, which stands in the whole so many times.
+    fn put(
+        &mut self,
+        records: &mut Records,
+        (things, product, uses): (&[Thing], &tree::Product, usize),
+        setup: &Setup,
+    ) -> Result<Items, String> {
+        let mut items = Items::default();
+        let still = Motion::translation(DVec3::ZERO);
+        records.carry((product.motion != still).then(|| product.motion.inverse().in_units(setup.scale.model)));
+        for thing in product.things.iter().map(|k| &things[*k]) {
+            job::look();
+            // What has the name of its place has that of the product, which may stand elsewhere too.
+            let name = if product.places.contains(&thing.name) { &product.name } else { &thing.name };
+            let own = put(records, thing, name, setup)
+                .map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
+            self.off = (self.off.0.max(own.off.0), self.off.1 || own.off.1);
+            let all = [own.solids.as_slice(), &own.sheets, &own.wires].concat();
+            thing.layers.iter().for_each(|layer| on_layer(&mut self.layers, layer, &all));
+            for (face, own) in &own.layered {
+                own.iter().for_each(|layer| on_layer(&mut self.layers, layer, &[*face]));
+            }
+            items.solids.extend(own.solids);
+            items.sheets.extend(own.sheets);
+            items.wires.extend(own.wires);
+            self.painted.extend(own.painted);
+            self.left_out.extend(own.left_out);
+            self.thin_area += uses as f64 * own.thin_area;
+        }
+        records.carry(None);
+        Ok(items)
+    }
+}
+
+impl Items {
+    fn all(&self) -> Vec<Id> {
+        [self.solids.as_slice(), &self.sheets, &self.wires].concat()
+    }
+
+    /// The representation that holds them.
+    fn kind(&self) -> &'static str {
+        match [self.solids.is_empty(), self.sheets.is_empty(), self.wires.is_empty()] {
+            [false, true, true] => "ADVANCED_BREP_SHAPE_REPRESENTATION",
+            [true, false, true] => "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
+            [true, true, false] => "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION",
+            _ => "SHAPE_REPRESENTATION",
+        }
+    }
 }
 
 /// Puts items on a layer.
@@ -153,21 +233,21 @@ struct Put {
     thin_area: f64,
 }
 
-fn put(records: &mut Records, thing: &Thing, setup: &Setup) -> Result<Put, Damage> {
+fn put(records: &mut Records, thing: &Thing, name: &str, setup: &Setup) -> Result<Put, Damage> {
     let scale = &setup.scale;
     let geometry = match &thing.shown {
         Shown::Faces(faces) => {
-            let Made { solids, sheets, off, painted, layered, left_out, thin_area } = topology::put(faces, records, &thing.name, scale)?;
+            let topology::Made { solids, sheets, off, painted, layered, left_out, thin_area } = topology::put(faces, records, name, scale)?;
             let left_out = left_out.into_iter().collect();
             return Ok(Put { solids, sheets, off, painted, layered, left_out, thin_area, ..Put::default() });
         }
         Shown::Point(p) => records.point(*p / scale.model),
-        Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, &thing.name, scale)?,
+        Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, name, scale)?,
     };
     let set = records.put("GEOMETRIC_CURVE_SET", |v| {
-        v.text(&thing.name).ids(&[geometry]);
+        v.text(name).ids(&[geometry]);
     });
-    let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true, over: None });
+    let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true, over: None, at: None });
     Ok(Put { wires: vec![set], painted: painted.into_iter().collect(), ..Put::default() })
 }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::text::{Id, Records, Values};
+use crate::geometry::Motion;
 
 /// An application protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -148,8 +149,17 @@ pub fn context(records: &mut Records, unit: &str, accuracy: f64) -> Context {
     Context { context, length }
 }
 
-/// The product of the file; gives the definition of its shape.
-pub fn product(records: &mut Records, schema: Schema, name: &str) -> Id {
+/// A product as records.
+#[derive(Clone, Copy, Debug)]
+pub struct Product {
+    /// Its definition.
+    definition: Id,
+    /// The definition of its shape.
+    pub shape: Id,
+}
+
+/// The application that all products of a file belong to.
+pub fn application(records: &mut Records, schema: Schema) -> Id {
     let (application, protocol, year) = schema.application();
     let context = records.put("APPLICATION_CONTEXT", |v| {
         v.text(application);
@@ -157,8 +167,13 @@ pub fn product(records: &mut Records, schema: Schema, name: &str) -> Id {
     records.put("APPLICATION_PROTOCOL_DEFINITION", |v| {
         v.text("international standard").text(protocol).int(year).id(context);
     });
+    context
+}
+
+/// A product by its name.
+pub fn product(records: &mut Records, application: Id, name: &str) -> Product {
     let mechanical = records.put("PRODUCT_CONTEXT", |v| {
-        v.text("").id(context).text("mechanical");
+        v.text("").id(application).text("mechanical");
     });
     let product = records.put("PRODUCT", |v| {
         v.text(name).text(name).text("").ids(&[mechanical]);
@@ -170,23 +185,88 @@ pub fn product(records: &mut Records, schema: Schema, name: &str) -> Id {
         v.text("").text("").id(product);
     });
     let design = records.put("PRODUCT_DEFINITION_CONTEXT", |v| {
-        v.text("part definition").id(context).text("design");
+        v.text("part definition").id(application).text("design");
     });
     let definition = records.put("PRODUCT_DEFINITION", |v| {
         v.text("design").text("").id(formation).id(design);
     });
-    records.put("PRODUCT_DEFINITION_SHAPE", |v| {
+    let shape = records.put("PRODUCT_DEFINITION_SHAPE", |v| {
         v.text("").text("").id(definition);
-    })
+    });
+    Product { definition, shape }
 }
 
-/// The shape of a product: one representation of everything in it, so that readers find each thing under its name.
-pub fn shape(records: &mut Records, (product, name): (Id, &str), context: Context, kind: &str, items: &[Id]) {
+/// The shape of a product as records.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    representation: Id,
+    /// Its own frame.
+    frame: Id,
+    /// Frames in which parts of it stand.
+    places: Vec<Id>,
+}
+
+/// The shape of a product: one representation of everything in it, so that readers find each thing under its name. `places`, in units
+/// of the file, are those of its parts.
+pub fn shape(
+    records: &mut Records,
+    (product, name): (Product, &str),
+    context: Context,
+    (kind, items): (&str, &[Id]),
+    places: &[Motion],
+) -> Shape {
     let frame = records.frame(DVec3::ZERO, DVec3::Z, DVec3::X);
+    let place = |to: &Motion| records.frame(to.point(DVec3::ZERO), to.vector(DVec3::Z), to.vector(DVec3::X));
+    let places: Vec<Id> = places.iter().map(place).collect();
     let representation = records.put(kind, |v| {
-        v.text(name).ids(&[&[frame], items].concat()).id(context.context);
+        v.text(name).ids(&[&[frame], items, &places].concat()).id(context.context);
     });
     records.put("SHAPE_DEFINITION_REPRESENTATION", |v| {
-        v.id(product).id(representation);
+        v.id(product.shape).id(representation);
     });
+    Shape { representation, frame, places }
+}
+
+/// A product in another one, at one of the places of that; `number` tells it from all others of the file. Gives the definition of its
+/// shape there.
+pub fn occurrence(
+    records: &mut Records,
+    (number, name): (usize, &str),
+    part: (Product, &Shape),
+    whole: (Product, &Shape),
+    place: usize,
+) -> Id {
+    let used = records.put("NEXT_ASSEMBLY_USAGE_OCCURRENCE", |v| {
+        v.text(&number.to_string()).text(name).text("").id(whole.0.definition).id(part.0.definition).word("$");
+    });
+    let shape = records.put("PRODUCT_DEFINITION_SHAPE", |v| {
+        v.text("Placement").text("Placement of an item").id(used);
+    });
+    let moved = records.put("ITEM_DEFINED_TRANSFORMATION", |v| {
+        v.text("").text("").id(part.1.frame).id(whole.1.places[place]);
+    });
+    let relation = records.put_complex(|v| {
+        v.part("REPRESENTATION_RELATIONSHIP", |v| {
+            v.text("").text("").id(part.1.representation).id(whole.1.representation);
+        });
+        v.part("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION", |v| {
+            v.id(moved);
+        });
+        v.part("SHAPE_REPRESENTATION_RELATIONSHIP", |_| {});
+    });
+    records.put("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", |v| {
+        v.id(relation).id(shape);
+    });
+    shape
+}
+
+/// What a style of a product at one of its places refers to.
+pub fn place(records: &mut Records, shape: Id, whole: &Shape, place: usize, context: Context) -> Id {
+    let representation = records.put("SHAPE_REPRESENTATION", |v| {
+        v.text("").ids(&[whole.places[place]]).id(context.context);
+    });
+    records.put("SHAPE_DEFINITION_REPRESENTATION", |v| {
+        v.id(shape).id(representation);
+    });
+    representation
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::base::text::{push_count, push_real};
+use crate::geometry::Motion;
 
 /// The number of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,6 +14,8 @@ pub struct Id(u32);
 pub struct Records {
     text: Vec<u8>,
     count: u32,
+    /// What carries points and directions, lengths in units of the file.
+    frame: Option<Motion>,
 }
 
 impl Records {
@@ -43,12 +46,19 @@ impl Records {
 
     /// A point by its coordinates in units of the file.
     pub fn point(&mut self, p: DVec3) -> Id {
+        let p = self.frame.map_or(p, |frame| frame.point(p));
         self.put("CARTESIAN_POINT", |v| v.text("").point(p))
     }
 
     /// A direction of length 1.
     pub fn direction(&mut self, d: DVec3) -> Id {
+        let d = self.frame.map_or(d, |frame| frame.vector(d));
         self.put("DIRECTION", |v| v.text("").point(d))
+    }
+
+    /// Points and directions from here on are carried: into the frame of a product, or not at all.
+    pub fn carry(&mut self, frame: Option<Motion>) {
+        self.frame = frame;
     }
 
     /// A frame: its origin, its z and its x direction.

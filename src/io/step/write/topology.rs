@@ -102,7 +102,7 @@ impl Writer<'_> {
         for k in 0..self.bodies.grounds.len() {
             job::look();
             let item = self.face(records, k)?;
-            self.made.painted.extend(self.bodies.color(k).map(|rgb| Painted { item, rgb, curve: false, over: None }));
+            self.made.painted.extend(self.bodies.color(k).map(|rgb| Painted { item, rgb, curve: false, over: None, at: None }));
             let layers = self.bodies.layers(k);
             if !layers.is_empty() {
                 self.made.layered.push((item, layers.to_vec()));
@@ -125,7 +125,7 @@ impl Writer<'_> {
         }
         let most = counts.iter().rev().max_by_key(|known| known.1).filter(|_| own.len() == faces.len());
         let Some((rgb, _)) = most.copied() else { return self.made.painted.extend(own) };
-        self.made.painted.push(Painted { item: solid, rgb, curve: false, over: None });
+        self.made.painted.push(Painted { item: solid, rgb, curve: false, over: None, at: None });
         let over = own.into_iter().filter(|painted| painted.rgb != rgb);
         self.made.painted.extend(over.map(|painted| Painted { over: Some(solid), ..painted }));
     }
