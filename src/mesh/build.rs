@@ -17,6 +17,7 @@ use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
 use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
+use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{self, Budget, Exceeded};
@@ -110,7 +111,10 @@ impl Outline {
 
     /// The same, with the work that it took but for that of its free faces; as much as it may where it took more.
     pub fn measured(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> (Result<Built>, u64) {
-        let most = faces::work_on(input.plan.surfaces.iter().map(|(s, _)| &input.model.surfaces[s.index()].surface));
+        let surfaces = &input.plan.surfaces;
+        let most = faces::work_on(surfaces.iter().map(|(s, _)| &input.model.surfaces[s.index()].surface));
+        // The borders of each face are looked at before any element is made.
+        let most = most.saturating_add(surfaces.len() as u64 * WORK_OF_A_SURFACE);
         let within = Budget::new(most).within(|| work::measured(|| self.built(input, reuse, job)));
         within.unwrap_or_else(|Exceeded| (Err(faces::too_much_work(input, Origin::NONE)), most))
     }

@@ -165,7 +165,7 @@ fn of_face(made: &Made, face: &Face, ready: &Prepared) -> Option<Foreseen> {
     let bends = (limits.chord.is_some() || limits.angle.is_some()) && !ready.chart.surface.is_flat();
     let each = cells.iter().zip(&shapes).filter(|(_, shape)| shape.len() > 2).map(|(cell, shape)| {
         let by_bends = if bends { wanted(&ready.chart.surface, &limits, &cell.nodes) } else { f64::INFINITY };
-        more_elements(face.size.0.min(by_bends), shape, split)
+        more_elements(face.size.0.min(by_bends), (shape, shape.len() < cell.nodes.len()), split)
     });
     let more = each.sum::<f64>() / cells.len() as f64;
     Some(Foreseen { angle, away, corner, more })
@@ -288,8 +288,8 @@ fn wanted(surface: &Surface, limits: &Limits, nodes: &[Node]) -> f64 {
 }
 
 /// Free elements for one of the map, by a cell: free ones are as long as the size lets them be, and no longer than twice what borders
-/// that are near to each other are apart.
-fn more_elements(size: f64, cell: &[DVec3], split: bool) -> f64 {
+/// that are near to each other are apart. A cell at a pole is narrow because the map is, and no borders are near each other there.
+fn more_elements(size: f64, (cell, at_pole): (&[DVec3], bool), split: bool) -> f64 {
     let n = cell.len();
     let lengths: Vec<f64> = (0..n).map(|k| cell[k].distance(cell[(k + 1) % n])).collect();
     let (along, across) = match lengths[..] {
@@ -298,7 +298,8 @@ fn more_elements(size: f64, cell: &[DVec3], split: bool) -> f64 {
     };
     let twice = (1..n - 1).map(|k| (cell[k] - cell[0]).cross(cell[k + 1] - cell[0])).sum::<DVec3>().length();
     let area = if split && n == 4 { 0.25 * twice } else { 0.5 * twice };
-    let length = (SPACING * size).min(ACROSS * along.min(across));
+    let apart = if at_pole { f64::INFINITY } else { ACROSS * along.min(across) };
+    let length = (SPACING * size).min(apart);
     let own = if split { EQUILATERAL } else { 1.0 };
     if length > 0.0 { area / (own * length * length) } else { 0.0 }
 }

@@ -5,7 +5,7 @@
 //! shortened there: the distance of the borders is the local feature size of the face [Ruppert 1995]. What a corner of the
 //! border makes narrow is left: shorter steps make its triangles no better.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
@@ -201,6 +201,12 @@ impl Gaze<'_> {
             return Vec::new();
         }
         let (corners, at) = (self.corners(), self.edges_at());
+        // The two sides of a seam, and of what is run twice, are one border in space: it does not face itself.
+        let mut beside: BTreeSet<(u32, u32)> = BTreeSet::new();
+        for edge in self.outline.edges() {
+            let [a, b] = edge.map(|n| self.ids[n as usize]);
+            beside.extend([(a, b), (b, a)]);
+        }
         let mut joined: Vec<usize> = (0..p.len()).collect();
         for [a, b] in self.outline.edges() {
             join(&mut joined, a as usize, b as usize);
@@ -211,6 +217,10 @@ impl Gaze<'_> {
             let along = ends[1] - ends[0];
             let t = ((q - ends[0]).dot(along) / along.length_squared()).clamp(0.0, 1.0);
             let foot = ends[0] + along * t;
+            let own = self.ids[over as usize];
+            if [a, b].map(|n| self.ids[n as usize]).into_iter().any(|end| end == own || beside.contains(&(own, end))) {
+                continue;
+            }
             let same = root(&mut joined, over as usize) == root(&mut joined, a as usize);
             if same && corners.iter().any(|c| c.p != q && gap >= c.opens * (q.distance(c.p) + foot.distance(c.p))) {
                 continue;

@@ -509,7 +509,7 @@ fn of_face(input: &Input, layout: &Layout, (f, rows): (usize, &[Beside]), limits
     let ready = (surface, quick.as_ref());
     let wanted = |row: &Beside, apart: f64| {
         if own.method.is_sparing() {
-            spared(ready, row, apart, (own.size.0, limits))
+            spared(ready, row, apart, (own.size.0, limits, own.method == Method::Display))
         } else {
             by_bends(ready, row, apart, (own.size.0, limits))
         }
@@ -572,11 +572,48 @@ fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (siz
         let worst = within(i, own);
         if worst > row.off[i] { length(i, worst) } else { own }
     };
-    (0..=last).map(one).collect()
+    by_few(row, limits, &one)
+}
+
+/// Places of a row that lengths may be linear over.
+const LINEAR: usize = 16;
+/// Share of a length by which others may be off it and still are linear.
+const EVEN: f64 = 0.02;
+/// Ratio of the lengths at both ends of what may be linear.
+const SLOPED: f64 = 1.1;
+
+/// Lengths at all places of a row by as few of them as tell: where one between two is their mean, and borders run alike beside the surface,
+/// lengths are linear.
+fn by_few(row: &Beside, limits: &Limits, length: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    let last = row.places.len() - 1;
+    let room = limits.chord.map_or(f64::INFINITY, |limit| EVEN * limit);
+    let mut found = vec![0.0; last + 1];
+    (found[0], found[last]) = (length(0), length(last));
+    let mut open: Vec<(usize, usize)> = vec![(0, last)];
+    while let Some((a, b)) = open.pop() {
+        let middle = a.midpoint(b);
+        if middle == a {
+            continue;
+        }
+        let own = length(middle);
+        found[middle] = own;
+        let (most, least) = (found[a].max(found[b]), found[a].min(found[b]));
+        let off = |pick: fn(f64, f64) -> f64| row.off[a..=b].iter().copied().reduce(pick).unwrap_or(0.0);
+        let even = most <= SLOPED * least && (own - 0.5 * (most + least)).abs() <= EVEN * own && off(f64::max) - off(f64::min) <= room;
+        if b - a > LINEAR || !even {
+            open.extend([(a, middle), (middle, b)]);
+            continue;
+        }
+        for (from, to) in [(a, middle), (middle, b)] {
+            let (start, end) = (found[from], found[to]);
+            (from + 1..to).for_each(|k| found[k] = start + (end - start) * (k - from) as f64 / (to - from) as f64);
+        }
+    }
+    found
 }
 
 /// The same where triangles may be long: an edge is no longer than what any place on it wants.
-fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits): (f64, &Limits)) -> Vec<f64> {
+fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits, leans): (f64, &Limits, bool)) -> Vec<f64> {
     let (surface, last) = (ready.0, row.places.len() - 1);
     let wide = surface.hull().diagonal().min(size);
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
@@ -589,9 +626,9 @@ fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, li
         }
         let along = jet.du * step(i).x + jet.dv * step(i).y;
         let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
-        bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), wide).min(size)
+        bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), (wide, leans)).min(size)
     };
-    let lengths: Vec<f64> = (0..=last).map(length).collect();
+    let lengths = by_few(row, limits, &length);
     // An edge about a place reaches half its length to both sides.
     let reached = |i: usize| {
         let shorter = |(j, other): (usize, &f64)| other.max(2.0 * apart * i.abs_diff(j) as f64);

@@ -16,8 +16,12 @@ pub(super) fn within(x: f64, (low, high): (f64, f64)) -> Vec<f64> {
     turns.into_iter().map(|n| x + n as f64).collect()
 }
 
-/// Halvings of a stretch of a border.
+/// Halvings of a stretch of a border, one after the other and in all: where a damaged border jumps to and fro each half may be as long.
 const DEEPEST: u32 = 40;
+const MOST: u32 = 16 * DEEPEST;
+
+/// A fraction of a chain and its place.
+type Foot = (f64, DVec2);
 
 impl Surface {
     /// A place and the same place whole turns away, round a surface that closes: of a trimmed surface all that its loops may hold.
@@ -74,7 +78,7 @@ impl Surface {
                     if p.cmplt(low).any() || p.cmpgt(high).any() {
                         return angle(at[0].1, at[at.len() - 1].1, p);
                     }
-                    at.windows(2).map(|w| self.turn_of(chain, w[0], w[1], p, DEEPEST)).sum()
+                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, (DEEPEST, &mut { MOST }))).sum()
                 };
                 pull.stretches().map(turned).sum()
             }
@@ -82,22 +86,24 @@ impl Surface {
     }
 
     /// The same for a stretch of a chain between two of its feet, halved while the place may lie between it and its chord.
-    fn turn_of(&self, chain: &Chain, (fa, a): (f64, DVec2), (fb, b): (f64, DVec2), p: DVec2, left: u32) -> f64 {
+    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (Foot, Foot), p: DVec2, (deep, left): (u32, &mut u32)) -> f64 {
         let length = a.distance(b);
         let nearest = {
             let share = ((p - a).dot(b - a) / (length * length)).clamp(0.0, 1.0);
             if share.is_finite() { a.lerp(b, share) } else { a }
         };
-        if nearest.distance(p) > length || left == 0 {
+        if nearest.distance(p) > length || deep == 0 || *left == 0 {
             return angle(a, b, p);
         }
+        *left -= 1;
         let middle = 0.5 * (fa + fb);
         let guess = a.lerp(b, 0.5);
         let at = match self.flat_uv(chain.point(middle)) {
             Some((u, v)) => DVec2::new(u, v),
             None => foot((self, None), chain.point(middle), guess).0,
         };
-        self.turn_of(chain, (fa, a), (middle, at), p, left - 1) + self.turn_of(chain, (middle, at), (fb, b), p, left - 1)
+        let first = self.turn_of(chain, ((fa, a), (middle, at)), p, (deep - 1, left));
+        first + self.turn_of(chain, ((middle, at), (fb, b)), p, (deep - 1, left))
     }
 }
 

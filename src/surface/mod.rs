@@ -63,6 +63,7 @@ mod square;
 mod strands;
 mod sweep;
 pub mod sweeps;
+mod thirds;
 mod trilateral;
 mod trilateral_spread;
 mod trim;

@@ -14,13 +14,12 @@ use super::net_spread::NetStrip;
 use super::nurbs::{NurbsSurface, multiplicity, quotient};
 use super::rail::Lean;
 use super::shape::Shape;
+use super::thirds::Thirds;
 use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
 use crate::base::work;
 use crate::geometry::bounds::binomial;
-use crate::geometry::nurbs::{COMMON_DEGREE, projected};
+use crate::geometry::nurbs::COMMON_DEGREE;
 
-/// Boxes along each side of a span for which third derivatives are bounded apart.
-const BOXES: usize = 3;
 /// Highest degree in powers: about the middle of a span they lose a factor of 2 a degree, here 4e-12 of the size.
 const HIGHEST: usize = 14;
 
@@ -39,8 +38,8 @@ struct Powers {
     stops: (Stops, Stops),
     /// Coefficients of each span (u fastest): those of s^i t^j with i fastest.
     powers: Vec<DVec4>,
-    /// Over [`BOXES`]² boxes a span; found when they are asked for.
-    thirds: OnceLock<Vec<Third>>,
+    /// Found when they are asked for; of a net there always are some.
+    thirds: OnceLock<Option<Thirds>>,
     /// Knots at which second derivatives may jump.
     rough: (Vec<f64>, Vec<f64>),
     /// Those of them at which first derivatives jump.
@@ -89,14 +88,6 @@ impl Ready {
             made
         })
     }
-}
-
-/// Bounds of |∂uuu|, |∂uuv|, |∂uvv|, |∂vvv| over a box: along a unit vector, and as a whole.
-#[derive(Clone, Copy, Debug)]
-struct Third {
-    normal: DVec3,
-    upright: [f64; 4],
-    whole: [f64; 4],
 }
 
 /// Second derivatives along a unit vector over a box.
@@ -191,25 +182,19 @@ impl Powers {
 }
 
 impl Quick {
-    fn thirds(&self) -> &[Third] {
-        let made = || match &self.surface.parts().shape {
-            Shape::Nurbs(net) => {
-                let (us, vs) = (divided(&self.net.stops.0.at), divided(&self.net.stops.1.at));
-                let (u_boxes, v_boxes) = (spans(net, true, &us), spans(net, false, &vs));
-                let row = |j: usize| -> Vec<Third> {
-                    let middle = |x: &[f64], k: usize| 0.5 * (x[k] + x[k + 1]);
-                    let normal = |i: usize| {
-                        let jet = self.own_jet(middle(&us, i), middle(&vs, j));
-                        jet.du.cross(jet.dv).normalize_or_zero()
-                    };
-                    (0..u_boxes.len()).map(|i| net.third(&u_boxes[i], &v_boxes[j], normal(i))).collect()
-                };
-                (0..v_boxes.len()).flat_map(row).collect()
-            }
-            _ => Vec::new(),
+    /// Bounds of the third derivatives along a unit vector over a box of the net's own parameters: ∂uuu, ∂uuv, ∂uvv, ∂vvv.
+    fn most_thirds(&self, area: (DVec2, DVec2), along: DVec3) -> [f64; 4] {
+        let made = || {
+            let Shape::Nurbs(net) = &self.surface.parts().shape else { return None };
+            let normal = |u: f64, v: f64| {
+                let jet = self.own_jet(u, v);
+                jet.du.cross(jet.dv).normalize_or_zero()
+            };
+            Some(Thirds::new(net, (&self.net.stops.0.at, &self.net.stops.1.at), &normal))
         };
         // Made once for everyone, whoever comes first.
-        self.net.thirds.get_or_init(|| work::uncharged(made))
+        let thirds = self.net.thirds.get_or_init(|| work::uncharged(made));
+        thirds.as_ref().map_or([f64::INFINITY; 4], |thirds| thirds.most(area, along))
     }
 
     /// The point alone.
@@ -357,28 +342,6 @@ impl Quick {
         Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack, jump: 0.0 }
     }
 
-    /// Bounds of the third derivatives along a unit vector over a box of the net's own parameters: ∂uuu, ∂uuv, ∂uvv, ∂vvv.
-    fn most_thirds(&self, (low, high): (DVec2, DVec2), along: DVec3) -> [f64; 4] {
-        let range = |stops: &Stops, a: f64, b: f64| {
-            let ((i, s, _), (j, t, _)) = (stops.place(a), stops.place(b));
-            let (s, t) = (s + stops.about, t + stops.about);
-            let boxed = |k: usize, s: f64| k * BOXES + ((s.max(0.0) * BOXES as f64) as usize).min(BOXES - 1);
-            (boxed(i, s), boxed(j, t))
-        };
-        let ((i0, i1), (j0, j1)) = (range(&self.net.stops.0, low.x, high.x), range(&self.net.stops.1, low.y, high.y));
-        let n = self.net.stops.0.by.len() * BOXES;
-        let mut most = [0.0_f64; 4];
-        for j in j0..=j1 {
-            for third in &self.thirds()[j * n + i0..=j * n + i1] {
-                let (up, aside) = (along.dot(third.normal).abs(), along.cross(third.normal).length());
-                for (k, m) in most.iter_mut().enumerate() {
-                    *m = m.max((up * third.upright[k] + aside * third.whole[k]).min(third.whole[k]));
-                }
-            }
-        }
-        most
-    }
-
     fn span(&self, i: usize, j: usize) -> &[DVec4] {
         let n = (self.net.degree.0 + 1) * (self.net.degree.1 + 1);
         &self.net.powers[(j * self.net.stops.0.by.len() + i) * n..][..n]
@@ -392,12 +355,6 @@ fn crossed(lines: &[f64], low: f64, high: f64) -> impl Iterator<Item = f64> + '_
 
 fn spans(net: &NurbsSurface, in_u: bool, stops: &[f64]) -> Vec<NetStrip> {
     stops.windows(2).map(|w| net.strip(in_u, (w[0], w[1]))).collect()
-}
-
-/// Each span cut into boxes.
-fn divided(stops: &[f64]) -> Vec<f64> {
-    let inside = |w: &[f64]| (0..BOXES).map(|k| w[0] + (w[1] - w[0]) * k as f64 / BOXES as f64).collect::<Vec<_>>();
-    stops.windows(2).flat_map(inside).chain([1.0]).collect()
 }
 
 /// Coefficients of powers from Bézier points, in both directions.
@@ -441,59 +398,4 @@ fn from_middle(p: usize, i: usize, k: usize) -> f64 {
     let first = k.saturating_sub(p - i);
     let sum: f64 = (first..=k.min(i)).map(term).sum();
     (0..p - k).fold(binomial(p, i) * sum, |x, _| 0.5 * x)
-}
-
-impl NurbsSurface {
-    /// Bounds of the third derivatives over a rectangle inside one span: hulls of differences, and the quotient rule
-    /// about the first point; apart along the normal in the middle, where a change of parameters adds nothing.
-    fn third(&self, u: &NetStrip, v: &NetStrip, normal: DVec3) -> Third {
-        let (n, rows) = (self.degree.0 + 1, self.degree.1 + 1);
-        let mut net = vec![DVec4::ZERO; n * rows];
-        self.piece_into(u, v, &mut net);
-        let light = net.iter().map(|q| q.w).fold(f64::INFINITY, f64::min);
-        let origin = projected(net[0]);
-        let (mut points, reach) = ((0.0_f64, 0.0_f64), |q: DVec3| (q.dot(normal).abs(), q.length()));
-        for q in &mut net {
-            *q = (q.truncate() - origin * q.w).extend(q.w);
-            let (up, whole) = reach(projected(*q));
-            points = (points.0.max(up), points.1.max(whole));
-        }
-        // Bounds of the i-th difference along u and the j-th along v: normal and whole numerator, weight.
-        let (mut a, mut b, mut w) = ([[0.0_f64; 4]; 4], [[0.0_f64; 4]; 4], [[0.0_f64; 4]; 4]);
-        let mut in_v = net.clone();
-        for i in 0..4_usize.min(n) {
-            in_v.copy_from_slice(&net);
-            for j in 0..(4 - i).min(rows) {
-                for q in (0..rows - j).flat_map(|r| &in_v[r * n..r * n + n - i]) {
-                    let (up, whole) = reach(q.truncate());
-                    (a[i][j], b[i][j], w[i][j]) = (a[i][j].max(up), b[i][j].max(whole), w[i][j].max(q.w.abs()));
-                }
-                let f = (self.degree.1 as f64 - j as f64) / v.width();
-                (0..(rows - j - 1) * n).for_each(|k| in_v[k] = (in_v[k + n] - in_v[k]) * f);
-            }
-            let f = (self.degree.0 as f64 - i as f64) / u.width();
-            for r in 0..rows {
-                (r * n..r * n + n - i - 1).for_each(|k| net[k] = (net[k + 1] - net[k]) * f);
-            }
-        }
-        let upright = highest(&a, &w, points.0, light);
-        Third { normal, upright, whole: highest(&b, &w, points.1, light) }
-    }
-}
-
-/// Leibniz' rule N = S w solved for the derivatives of S, by bounds of those of N and w, of S and of 1 / w.
-fn highest(a: &[[f64; 4]; 4], w: &[[f64; 4]; 4], reach: f64, light: f64) -> [f64; 4] {
-    let mut s = [[0.0; 4]; 4];
-    s[0][0] = reach;
-    for order in 1..4_usize {
-        for i in 0..=order {
-            let j = order - i;
-            let mut sum = a[i][j];
-            for (k, l) in (0..=i).flat_map(|k| (0..=j).map(move |l| (k, l))).filter(|kl| *kl != (i, j)) {
-                sum += binomial(i, k) * binomial(j, l) * s[k][l] * w[i - k][j - l];
-            }
-            s[i][j] = sum / light;
-        }
-    }
-    [s[3][0], s[2][1], s[1][2], s[0][3]]
 }

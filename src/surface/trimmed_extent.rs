@@ -17,6 +17,7 @@ use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::range::Ranges;
 use crate::base::tolerance::{BOX, EPSILON, SLIVER};
+use crate::base::work;
 use crate::network::Chain;
 
 /// The smallest box along the axes that holds a trimmed surface: no point of it, nor of its borders, stands out by more than [`BOX`]
@@ -45,6 +46,10 @@ pub(super) fn trimmed_bbox(surface: &Surface) -> Boxed {
     }
     Search { surface, base: &base, borders: &borders }.grown(bounds, (&us, &vs))
 }
+
+/// Evaluations for telling which side of the borders places are on, after which what is left counts by its bound: loops of damaged files
+/// jump from place to place, and each place beside a jump takes thousands.
+const MOST_WORK: u64 = 4_000_000;
 
 fn stands_out(bounds: &Box3, p: DVec3) -> bool {
     (bounds.min - p).max(p - bounds.max).max_element() > 0.0
@@ -144,7 +149,8 @@ impl Search<'_> {
         // Each with whether no border is known to run over it.
         let mut open: VecDeque<(Cell, bool)> = cells.map(|cell| (cell, false)).collect();
         let triangle = self.base.domain() == Domain::Triangle;
-        let (room, gap, mut seen) = (BOX * bounds.bounds.diagonal(), self.surface.gap(), 0);
+        let (room, gap) = (BOX * bounds.bounds.diagonal(), self.surface.gap());
+        let (mut seen, mut spent) = (0, 0);
         while let Some(((u, v), clear)) = open.pop_front() {
             job::look();
             if triangle && u.0 + v.0 >= 1.0 {
@@ -162,8 +168,13 @@ impl Search<'_> {
             if !stands(out(&bounds)) {
                 continue;
             }
+            if spent > MOST_WORK {
+                bounds = bounds.held_by(hull);
+                continue;
+            }
             let mid = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
-            let held = clear || self.surface.holds(mid.0, mid.1);
+            let (held, units) = work::measured(|| clear || self.surface.holds(mid.0, mid.1));
+            spent += units;
             let clear = clear || self.is_clear((u, v), &spread, gap);
             // What of so small a rectangle lies inside is as near to a border.
             if !held && (clear || hull.diagonal() <= room) {

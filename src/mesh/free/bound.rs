@@ -227,39 +227,41 @@ fn highest(a: [f64; 3], c: [f64; 3]) -> f64 {
 /// The longest side up to `from` of an equilateral triangle that keeps a chord error for sure: over an edge along `along`
 /// with its middle at a place, to either side of it where the surface is.
 pub fn surely(surface: (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
-    surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, held: false, tries: TRIES })
+    surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, shear: 0.0, held: false, tries: TRIES })
 }
 
 /// The same by samples, for a twentieth of the work: a first guess where triangles are bounded later.
 pub fn likely(surface: (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
-    surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, held: false, tries: 0 })
+    surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, shear: 0.0, held: false, tries: 0 })
 }
 
 /// Sides of a triangle over the chord error that it keeps however the surface bends: no place over it is further away.
 const SMALL: f64 = 0.5;
 
-/// Isosceles triangles over an edge.
+/// Triangles over an edge.
 struct Apex {
     /// Height over base.
     tall: f64,
+    /// How far it stands along the base off the middle of it, over the height.
+    shear: f64,
     /// What stands out of the surface is held on its border; otherwise it is none.
     held: bool,
     /// Lengths tried that are bounded; before them as many are sampled as are for a guess.
     tries: usize,
 }
 
-/// The same of isosceles triangles.
+/// The same of other triangles.
 fn surely_tall(
     (surface, quick): (&Surface, Option<&Quick>),
     (at, jet): (DVec2, &Jet2),
     along: DVec3,
     (limit, from): (f64, f64),
-    Apex { tall, held, tries }: Apex,
+    Apex { tall, shear, held, tries }: Apex,
 ) -> f64 {
     let spot = Spot { p: jet.p, dx: jet.du, dy: jet.dv };
     let normal = spot.normal();
     let Some(along) = along.reject_from_normalized(normal).try_normalize() else { return from };
-    let aside = normal.cross(along);
+    let aside = normal.cross(along) + along * shear;
     let closed = turning(surface);
     let inside = |uv: DVec2| surface.is_flat() || (closed.0 || (0.0..=1.0).contains(&uv.x)) && (closed.1 || (0.0..=1.0).contains(&uv.y));
     let point = |uv: DVec2| surface.point_by(quick, uv.x, uv.y);
@@ -372,6 +374,8 @@ pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
 const MOST_USED: f64 = 0.9;
 const LEAST_USED: f64 = 0.5;
 
+/// The most that a triangle leans along a border, over its height.
+const MOST_SHEAR: f64 = 1.5;
 /// Share of a height that must be left of it on the surface.
 const LOW: f64 = 0.25;
 /// Heights over bases of triangles that stand for those beside a border.
@@ -381,7 +385,8 @@ const MOST_TALL: f64 = 2.0;
 const MORE_TRIES: usize = 8;
 
 /// Wanted length of an edge along a direction of a border, where triangles may be long, on a face that is nowhere wider than
-/// `wide`: by the curvature along it and the twist, which no shape of triangles beside it makes up for.
+/// `wide`: by the curvature along it, and by the twist; where triangles may lean along the border, `leans`, by what is left of the twist for those
+/// that lean to where there is none, as along the lines of a cylinder.
 ///
 /// Of errors A h² + B w² ≤ c along and across, the longest triangles have half in each, or all of the first where the second is
 /// small all over the face.
@@ -390,24 +395,29 @@ pub fn wanted_along(
     (at, jet): (DVec2, &Jet2),
     along: DVec3,
     (chord, angle): (Option<f64>, Option<f64>),
-    wide: f64,
+    (wide, leans): (f64, bool),
 ) -> f64 {
     let spot = Spot { p: jet.p, dx: jet.du, dy: jet.dv };
     let normal = spot.normal();
     let Some(along) = along.reject_from_normalized(normal).try_normalize() else { return f64::INFINITY };
     let (Some(x), Some(y)) = (spot.step(along), spot.step(normal.cross(along))) else { return f64::INFINITY };
     let form = |a: DVec2, b: DVec2| (jet.duu * (a.x * b.x) + jet.duv * (a.x * b.y + a.y * b.x) + jet.dvv * (a.y * b.y)).dot(normal);
-    let (bend, twist, across) = (form(x, x).abs(), form(x, y).abs(), form(y, y).abs());
+    let (bend, twist) = (form(x, x), form(x, y));
+    let turned = (bend * bend + twist * twist).sqrt();
+    // Where it would have to lean further it does not at all: lines of the surface do not run along it there.
+    let shear = if leans && twist.abs() <= MOST_SHEAR * bend.abs() && twist != 0.0 { -twist / bend } else { 0.0 };
+    let across = (form(y, y) + shear * (2.0 * twist + shear * bend)).abs();
+    let (bend, twist) = (bend.abs(), (twist + shear * bend).abs());
     let used = |rest: f64| (1.0 - rest).clamp(LEAST_USED, MOST_USED);
     let by_chord = chord.map_or(f64::INFINITY, |limit| {
         let most = 8.0 * limit;
         let plain = (most * used(across * wide * wide / most) / (bend + twist)).sqrt().min(wide);
         // The height at which the rest is used up.
         let tall = ((1.0 - used(across * wide * wide / most)) * most / across).sqrt().min(wide) / plain;
-        let apex = Apex { tall: tall.clamp(LEAST_TALL, MOST_TALL), held: true, tries: MORE_TRIES };
+        let apex = Apex { tall: tall.clamp(LEAST_TALL, MOST_TALL), shear, held: true, tries: MORE_TRIES };
         surely_tall(surface, (at, jet), along, (limit, plain), apex)
     });
-    let by_angle = angle.map_or(f64::INFINITY, |limit| limit * used(across * wide / limit) / (bend * bend + twist * twist).sqrt());
+    let by_angle = angle.map_or(f64::INFINITY, |limit| limit * used(across * wide / limit) / turned);
     by_chord.min(by_angle)
 }
 

@@ -77,7 +77,7 @@ impl Normals {
         nodes.map(|n| {
             let (xy, known) = (web.xy[n as usize], &mut seen[n as usize]);
             if known.0 != xy {
-                *known = (xy, sheet.spot(xy).normal());
+                *known = (xy, normal_at(sheet, xy));
             }
             known.1
         })
@@ -100,7 +100,7 @@ fn load_of_leaning(sheet: &Sheet, web: &Web, corners: [u32; 3], limits: &Limits,
     let c = corners.map(|n| n as usize);
     let (xy, p) = (c.map(|n| web.xy[n]), c.map(|n| web.p[n]));
     let beside = beside(sheet, web, c, limits);
-    let load = leaning(sheet, (xy, beside), of_places(sheet, (xy, p, beside), limits), lean, limits);
+    let load = leaning(sheet, (xy, p, beside), of_places(sheet, (xy, p, beside), limits), lean, limits);
     let fixed = corners.iter().any(|n| *n < web.fixed);
     if fixed { load } else { capped(sheet, (xy, p), load, limits) }
 }
@@ -126,10 +126,18 @@ fn capped(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), load: Load, limits: 
 /// Cosine of the largest angle that a triangle may stand at to its surface.
 const UPRIGHT: f64 = 0.5;
 
+/// Share of the chord error by which the surface may be off a triangle that lies upside down at a corner.
+const TURNED: f64 = 0.25;
+
+/// The normal of the surface at a place; none at a pole, where rounding alone has one.
+fn normal_at(sheet: &Sheet, xy: DVec2) -> DVec3 {
+    if poles::is_pole(&|at| sheet.tangents(at.into()), DVec2::from(sheet.uv(xy))) { DVec3::ZERO } else { sheet.spot(xy).normal() }
+}
+
 /// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
 /// triangle that stands on edge: near to what is over it along its own normal, and its sides far from the surface all the same.
 fn lean(sheet: &Sheet, xy: [DVec2; 3], p: [DVec3; 3]) -> f64 {
-    lean_of(xy.map(|xy| sheet.spot(xy).normal()), p)
+    lean_of(xy.map(|xy| normal_at(sheet, xy)), p)
 }
 
 /// The same by the normals of the surface at the corners.
@@ -142,15 +150,22 @@ fn lean_of(own: [DVec3; 3], p: [DVec3; 3]) -> f64 {
     own.into_iter().map(cosine).fold(1.0, f64::min)
 }
 
-/// The load of a triangle that leans against its surface: a height over it is, from its sides, that over `lean`. Where it stands nearly on
-/// edge, how far the surface is in any direction from the places between the corners is the bound; upside down, nothing is.
-fn leaning(sheet: &Sheet, (xy, beside): ([DVec2; 3], f64), load: Load, lean: f64, limits: &Limits) -> Load {
+/// The load of a triangle that leans against its surface: what is over it along its normal may be, from its sides, as much farther as the
+/// cosine between the two, `lean`, is less than 1. Where that alone breaks the limit the sides themselves are looked at. Where it stands
+/// nearly on edge, how far the surface is in any direction from the places between the corners is the bound; upside down it has to be a part of
+/// the limit, for there the surface itself turns round within it.
+fn leaning(sheet: &Sheet, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), load: Load, lean: f64, limits: &Limits) -> Load {
     let chord = match limits.chord {
-        Some(_) if load.chord > 0.0 && lean < 0.0 => f64::INFINITY,
         Some(limit) if load.chord > 0.0 && lean < UPRIGHT => {
             let (first, second) = under(&|at| sheet.tangents(at.into()), xy.map(|xy| DVec2::from(sheet.uv(xy))));
             let off = |uv| bound::in_any_direction(sheet.surface(), uv);
-            (off(first).max(second.map_or(0.0, off)) + beside) / limit
+            let off = (off(first).max(second.map_or(0.0, off)) + beside) / limit;
+            if lean < 0.0 && off > TURNED { f64::INFINITY } else { off }
+        }
+        Some(limit) if load.chord > lean && load.chord <= 1.0 => {
+            let ends = poles::sides(&|at| sheet.tangents(at.into()), xy.map(|xy| DVec2::from(sheet.uv(xy)))).map(Some);
+            let farthest = sides::distance((sheet.surface(), sheet.quick()), ends, p, limit - beside);
+            load.chord.max((farthest + beside) / limit).min(load.chord / lean)
         }
         _ => load.chord / lean.max(UPRIGHT),
     };
@@ -191,7 +206,7 @@ fn load_with_sides(sheet: &Sheet, web: &Web, t: u32, limits: &Limits) -> Load {
 
 /// The same of three places of the chart with their points, by parts.
 pub fn load_of(sheet: &Sheet, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits) -> Load {
-    let load = leaning(sheet, (xy, 0.0), of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p), limits);
+    let load = leaning(sheet, (xy, p, 0.0), of_places(sheet, (xy, p, 0.0), limits), lean(sheet, xy, p), limits);
     capped(sheet, (xy, p), load, limits)
 }
 

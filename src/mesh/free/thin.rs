@@ -3,8 +3,11 @@
 //! A node goes when some triangulation of its rim keeps the limits by their certified bounds; what costs least goes first, by
 //! a heap of costs of which those near a change are found again when their turn comes. When none goes any more, two neighbours
 //! become one node where some place between them keeps the limits, edges are flipped to where the bounds of their two triangles
-//! are smaller, and nodes beside what changed get another try. Triangles come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound of `bound.rs`
-//! in place of a distance of points].
+//! are smaller, nodes are moved towards those of their triangles that have the larger bounds, and nodes beside what changed get another try. Triangles come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound of `bound.rs`
+//! in place of a distance of points]. At last neighbours become one node where the bounds are a little too large at first, and moving the nodes
+//! round them makes up for it.
+
+mod settle;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -27,6 +30,8 @@ pub type Allowed<'a> = dyn Fn(&Web, u32, u32) -> bool + 'a;
 
 /// Rounds of taking out and flipping at most.
 const ROUNDS: usize = 8;
+/// Times that pairs are joined where their surroundings have to make room.
+const LAST: usize = 2;
 /// A round that takes out a smaller share of the nodes is the last one.
 const WORTH: f64 = 0.002;
 /// Least quality of a triangle that is made: long ones are meant, needles are not.
@@ -81,9 +86,12 @@ struct Changes {
     now: usize,
     /// By node: the change after which its triangles are as they are.
     of_node: Vec<usize>,
-    /// Changes before the last pass over all pairs, and over all edges, began; `None` before the first one.
+    /// Changes before the last pass over all pairs, over all edges, over all nodes and over all pairs again
+    /// began; `None` before the first one.
     joined: Option<usize>,
     flipped: Option<usize>,
+    moved: Option<usize>,
+    pressed: Option<usize>,
 }
 
 impl Changes {
@@ -117,9 +125,17 @@ impl Thinner<'_> {
             let mut gone = thinning.take_out(job)?;
             gone += thinning.join(job)?;
             thinning.flip();
+            thinning.settle(job)?;
             if gone as f64 <= WORTH * n as f64 {
                 break;
             }
+        }
+        for _ in 0..LAST {
+            if thinning.press(job)? == 0 {
+                break;
+            }
+            thinning.take_out(job)?;
+            thinning.settle(job)?;
         }
         Ok(())
     }
@@ -208,26 +224,8 @@ impl Thinning<'_> {
 
     /// Makes one node of two neighbours, or leaves them.
     fn join_one(&mut self, a: u32, b: u32) -> bool {
-        self.web.ring(a, &mut self.ring);
-        let mut around = self.ring.tri.clone();
-        self.web.ring(b, &mut self.ring);
-        around.extend(self.ring.tri.iter().filter(|t| !self.web.tri[**t as usize].contains(&a)));
-        if self.web.patch(&around, &mut self.patch).is_none() {
-            return false;
-        }
-        let (k, other) = (a as usize, b as usize);
-        let old = (self.web.xy[k], self.web.p[k]);
-        let mut best: Option<(f64, Star)> = None;
-        for share in BETWEEN {
-            let xy = old.0.lerp(self.web.xy[other], share);
-            (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
-            let most = best.map_or(1.0, |b| b.0);
-            if let Some(load) = self.star(a, most) {
-                best = Some((load, Star { p: self.web.p[k], xy, worst: 0.0 }));
-            }
-        }
-        (self.web.xy[k], self.web.p[k]) = old;
-        let Some((_, star)) = best else { return false };
+        let Some(star) = self.star_of_both(a, b, 1.0) else { return false };
+        let k = a as usize;
         let size = self.web.size[k];
         self.web.restar(&self.patch, Some(a), &star, size);
         // Places count by themselves: what was found with this node at another one is void.
@@ -244,6 +242,27 @@ impl Thinning<'_> {
             self.heap.push(Reverse((0, n)));
         }
         true
+    }
+
+    /// Where one node in place of two neighbours has the least bounds, less than a limit; `patch` is then what its star replaces.
+    fn star_of_both(&mut self, a: u32, b: u32, limit: f64) -> Option<Star> {
+        self.web.ring(a, &mut self.ring);
+        let mut around = self.ring.tri.clone();
+        self.web.ring(b, &mut self.ring);
+        around.extend(self.ring.tri.iter().filter(|t| !self.web.tri[**t as usize].contains(&a)));
+        self.web.patch(&around, &mut self.patch)?;
+        let (k, other) = (a as usize, b as usize);
+        let old = (self.web.xy[k], self.web.p[k]);
+        let mut best: Option<(f64, Star)> = None;
+        for share in BETWEEN {
+            let xy = old.0.lerp(self.web.xy[other], share);
+            (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
+            if let Some(load) = self.star(a, best.map_or(limit, |b| b.0)) {
+                best = Some((load, Star { p: self.web.p[k], xy, worst: 0.0 }));
+            }
+        }
+        (self.web.xy[k], self.web.p[k]) = old;
+        best.map(|best| best.1)
     }
 
     /// The worst bound of the triangles from a node to the rim of the patch, where it is less than a limit.

@@ -1,0 +1,159 @@
+//! Nodes moved so that the bounds of the triangles round them are more even: what has too much at one side leaves room at the other.
+
+use std::cmp::Reverse;
+
+use glam::DVec2;
+
+use super::{GAIN, Known, Thinning, WATCH};
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::triangulate_points::NO_TRIANGLE;
+
+/// How far a node is moved, over the way to the mean of its triangles by the squares of their bounds.
+const MOVED: [f64; 2] = [1.5, 0.75];
+/// Bounds over the limit up to which the nodes round a place are asked to make room.
+const LOOSE: f64 = 1.25;
+/// Rounds in which they do, and what a round has to leave of the worst bound at most for another one.
+const SWEEPS: usize = 4;
+const LESS: f64 = 0.985;
+
+impl Thinning<'_> {
+    /// Moves nodes so that their triangles have more even bounds.
+    pub(super) fn settle(&mut self, job: &Job) -> Result<()> {
+        let last = self.changes.moved.replace(self.changes.now);
+        for node in self.web.fixed..self.web.p.len() as u32 {
+            if self.web.at[node as usize] != NO_TRIANGLE && self.changes.since(last, &[node]) && self.even(node, 1.0) {
+                self.web.ring(node, &mut self.ring);
+                let changed: Vec<u32> = self.ring.node.iter().copied().chain([node]).collect();
+                self.wake(&changed);
+            }
+            if (node as usize).is_multiple_of(WATCH) {
+                job.go_on()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves a node where that lowers the sum of the fourth powers of the bounds of its triangles, all below a limit; whether it moved.
+    fn even(&mut self, node: u32, limit: f64) -> bool {
+        self.web.ring(node, &mut self.ring);
+        let (k, around) = (node as usize, self.ring.tri.clone());
+        if !self.ring.closed {
+            return false;
+        }
+        let (mut mean, mut weights, mut before) = (DVec2::ZERO, 0.0, 0.0);
+        for t in &around {
+            let load = self.load(*t);
+            mean += self.web.tri[*t as usize].iter().map(|n| self.web.xy[*n as usize]).sum::<DVec2>() * (load * load / 3.0);
+            weights += load * load;
+            before += load * load * load * load;
+        }
+        if !(before > 0.0 && before.is_finite()) {
+            return false;
+        }
+        let old = (self.web.xy[k], self.web.p[k]);
+        for share in MOVED {
+            let xy = old.0.lerp(mean / weights, share);
+            (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
+            let (mut loads, mut sum) = (Vec::with_capacity(around.len()), 0.0);
+            for t in &around {
+                let c = self.web.tri[*t as usize];
+                let far = c.iter().all(|n| *n == node || (self.ask.allowed)(self.web, node, *n));
+                let Some(load) = self.less(c, limit).filter(|_| far) else { break };
+                sum += load * load * load * load;
+                if sum > GAIN * before {
+                    break;
+                }
+                loads.push((*t, c, load));
+            }
+            if loads.len() == around.len() {
+                loads.into_iter().for_each(|(t, c, load)| self.loads[t as usize] = (c, load));
+                return true;
+            }
+        }
+        (self.web.xy[k], self.web.p[k]) = old;
+        false
+    }
+
+    /// Nodes beside a change get another try.
+    fn wake(&mut self, changed: &[u32]) {
+        self.changes.mark(changed);
+        for n in changed.iter().copied().filter(|n| *n >= self.web.fixed && self.web.at[*n as usize] != NO_TRIANGLE) {
+            self.known[n as usize] = Known::Nothing;
+            self.heap.push(Reverse((0, n)));
+        }
+    }
+
+    /// Makes one node of two neighbours where the nodes round them can make room for it; how many went.
+    pub(super) fn press(&mut self, job: &Job) -> Result<usize> {
+        let mut gone = 0_usize;
+        let last = self.changes.pressed.replace(self.changes.now);
+        for t in 0..self.web.tri.len() as u32 {
+            for k in 0..3 {
+                let c = self.web.tri[t as usize];
+                let (a, b) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+                let is_open = self.web.alive(t) && self.web.fixed <= a && a < b && self.changes.since(last, &[a, b]);
+                if is_open && self.press_one(a, b) {
+                    gone += 1;
+                    break;
+                }
+            }
+            if (t as usize).is_multiple_of(WATCH) {
+                job.go_on()?;
+            }
+        }
+        Ok(gone)
+    }
+
+    fn press_one(&mut self, a: u32, b: u32) -> bool {
+        let Some(star) = self.star_of_both(a, b, LOOSE) else { return false };
+        let patch = std::mem::take(&mut self.patch);
+        let mut all = patch.tri.clone();
+        for n in &patch.rim {
+            self.web.ring(*n, &mut self.ring);
+            all.extend_from_slice(&self.ring.tri);
+        }
+        all.sort_unstable();
+        all.dedup();
+        let kept = self.web.before(&all);
+        let size = self.web.size[a as usize];
+        self.web.restar(&patch, Some(a), &star, size);
+        self.forget(&all);
+        let free: Vec<u32> = std::iter::once(a).chain(patch.rim.iter().copied().filter(|n| *n >= self.web.fixed)).collect();
+        let mut worst = self.worst(&all);
+        for _ in 0..SWEEPS {
+            for n in &free {
+                self.even(*n, LOOSE);
+            }
+            let now = self.worst(&all);
+            if now < 1.0 || now > LESS * worst {
+                worst = now;
+                break;
+            }
+            worst = now;
+        }
+        self.patch = patch;
+        if worst >= 1.0 {
+            self.web.put_back(&kept);
+            self.forget(&all);
+            return false;
+        }
+        let live: Vec<u32> = all.into_iter().filter(|t| self.web.alive(*t)).collect();
+        let changed = self.web.nodes_of(&live);
+        self.wake(&changed);
+        true
+    }
+
+    fn worst(&mut self, some: &[u32]) -> f64 {
+        some.iter().filter(|t| self.web.alive(**t)).copied().collect::<Vec<_>>().into_iter().map(|t| self.load(t)).fold(0.0, f64::max)
+    }
+
+    /// Bounds of triangles whose nodes are at other places now are void.
+    fn forget(&mut self, some: &[u32]) {
+        for t in some {
+            if let Some(load) = self.loads.get_mut(*t as usize) {
+                load.0 = [0; 3];
+            }
+        }
+    }
+}
