@@ -1,6 +1,7 @@
 //! What CAD formats have in common: exact surfaces with the loops of curves on them, made into surface values, and the part that
 //! offers them by name. Readers of a format make [`face::Face`]s and put them into a [`part::Part`].
 
+pub mod axis_cut;
 pub mod base;
 mod beside;
 mod build;
