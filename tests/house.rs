@@ -51,13 +51,13 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves, each other and themselves, and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, the forms of other languages it knows, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 8_950),
+    ("base", 9_000),
     ("geometry", 5_650),
     ("network", 3_800),
     ("surface", 25_000),
     ("model", 6_400),
     ("mesh", 23_600),
-    ("io", 15_800),
+    ("io", 16_300),
     ("draw", 3_000),
     ("lang", 29_250),
     ("session", 11_750),

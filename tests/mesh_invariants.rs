@@ -52,8 +52,10 @@ fn every_mesh_of_every_model_is_sound() {
         let turned = ["turned_back.loft: ", "round_corners.loft: tube: ", "cusp.loft: rows: "].iter().any(|s| f.starts_with(s))
             && f.contains("upside down");
         let loose = f.starts_with("loose.loft: ") && f.contains(" off at ");
+        // Three faces meet at the edges of a wall between two shells.
+        let wall = f.starts_with("common_wall.loft: m: 3 uses of the edge");
         let wave_a_step = f.starts_with("free_borders.loft: coarse: ");
-        loose || wave_a_step || turned || (ball || ring || needle) && (f.contains("upside down") || f.contains(" off at "))
+        loose || wall || wave_a_step || turned || (ball || ring || needle) && (f.contains("upside down") || f.contains(" off at "))
     };
     found.retain(|f| !coarse(f));
     assert_eq!(found, Vec::<String>::new());

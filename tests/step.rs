@@ -22,6 +22,15 @@ use crate::support::mutate::{Random, mutated};
 
 const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
 
+/// A file as a model in millimetres would read it, with the faces that it lacks.
+fn whole(bytes: &[u8]) -> Part {
+    let opened = open(bytes, &OPTIONS).unwrap();
+    let tolerance = Tolerance::from_diagonal(opened.reach().diagonal(), 1e-3);
+    let mut part = opened.part(tolerance);
+    part.build(Origin::NONE, &tolerance);
+    part
+}
+
 /// Reads a file as a model in millimetres would.
 fn read(bytes: &[u8]) -> Result<Part, String> {
     let opened = open(bytes, &OPTIONS).map_err(|at| format!("line {}: {}", at.line, at.what))?;

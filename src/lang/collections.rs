@@ -14,6 +14,7 @@ use super::origins::NO_MEMBER;
 use super::part::Skin;
 use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
 use super::room::flat_len;
+use super::scene::each_once;
 use super::settings::{self, Setting};
 use super::shares::Meshed;
 use super::std::imprint::pieces;
@@ -130,6 +131,7 @@ impl Cx<'_> {
                             _ => return Err(Stop::Bug("a shell of something else")),
                         }
                     }
+                    let mut surfaces = each_once(surfaces);
                     if skins.len() > 1 {
                         let mut shells = Vec::with_capacity(skins.len());
                         for (k, (mut surfaces, body)) in skins.into_iter().enumerate() {

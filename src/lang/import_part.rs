@@ -15,7 +15,7 @@ use super::value::{ModuleId, Record, Value};
 use crate::base::bbox::Box3;
 use crate::base::fault::{FileFault, Malformed};
 use crate::base::tolerance::Tolerance;
-use crate::io::cad::healing::Repair;
+use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Group, Options, Part, Unusable};
 use crate::io::{iges, step};
 use crate::network::Chain;
@@ -51,7 +51,8 @@ impl Cx<'_> {
         warnings.append(&mut part.build(file.origin, &tolerance));
         if self.whole {
             let told = |repair: &Repair| Malformed::line(repair.line, repair.told(part.model_unit));
-            warnings.extend(part.repairs.iter().map(told));
+            // What is as exact as the file says is nothing to warn of.
+            warnings.extend(part.repairs.iter().filter(|repair| repair.rule != Rule::Accuracy).map(told));
         }
         let notes = warnings.clone();
         self.repaired(file, warnings);

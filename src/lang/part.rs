@@ -151,7 +151,7 @@ impl PartValue {
             lines.extend(self.unusable.iter().map(|face| format!("    line {}: {}: {}", face.line, face.entity, face.cause)));
         }
         if whole {
-            for rule in [Rule::Border, Rule::Ends] {
+            for rule in Rule::ALL {
                 let all: Vec<&Repair> = file.repairs.iter().filter(|repair| repair.rule == rule).collect();
                 if !all.is_empty() {
                     lines.push(format!("  {}: {}", rule.words(), counted(all.len(), "time", "times")));

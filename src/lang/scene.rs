@@ -1,5 +1,6 @@
 //! Surfaces as values found again in a surface model: the script's own, or one extended by what it does not declare.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -11,6 +12,7 @@ use super::syntax::ast::Keyword;
 use super::value::{Home, ModuleId, ShellValue, Value};
 use crate::base::fault::{Fault, Say};
 use crate::base::math::compare_points;
+use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::model::topology::Named;
 use crate::model::{Model, SharedEdge, Shell, ShellRequest, SurfaceId};
@@ -177,6 +179,22 @@ fn path_of(value: &Value, is: &dyn Fn(&Surface) -> bool) -> Option<String> {
         Value::List(items) => items.iter().enumerate().find_map(|(k, item)| path_of(item, is).map(|rest| format!("[{k}]{rest}"))),
         _ => None,
     }
+}
+
+/// Surfaces of which some may be given again, as they are or with their other side: each once, as it was given first.
+pub(crate) fn each_once(surfaces: Vec<Surface>) -> Vec<Surface> {
+    let mut kept: Vec<Surface> = Vec::with_capacity(surfaces.len());
+    let mut known: BTreeMap<(Origin, [u64; 6]), Vec<usize>> = BTreeMap::new();
+    for surface in surfaces {
+        let hull = surface.hull();
+        let [a, b] = [hull.min, hull.max].map(|p| p.to_array().map(f64::to_bits));
+        let same = known.entry((surface.origin(), [a[0], a[1], a[2], b[0], b[1], b[2]])).or_default();
+        if !same.iter().any(|k| side_of(&kept[*k], &surface).is_some()) {
+            same.push(kept.len());
+            kept.push(surface);
+        }
+    }
+    kept
 }
 
 /// Whether two surfaces are one: `Some(false)`, or `Some(true)` when `other` is the other side of it.

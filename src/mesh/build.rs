@@ -12,7 +12,7 @@ use super::nodes::Nodes;
 use super::plan::Plan;
 use super::reuse::{Known, Reuse};
 use super::sizing::Remark;
-use super::{contacts, faces, key, sets};
+use super::{contact_bodies, contacts, faces, key, sets};
 use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, Digester};
 use crate::base::fault::{Fault, Result};
@@ -134,11 +134,17 @@ impl Outline {
             others.iter().for_each(|part| first.sizing.join(&part.sizing));
             remarks = first.sizing.remarks();
             remarks.extend(first.layout.lost.iter().chain(others.iter().flat_map(|part| &part.layout.lost)).copied().map(Remark::Lost));
+            let mut leaves = Vec::with_capacity(parts.len());
             // Faces that were asked not to share nodes touch as they were asked to.
             for part in parts.iter().filter(|_| input.plan.conforming) {
-                let touches = contacts::look(input, &part.layout, &part.nodes, &part.mesh);
+                let (touches, own) = contacts::look(input, &part.layout, &part.nodes, &part.mesh);
                 contacts::refuse_overlaps(input, &touches)?;
+                leaves.push(own);
                 remarks.extend(touches.into_iter().map(Remark::Touch));
+            }
+            // Bodies were asked not to share nodes, and may touch; none is where another one is.
+            if input.plan.conforming {
+                remarks.extend(contact_bodies::look(input, &parts, leaves).into_iter().map(Remark::Touch));
             }
         }
         Ok(Built { remarks, ..merge(input, parts)? })

@@ -170,8 +170,18 @@ impl Leaves {
         }
     }
 
-    /// Up to so many places where triangles of two faces that share no node go through each other.
-    pub fn crossings(&self, other: &Self, mesh: &Mesh, most: usize) -> Vec<DVec3> {
+    /// How often a line between two points goes through triangles.
+    pub fn pierces(&self, mesh: &Mesh, line: (DVec3, DVec3)) -> usize {
+        let mut count = 0;
+        self.tree.query(&Box3::of([line.0, line.1]), 0.0, |k| {
+            count += self.leaf(k).iter().filter(|t| through(t.map(|n| mesh.nodes[n as usize]), line, 0.0).is_some()).count();
+        });
+        count
+    }
+
+    /// Up to so many places where triangles of two faces that share no node go through each other; the faces may be of two meshes.
+    pub fn crossings(&self, mesh: &Mesh, (other, of): (&Self, &Mesh), most: usize) -> Vec<DVec3> {
+        let is_one = std::ptr::eq(mesh, of);
         let mut pairs = Vec::new();
         self.tree.pairs_with(&other.tree, 0.0, |a, b| pairs.push((a, b)));
         pairs.sort_unstable();
@@ -183,10 +193,15 @@ impl Leaves {
             if own.is_empty() {
                 continue;
             }
-            other.within(mesh, b, &self.boxes[a], &mut others);
+            other.within(of, b, &self.boxes[a], &mut others);
             for (s, corners, around) in &own {
                 for (t, faces, box_of) in &others {
-                    if around.touches(box_of, 0.0) && !t.iter().any(|n| s.contains(n)) {
+                    if !around.touches(box_of, 0.0) {
+                        continue;
+                    }
+                    if !is_one {
+                        found.extend(middle_of_crossing(*corners, *faces));
+                    } else if !t.iter().any(|n| s.contains(n)) {
                         found.extend(crossing(*corners, *faces).or_else(|| crossing(*faces, *corners)));
                     }
                 }
@@ -211,6 +226,17 @@ fn is_flat(mesh: &Mesh, triangles: &[[u32; 3]], near: f64) -> bool {
 /// Where an edge of one triangle goes through another one.
 fn crossing(edges: [DVec3; 3], face: [DVec3; 3]) -> Option<DVec3> {
     (0..3).find_map(|k| through(face, (edges[k], edges[(k + 1) % 3]), 0.0))
+}
+
+/// The middle of the line along which two triangles cross.
+fn middle_of_crossing(a: [DVec3; 3], b: [DVec3; 3]) -> Option<DVec3> {
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for (edges, face) in [(a, b), (b, a)] {
+        for p in (0..3).filter_map(|k| through(face, (edges[k], edges[(k + 1) % 3]), 0.0)) {
+            (sum, count) = (sum + p, count + 1.0);
+        }
+    }
+    (count > 0.0).then(|| sum / count)
 }
 
 /// Where the line between two points goes through a triangle from one side to the other, or past its border within `near`.

@@ -17,7 +17,7 @@ use super::layout::Layout;
 use super::nodes::Nodes;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::{BoxTree, PAIR};
-use crate::base::fault::{Result, SurfaceFault};
+use crate::base::fault::{CutFault, Fault, Result, SurfaceFault};
 use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::par;
 use crate::base::tolerance::SINGULAR;
@@ -35,6 +35,10 @@ pub enum Kind {
     Edge,
     /// They cross.
     Crossing,
+    /// The body of the first lies inside that of the second.
+    Inside,
+    /// They come near each other, and the search of what they have in common found no end.
+    Unknown,
 }
 
 impl Kind {
@@ -45,7 +49,7 @@ impl Kind {
 
     /// The kind of a number.
     pub fn of_word(word: u8) -> Option<Self> {
-        [Self::Overlap, Self::Edge, Self::Crossing].into_iter().find(|kind| kind.word() == word)
+        [Self::Overlap, Self::Edge, Self::Crossing, Self::Inside, Self::Unknown].into_iter().find(|kind| kind.word() == word)
     }
 }
 
@@ -96,12 +100,13 @@ struct Found {
     nodes: Vec<usize>,
 }
 
-/// Every two surfaces of a mesh that touch, cross or cover each other without sharing nodes there, in the order of the plan.
-pub fn look(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &Mesh) -> Vec<Touch> {
+/// Every two surfaces of a mesh that touch, cross or cover each other without sharing nodes there, in the order of the plan; with the
+/// elements of each face in boxes, where it took them.
+pub fn look(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &Mesh) -> (Vec<Touch>, Vec<Leaves>) {
     let mut surfaces: Vec<SurfaceId> = layout.faces.iter().map(|f| f.surface).collect();
     surfaces.dedup();
     if surfaces.len() < 2 {
-        return Vec::new();
+        return (Vec::new(), Vec::new());
     }
     let scan = Scan::new(input, layout, nodes, mesh);
     let mut known = Known { scan: &scan, nearest: BTreeMap::new(), touches: BTreeMap::new(), tries: BTreeMap::new() };
@@ -109,7 +114,8 @@ pub fn look(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &Mesh) -> Vec<T
     known.insides();
     known.covered();
     known.crossings();
-    known.touches.into_values().map(|t| t.0).collect()
+    let touches = known.touches.into_values().map(|t| t.0).collect();
+    (touches, scan.leaves)
 }
 
 /// E666 where faces that are to be joined cover each other: what they share would be in the mesh twice.
@@ -413,7 +419,7 @@ impl Known<'_> {
             !flat && scan.surface_of(*a) != scan.surface_of(*b) && !self.touches.contains_key(&scan.key(*a, *b))
         };
         let pairs: Vec<(usize, usize)> = pairs.filter(wanted).collect();
-        let found = par::map(pairs.len(), |n| scan.leaves[pairs[n].0].crossings(&scan.leaves[pairs[n].1], scan.mesh, MOST));
+        let found = par::map(pairs.len(), |n| scan.leaves[pairs[n].0].crossings(scan.mesh, (&scan.leaves[pairs[n].1], scan.mesh), MOST));
         let mut quiet = Vec::new();
         for ((a, b), places) in pairs.into_iter().zip(found) {
             if places.is_empty() {
@@ -440,11 +446,22 @@ impl Known<'_> {
         let found = par::map(pairs.len(), |n| {
             let (a, b) = (surface(pairs[n].0), surface(pairs[n].1));
             let common = with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), scan.input.plan.origin, scan.input.tolerance);
-            common.ok().and_then(|common| common.curves.first().map(|curve| curve.point(0.5)))
+            match common {
+                Ok(common) => common.curves.first().map(|curve| (Kind::Crossing, curve.point(0.5))),
+                Err(Fault::Cut(fault)) if matches!(*fault, CutFault::RunAlong { .. }) => {
+                    let CutFault::RunAlong { at, .. } = *fault else { return None };
+                    Some((Kind::Overlap, at))
+                }
+                Err(_) => Some((Kind::Unknown, scan.between(pairs[n].0, pairs[n].1))),
+            }
         });
-        for ((a, b), at) in pairs.into_iter().zip(found) {
-            if let Some(at) = at {
-                self.add((a, b), Kind::Crossing, (0.0, 0.0), at);
+        for ((a, b), found) in pairs.into_iter().zip(found) {
+            // Beside each other within the tolerance is not on each other.
+            let lies = |known: &mut Self, at: DVec3| known.on(a, at) && known.on(b, at);
+            match found {
+                Some((Kind::Overlap, at)) if !lies(self, at) => {}
+                Some((kind, at)) => self.add((a, b), kind, (0.0, 0.0), at),
+                None => {}
             }
         }
     }
@@ -492,6 +509,12 @@ impl Scan<'_> {
             along.iter().any(|n| both(*n) && self.p(*n).distance(p) <= step)
         };
         self.layout.faces[a].stretches().any(near)
+    }
+
+    /// A place between two faces, where their boxes meet.
+    fn between(&self, a: usize, b: usize) -> DVec3 {
+        let (a, b) = (&self.leaves[a].hull, &self.leaves[b].hull);
+        0.5 * (a.min.max(b.min) + a.max.min(b.max))
     }
 
     fn beside(&self, stretch: usize) -> Beside {

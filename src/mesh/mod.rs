@@ -11,6 +11,7 @@ mod border_error;
 pub mod build;
 pub mod chart;
 mod chord;
+mod contact_bodies;
 pub mod contact_edges;
 mod contact_leaves;
 pub mod contacts;

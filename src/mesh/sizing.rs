@@ -583,6 +583,8 @@ impl Remark {
                     contacts::Kind::Overlap => Touching::Overlap,
                     contacts::Kind::Edge => Touching::Edge { length: *length },
                     contacts::Kind::Crossing => Touching::Crossing,
+                    contacts::Kind::Inside => Touching::Inside,
+                    contacts::Kind::Unknown => Touching::Unknown,
                 };
                 let names = names.clone();
                 let imprint = plan.imprint.is_some();

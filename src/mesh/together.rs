@@ -13,13 +13,14 @@ use super::edges::Limits;
 use super::faces::{Frame, Prepared, element_ranges};
 use super::free::face::Made;
 use super::free::twins::{Edge, is_upright, ordered, twins};
+use super::inside;
 use super::layout::Layout;
 use super::limits::Verdict;
 use super::plan::{Elements, Method};
 use super::uneven::Uneven;
-use crate::base::fault::{Fault, MeshFault};
+use crate::base::fault::{Fault, MeshFault, SurfaceFault};
 use crate::base::par;
-use crate::surface::Surface;
+use crate::surface::{Nearest, Surface};
 
 /// What of two faces or more falls together: an edge, or two nodes of an element, with the faces.
 pub type Together = (Edge, Vec<usize>);
@@ -143,10 +144,24 @@ pub enum Asked {
     Rows(Vec<Verdict>),
 }
 
-/// E720 for faces that fall together whatever was tried.
+/// E720 for faces that fall together whatever was tried; E666 for those that are to be joined and lie on each other there.
 pub fn fault(input: &Input, layout: &Layout, mesh: &Mesh, (edge, faces): &Together) -> Fault {
-    let surface = |f: usize| input.model.surfaces[layout.faces[f].surface.index()].surface.origin();
-    let at = mesh.nodes[edge.0 as usize].midpoint(mesh.nodes[edge.1 as usize]);
+    let surface = |f: usize| &input.model.surfaces[layout.faces[f].surface.index()];
+    let (p, q) = (mesh.nodes[edge.0 as usize], mesh.nodes[edge.1 as usize]);
     let [first, second] = [faces[0], faces[faces.len() - 1]];
-    MeshFault::FallTogether { surfaces: [surface(first), surface(second)], at }.into()
+    if let Some((_, imprint)) = &input.plan.imprint {
+        let [one, other] =
+            [first, second].map(|f| (Nearest::new(&surface(f).surface), &input.model.patches[layout.faces[f].patch.index()]));
+        let is_on_both = |share: f64| {
+            let foot = one.0.at(p.lerp(q, share)).point;
+            inside::on(&one.0, one.1, foot, input.tolerance) && inside::on(&other.0, other.1, foot, input.tolerance)
+        };
+        if [0.25, 0.5, 0.75].into_iter().all(is_on_both) {
+            let names = (surface(first).name.clone(), surface(second).name.clone());
+            let (a, b) = (surface(first).surface.origin(), surface(second).surface.origin());
+            return SurfaceFault::ImprintOverlap { imprint: *imprint, a, b, names, at: one.0.at(p.midpoint(q)).point }.into();
+        }
+    }
+    let [a, b] = [first, second].map(|f| surface(f).surface.origin());
+    MeshFault::FallTogether { surfaces: [a, b], at: p.midpoint(q) }.into()
 }

@@ -52,6 +52,9 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     for (value, _) in &spec.things {
         finder.add(cx, (&mut plan, &mut faces), value, sink)?;
     }
+    // A face of several shells, or one that is listed again, is there once.
+    let mut listed = BTreeSet::new();
+    plan.surfaces.retain(|(surface, _)| listed.insert(*surface));
     // Surfaces by themselves are glued as a shell of them would be.
     let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
     let near = scene.model.reach(alone.iter().copied(), None, &tolerance);

@@ -104,6 +104,72 @@ fn the_direction_of_a_loop_decides_where_nothing_else_does() {
     }
 }
 
+/// A cylinder has no ends: the part between two circles is meant, also where no loop is said to be the outer one.
+#[test]
+fn what_has_no_ends_is_bounded_by_its_loops() {
+    for (has_outer, first) in [(1, 1), (0, 1), (0, 0), (1, 0)] {
+        let wall = part(|f: &mut File| {
+            let base = cylinder(f, 2.0);
+            let (foot, top, ends) = (circle(f, 0.0, 2.0), circle(f, 5.0, 2.0), f.part(502, 1, "2,2.,0.,0.,2.,0.,5."));
+            let edges = f.part(504, 1, &format!("2,{foot},{ends},1,{ends},1,{top},{ends},2,{ends},2"));
+            let borders = [first, 1 - first].into_iter().enumerate().map(|(k, o)| f.part(508, 1, &format!("1,0,{edges},{},{o},0", k + 1)));
+            let borders: Vec<String> = borders.map(|d| d.to_string()).collect();
+            f.part(510, 1, &format!("{base},2,{has_outer},{}", borders.join(",")));
+        });
+        assert_areas(&areas(&wall), &[20.0 * PI]);
+    }
+}
+
+/// A circle or an arc across the axis about which it is turned; the whole turn and half of it, from one end of x to the other.
+#[test]
+fn a_profile_across_its_axis_covers_its_surface_once() {
+    let turned = |x: f64, [a, b]: [f64; 2], to: f64| {
+        let made = part(|f: &mut File| {
+            // x and y of the arc are x and z.
+            let upright = f.free(124, 0, "1.,0.,0.,0.,0.,0.,-1.,0.,0.,1.,0.,0.");
+            let at = |t: f64| format!("{:?},{:?}", x + 2.0 * t.cos(), 2.0 * t.sin());
+            let placed = super::file::Fields { transform: upright, ..super::file::DEPENDENT };
+            let arc = f.add(100, 0, placed, &format!("0.,{x:?},0.,{},{}", at(a), at(b)));
+            let axis = f.part(110, 0, "0.,0.,0.,0.,0.,1.");
+            f.free(120, 0, &format!("{axis},{arc},0.,{to:?}"));
+        });
+        areas(&made).iter().sum::<f64>()
+    };
+    let (turn, corner) = (2.0 * PI, 2.0 * PI / 3.0);
+    let apple = 4.0 * PI * (2.0 * corner + 4.0 * corner.sin());
+    let lemon = 4.0 * PI * (12.0_f64.sqrt() - corner);
+    for (found, area) in [
+        (turned(0.0, [0.3, 0.3], turn), 16.0 * PI),
+        (turned(0.0, [0.3, 0.3], PI), 16.0 * PI),
+        (turned(0.0, [PI / 6.0, 5.0 * PI / 6.0], turn), 4.0 * PI),
+        (turned(0.0, [PI / 6.0, 5.0 * PI / 6.0], PI), 4.0 * PI),
+        // Nothing bounds it: both of its parts.
+        (turned(1.0, [0.3, 0.3], turn), apple + lemon),
+    ] {
+        assert!((found / area - 1.0).abs() < 1e-9, "{found} {area}");
+    }
+}
+
+/// Curves in (u, v) near 0 that the file does not mark as such are no part of how far things reach.
+#[test]
+fn what_is_in_the_parameters_of_a_surface_is_not_where_it_is() {
+    let mut f = File::default();
+    let (at, axis, start) = (f.part(116, 0, "1.E5,-2.E5,3.E5,0"), f.part(123, 0, "0.,0.,1."), f.part(123, 0, "1.,0.,0."));
+    let base = f.part(192, 1, &format!("{at},{axis},2.,{start}"));
+    let rim = |f: &mut File, z: f64| {
+        let there = f.free(124, 0, &format!("1.,0.,0.,1.E5,0.,1.,0.,-2.E5,0.,0.,1.,{:?}", 3e5 + z));
+        f.add(100, 0, super::file::Fields { transform: there, ..super::file::DEPENDENT }, "0.,0.,0.,2.,0.,2.,0.")
+    };
+    let (foot, top) = (rim(&mut f, 0.0), rim(&mut f, 5.0));
+    let ends = f.part(502, 1, "2,100002.,-2.E5,3.E5,100002.,-2.E5,300005.");
+    let edges = f.part(504, 1, &format!("2,{foot},{ends},1,{ends},1,{top},{ends},2,{ends},2"));
+    let along = [0.0, 5.0].map(|v| f.part(110, 0, &format!("0.,{v:?},0.,360.,{v:?},0.")));
+    let borders = [0, 1].map(|k| f.part(508, 1, &format!("1,0,{edges},{},{},1,0,{}", k + 1, 1 - k, along[k])));
+    f.part(510, 1, &format!("{base},2,1,{},{}", borders[0], borders[1]));
+    let reach = lofting::io::iges::open(f.text().as_bytes(), &OPTIONS).unwrap().reach();
+    assert!(reach.diagonal() < 10.0, "{reach:?}");
+}
+
 /// A face with two parts is two surfaces.
 #[test]
 fn several_outer_loops_are_several_surfaces() {

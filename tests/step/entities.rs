@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
+use lofting::base::fault::Share;
 use lofting::model::measure;
 
 use super::file::{FRAME, can, file, in_units};
-use super::{OPTIONS, areas, read};
+use super::{OPTIONS, areas, read, whole};
 
 const POINTS: &str = "#10=CARTESIAN_POINT('',(0.,0.,0.));\n#11=CARTESIAN_POINT('',(1.,2.,0.));\n#12=CARTESIAN_POINT('',(3.,2.,0.));\n\
                       #13=CARTESIAN_POINT('',(4.,0.,0.));\n";
@@ -139,8 +140,6 @@ fn surfaces() -> Vec<(&'static str, String, f64)> {
             8.0 * PI / 3.0 * (5.0_f64.powf(1.5) - 1.0),
         ),
         ("ellipse turned about its diameter", turned("ELLIPSE('',#123,2.,3.)", 0.0, "-1."), spheroid),
-        ("outer part of a circle across the axis", turned("CIRCLE('',#123,2.)", 1.0, "-1."), apple),
-        ("inner part of a circle across the axis", turned("CIRCLE('',#123,2.)", 1.0, "1."), 4.0 * PI * (12.0_f64.sqrt() - 2.0 * PI / 3.0)),
         ("plane part", trimmed("PLANE('',#4)", "", [1.0, 4.0, -1.0, 1.0]), 6.0),
         ("cylinder part", trimmed("CYLINDRICAL_SURFACE('',#4,2.)", "", [0.5, 2.0, 0.0, 3.0]), 9.0),
         ("cylinder over its seam", trimmed("CYLINDRICAL_SURFACE('',#4,2.)", "", [6.0, 1.0, 0.0, 3.0]), 6.0 * (2.0 * PI - 5.0)),
@@ -210,6 +209,146 @@ fn surfaces() -> Vec<(&'static str, String, f64)> {
             PI,
         ),
     ]
+}
+
+/// The can without the plane of its foot: the circle of the foot spans what is missing at least.
+#[test]
+fn the_share_of_faces_that_are_missing_is_bounded_by_their_loops() {
+    let text = file(&can(".T.").replace("ADVANCED_FACE('foot',(#42),#16,.F.)", "ADVANCED_FACE('foot',(#42),#11,.F.)"), "#21");
+    let part = whole(text.as_bytes());
+    let Some(Share::AtLeast(share)) = part.share_missing() else { panic!("{:?}", part.share_missing()) };
+    // The circle counts as the polygon between places along it.
+    assert!(share > 0.12 && share < 1.0 / 7.0, "{share}");
+}
+
+/// Surfaces whose profile crosses its axis, bounded by the vertex at this x of the axis of x: their areas, and what is told.
+fn across_axes() -> Vec<(&'static str, String, Vec<f64>, &'static str)> {
+    let apple = {
+        let to = 2.0 * PI / 3.0;
+        4.0 * PI * (2.0 * to + 4.0 * to.sin())
+    };
+    let lemon = 4.0 * PI * (12.0_f64.sqrt() - 2.0 * PI / 3.0);
+    let turned = |curve: &str, x: f64, seen: &str, vertex: f64| {
+        let text = format!(
+            "{FRAME}#5=AXIS1_PLACEMENT('',#1,#2);\n#6=DIRECTION('',(0.,{seen},0.));\n#7=CARTESIAN_POINT('',({x:?},0.,0.));\n\
+             #8=AXIS2_PLACEMENT_3D('',#7,#6,#2);\n#9={curve};\n#10=SURFACE_OF_REVOLUTION('',#9,#5);\n\
+             #11=CARTESIAN_POINT('',({vertex:?},0.,0.));\n#12=VERTEX_POINT('',#11);\n#13=VERTEX_LOOP('',#12);\n#14=FACE_BOUND('',#13,.T.);\n\
+             #15=ADVANCED_FACE('',(#14),#10,.T.);\n#16=OPEN_SHELL('',(#15));\n#17=SHELL_BASED_SURFACE_MODEL('',(#16));\n"
+        );
+        file(&text, "#17")
+    };
+    let torus = |vertex: f64| {
+        turned("CIRCLE('',#8,2.)", 1.0, "-1.", vertex).replace("SURFACE_OF_REVOLUTION('',#9,#5)", "TOROIDAL_SURFACE('',#4,1.,2.)")
+    };
+    let circle = "CIRCLE('',#8,2.)";
+    let part = |a: f64, b: f64| {
+        format!("TRIMMED_CURVE('',#90,(PARAMETER_VALUE({a:?})),(PARAMETER_VALUE({b:?})),.T.,.PARAMETER.);\n#90=CIRCLE('',#8,2.)")
+    };
+    let spline = "B_SPLINE_CURVE_WITH_KNOTS('',3,(#20,#21,#22,#23),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),.UNSPECIFIED.);\n\
+                  #20=CARTESIAN_POINT('',(0.,0.,-3.));\n#21=CARTESIAN_POINT('',(4.,0.,-1.));\n#22=CARTESIAN_POINT('',(-4.,0.,1.));\n\
+                  #23=CARTESIAN_POINT('',(0.,0.,3.))";
+    let told = "nothing tells which of them is meant; the one that runs up the axis is taken";
+    // x and z of the spline, by t from 0 to 1/2: that is half of it, and the other half is its image.
+    let at = |t: f64| (12.0 * t * (1.0 - t) * (1.0 - 2.0 * t), -3.0 + 6.0 * t);
+    let n = 20_000;
+    let lobe: f64 = (0..n)
+        .map(|k| {
+            let ((x, z), (y, w)) = (at(0.5 * f64::from(k) / f64::from(n)), at(0.5 * f64::from(k + 1) / f64::from(n)));
+            PI * (x + y) * (y - x).hypot(w - z)
+        })
+        .sum();
+    vec![
+        ("outer part", turned(circle, 1.0, "-1.", 0.0), vec![apple], told),
+        ("inner part", turned(circle, 1.0, "1.", 0.0), vec![lemon], told),
+        ("outer part with a vertex", turned(circle, 1.0, "1.", 3.0), vec![apple], ""),
+        ("inner part with a vertex", turned(circle, 1.0, "-1.", -1.0), vec![lemon], ""),
+        ("torus over its axis", torus(0.0), vec![apple], told),
+        ("its inner part", torus(-1.0), vec![lemon], ""),
+        ("all of a circle between parameters", turned(&part(0.3, 0.3 + 2.0 * PI), 1.0, "-1.", 3.0), vec![apple], ""),
+        ("half a circle, twice the same dome", turned(&part(-PI / 3.0, PI / 3.0), 0.0, "-1.", 0.0), vec![4.0 * PI], ""),
+        ("an arc, one end farther out", turned(&part(-PI / 4.0, PI / 3.0), 0.0, "-1.", 0.0), vec![4.0 * PI], ""),
+        ("a spline of two lobes", turned(spline, 0.0, "1.", 0.0), vec![lobe, lobe], ""),
+    ]
+}
+
+#[test]
+fn the_part_that_an_axis_cuts_off_is_chosen_by_what_bounds_it_or_told() {
+    for (name, text, area, told) in across_axes() {
+        let part = read(text.as_bytes()).unwrap();
+        let said: Vec<&str> = part.warnings.iter().map(|w| w.what.as_str()).collect();
+        assert!(said.len() == usize::from(!told.is_empty()) && said.iter().all(|w| w.contains(told)), "{name}: {said:?}");
+        let found = areas(&part);
+        assert!(found.len() == area.len(), "{name}: {found:?}");
+        assert!(found.iter().zip(&area).all(|(a, b)| (a / b - 1.0).abs() < 1e-6), "{name}: {found:?} {area:?}");
+    }
+}
+
+/// A patch between two places of a conic and two more carried there, with its area.
+fn patch(surface: &str, corners: [[f64; 3]; 4], sides: [&str; 4]) -> String {
+    let mut text = format!("{FRAME}#5=AXIS1_PLACEMENT('',#1,#2);\n#6={surface};\n");
+    for (k, [x, y, z]) in corners.iter().enumerate() {
+        text += &format!("#{}=CARTESIAN_POINT('',({x:?},{y:?},{z:?}));\n#{}=VERTEX_POINT('',#{});\n", 10 + k, 20 + k, 10 + k);
+    }
+    for (k, (side, [a, b])) in sides.iter().zip([[0, 1], [1, 2], [3, 2], [0, 3]]).enumerate() {
+        let along = if k < 2 { ".T." } else { ".F." };
+        text += &format!("#{}={side};\n#{}=EDGE_CURVE('',#{},#{},#{},.T.);\n", 30 + k, 40 + k, 20 + a, 20 + b, 30 + k);
+        text += &format!("#{}=ORIENTED_EDGE('',*,*,#{},{along});\n", 50 + k, 40 + k);
+    }
+    text += "#60=EDGE_LOOP('',(#50,#51,#52,#53));\n#61=FACE_OUTER_BOUND('',#60,.T.);\n#62=ADVANCED_FACE('',(#61),#6,.T.);\n\
+             #63=OPEN_SHELL('',(#62));\n#64=SHELL_BASED_SURFACE_MODEL('',(#63));\n";
+    file(&text, "#64")
+}
+
+#[test]
+fn conics_without_ends_reach_as_far_as_what_lies_on_their_surface() {
+    // x = t², y = 2 t, carried along (1, 2, 1): its points are far from those of the parabola as seen along z.
+    let (h, d) = (30.0, [1.0, 2.0, 1.0]);
+    let at = |t: f64, k: f64| [t * t + d[0] * k, 2.0 * t + d[1] * k, d[2] * k];
+    let line = |k: usize| format!("LINE('',#{},#7);\n", 10 + k);
+    let others = format!(
+        "#7=VECTOR('',#8,1.);\n#8=DIRECTION('',(1.,2.,1.));\n#9=PARABOLA('',#4,1.);\n#70=AXIS2_PLACEMENT_3D('',#71,#2,#3);\n\
+         #71=CARTESIAN_POINT('',({:?},{:?},{:?}))",
+        d[0] * h,
+        d[1] * h,
+        d[2] * h
+    );
+    let (first, last) = (line(1), line(0));
+    let text = patch(
+        &format!("SURFACE_OF_LINEAR_EXTRUSION('',#9,#7);\n{others}"),
+        [at(-1.0, 0.0), at(1.0, 0.0), at(1.0, h), at(-1.0, h)],
+        ["PARABOLA('',#4,1.)", first.trim_end_matches(";\n"), "PARABOLA('',#70,1.)", last.trim_end_matches(";\n")],
+    );
+    let part = read(text.as_bytes()).unwrap();
+    assert_eq!(part.warnings, []);
+    let n = 2000;
+    let f = |t: f64| (4.0 + 4.0 * t * t + (4.0 * t - 2.0) * (4.0 * t - 2.0)).sqrt();
+    let sum: f64 = (0..n).map(|k| f(-1.0 + (2 * k + 1) as f64 / f64::from(n))).sum();
+    let area = h * sum * 2.0 / f64::from(n);
+    assert!((areas(&part)[0] / area - 1.0).abs() < 1e-6, "{:?} {area}", areas(&part));
+}
+
+#[test]
+fn a_cone_reaches_to_either_side_of_its_apex() {
+    // Radius 2 at z = 0, the apex at z = -2.
+    let text = |entities: &str, bounds: &str| {
+        let shell = "#101=OPEN_SHELL('',(#100));\n#102=SHELL_BASED_SURFACE_MODEL('',(#101));\n";
+        let cone = "#5=CONICAL_SURFACE('',#4,2.,0.7853981633974483);\n";
+        file(&format!("{FRAME}{cone}{entities}#100=ADVANCED_FACE('',({bounds}),#5,.T.);\n{shell}"), "#102")
+    };
+    let ring = |n: u32, radius: f64, z: f64, sense: &str| {
+        format!(
+            "#{0}0=CARTESIAN_POINT('',(0.,0.,{z:?}));\n#{0}1=AXIS2_PLACEMENT_3D('',#{0}0,#2,#3);\n#{0}2=CIRCLE('',#{0}1,{radius:?});\n\
+             #{0}3=CARTESIAN_POINT('',({radius:?},0.,{z:?}));\n#{0}4=VERTEX_POINT('',#{0}3);\n#{0}5=EDGE_CURVE('',#{0}4,#{0}4,#{0}2,.T.);\n\
+             #{0}6=ORIENTED_EDGE('',*,*,#{0}5,{sense});\n#{0}7=EDGE_LOOP('',(#{0}6));\n#{0}8=FACE_BOUND('',#{0}7,.T.);\n",
+            n
+        )
+    };
+    let part = read(text(&ring(2, 1.0, -3.0, ".T."), "#28").as_bytes()).unwrap();
+    assert_eq!(part.warnings, []);
+    assert!((areas(&part)[0] / (PI * 2.0_f64.sqrt()) - 1.0).abs() < 1e-9, "{:?}", areas(&part));
+    let both = ring(2, 1.0, -3.0, ".T.") + &ring(3, 3.0, 1.0, ".F.");
+    let part = read(text(&both, "#28,#38").as_bytes()).unwrap();
+    assert!(areas(&part).is_empty() && part.warnings[0].what.contains("its loops lie on both sides of its apex"), "{:?}", part.warnings);
 }
 
 /// A tetrahedron of loops of points without surfaces.

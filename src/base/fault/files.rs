@@ -37,6 +37,15 @@ impl Malformed {
     }
 }
 
+/// A share of the area of a file's faces, from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Share {
+    /// By the area that the file states.
+    Stated(f64),
+    /// No less than this.
+    AtLeast(f64),
+}
+
 /// What can go wrong or deserves a word about files. `of` is the import or export; paths are as written in the script.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileFault {
@@ -171,7 +180,7 @@ pub enum FileFault {
         /// Each that could not be used, with the cause.
         faces: Vec<Malformed>,
         /// Their share of the area, where it is known.
-        share: Option<f64>,
+        share: Option<Share>,
         /// All are listed.
         whole: bool,
     },
@@ -310,11 +319,12 @@ impl FileFault {
 const FACES_TOLD: usize = 10;
 
 /// W726: how many faces are missing, how much that is, and a line for each.
-fn unusable(of: Origin, (path, total): (&str, usize), (faces, share): (&[Malformed], Option<f64>), whole: bool) -> Report {
+fn unusable(of: Origin, (path, total): (&str, usize), (faces, share): (&[Malformed], Option<Share>), whole: bool) -> Report {
     let count = if total == 1 { "the only face".to_owned() } else { format!("{} of {total} faces", faces.len()) };
     let share = match share {
-        Some(share) => format!("{:.0} % of the area", 100.0 * share),
-        None => "what share of the area that is, the file does not tell".to_owned(),
+        Some(Share::Stated(share)) => format!("{:.0} % of the area", 100.0 * share),
+        Some(Share::AtLeast(share)) => format!("at least {:.0} % of the area, which is what their loops span", 100.0 * share),
+        None => "their share of the area is not known".to_owned(),
     };
     let report = Report::new("W726", format!("{count} of \"{path}\" could not be used ({share})")).at(of, "imported here");
     let told = if whole { faces.len() } else { faces.len().min(FACES_TOLD) };

@@ -33,7 +33,7 @@ pub use blends::{BlendFault, NoBlend};
 pub use curves::{CurveFault, KnotFault};
 pub use cut::CutFault;
 pub use edit::Edit;
-pub use files::{FileFault, Malformed};
+pub use files::{FileFault, Malformed, Share};
 pub use join::JoinFault;
 pub use loops::{LoopFault, LoopRole};
 pub use mesh::{Close, Cure, LostPart, MeshFault};

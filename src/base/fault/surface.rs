@@ -21,6 +21,10 @@ pub enum Touching {
     Crossing,
     /// They have a curve in common.
     Meeting,
+    /// The body of the first lies inside that of the second.
+    Inside,
+    /// The search of what they have in common came to no end.
+    Unknown,
 }
 
 /// How a surface is made, for what helps where it folds.
@@ -513,6 +517,14 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                 }
                 Touching::Meeting => (format!("{one} and {other} touch or cross at"), "this face", "and this one"),
                 Touching::Crossing => (format!("{one} and {other} cross without sharing nodes at"), "this face", "and this one"),
+                Touching::Inside => {
+                    (format!("the body of {one} lies inside that of {other}, which has no void there, at"), "this body", "lies in this one")
+                }
+                Touching::Unknown => (
+                    format!("whether {one} and {other} cross was not found out within the limits of the search, near"),
+                    "this face",
+                    "and this one",
+                ),
             };
             Report::new("W667", format!("{text} {}", say.point(*at)))
                 .at(*a, first)
@@ -526,6 +538,8 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                     Touching::Edge { length } if *length <= 0.0 => {
                         format!("nodes of a mesh are joined in a point that it lists: `mesh m of …, {}`", say.point(*at))
                     }
+                    Touching::Inside => "one mesh of both fills this room twice: cut or leave out one of them, or mesh them apart".to_owned(),
+                    Touching::Unknown => "look at them with `meet`, or leave one of them out".to_owned(),
                     _ if !imprint => "`imprint: true` in the settings joins them".to_owned(),
                     Touching::Meeting => "the line along which they meet cuts nothing off: a mesh of the shell has its nodes on both".to_owned(),
                     _ => match pieces(names) {

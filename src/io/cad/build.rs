@@ -1,9 +1,10 @@
 //! Faces as surface values.
 
 use super::damage::Damage;
-use super::face::{Border, Face};
+use super::face::{Border, Face, least_area};
+use super::healing::{Repair, Rule};
 use super::part::{Figure, Part, Unusable};
-use crate::base::fault::Malformed;
+use crate::base::fault::{Malformed, Share};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
@@ -11,6 +12,19 @@ use crate::base::tolerance::Tolerance;
 use crate::model::measure;
 use crate::network::Chain;
 use crate::surface::{Doubt, Ground, Outlined, Side, Surface, outlined, trim};
+
+/// Share of the area below which a bound on what is missing says nothing.
+const WORTH_TELLING: f64 = 0.005;
+
+/// The surface values of a face.
+pub struct Made {
+    /// One for each outer loop.
+    pub surfaces: Vec<Surface>,
+    /// Where its loops do not agree which side is the face.
+    pub doubts: Vec<Doubt>,
+    /// Its loops close only within what the file says of its accuracy.
+    pub by_accuracy: bool,
+}
 
 impl Part {
     /// Makes [`Part::built`] of the faces, and [`Part::unusable`] of those that fail; says where the file states other figures of them.
@@ -20,14 +34,21 @@ impl Part {
         for (k, item) in self.surfaces.iter().enumerate() {
             job::look();
             self.built.push(match item.value.surfaces(origin, tolerance) {
-                Ok((surfaces, doubts)) => {
+                Ok(Made { surfaces, doubts, by_accuracy }) => {
+                    if by_accuracy {
+                        let entity = format!("{} at {}{}", item.name, self.mark, item.id);
+                        let (distance, place) = (item.value.slack, item.value.off.place);
+                        self.repairs.push(Repair { rule: Rule::Accuracy, face: k, entity, line: item.line, distance, place });
+                    }
                     let words = |doubt: &Doubt| format!("{} at {}{}: {}", item.name, self.mark, item.id, told(doubt, self.model_unit));
                     said.extend(doubts.iter().map(|doubt| Malformed::line(item.line, words(doubt))));
                     surfaces
                 }
                 Err(Damage(why)) => {
                     let entity = format!("{} at {}{}", item.name, self.mark, item.id);
-                    self.unusable.push(Unusable { face: Some(k), entity, line: item.line, cause: why });
+                    let loops: Vec<&Vec<Border>> = item.value.outer.iter().chain(&item.value.holes).collect();
+                    let least_area = if item.value.outer.is_some() { least_area(&loops) } else { 0.0 };
+                    self.unusable.push(Unusable { face: Some(k), entity, line: item.line, cause: why, least_area });
                     Vec::new()
                 }
             });
@@ -36,8 +57,18 @@ impl Part {
         said
     }
 
-    /// Share of the area that the faces without a surface have, from 0 to 1, where the file states the area of all.
-    pub fn share_missing(&self) -> Option<f64> {
+    /// Share of the area that the faces without a surface have, from 0 to 1: where the file states the area of all, else what their loops
+    /// span at least.
+    pub fn share_missing(&self) -> Option<Share> {
+        self.share_stated().map(Share::Stated).or_else(|| {
+            let missing: f64 = self.unusable.iter().map(|missing| missing.least_area).sum();
+            let found: f64 = self.built.iter().flatten().map(measure::area).sum();
+            let share = missing / (missing + found);
+            (share > WORTH_TELLING).then_some(Share::AtLeast(share))
+        })
+    }
+
+    fn share_stated(&self) -> Option<f64> {
         let made: Vec<usize> = (0..self.built.len()).filter(|k| !self.built[*k].is_empty()).collect();
         let whole = self.stated.iter().find_map(|stated| match stated.figure {
             Figure::Area(area) if stated.copies == 1 && made.iter().all(|k| stated.surfaces.contains(k)) => Some(area),
@@ -52,16 +83,22 @@ impl Part {
 impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
     /// the file has them: as they were found to be, else what it says that may lie between two points that are one.
-    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
+    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Made, Damage> {
         let found = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
         let said = Tolerance { point: self.slack, ..*tolerance };
-        self.within(origin, &found)
-            .or_else(|why| if said.point > found.point { self.within(origin, &said).map_err(|_| why) } else { Err(why) })
+        let made = |(surfaces, doubts): (Vec<Surface>, Vec<Doubt>), by_accuracy: bool| Made { surfaces, doubts, by_accuracy };
+        let why = match self.within(origin, &found) {
+            Ok(all) => return Ok(made(all, false)),
+            Err(why) => why,
+        };
+        let again = if said.point > found.point { self.within(origin, &said).ok() } else { None };
+        again.map(|all| made(all, true)).ok_or(why)
     }
 
     fn within(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
         if self.outer.is_none() && self.holes.is_empty() {
-            return Ok((vec![self.turned(self.base.clone())], Vec::new()));
+            let all = std::iter::once(&self.base).chain(&self.also);
+            return Ok((all.map(|surface| self.turned(surface.clone())).collect(), Vec::new()));
         }
         let trimmed = || {
             let outer = self.outer.as_deref().map(chains).unwrap_or_default();

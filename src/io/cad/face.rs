@@ -25,6 +25,8 @@ pub struct Border {
 pub struct Face {
     /// The surface it is part of.
     pub base: Surface,
+    /// Other surfaces that are all of the face with it; only where it has no loops.
+    pub also: Vec<Surface>,
     /// The outer loop; `None`: the surface's own border.
     pub outer: Option<Vec<Border>>,
     /// Loops of holes.
@@ -60,7 +62,18 @@ impl Face {
     /// All of a surface.
     pub fn whole(base: &Base, surface: Surface, tolerance: &Tolerance) -> Self {
         let (flat, against) = (base.is_flat(tolerance), base.is_against());
-        Self { base: surface, outer: None, holes: Vec::new(), flipped: false, flat, against, inside: None, off: Off::NONE, slack: 0.0 }
+        Self {
+            base: surface,
+            also: Vec::new(),
+            outer: None,
+            holes: Vec::new(),
+            flipped: false,
+            flat,
+            against,
+            inside: None,
+            off: Off::NONE,
+            slack: 0.0,
+        }
     }
 
     /// The part of a surface inside its loops.
@@ -83,6 +96,7 @@ impl Face {
         let outer = outer.filter(|outer| tells || !is_natural(base, &surface, outer, allowed, tolerance));
         Self {
             base: surface,
+            also: Vec::new(),
             outer,
             holes: loops.collect(),
             flipped: false,
@@ -104,6 +118,7 @@ impl Face {
         };
         Self {
             base: self.base.moved(motion),
+            also: self.also.iter().map(|surface| surface.moved(motion)).collect(),
             outer: self.outer.as_ref().map(carried),
             holes: self.holes.iter().map(carried).collect(),
             flipped: self.flipped != motion.mirrors(),
@@ -163,6 +178,21 @@ pub fn off(surface: &Surface, loops: &[Vec<Border>]) -> Off {
         }
     }
     widest
+}
+
+/// What any surface with these loops as border has at least: the area that the first spans in a plane, less those of the others.
+pub fn least_area(loops: &[&Vec<Border>]) -> f64 {
+    let spanned = |border: &Vec<Border>| {
+        let along = |b: &Border| {
+            let (t0, t1) = b.space.domain();
+            (0..SAMPLES).map(|k| b.space.point(t0 + (t1 - t0) * k as f64 / SAMPLES as f64)).collect::<Vec<DVec3>>()
+        };
+        let points: Vec<DVec3> = border.iter().flat_map(along).collect();
+        let first = points.first().copied().unwrap_or_default();
+        0.5 * points.windows(2).map(|w| (w[0] - first).cross(w[1] - first)).sum::<DVec3>().length()
+    };
+    let areas: Vec<f64> = loops.iter().map(|border| spanned(border)).collect();
+    (areas.first().copied().unwrap_or_default() - areas.iter().skip(1).sum::<f64>()).max(0.0)
 }
 
 /// The box around all curves of loops.

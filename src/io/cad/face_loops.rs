@@ -16,15 +16,17 @@ pub struct FaceLoops<'l> {
     /// The box around the loops, model units.
     pub reach: Box3,
     loops: &'l [Vec<Border>],
+    /// Vertices that bound it by themselves.
+    pub vertices: &'l [DVec3],
 }
 
 impl<'l> FaceLoops<'l> {
     /// No loops.
-    pub const NONE: FaceLoops<'static> = FaceLoops { reach: Box3::EMPTY, loops: &[] };
+    pub const NONE: FaceLoops<'static> = FaceLoops { reach: Box3::EMPTY, loops: &[], vertices: &[] };
 
-    /// The loops of a face.
-    pub fn of(loops: &'l [Vec<Border>]) -> Self {
-        Self { reach: face::reach(loops), loops }
+    /// The loops of a face, and the vertices that bound it by themselves.
+    pub fn of(loops: &'l [Vec<Border>], vertices: &'l [DVec3]) -> Self {
+        Self { reach: face::reach(loops), loops, vertices }
     }
 
     /// The same for a surface at a distance from the one on which the loops lie.

@@ -13,14 +13,20 @@ pub enum Rule {
     Border,
     /// Curves of a border that end apart were joined.
     Ends,
+    /// A border closes only within what the file says of its accuracy.
+    Accuracy,
 }
 
 impl Rule {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Border, Self::Ends, Self::Accuracy];
+
     /// What was done, in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Border => "a border was snapped to its surface",
             Self::Ends => "a gap in a border was closed",
+            Self::Accuracy => "a border was taken to be as exact as the file says that it is",
         }
     }
 }

@@ -3,6 +3,7 @@
 //! [`bodies::Bodies`], faces with the edges that they share.
 
 pub mod assembly;
+pub mod axis_cut;
 pub mod base;
 mod beside;
 pub mod bodies;

@@ -131,7 +131,7 @@ pub enum Figure {
 }
 
 /// A face of the file of which there is no surface.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Unusable {
     /// Of [`Part::surfaces`], where it came as far.
     pub face: Option<usize>,
@@ -141,6 +141,8 @@ pub struct Unusable {
     pub line: u64,
     /// Why, in words.
     pub cause: String,
+    /// What its loops span at least, where they could be read, square model units.
+    pub least_area: f64,
 }
 
 /// What a CAD file holds, in file order and model units.

@@ -8,6 +8,7 @@ use super::entities::{Data, EdgeData, LoopEdge, Pointer};
 use crate::base::job;
 use crate::base::tolerance::{NEAR_MISS, NUDGE};
 use crate::geometry::{Curve, closest};
+use crate::io::cad::axis_cut::Clear;
 use crate::io::cad::base::Base;
 use crate::io::cad::carry::carried;
 use crate::io::cad::compose::composed;
@@ -75,11 +76,25 @@ impl Book {
             outlines.push(made.outline);
         }
         let base = self.sided(surface, base, &loops)?;
-        let surface = base.surface(&base.reach(&FaceLoops::of(&loops)), self.origin, &self.tolerance)?;
+        // What has no end of its own is bounded by its loops.
+        let has_outer = has_outer || matches!(base, Base::Unbounded { .. } | Base::Plane(..));
+        // Its (u, v) are those of the whole profile.
         let inside = if has_outer { inside(&base, &outlines) } else { None };
+        let around = FaceLoops::of(&loops, &[]);
+        let (base, _) = self.clear_of_axis(surface, base, &around)?;
+        let surface = base.surface(&base.reach(&around), self.origin, &self.tolerance)?;
         self.settle(d, &base, &surface, &mut loops);
         let known = Known { has_outer, against: base.is_against(), inside, slack: self.slack() };
         Ok(Face::inside(&base, surface, loops, known, &self.tolerance))
+    }
+
+    /// A surface of which the axis cuts the profile: the part that is meant, and others where nothing bounds it; a guess is told.
+    pub(super) fn clear_of_axis(&mut self, d: Pointer, base: Base, loops: &FaceLoops) -> Result<(Base, Vec<Base>), Damage> {
+        let Clear { base, also, doubt } = base.clear_of_axis(loops, self.slack(), &self.tolerance)?;
+        if let Some(doubt) = doubt {
+            self.warn(d, doubt);
+        }
+        Ok((base, also))
     }
 
     /// The curves of a loop; (u, v) still in the file's parameters.

@@ -16,8 +16,10 @@ use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::limits;
 use crate::base::tolerance::Tolerance;
+use crate::io::cad::base::Base;
 use crate::io::cad::damage::Damage;
 use crate::io::cad::face::Face;
+use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::part::{Group, Item, Names, Options, Part, Place as Made, Shades, Unusable};
 
 /// Kinds of entities that hold faces.
@@ -78,17 +80,27 @@ impl Opened {
         for decoded in &self.book.decoded {
             job::look();
             match &decoded.data {
-                Data::Revolution { axis, .. } => hidden.insert(*axis),
-                Data::PlaneSurface { at, .. } | Data::Round { kind: 192 | 194, at, .. } => hidden.insert(*at),
-                Data::Trimmed { surface, outer: Some(_), .. } | Data::Face { surface, has_outer: true, .. } => hidden.insert(*surface),
-                Data::CurveOnSurface { uv, .. } => hidden.insert(*uv),
-                _ => false,
-            };
+                Data::Revolution { axis, .. } => hidden.extend([*axis]),
+                Data::PlaneSurface { at, .. } | Data::Round { kind: 192 | 194, at, .. } => hidden.extend([*at]),
+                Data::Trimmed { surface, outer: Some(_), .. } | Data::Face { surface, has_outer: true, .. } => hidden.extend([*surface]),
+                // Curves in (u, v), which not all files mark as such.
+                Data::CurveOnSurface { uv, .. } => hidden.extend([*uv]),
+                Data::Boundary { curves, .. } => hidden.extend(curves.iter().flat_map(|curve| &curve.uv)),
+                Data::Loop(edges) => hidden.extend(edges.iter().flat_map(|edge| &edge.uv)),
+                _ => {}
+            }
         }
         // What the ground is made of is placed with it; what a border is made of counts all the same.
-        let spaces =
-            self.book.decoded.iter().filter_map(|d| if let Data::CurveOnSurface { space, .. } = d.data { Some(space) } else { None });
-        let shown = self.with_parts(spaces.collect());
+        let mut spaces = BTreeSet::new();
+        for decoded in &self.book.decoded {
+            match &decoded.data {
+                Data::CurveOnSurface { space, .. } => spaces.extend([*space]),
+                Data::Boundary { curves, .. } => spaces.extend(curves.iter().map(|curve| curve.space)),
+                Data::Edges(edges) => spaces.extend(edges.iter().map(|edge| edge.curve)),
+                _ => {}
+            }
+        }
+        let shown = self.with_parts(spaces);
         let hidden: BTreeSet<Pointer> = self.with_parts(hidden).difference(&shown).copied().collect();
         for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
             job::look();
@@ -271,7 +283,7 @@ impl Maker {
 
     /// Leaves out a face.
     fn unusable(&mut self, d: Pointer, cause: String) {
-        self.part.unusable.push(Unusable { face: None, entity: self.book.said(d), line: self.book.line(d), cause });
+        self.part.unusable.push(Unusable { face: None, entity: self.book.said(d), line: self.book.line(d), cause, least_area: 0.0 });
     }
 
     fn skipped(&mut self, d: Pointer, why: &str) {
@@ -420,7 +432,10 @@ impl Book {
     /// A surface that nothing trims.
     fn whole(&mut self, d: Pointer) -> Result<Face, Damage> {
         let base = self.base(d, 0)?;
-        let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
-        Ok(Face::whole(&base, surface, &self.tolerance))
+        let (base, also) = self.clear_of_axis(d, base, &FaceLoops::NONE)?;
+        let of = |base: &Base| base.surface(&Box3::EMPTY, self.origin, &self.tolerance);
+        let mut face = Face::whole(&base, of(&base)?, &self.tolerance);
+        face.also = also.iter().map(of).collect::<Result<_, Damage>>()?;
+        Ok(face)
     }
 }

@@ -32,6 +32,14 @@ impl Endless {
         matches!(self, Self::Ellipse(..))
     }
 
+    /// A point and the unit normal of the plane of a conic.
+    pub fn plane(&self) -> (DVec3, DVec3) {
+        match *self {
+            Self::Line(c, d) => (c, math::any_normal(d)),
+            Self::Ellipse(c, u, v) | Self::Hyperbola(c, u, v) | Self::Parabola(c, u, v) => (c, u.cross(v).normalize_or_zero()),
+        }
+    }
+
     /// The parameter of the point nearest to a place, for ellipses from 0 to a whole turn; exact where the place is on the curve.
     pub fn parameter(&self, p: DVec3) -> f64 {
         let along = |c: DVec3, d: DVec3| (p - c).dot(d) / d.length_squared();

@@ -7,13 +7,10 @@
 //! | shape, representation of a shape, relationship that places | what the shape is of |
 //! | anything else | everything |
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::part21::File;
 use crate::base::job;
-
-/// Occurrences inside each other, and entities passed on the way to one.
-const PASSED: usize = 64;
 
 /// What shapes and representations are of.
 #[derive(Debug, Default)]
@@ -53,8 +50,12 @@ impl Contexts {
     /// Entities of which all must be on the way to a placed item for the context to mean it; none where it means every one.
     pub fn meant(&self, file: &File, context: u32) -> Vec<u32> {
         let (mut meant, mut open) = (Vec::new(), vec![context]);
-        for _ in 0..PASSED {
-            let Some(k) = open.pop() else { break };
+        let mut passed = BTreeSet::new();
+        while let Some(k) = open.pop() {
+            if !passed.insert(k) {
+                continue;
+            }
+            job::look();
             let row = file.parameters(k);
             match file.name(k) {
                 b"NEXT_ASSEMBLY_USAGE_OCCURRENCE" | b"MAPPED_ITEM" => meant.push(k),
@@ -68,5 +69,27 @@ impl Contexts {
         meant.sort_unstable();
         meant.dedup();
         meant
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::step::part21;
+
+    /// Occurrences #1, #2 … in one another, and #1001, #1002 …, each of the one before and the next occurrence.
+    #[test]
+    fn a_row_of_higher_occurrences_may_be_of_any_length() {
+        let deep = 300;
+        let mut text = String::from("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n");
+        for k in 1..=deep {
+            text += &format!("#{k}=NEXT_ASSEMBLY_USAGE_OCCURRENCE('','','',$,$,$);\n");
+            let upper = if k == 1 { 1 } else { 1000 + k - 1 };
+            text += &format!("#{}=SPECIFIED_HIGHER_USAGE_OCCURRENCE('','','',$,$,$,#{upper},#{k});\n", 1000 + k);
+        }
+        text += "ENDSEC;\nEND-ISO-10303-21;\n";
+        let file = part21::read(text.as_bytes()).unwrap();
+        let last = (0..file.records.len() as u32).find(|k| file.id(*k) == 1000 + deep).unwrap();
+        assert_eq!(Contexts::of(&file).meant(&file, last).len(), deep as usize);
     }
 }

@@ -3,18 +3,18 @@
 use glam::DVec3;
 
 use super::reader::{NESTED, Step};
-use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::math;
 use crate::geometry::{Curve, build};
 use crate::io::cad::base::Base;
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::face::{Border, Face, Known, backwards, pieces};
+use crate::io::cad::face::{Border, Face, Known, backwards, least_area, pieces};
 use crate::io::cad::face_loops::FaceLoops;
 
 impl Step<'_> {
     /// The face that an entity is, looking the other way where it is `turned`.
     pub fn face(&mut self, k: u32, turned: bool) -> Result<Face, Damage> {
+        self.spanned = 0.0;
         let (mut k, mut turned) = (k, turned);
         for _ in 0..NESTED {
             match self.file.name(k) {
@@ -46,6 +46,7 @@ impl Step<'_> {
     /// A face of bounds; one without a surface lies in the plane of its points.
     fn bounded_face(&mut self, bounds: &[u32], surface: Option<u32>, same: bool, turned: bool) -> Result<Face, Damage> {
         let mut loops: Vec<Vec<Border>> = Vec::with_capacity(bounds.len());
+        let mut vertices = Vec::new();
         let mut outer = 0;
         for bound in bounds {
             job::look();
@@ -56,6 +57,7 @@ impl Step<'_> {
             }
             let made = self.loop_of(row.entity(1)?).map_err(|Damage(why)| damage(format!("its bound #{}: {why}", self.file.id(*bound))))?;
             if made.is_empty() {
+                vertices.extend(self.vertex_of(row.entity(1)?));
                 continue;
             }
             if name == b"FACE_OUTER_BOUND" {
@@ -66,21 +68,29 @@ impl Step<'_> {
         if outer < loops.len() {
             loops[..=outer].rotate_right(1);
         }
-        let around = FaceLoops::of(&loops);
+        self.spanned = least_area(&loops.iter().collect::<Vec<_>>());
+        let around = FaceLoops::of(&loops, &vertices);
+        self.also = Vec::new();
         let base = match surface {
             Some(of) => self.base(of, &around, 0).map_err(|Damage(why)| damage(format!("its surface {}: {why}", self.said(of))))?,
             None => plane_of(loops.first().map_or(&[], Vec::as_slice))?,
         };
-        let surface = base.surface(&base.reach(&around), self.origin, &self.tolerance)?;
         let mut made = if loops.is_empty() {
-            Face::whole(&base, surface, &self.tolerance)
+            self.whole(&base, &around)?
         } else {
+            let surface = base.surface(&base.reach(&around), self.origin, &self.tolerance)?;
             let known = Known { has_outer: true, against: !same, inside: None, slack: self.slack() };
             Face::inside(&base, surface, loops, known, &self.tolerance)
         };
+        self.spanned = 0.0;
         made.against = !same;
         made.flipped = same == turned;
         Ok(made)
+    }
+
+    /// The point of a loop that is a vertex.
+    fn vertex_of(&self, k: u32) -> Option<DVec3> {
+        self.vertex(self.file.parameters(k).entity(1).ok()?).ok()
     }
 
     /// The curves of a loop; none for a vertex.
@@ -149,16 +159,18 @@ impl Step<'_> {
                     let curve = self.bounded(boundary, 0)?;
                     loops.push(pieces(&curve).into_iter().map(|space| Border { space, uv: None }).collect::<Vec<Border>>());
                 }
-                let around = FaceLoops::of(&loops);
+                let around = FaceLoops::of(&loops, &[]);
                 let base = self.base(row.entity(1)?, &around, 0)?;
                 let surface = base.surface(&base.reach(&around), self.origin, &self.tolerance)?;
-                let known = Known { has_outer: !row.flag(3, false), against: false, inside: None, slack: self.slack() };
+                // What has no end of its own is bounded by its loops.
+                let has_outer = !row.flag(3, false) || matches!(base, Base::Unbounded { .. } | Base::Plane(..));
+                let known = Known { has_outer, against: false, inside: None, slack: self.slack() };
                 Ok(Face::inside(&base, surface, loops, known, &self.tolerance))
             }
             _ => {
+                self.also = Vec::new();
                 let base = self.base(k, &FaceLoops::NONE, 0)?;
-                let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
-                Ok(Face::whole(&base, surface, &self.tolerance))
+                self.whole(&base, &FaceLoops::NONE)
             }
         }
     }

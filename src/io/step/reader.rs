@@ -12,6 +12,7 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::{Curve, Motion};
+use crate::io::cad::base::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::part::{Options, Unusable};
 
@@ -63,6 +64,10 @@ pub struct Step<'f> {
     pub warnings: Vec<Malformed>,
     /// Faces, and what holds faces, of which nothing could be made.
     pub unusable: Vec<Unusable>,
+    /// Surfaces that are meant beside the last one, where nothing bounds it.
+    pub also: Vec<Base>,
+    /// What the loops of the face that is made now span at least.
+    pub spanned: f64,
     /// What may still be copied.
     left: usize,
     /// Curves of edges made so far, in the units of now.
@@ -81,6 +86,8 @@ impl<'f> Step<'f> {
             scale: options.file.unwrap_or(1.0) / options.model,
             warnings: Vec::new(),
             unusable: Vec::new(),
+            also: Vec::new(),
+            spanned: 0.0,
             left: limits::PART_COPIES + COPIES_PER_BYTE * file.bytes.len(),
             edges: BTreeMap::new(),
         }
@@ -130,7 +137,7 @@ impl<'f> Step<'f> {
         let name = self.file.parameters(k).text(0);
         let name = if name.is_empty() { name } else { format!(" '{name}'") };
         let entity = format!("{}{name}", self.said(k));
-        self.unusable.push(Unusable { face: None, entity, line: self.file.line(k), cause });
+        self.unusable.push(Unusable { face: None, entity, line: self.file.line(k), cause, least_area: std::mem::take(&mut self.spanned) });
     }
 
     /// A length of the model in words, roughly.

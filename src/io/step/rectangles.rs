@@ -3,7 +3,6 @@
 use super::conics::Endless;
 use super::curves::Course;
 use super::reader::Step;
-use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, NUDGE};
 use crate::geometry::{Curve, Motion, build};
@@ -21,8 +20,7 @@ impl Step<'_> {
     pub fn rectangle(&mut self, k: u32) -> Result<Face, Damage> {
         let row = self.file.parameters(k);
         let base = self.within_parameters(k)?;
-        let surface = base.surface(&Box3::EMPTY, self.origin, &self.tolerance)?;
-        let mut face = Face::whole(&base, surface, &self.tolerance);
+        let mut face = self.whole(&base, &FaceLoops::NONE)?;
         face.flipped = row.flag(6, true) != row.flag(7, true);
         Ok(face)
     }
@@ -31,7 +29,9 @@ impl Step<'_> {
     pub fn within_parameters(&mut self, k: u32) -> Result<Base, Damage> {
         let row = self.file.parameters(k);
         let [u0, u1, v0, v1] = [row.number(2)?, row.number(3)?, row.number(4)?, row.number(5)?];
-        self.between_parameters(row.entity(1)?, [u0, u1, v0, v1])
+        self.also = Vec::new();
+        let base = self.between_parameters(row.entity(1)?, [u0, u1, v0, v1])?;
+        self.clear_of_axis(k, base, &FaceLoops::NONE)
     }
 
     fn between_parameters(&mut self, k: u32, [u0, u1, v0, v1]: [f64; 4]) -> Result<Base, Damage> {

@@ -6,7 +6,6 @@ use super::conics::Endless;
 use super::curves::Course;
 use super::reader::{Frame, NESTED, Step};
 use super::splines::{self, Netted};
-use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::Curve;
@@ -44,7 +43,7 @@ impl Step<'_> {
                 if radius < 0.0 || (radius == 0.0 && slope == 0.0) {
                     return Err(damage("its radius must be above 0"));
                 }
-                Ok(Base::Unbounded { axis: axis(&frame), radius, slope, reference: frame.x })
+                self.clear_of_axis(k, Base::Unbounded { axis: axis(&frame), radius, slope, reference: frame.x }, loops)
             }
             b"SPHERICAL_SURFACE" => {
                 let frame = self.frame(row.entity(1)?)?;
@@ -56,17 +55,18 @@ impl Step<'_> {
             }
             b"TOROIDAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE" => {
                 let frame = self.frame(row.entity(1)?)?;
-                self.torus(&frame, [length(self, 2)?, length(self, 3)?], row.flag(4, true))
+                let outer = (name == b"DEGENERATE_TOROIDAL_SURFACE").then(|| row.flag(4, true));
+                self.torus(k, &frame, [length(self, 2)?, length(self, 3)?], outer, loops)
             }
             b"SURFACE_OF_LINEAR_EXTRUSION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let along = self.vector(row.entity(2)?)?;
-                self.extruded(&of, along, &loops.reach)
+                self.extruded(&of, along, loops)
             }
             b"SURFACE_OF_REVOLUTION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let frame = self.frame(row.entity(2)?)?;
-                self.revolved(&of, &axis(&frame), loops)
+                self.revolved(k, &of, &axis(&frame), loops)
             }
             b"OFFSET_SURFACE" => self.beside(k, loops, depth),
             b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
@@ -91,7 +91,7 @@ impl Step<'_> {
             b"TOROIDAL_SURFACE" => {
                 let frame = self.frame(inner.entity(1)?)?;
                 let minor = grown(inner.number(3)? * self.scale + distance)?;
-                return self.torus(&frame, [inner.number(2)? * self.scale, minor], true);
+                return self.torus(k, &frame, [inner.number(2)? * self.scale, minor], None, loops);
             }
             _ => {}
         }
@@ -103,6 +103,9 @@ impl Step<'_> {
             b"RECTANGULAR_TRIMMED_SURFACE" => self.within_parameters(of)?,
             _ => self.base(of, &around, depth + 1)?,
         };
+        if !std::mem::take(&mut self.also).is_empty() {
+            return Err(damage("its surface crosses its axis, and nothing tells which part of it is meant"));
+        }
         // The net of an extruded surface has the direction first, the file the curve.
         let distance = if matches!(base, Base::Swept { .. }) { -distance } else { distance };
         let reach = base.reach(&around);
@@ -126,7 +129,9 @@ impl Step<'_> {
         Ok(Base::Net(trimmed_net(NurbsSurface { degree, knots, poles, counts }, range)?, range))
     }
 
-    fn torus(&mut self, frame: &Frame, [major, minor]: [f64; 2], outer: bool) -> Result<Base, Damage> {
+    /// A torus; of one whose tube reaches over the axis the `outer` or the inner part, where the file says which.
+    fn torus(&mut self, k: u32, frame: &Frame, radii: [f64; 2], outer: Option<bool>, loops: &FaceLoops) -> Result<Base, Damage> {
+        let [major, minor] = radii;
         if !(major >= 0.0 && minor > 0.0) {
             return Err(damage("its radii must be above 0"));
         }
@@ -134,6 +139,9 @@ impl Step<'_> {
         if major > minor * (1.0 + EPSILON) {
             return Base::torus(&axis, [major, minor], frame.x, self.origin);
         }
+        let Some(outer) = outer else {
+            return self.clear_of_axis(k, Base::torus(&axis, radii, frame.x, self.origin)?, loops);
+        };
         // The tube meets the axis where its angle is this one, either way.
         let meets = math::acos((-major / minor).clamp(-1.0, 1.0));
         let circle = Endless::Ellipse(frame.at + frame.x * major, frame.x * minor, frame.z * minor);
@@ -144,17 +152,18 @@ impl Step<'_> {
         Ok(Base::Round { axis, profile: circle.part(a, b, self.origin)? })
     }
 
-    fn extruded(&mut self, of: &Course, along: DVec3, reach: &Box3) -> Result<Base, Damage> {
+    fn extruded(&mut self, of: &Course, along: DVec3, loops: &FaceLoops) -> Result<Base, Damage> {
         let direction = math::unit(along, 0.0).ok_or_else(|| damage("it is swept by nothing"))?;
         if let Course::Endless(Endless::Line(p, d)) = of {
             let first = math::unit(*d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
             let normal = math::unit(first.cross(direction), PARALLEL).ok_or_else(|| damage("its line is swept along itself"))?;
             return Ok(Base::Plane(*p, first, normal.cross(first)));
         }
+        let reach = &loops.reach;
         if reach.is_empty() {
             return Err(damage("it is swept without end"));
         }
-        let profile = self.within(of, reach)?;
+        let profile = self.within(of, loops, direction)?;
         let (low, high) = reach.stretch(profile.start(), direction);
         // The profile itself reaches along the direction too.
         let own = profile.bbox();
@@ -166,21 +175,26 @@ impl Step<'_> {
         Ok(Base::Swept { profile: profile.moved(&start), by })
     }
 
-    /// The parameters of an endless curve near a box, with some room.
-    pub fn range(of: &Endless, reach: &Box3) -> (f64, f64) {
-        let at: Vec<f64> = reach.corners().iter().map(|p| of.parameter(*p)).collect();
-        let (a, b) = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(*t), b.max(*t)));
+    /// The parameters of an endless curve between points of its plane, with some room.
+    pub fn range(of: &Endless, points: impl Iterator<Item = DVec3>) -> (f64, f64) {
+        let (a, b) = points.map(|p| of.parameter(p)).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
         let room = BEYOND * (b - a);
         (a - room, b + room)
     }
 
-    /// The stretch of a curve near a box: all of one with ends.
-    fn within(&mut self, of: &Course, reach: &Box3) -> Result<Curve, Damage> {
+    /// The stretch of a curve that is swept along a unit direction to reach loops: all of one with ends.
+    fn within(&mut self, of: &Course, loops: &FaceLoops, direction: DVec3) -> Result<Curve, Damage> {
         match of {
             Course::Bounded(curve) => Ok(curve.clone()),
             Course::Endless(endless) if endless.closes() => endless.part(0.0, std::f64::consts::TAU, self.origin),
             Course::Endless(endless) => {
-                let (a, b) = Self::range(endless, reach);
+                // Points are carried back along the direction into the plane of the curve.
+                let (at, normal) = endless.plane();
+                let slope = direction.dot(normal);
+                if slope.abs() <= PARALLEL {
+                    return Err(damage("its curve is swept in its own plane"));
+                }
+                let (a, b) = Self::range(endless, loops.points().map(|p| p - direction * ((p - at).dot(normal) / slope)));
                 endless.part(a, b, self.origin)
             }
         }
