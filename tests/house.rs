@@ -56,11 +56,11 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_800),
     ("surface", 25_000),
     ("model", 6_400),
-    ("mesh", 23_600),
-    ("io", 16_300),
+    ("mesh", 23_900),
+    ("io", 16_500),
     ("draw", 3_000),
     ("lang", 29_250),
-    ("session", 11_750),
+    ("session", 11_800),
     ("cli", 4_900),
 ];
 
