@@ -28,7 +28,7 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_SOLID, TopAbs_VERTEX, TopAbs_WIRE
 from OCP.TopExp import TopExp
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.TopoDS import TopoDS
-from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.gp import gp_Ax3, gp_Dir, gp_Lin, gp_Pnt, gp_Trsf, gp_Vec
 
 import cad_in
 import more_parts
@@ -41,8 +41,12 @@ SHARE = 3e-3
 # Points of a mesh that are compared with the part.
 SAMPLES = 200
 LONGEST = 240
-# What is known not to hold: part and method, and what the table says.
-KNOWN = {}
+# What is known not to hold: part and method, and why.
+OPEN = "the other kernel leaves the seam of the net open, which is closed here: its Euler number is that of a strip"
+UNEVEN = "a trimmed net of degree 11 by 7 with a span of 0.02 beside one of 5: its bounds are too wide there"
+RETRIED = "quads are made anew until sides and chord errors keep their limits, and none of the tries does"
+KNOWN = {f"offset_net_ring_all {m}": OPEN for m in METHODS} | {f"degree_cut {m}": UNEVEN for m in METHODS}
+KNOWN |= {f"{name} quads": RETRIED for name in ["torus_tangent_plane", "long_pipe"]}
 
 MODEL = """units mm
 import "{file}" as part
@@ -109,7 +113,10 @@ class Truth:
 def to_profile(surface, at):
     """Distance from a surface of revolution, where the other kernel's projection may fail: turned into the plane of its profile."""
     axis, curve = surface.Axis(), surface.BasisCurve()
-    frame = gp_Ax3(axis.Location(), axis.Direction(), gp_Dir(gp_Vec(axis.Location(), curve.Value(1.0))))
+    line = gp_Lin(axis)
+    low, high = max(curve.FirstParameter(), -1.0), min(curve.LastParameter(), 1.0)
+    outside = max((curve.Value(low + (high - low) * k / 7) for k in range(8)), key=line.Distance)
+    frame = gp_Ax3(axis.Location(), axis.Direction(), gp_Dir(gp_Vec(axis.Location(), outside)))
     flat = gp_Trsf()
     flat.SetTransformation(frame)
     x, y, z = (lambda p: (p.X(), p.Y(), p.Z()))(at.Transformed(flat))
