@@ -572,19 +572,21 @@ fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (siz
         let worst = within(i, own);
         if worst > row.off[i] { length(i, worst) } else { own }
     };
-    by_few(row, limits, &one)
+    by_few(row, apart, limits, &one)
 }
 
-/// Places of a row that lengths may be linear over.
+/// Places of a row that lengths may be linear over, and the share of a length that these may be apart: what makes elements at a place smaller,
+/// as a seam, does so as far off as they are long.
 const LINEAR: usize = 16;
+const NEAR: f64 = 0.5;
 /// Share of a length by which others may be off it and still are linear.
 const EVEN: f64 = 0.02;
 /// Ratio of the lengths at both ends of what may be linear.
 const SLOPED: f64 = 1.1;
 
-/// Lengths at all places of a row by as few of them as tell: where one between two is their mean, and borders run alike beside the surface,
-/// lengths are linear.
-fn by_few(row: &Beside, limits: &Limits, length: &dyn Fn(usize) -> f64) -> Vec<f64> {
+/// Lengths at all places of a row, `apart` from each other, by as few of them as tell: where one between two that are near each other is their mean,
+/// and borders run alike beside the surface, lengths are linear.
+fn by_few(row: &Beside, apart: f64, limits: &Limits, length: &dyn Fn(usize) -> f64) -> Vec<f64> {
     let last = row.places.len() - 1;
     let room = limits.chord.map_or(f64::INFINITY, |limit| EVEN * limit);
     let mut found = vec![0.0; last + 1];
@@ -600,7 +602,7 @@ fn by_few(row: &Beside, limits: &Limits, length: &dyn Fn(usize) -> f64) -> Vec<f
         let (most, least) = (found[a].max(found[b]), found[a].min(found[b]));
         let off = |pick: fn(f64, f64) -> f64| row.off[a..=b].iter().copied().reduce(pick).unwrap_or(0.0);
         let even = most <= SLOPED * least && (own - 0.5 * (most + least)).abs() <= EVEN * own && off(f64::max) - off(f64::min) <= room;
-        if b - a > LINEAR || !even {
+        if b - a > LINEAR || (b - a) as f64 * apart > NEAR * least || !even {
             open.extend([(a, middle), (middle, b)]);
             continue;
         }
@@ -628,7 +630,7 @@ fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, li
         let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
         bound::wanted_along(ready, (DVec2::from(at), &jet), along, (chord, limits.angle), (wide, leans)).min(size)
     };
-    let lengths = by_few(row, limits, &length);
+    let lengths: Vec<f64> = (0..=last).map(length).collect();
     // An edge about a place reaches half its length to both sides.
     let reached = |i: usize| {
         let shorter = |(j, other): (usize, &f64)| other.max(2.0 * apart * i.abs_diff(j) as f64);

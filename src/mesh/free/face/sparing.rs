@@ -20,7 +20,7 @@ use crate::mesh::wanted::floor_keeps;
 const SHARP: f64 = 0.4;
 
 /// Elements whose work it takes to thin one out.
-const THINNED: u64 = 40;
+const THINNED: u64 = 60;
 
 impl Fit<'_> {
     /// Between lines of constant u and v.

@@ -8,6 +8,7 @@ use super::{GAIN, Known, Thinning, WATCH};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::base::work;
 
 /// How far a node is moved, over the way to the mean of its triangles by the squares of their bounds.
 const MOVED: [f64; 2] = [1.5, 0.75];
@@ -16,6 +17,8 @@ const LOOSE: f64 = 1.25;
 /// Rounds in which they do, and what a round has to leave of the worst bound at most for another one.
 const SWEEPS: usize = 4;
 const LESS: f64 = 0.985;
+/// Work of a pass of it, in evaluations of the surface for each triangle.
+const PRESSED: u64 = 3000;
 
 impl Thinning<'_> {
     /// Moves nodes so that their triangles have more even bounds.
@@ -84,19 +87,28 @@ impl Thinning<'_> {
         }
     }
 
-    /// Makes one node of two neighbours where the nodes round them can make room for it; how many went.
+    /// Makes one node of two neighbours where the nodes round them can make room for it, for as long as that is worth its work; how many went.
     pub(super) fn press(&mut self, job: &Job) -> Result<usize> {
         let mut gone = 0_usize;
         let last = self.changes.pressed.replace(self.changes.now);
+        let (most, mut spent) = (PRESSED * self.web.tri.len() as u64, 0);
         for t in 0..self.web.tri.len() as u32 {
             for k in 0..3 {
                 let c = self.web.tri[t as usize];
                 let (a, b) = (c[(k + 1) % 3], c[(k + 2) % 3]);
                 let is_open = self.web.alive(t) && self.web.fixed <= a && a < b && self.changes.since(last, &[a, b]);
-                if is_open && self.press_one(a, b) {
+                if !is_open {
+                    continue;
+                }
+                let (joined, units) = work::measured(|| self.press_one(a, b));
+                spent += units;
+                if joined {
                     gone += 1;
                     break;
                 }
+            }
+            if spent > most {
+                break;
             }
             if (t as usize).is_multiple_of(WATCH) {
                 job.go_on()?;
