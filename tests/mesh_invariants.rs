@@ -51,7 +51,8 @@ fn every_mesh_of_every_model_is_sound() {
         let needle = f.starts_with("needles.loft: ");
         let turned = ["turned_back.loft: ", "round_corners.loft: tube: ", "cusp.loft: rows: "].iter().any(|s| f.starts_with(s))
             && f.contains("upside down");
-        let loose = f.starts_with("loose.loft: ") && f.contains(" off at ");
+        // A limit larger than the surface lets its two triangles be any.
+        let loose = f.starts_with("loose.loft: ") && (f.contains(" off at ") || f.contains(" iso[4]: ") && f.contains("upside down"));
         // Three faces meet at the edges of a wall between two shells.
         let wall = f.starts_with("common_wall.loft: m: 3 uses of the edge");
         let wave_a_step = f.starts_with("free_borders.loft: coarse: ");
