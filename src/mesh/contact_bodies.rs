@@ -29,6 +29,9 @@ const ROUNDS: usize = 30;
 const PROBES: usize = 24;
 const DECIDE: usize = 3;
 
+/// Two parts, or two faces of them.
+type Two = (usize, usize);
+
 /// A face: the part it is of and its place there.
 type Face = (usize, usize);
 
@@ -77,7 +80,7 @@ pub fn look(input: &Input, parts: &[Part], known: Vec<Vec<Leaves>>) -> Vec<Touch
     if let Some(budget) = work::budget() {
         budget.allow(beside.len() as u64 * WORK_OF_A_SURFACE);
     }
-    let groups: Vec<((usize, usize), Vec<(usize, usize)>)> = beside.into_iter().collect();
+    let groups: Vec<(Two, Vec<Two>)> = beside.into_iter().collect();
     let crossed = par::map(groups.len(), |n| scan.crossing(groups[n].0, &groups[n].1));
     let mut found: BTreeMap<(usize, usize), Touch> = groups.iter().zip(crossed).filter_map(|(g, t)| Some((g.0, t?))).collect();
     let open: Vec<(usize, usize)> = nested.into_iter().filter(|(a, b)| !found.contains_key(&((*a).min(*b), (*a).max(*b)))).collect();

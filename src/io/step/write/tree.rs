@@ -161,9 +161,12 @@ impl Tree<'_> {
     }
 }
 
+/// A colour, or none, of a thing and of its copy.
+type Pair = (Option<[f64; 3]>, Option<[f64; 3]>);
+
 /// The one colour that is another one in copies of things; none where more than that differs.
 fn repainted<'t>(pairs: impl Iterator<Item = (&'t Thing, &'t Thing)>) -> Option<Option<Repaint>> {
-    let mut colors: Vec<(Option<[f64; 3]>, Option<[f64; 3]>)> = Vec::new();
+    let mut colors: Vec<Pair> = Vec::new();
     for (a, b) in pairs {
         colors.push((a.color, b.color));
         if let (Shown::Faces(a), Shown::Faces(b)) = (&a.shown, &b.shown) {
@@ -173,7 +176,7 @@ fn repainted<'t>(pairs: impl Iterator<Item = (&'t Thing, &'t Thing)>) -> Option<
     }
     let Some(first) = colors.iter().find(|(a, b)| a != b).copied() else { return Some(None) };
     let (Some(from), Some(to)) = first else { return None };
-    let as_told = |(a, b): &(Option<[f64; 3]>, Option<[f64; 3]>)| *b == if *a == Some(from) { Some(to) } else { *a };
+    let as_told = |(a, b): &Pair| *b == if *a == Some(from) { Some(to) } else { *a };
     colors.iter().all(as_told).then_some(Some((from, to)))
 }
 
