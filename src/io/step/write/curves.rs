@@ -68,12 +68,16 @@ impl Along {
         !matches!(self, Self::Spline(_))
     }
 
-    /// Parameters between which it is smooth, ascending; the first and the last are its ends.
+    /// Parameters between which its curvature is continuous, ascending; the first and the last are its ends.
     pub fn knots(&self, scale: &Scale) -> Vec<f64> {
         match self {
             Self::Line(a, b) => vec![0.0, a.distance(*b) / scale.model],
             Self::Circle(arc) => vec![0.0, arc.sweep],
-            Self::Spline(curve) => knots(&curve.knots).1,
+            Self::Spline(curve) => {
+                let (times, at) = knots(&curve.knots);
+                let kept = at.iter().zip(times).filter(|(_, times)| curve.degree < times + 2);
+                kept.map(|(t, _)| *t).collect()
+            }
         }
     }
 

@@ -21,6 +21,8 @@ const PLACES: usize = 4;
 const LEAP: f64 = 0.2;
 /// Halvings of a piece: what then still turns more leaps through a pole.
 const DEEPEST: u32 = 16;
+/// Control points of a curve in (u, v): readers integrate over its pieces, and some end at thousands of them.
+const MOST: usize = 1_000;
 /// Share of the tolerance within which a curve in (u, v) follows its edge.
 const FINE: f64 = 0.1;
 
@@ -133,7 +135,8 @@ impl<'e> Frame<'e> {
         let knots: Vec<f64> = known.iter().map(|s| s.0).collect();
         let curve = fitted(&knots, &fine, &|t| Ok(at(t).extend(0.0)), &|uv| self.point(uv)).ok()?;
         let is_near = |t: f64| self.point(curve.jet(t).p).distance(edge.point(t, scale)) <= 2.0 * scale.tolerance.point;
-        knots.windows(2).all(|w| is_near(w[0]) && is_near(0.5 * (w[0] + w[1]))).then_some(curve)
+        let is_whole = knots.windows(2).all(|w| is_near(w[0]) && is_near(0.5 * (w[0] + w[1])));
+        (is_whole && curve.poles.len() <= MOST).then_some(curve)
     }
 
     /// Parameters of an edge with their (u, v), which go on over the seam, and points: so near to each other that the edge turns little
