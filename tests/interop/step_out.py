@@ -37,16 +37,17 @@ SMALL = "small faces between curves that are within the tolerance"
 THIN = "a thin wall between surfaces that are within the tolerance"
 VOLUME_ONLY = "the areas of a thin wall agree, its volume does not: the cause is not found"
 ALONG = "a cut that runs along the seam within the tolerance"
+NET = "the other kernel projects edges onto nets within a tolerance of its own"
 KNOWN = {
     "bottle: glass": VOLUME_ONLY,
     "fender: fender": GAPS,
     "gap_meshes: wave": GAPS,
     "glued: roof": GAPS,
     "round: bite": SMALL,
-    "round: lids[2]": SMALL,
     "shallow_crossings: octant": ALONG,
     "shell_walls: casing": THIN,
     "walls: bottle": JUDGE,
+    "walls: net": NET,
     "walls: pane": VOLUME_ONLY,
 }
 # The same faces go out as IGES.
