@@ -85,6 +85,8 @@ pub fn look(input: &Input, parts: &[Part], known: Vec<Vec<Leaves>>) -> Vec<Touch
     let mut found: BTreeMap<(usize, usize), Touch> = groups.iter().zip(crossed).filter_map(|(g, t)| Some((g.0, t?))).collect();
     let open: Vec<(usize, usize)> = nested.into_iter().filter(|(a, b)| !found.contains_key(&((*a).min(*b), (*a).max(*b)))).collect();
     let volumes: BTreeMap<usize, f64> = open.iter().flat_map(|(a, b)| [*a, *b]).map(|n| (n, volume(&parts[n].mesh))).collect();
+    let closed: BTreeSet<usize> = volumes.keys().copied().filter(|n| parts[*n].mesh.is_watertight()).collect();
+    let open: Vec<(usize, usize)> = open.into_iter().filter(|(a, b)| closed.contains(a) && closed.contains(b)).collect();
     let held = par::map(open.len(), |n| scan.held(open[n], &volumes));
     // What lies in a body and in a void of another one lies in neither.
     let mut depth: BTreeMap<usize, (i32, (usize, usize), Touch)> = BTreeMap::new();
@@ -179,10 +181,10 @@ impl<'a> Scan<'a> {
         None
     }
 
-    /// Whether the first of two bodies whose faces do not cross lies inside the second, or on it as a whole.
+    /// Whether the first of two closed bodies whose faces do not cross lies inside the second, or on it as a whole.
     fn held(&self, (a, b): (usize, usize), volumes: &BTreeMap<usize, f64>) -> Option<Touch> {
         // A void has its outside within.
-        if volumes[&a] <= 0.0 || !(is_closed(&self.parts[a].mesh) && is_closed(&self.parts[b].mesh)) {
+        if volumes[&a] <= 0.0 {
             return None;
         }
         let (mesh, other) = (&self.parts[a].mesh, &self.parts[b].mesh);
@@ -254,16 +256,4 @@ fn volume(mesh: &Mesh) -> f64 {
     let from = mesh.nodes.first().copied().unwrap_or_default();
     let corner = |n: u32| mesh.nodes[n as usize] - from;
     triangles(mesh).map(|[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
-}
-
-/// Whether each edge of a mesh is there once each way.
-fn is_closed(mesh: &Mesh) -> bool {
-    let mut edges: Vec<(u32, u32)> = Vec::with_capacity(3 * mesh.triangles.len() + 6 * mesh.quads.len());
-    for [a, b, c] in triangles(mesh) {
-        edges.extend([(a, b), (b, c), (c, a)]);
-    }
-    let mut back: Vec<(u32, u32)> = edges.iter().map(|(a, b)| (*b, *a)).collect();
-    edges.sort_unstable();
-    back.sort_unstable();
-    !edges.is_empty() && edges == back
 }

@@ -26,6 +26,8 @@ from OCP.XCAFPrs import XCAFPrs_DocumentExplorer
 
 import cad_in
 import parts
+import tables
+from bodies import name_of
 from step_out import read, run
 
 # Share by which volumes may differ, and how far centres may be apart, mm.
@@ -115,11 +117,6 @@ CASES = [("pairs", pairs), ("tower", lambda path: tower().write(path)), ("painte
 CASES += [("single places", lambda path: alone().write(path))]
 
 
-def name_of(label):
-    name = TDataStd_Name()
-    return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
-
-
 def tree_of(path):
     """Rows of (depth, name there, name of the product, volume, centre, colour), and how many products there are."""
     document = read(path)
@@ -155,7 +152,7 @@ def faults(before, after):
     return "" if before[1] == after[1] else f"{after[1]} products, expected {before[1]}"
 
 
-def table(loft, work):
+def table(loft, work, _chosen=()):
     """Prints a row for each assembly; the labels of those that are wrong, and how many there are."""
     wrong = []
     for name, write in CASES:
@@ -177,12 +174,5 @@ def table(loft, work):
     return wrong, len(CASES)
 
 
-def main():
-    loft, work = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    wrong, n = table(loft, work)
-    print(f"{n - len(wrong)} of {n} right")
-    return 1 if wrong else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(tables.main(table))

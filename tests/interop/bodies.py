@@ -3,6 +3,12 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_SOLID
 from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
@@ -12,6 +18,27 @@ from surfaces import area, parts
 
 # Shares by which areas and volumes may differ: quadrature of the other kernel.
 AREA = VOLUME = 1e-6
+
+
+def document_of(reader, path):
+    """What a reader of the other kernel finds in a file, with names, colours and layers, in millimetres."""
+    Message.DefaultMessenger_s().ChangePrinters().Clear()
+    Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+    reader.SetNameMode(True)
+    reader.SetColorMode(True)
+    reader.SetLayerMode(True)
+    if reader.ReadFile(path) != IFSelect_RetDone:
+        raise AssertionError(f"{path} is not read")
+    document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
+    if not reader.Transfer(document):
+        raise AssertionError(f"{path} is not transferred")
+    return document
+
+
+def name_of(label):
+    """The name of a label of a document; empty where it has none."""
+    name = TDataStd_Name()
+    return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
 
 
 def volume(shape):

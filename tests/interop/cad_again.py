@@ -4,7 +4,6 @@ other kernel reads what was written, and whether the program itself reads the sa
 
 Curves on surfaces are approximations in the other kernel: an area is also right that it finds in a file of its own of the same part.
 """
-import concurrent.futures
 import json
 import os
 import shutil
@@ -23,6 +22,7 @@ from OCP.TopAbs import TopAbs_SOLID
 import cad_in
 import more_parts
 import parts
+import tables
 from bodies import free_edges
 
 ENDINGS = ["step", "igs"]
@@ -162,26 +162,9 @@ def table(loft, work, chosen=()):
         own = cad_in.read_again(name, os.path.join(folder, f"{name}.step"), "ap242")
         jobs.append((name, (areas, own, cad_in.volume(shape), free_length(shape), len(parts.parts_of(shape, TopAbs_SOLID)))))
     print(f"{'part':<20} {'file':<5} {'faces':>5} {'out':>4} {'area':>13} {'volume':>13} {'free':>8} cause", flush=True)
-    wrong, n = [], 0
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for rows in pool.map(lambda job: rows_of(loft, work, *job), jobs):
-            for cells, right in rows:
-                n += 1
-                label = f"{cells['part']} {cells['ending']}"
-                known = KNOWN.get(label)
-                cells["why"] += f" (known: {known})" if known else ""
-                print(shown(cells), flush=True)
-                if right == bool(known):
-                    wrong.append(label)
-    return wrong, n
-
-
-def main():
-    loft, work = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    wrong, n = table(loft, work, sys.argv[3:])
-    print(f"{n - len(wrong)} of {n} right")
-    return 1 if wrong else 0
+    label_of = lambda cells: f"{cells['part']} {cells['ending']}"
+    return tables.judged(jobs, lambda job: rows_of(loft, work, *job), shown, label_of, KNOWN)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(tables.main(table))

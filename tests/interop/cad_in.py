@@ -6,7 +6,6 @@ in another unit. A row is right when every face is in, each with its area to `AR
 its last column tells the cause, which must be the known one. An assembly of STEP has to come in with all its parts, where they are, by name and
 colour.
 """
-import concurrent.futures
 import json
 import math
 import os
@@ -17,6 +16,8 @@ import sys
 
 import more_parts
 import parts
+import tables
+from bodies import volume
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
@@ -44,7 +45,7 @@ MODES = IGES + list(STEP)
 AREA = VOLUME = 1e-6
 # Seconds for one file.
 LONGEST = 120
-# Parts that are known not to come in whole, and what the program says of each; one that comes in right has to be taken out of here.
+# What is known not to hold: part and way, and why.
 KNOWN = {}
 
 MODEL = """units mm
@@ -69,12 +70,6 @@ def areas_of(name, faces):
         nearest = min(range(len(found)), key=lambda k: abs(found[k] / exact - 1))
         found[nearest] = exact
     return sorted(found)
-
-
-def volume(shape):
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties, 1e-10)
-    return properties.Mass()
 
 
 def write(shape, path, mode):
@@ -194,19 +189,11 @@ def table(loft, work, chosen=()):
             write(shape, path, mode)
             jobs.append((name, mode, (areas, read_again(name, path, mode), volume(shape), one)))
     print(f"{'part':<20} {'mode':<7} {'faces':>5} {'in':>4} {'area':>13} {'volume':>13} {'closed':<6} cause", flush=True)
-    wrong = []
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for (cells, right), (name, mode, _) in zip(pool.map(lambda job: row(loft, work, *job), jobs), jobs):
-            print(shown(cells), flush=True)
-            if name in KNOWN and right:
-                print(f"{name} as {mode} comes in right: take it out of the known ones", flush=True)
-            if name in KNOWN and not right and KNOWN[name] in cells["why"]:
-                continue
-            if not right or name in KNOWN:
-                wrong.append(f"{name} as {mode}")
+    label_of = lambda cells: f"{cells['part']} as {cells['mode']}"
+    wrong, n = tables.judged(jobs, lambda job: [row(loft, work, *job)], shown, label_of, KNOWN)
     if not chosen:
         wrong += assembly(loft, work)
-    return wrong, len(jobs) + (0 if chosen else len(STEP))
+    return wrong, n + (0 if chosen else len(STEP))
 
 
 ASSEMBLY = """units mm
@@ -298,12 +285,5 @@ def assembly(loft, work):
     return wrong
 
 
-def main():
-    loft, work = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    wrong, n = table(loft, work, sys.argv[3:])
-    print(f"{n - len(wrong)} of {n} right")
-    return 1 if wrong else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(tables.main(table))

@@ -6,7 +6,6 @@ one of the part's vertices, edges and faces; area and volume differ from the par
 the part than the limit. Limits are a share of the part's size.
 """
 import collections
-import concurrent.futures
 import json
 import math
 import os
@@ -33,6 +32,7 @@ from OCP.gp import gp_Ax3, gp_Dir, gp_Lin, gp_Pnt, gp_Trsf, gp_Vec
 import cad_in
 import more_parts
 import parts
+import tables
 from bodies import free_edges
 
 METHODS = ["auto", "delaunay", "isoline", "quadtree", "display", "quads"]
@@ -241,26 +241,9 @@ def table(loft, work, chosen=()):
         cad_in.write(shape, os.path.join(folder, f"{name}.step"), "ap242")
         truths.append(Truth(name, shape))
     print(f"{'part':<20} {'method':<9} {'elements':>8} {'angle':>6} {'error':>6} cause", flush=True)
-    wrong, n = [], 0
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for rows in pool.map(lambda truth: rows_of(loft, work, truth), truths):
-            for cells, right in rows:
-                n += 1
-                label = f"{cells['part']} {cells['method']}"
-                known = KNOWN.get(label)
-                cells["why"] += f" (known: {known})" if known else ""
-                print(shown(cells), flush=True)
-                if right == bool(known):
-                    wrong.append(label)
-    return wrong, n
-
-
-def main():
-    loft, work = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    wrong, n = table(loft, work, sys.argv[3:])
-    print(f"{n - len(wrong)} of {n} right")
-    return 1 if wrong else 0
+    label_of = lambda cells: f"{cells['part']} {cells['method']}"
+    return tables.judged(truths, lambda truth: rows_of(loft, work, truth), shown, label_of, KNOWN)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(tables.main(table))

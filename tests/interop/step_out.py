@@ -5,7 +5,6 @@ Every example, every model of models/surfaces and models/step, the goldens of tr
 each shell, the shells as IGES too (`iges_out`). A row is right when the other kernel finds the shape valid, as many faces as the report has patches, the area to 1e-6, a closed shell as a
 solid without free edges with its volume to 1e-6, and the name. What is known not to hold is in `KNOWN` with its cause.
 """
-import concurrent.futures
 import glob
 import json
 import os
@@ -14,18 +13,14 @@ import shutil
 import subprocess
 import sys
 
-from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
-from OCP.Message import Message
 from OCP.STEPCAFControl import STEPCAFControl_Reader
-from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
-from OCP.TDataStd import TDataStd_Name
-from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 import iges_out
-from bodies import judge
+import tables
+from bodies import document_of, judge, name_of
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -57,21 +52,11 @@ SURFACES = ["gap_meshes", "joined_turned", "net_reports", "round_corners", "shel
 
 
 def read(path):
-    """The document of a file, in millimetres."""
-    Message.DefaultMessenger_s().ChangePrinters().Clear()
-    Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+    """The document of a file."""
     reader = STEPCAFControl_Reader()
     Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", 1)
-    reader.SetNameMode(True)
-    reader.SetColorMode(True)
-    reader.SetLayerMode(True)
     reader.SetPropsMode(True)
-    if reader.ReadFile(path) != IFSelect_RetDone:
-        raise AssertionError(f"{path} is not read")
-    document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
-    if not reader.Transfer(document):
-        raise AssertionError(f"{path} is not transferred")
-    return document
+    return document_of(reader, path)
 
 
 def shapes_of(document):
@@ -79,10 +64,6 @@ def shapes_of(document):
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     roots, found = TDF_LabelSequence(), []
     tool.GetFreeShapes(roots)
-
-    def name_of(label):
-        name = TDataStd_Name()
-        return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
 
     def walk(label):
         found.append((name_of(label), tool.GetShape_s(label)))
@@ -186,29 +167,10 @@ def models():
 
 def table(loft, work, chosen=()):
     """Prints all rows; the labels of those that are wrong, and how many there are in all."""
-    wrong, n = [], 0
     print(f"{'thing':<34} {'kind':<8} {'faces':>5} {'area':>13} {'volume':>13} {'free':>5} cause", flush=True)
     jobs = [m for m in models() if not chosen or os.path.splitext(os.path.basename(m))[0] in chosen]
-    with concurrent.futures.ThreadPoolExecutor(1) as pool:
-        for rows in pool.map(lambda m: rows_of(loft, work, m), jobs):
-            for cells, right in rows:
-                n += 1
-                known = KNOWN.get(cells["thing"])
-                cells["why"] += f" (known: {known})" if known else ""
-                print(shown(cells), flush=True)
-                if known and right:
-                    print(f"{cells['thing']} is right: take it out of the known ones", flush=True)
-                if right == bool(known):
-                    wrong.append(cells["thing"])
-    return wrong, n
-
-
-def main():
-    loft, work = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    wrong, n = table(loft, work, sys.argv[3:])
-    print(f"{n - len(wrong)} of {n} right")
-    return 1 if wrong else 0
+    return tables.judged(jobs, lambda model: rows_of(loft, work, model), shown, lambda cells: cells["thing"], KNOWN, workers=1)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(tables.main(table))

@@ -65,9 +65,7 @@ impl Base {
             }
         }
     }
-}
 
-impl Base {
     /// A cone on the side of its apex where the loops are.
     fn on_one_side(self, loops: &FaceLoops, slack: f64) -> Result<Self, Damage> {
         let Self::Unbounded { axis, radius, slope, reference } = self else { return Ok(self) };

@@ -42,6 +42,8 @@ pub fn trimmed_net(net: NurbsSurface, [u0, u1, v0, v1]: [f64; 4]) -> Result<Nurb
 pub struct NetBorder {
     /// The border in space, by the parameter that runs along it.
     pub curve: Curve,
+    /// The box about its control points, which holds it.
+    pub hull: Box3,
     /// It runs along v.
     along_v: bool,
     /// The other parameter.
@@ -72,7 +74,11 @@ pub fn borders(net: &NurbsSurface) -> Vec<NetBorder> {
         (along_u(nv - 1), false, v1, false),
     ];
     let curved = all.into_iter().filter(|(curve, ..)| !is_pole(curve));
-    curved.map(|(curve, along_v, at, ascends)| NetBorder { curve: spline(curve, Origin::NONE), along_v, at, ascends }).collect()
+    let border = |(curve, along_v, at, ascends): (Nurbs, bool, f64, bool)| {
+        let hull = Box3::of(curve.poles.iter().map(|q| projected(*q)));
+        NetBorder { curve: spline(curve, Origin::NONE), hull, along_v, at, ascends }
+    };
+    curved.map(border).collect()
 }
 
 /// A spline as a curve.

@@ -3,11 +3,12 @@
 //! A node goes when some triangulation of its rim keeps the limits by their certified bounds; what costs least goes first, by
 //! a heap of costs of which those near a change are found again when their turn comes. When none goes any more, two neighbours
 //! become one node where some place between them keeps the limits, edges are flipped to where the bounds of their two triangles
-//! are smaller, nodes are moved towards those of their triangles that have the larger bounds, and nodes beside what changed get another try. Triangles come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound of `bound.rs`
-//! in place of a distance of points]. At last neighbours become one node where the bounds are a little too large at first, and moving the nodes
-//! round them makes up for it.
+//! are smaller, nodes are moved towards those of their triangles that have the larger bounds, and nodes beside what changed are tried
+//! again. Triangles come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound
+//! of `bound.rs` in place of a distance of points]. At last neighbours are joined whose bounds are too large at first, where moving the
+//! nodes round them brings these below the limit.
 
-mod settle;
+mod relax;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -30,8 +31,8 @@ pub type Allowed<'a> = dyn Fn(&Web, u32, u32) -> bool + 'a;
 
 /// Rounds of taking out and flipping at most.
 const ROUNDS: usize = 8;
-/// Times that pairs are joined where their surroundings have to make room.
-const LAST: usize = 2;
+/// Passes in which pairs are joined whose bounds are too large before the nodes round them are moved.
+const RELAXED_ROUNDS: usize = 2;
 /// A round that takes out a smaller share of the nodes is the last one.
 const WORTH: f64 = 0.002;
 /// Least quality of a triangle that is made: long ones are meant, needles are not.
@@ -91,7 +92,7 @@ struct Changes {
     joined: Option<usize>,
     flipped: Option<usize>,
     moved: Option<usize>,
-    pressed: Option<usize>,
+    joined_relaxed: Option<usize>,
 }
 
 impl Changes {
@@ -125,17 +126,17 @@ impl Thinner<'_> {
             let mut gone = thinning.take_out(job)?;
             gone += thinning.join(job)?;
             thinning.flip();
-            thinning.settle(job)?;
+            thinning.relax(job)?;
             if gone as f64 <= WORTH * n as f64 {
                 break;
             }
         }
-        for _ in 0..LAST {
-            if thinning.press(job)? == 0 {
+        for _ in 0..RELAXED_ROUNDS {
+            if thinning.join_relaxed(job)? == 0 {
                 break;
             }
             thinning.take_out(job)?;
-            thinning.settle(job)?;
+            thinning.relax(job)?;
         }
         Ok(())
     }

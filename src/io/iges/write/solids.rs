@@ -40,6 +40,12 @@ struct Step {
     uv: Option<[DVec2; 2]>,
 }
 
+/// Where the surface of a face ends.
+struct Ends {
+    poles: Vec<DVec3>,
+    borders: Vec<NetBorder>,
+}
+
 impl Maker<'_> {
     /// The bodies of a thing; several are a group.
     pub(super) fn bodies(&mut self, thing: &Thing, faces: &Faces) -> Result<u32, Damage> {
@@ -57,17 +63,19 @@ impl Maker<'_> {
             // Faces of cavities look into them, out of the material.
             let values = shells[1..].iter().fold(values, |values, void| values.int(*void).int(1));
             let solid = self.sheet.add(186, 0, Role::Body, values);
-            self.look(solid, &bodies, &skins);
+            self.paint_body(solid, &bodies, &skins);
             made.push(solid);
         }
         for sheet in sheets {
             let shell = self.shells(&bodies, &[sheet], Role::Body)?[0];
-            self.look(shell, &bodies, &[sheet]);
+            self.paint_body(shell, &bodies, &[sheet]);
             made.push(shell);
         }
         let [one] = made[..] else {
-            for (k, body) in made.iter().enumerate().filter(|_| !thing.name.is_empty()) {
-                self.sheet.name(*body, &format!("{}_{}", thing.name, k + 1));
+            for (k, body) in made.iter().enumerate() {
+                if !thing.name.is_empty() {
+                    self.sheet.name(*body, &format!("{}_{}", thing.name, k + 1));
+                }
                 self.sheet.put_on(*body, &thing.layers);
             }
             return Ok(self.sheet.add(402, 7, Role::Free, Values::new().int(n as u32).ints(made)));
@@ -76,7 +84,7 @@ impl Maker<'_> {
     }
 
     /// Gives a body the colour that all its faces have.
-    fn look(&mut self, body: u32, bodies: &Bodies, skins: &[usize]) {
+    fn paint_body(&mut self, body: u32, bodies: &Bodies, skins: &[usize]) {
         let mut colors = skins.iter().flat_map(|k| &bodies.body.skins[*k].faces).map(|face| bodies.color(*face));
         if let Some(Some(rgb)) = colors.next()
             && colors.all(|other| other == Some(rgb))
@@ -128,6 +136,7 @@ impl Maker<'_> {
     fn face(&mut self, bodies: &Bodies, k: usize, lists: &Lists) -> Result<u32, Damage> {
         let ground = &bodies.grounds[k];
         let surface = self.ground(ground);
+        let ends = Ends { poles: ground.poles(), borders: if let Ground::Net(net, ..) = ground { borders(net) } else { Vec::new() } };
         let mut loops = Vec::new();
         for around in bodies.loops(k) {
             // Loops run by the normal of the surface, whichever side the shell shows.
@@ -135,7 +144,7 @@ impl Maker<'_> {
                 true => around.clone(),
                 false => around.iter().rev().map(|(edge, against)| (*edge, !against)).collect(),
             };
-            let steps = steps(bodies, ground, &around, lists, &self.scale.tolerance);
+            let steps = steps(bodies, &ends, &around, lists, &self.scale.tolerance);
             let mut values = Values::new().int(steps.len() as u32);
             for step in &steps {
                 values = values.int(i64::from(step.is_vertex)).ints([step.of.0, step.of.1]).int(i64::from(step.forward));
@@ -164,16 +173,14 @@ impl Maker<'_> {
 }
 
 /// The edges of a loop in their order, and between two of them the vertex at which the surface is a point.
-fn steps(bodies: &Bodies, ground: &Ground, around: &BodyLoop, lists: &Lists, tolerance: &Tolerance) -> Vec<Step> {
-    let poles = ground.poles();
-    let borders = if let Ground::Net(net, ..) = ground { borders(net) } else { Vec::new() };
+fn steps(bodies: &Bodies, ends: &Ends, around: &BodyLoop, lists: &Lists, tolerance: &Tolerance) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for (edge, against) in around {
         let (first, last) = bodies.body.edges[*edge].ends;
         let end = if *against { first } else { last };
-        let uv = bodies.curves[*edge].as_ref().and_then(|curve| along_border(curve, *against, &borders, tolerance));
+        let uv = bodies.curves[*edge].as_ref().and_then(|curve| along_border(curve, *against, &ends.borders, tolerance));
         steps.push(Step { is_vertex: false, of: (lists.edges.0, lists.edges.1[edge]), forward: !against, uv });
-        if poles.iter().any(|pole| tolerance.same_point(*pole, bodies.vertices[end])) {
+        if ends.poles.iter().any(|pole| tolerance.same_point(*pole, bodies.vertices[end])) {
             steps.push(Step { is_vertex: true, of: (lists.vertices.0, lists.vertices.1[&end]), forward: true, uv: None });
         }
     }
@@ -192,16 +199,32 @@ fn along_border(curve: &Curve, against: bool, borders: &[NetBorder], tolerance: 
     if against {
         places.reverse();
     }
-    borders.iter().find_map(|border| {
-        let found: Vec<Closest> = places.iter().map(|p| closest(&border.curve, *p)).collect();
-        let ascends = found[1].t < found[PLACES - 1].t;
-        // Where a closed border begins it ends too: which of them is meant the direction tells.
+    let share = |k: usize| k as f64 / PLACES as f64;
+    let is_at = |border: &NetBorder, turned: bool| {
         let (low, high) = border.curve.domain();
-        let (start, end) = if ascends { (low, high) } else { (high, low) };
-        let is_joint = |at: &Closest| tolerance.same_point(at.point, border.curve.start()) && border.curve.is_closed(tolerance);
-        let from = if is_joint(&found[0]) { start } else { found[0].t };
-        let to = if is_joint(&found[PLACES]) { end } else { found[PLACES].t };
-        let is_near = found.iter().all(|at| at.distance <= tolerance.point);
-        (is_near && from != to && ascends == border.ascends).then(|| [border.at(from), border.at(to)])
-    })
+        let at = |k: usize| border.curve.point(low + (high - low) * if turned { 1.0 - share(k) } else { share(k) });
+        (0..=PLACES).all(|k| tolerance.same_point(at(k), places[k]))
+    };
+    // Most edges are whole borders, by the same parameter.
+    for border in borders {
+        let (low, high) = border.curve.domain();
+        if is_at(border, !border.ascends) {
+            let (from, to) = if border.ascends { (low, high) } else { (high, low) };
+            return Some([border.at(from), border.at(to)]);
+        }
+    }
+    borders.iter().filter(|border| places.iter().all(|p| border.hull.distance_squared(*p) <= tolerance.point * tolerance.point)).find_map(
+        |border| {
+            let found: Vec<Closest> = places.iter().map(|p| closest(&border.curve, *p)).collect();
+            let ascends = found[1].t < found[PLACES - 1].t;
+            // Where a closed border begins it ends too: which of them is meant the direction tells.
+            let (low, high) = border.curve.domain();
+            let (start, end) = if ascends { (low, high) } else { (high, low) };
+            let is_joint = |at: &Closest| tolerance.same_point(at.point, border.curve.start()) && border.curve.is_closed(tolerance);
+            let from = if is_joint(&found[0]) { start } else { found[0].t };
+            let to = if is_joint(&found[PLACES]) { end } else { found[PLACES].t };
+            let is_near = found.iter().all(|at| at.distance <= tolerance.point);
+            (is_near && from != to && ascends == border.ascends).then(|| [border.at(from), border.at(to)])
+        },
+    )
 }

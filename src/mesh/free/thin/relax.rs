@@ -1,4 +1,5 @@
-//! Nodes moved so that the bounds of the triangles round them are more even: what has too much at one side leaves room at the other.
+//! Relaxation of the triangulation: nodes are moved so that the bounds of the triangles round them are more even, and joined where such
+//! moves bring the bounds below the limit again.
 
 use std::cmp::Reverse;
 
@@ -11,24 +12,24 @@ use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::base::work;
 
 /// How far a node is moved, over the way to the mean of its triangles by the squares of their bounds.
-const MOVED: [f64; 2] = [1.5, 0.75];
-/// Bounds over the limit up to which the nodes round a place are asked to make room.
-const LOOSE: f64 = 1.25;
-/// Rounds in which they do, and what a round has to leave of the worst bound at most for another one.
-const SWEEPS: usize = 4;
-const LESS: f64 = 0.985;
+const STEPS: [f64; 2] = [1.5, 0.75];
+/// Bounds over the limit from which moves of the nodes round a joined pair may start.
+const MAX_START_LOAD: f64 = 1.25;
+/// Rounds of moves, and the share of the worst bound that a round may leave at most for another one to follow.
+const MAX_SWEEPS: usize = 4;
+const WORTH_ANOTHER: f64 = 0.985;
 /// Work of a pass of it, in evaluations of the surface for each triangle.
-const PRESSED: u64 = 3000;
+const RELAXED_WORK: u64 = 3000;
 
 impl Thinning<'_> {
     /// Moves nodes so that their triangles have more even bounds.
-    pub(super) fn settle(&mut self, job: &Job) -> Result<()> {
+    pub(super) fn relax(&mut self, job: &Job) -> Result<()> {
         let last = self.changes.moved.replace(self.changes.now);
         for node in self.web.fixed..self.web.p.len() as u32 {
-            if self.web.at[node as usize] != NO_TRIANGLE && self.changes.since(last, &[node]) && self.even(node, 1.0) {
+            if self.web.at[node as usize] != NO_TRIANGLE && self.changes.since(last, &[node]) && self.relax_node(node, 1.0) {
                 self.web.ring(node, &mut self.ring);
                 let changed: Vec<u32> = self.ring.node.iter().copied().chain([node]).collect();
-                self.wake(&changed);
+                self.requeue(&changed);
             }
             if (node as usize).is_multiple_of(WATCH) {
                 job.go_on()?;
@@ -38,7 +39,7 @@ impl Thinning<'_> {
     }
 
     /// Moves a node where that lowers the sum of the fourth powers of the bounds of its triangles, all below a limit; whether it moved.
-    fn even(&mut self, node: u32, limit: f64) -> bool {
+    fn relax_node(&mut self, node: u32, limit: f64) -> bool {
         self.web.ring(node, &mut self.ring);
         let (k, around) = (node as usize, self.ring.tri.clone());
         if !self.ring.closed {
@@ -55,7 +56,7 @@ impl Thinning<'_> {
             return false;
         }
         let old = (self.web.xy[k], self.web.p[k]);
-        for share in MOVED {
+        for share in STEPS {
             let xy = old.0.lerp(mean / weights, share);
             (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
             let (mut loads, mut sum) = (Vec::with_capacity(around.len()), 0.0);
@@ -78,8 +79,8 @@ impl Thinning<'_> {
         false
     }
 
-    /// Nodes beside a change get another try.
-    fn wake(&mut self, changed: &[u32]) {
+    /// Marks nodes as changed and puts them into the queue again.
+    fn requeue(&mut self, changed: &[u32]) {
         self.changes.mark(changed);
         for n in changed.iter().copied().filter(|n| *n >= self.web.fixed && self.web.at[*n as usize] != NO_TRIANGLE) {
             self.known[n as usize] = Known::Nothing;
@@ -87,11 +88,12 @@ impl Thinning<'_> {
         }
     }
 
-    /// Makes one node of two neighbours where the nodes round them can make room for it, for as long as that is worth its work; how many went.
-    pub(super) fn press(&mut self, job: &Job) -> Result<usize> {
+    /// Makes one node of two neighbours where moves of the nodes round them bring the bounds below the limit again, within the work that this is
+    /// worth; how many went.
+    pub(super) fn join_relaxed(&mut self, job: &Job) -> Result<usize> {
         let mut gone = 0_usize;
-        let last = self.changes.pressed.replace(self.changes.now);
-        let (most, mut spent) = (PRESSED * self.web.tri.len() as u64, 0);
+        let last = self.changes.joined_relaxed.replace(self.changes.now);
+        let (most, mut spent) = (RELAXED_WORK * self.web.tri.len() as u64, 0);
         for t in 0..self.web.tri.len() as u32 {
             for k in 0..3 {
                 let c = self.web.tri[t as usize];
@@ -100,7 +102,7 @@ impl Thinning<'_> {
                 if !is_open {
                     continue;
                 }
-                let (joined, units) = work::measured(|| self.press_one(a, b));
+                let (joined, units) = work::measured(|| self.join_one_relaxed(a, b));
                 spent += units;
                 if joined {
                     gone += 1;
@@ -117,8 +119,8 @@ impl Thinning<'_> {
         Ok(gone)
     }
 
-    fn press_one(&mut self, a: u32, b: u32) -> bool {
-        let Some(star) = self.star_of_both(a, b, LOOSE) else { return false };
+    fn join_one_relaxed(&mut self, a: u32, b: u32) -> bool {
+        let Some(star) = self.star_of_both(a, b, MAX_START_LOAD) else { return false };
         let patch = std::mem::take(&mut self.patch);
         let mut all = patch.tri.clone();
         for n in &patch.rim {
@@ -130,15 +132,15 @@ impl Thinning<'_> {
         let kept = self.web.before(&all);
         let size = self.web.size[a as usize];
         self.web.restar(&patch, Some(a), &star, size);
-        self.forget(&all);
+        self.invalidate(&all);
         let free: Vec<u32> = std::iter::once(a).chain(patch.rim.iter().copied().filter(|n| *n >= self.web.fixed)).collect();
         let mut worst = self.worst(&all);
-        for _ in 0..SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             for n in &free {
-                self.even(*n, LOOSE);
+                self.relax_node(*n, MAX_START_LOAD);
             }
             let now = self.worst(&all);
-            if now < 1.0 || now > LESS * worst {
+            if now < 1.0 || now > WORTH_ANOTHER * worst {
                 worst = now;
                 break;
             }
@@ -147,21 +149,28 @@ impl Thinning<'_> {
         self.patch = patch;
         if worst >= 1.0 {
             self.web.put_back(&kept);
-            self.forget(&all);
+            self.invalidate(&all);
             return false;
         }
         let live: Vec<u32> = all.into_iter().filter(|t| self.web.alive(*t)).collect();
         let changed = self.web.nodes_of(&live);
-        self.wake(&changed);
+        self.requeue(&changed);
         true
     }
 
+    /// The largest bound of those of some triangles that are left.
     fn worst(&mut self, some: &[u32]) -> f64 {
-        some.iter().filter(|t| self.web.alive(**t)).copied().collect::<Vec<_>>().into_iter().map(|t| self.load(t)).fold(0.0, f64::max)
+        let mut worst = 0.0_f64;
+        for t in some.iter().copied() {
+            if self.web.alive(t) {
+                worst = worst.max(self.load(t));
+            }
+        }
+        worst
     }
 
-    /// Bounds of triangles whose nodes are at other places now are void.
-    fn forget(&mut self, some: &[u32]) {
+    /// Bounds of triangles whose nodes have moved are computed anew when asked for.
+    fn invalidate(&mut self, some: &[u32]) {
         for t in some {
             if let Some(load) = self.loads.get_mut(*t as usize) {
                 load.0 = [0; 3];
