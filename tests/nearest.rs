@@ -1,4 +1,5 @@
-//! Nearest points of surfaces are no farther than any other point of them: creases, seams, poles of a stretch, folds and holes.
+//! Nearest points of surfaces are no farther than any other point of them: creases, seams, poles of a stretch, folds, sharp bends of
+//! swept profiles and holes.
 
 use glam::DVec3;
 use lofting::session::disk::{Disk, Outputs};
@@ -25,6 +26,9 @@ surface sheet = extrude(wave, by: (0, 0, 60))
 surface holed = trim(sheet, holes: [
   project(circle(center: (20, 0, 30), radius: 12, normal: (0, 1, 0)), onto: sheet, along: (0, 1, 0))
 ])
+let parabola = bezier([(240, -31, 0), (-240, 0, 0), (240, 31, 0)])
+surface leaning = extrude(parabola, by: (20, 90, 10))
+surface bowl = revolve(bezier([(30, 0, 0), (90, 0, 5), (10, 0, 40), (60, 0, 50)]), angle: 250deg)
 mesh frame_mesh of frame { size: 20mm, method: delaunay }
 mesh pipe_mesh of pipe { size: 20mm, method: mapped }
 mesh mitred_mesh of mitred { size: 20mm, method: mapped }
@@ -32,6 +36,8 @@ mesh spring_mesh of spring { size: 20mm, method: mapped }
 mesh comb_mesh of comb { size: 20mm, method: mapped }
 mesh torus_mesh of torus { size: 20mm, method: mapped }
 mesh sheet_mesh of sheet { size: 20mm, method: mapped }
+mesh leaning_mesh of leaning { size: 20mm, method: mapped }
+mesh bowl_mesh of bowl { size: 20mm, method: mapped }
 mesh holed_mesh of holed { size: 5mm, method: delaunay }
 ";
 
@@ -47,7 +53,7 @@ fn points(surface: &Surface) -> Vec<DVec3> {
 fn no_other_point_is_nearer() {
     let disk = Disk::new(None, None, &[], Outputs::Counted).unwrap();
     let outcome = script::outcome("nearest.loft", MODEL.as_bytes(), &[], &disk);
-    assert_eq!(outcome.meshes.len(), 8, "{:?}", outcome.report.meshes.len());
+    assert_eq!(outcome.meshes.len(), 10, "{:?}", outcome.report.meshes.len());
     let mut random = Random(7);
     for (name, mesh) in &outcome.meshes {
         let surface = &mesh.charts.0[0].surface;

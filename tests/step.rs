@@ -126,3 +126,13 @@ fn mutated_files_never_break_the_reader() {
     assert!(peak.is_none_or(|kb| kb < 1 << 20), "{peak:?} kB");
     assert!(read_as_parts * 4 > cases, "most damage leaves something: {read_as_parts} of {cases}");
 }
+
+#[test]
+fn a_border_far_off_its_surface_is_none_of_it() {
+    let fat = |radius: &str| whole(file(&can(".T.").replace("SURFACE('',#4,2.)", &format!("SURFACE('',#4,{radius})")), "#21").as_bytes());
+    let (near, far) = (fat("2.1"), fat("3."));
+    assert!(near.unusable.is_empty() && near.repairs.len() == 1, "{:?}", near.unusable);
+    let causes: Vec<(&str, &str)> = far.unusable.iter().map(|face| (face.entity.as_str(), face.cause.as_str())).collect();
+    assert_eq!(causes, [("side at #36", "its border is off its surface by 13 % of its size")]);
+    assert_eq!(areas(&far).len(), 2);
+}

@@ -1,6 +1,7 @@
 //! Nearest points of surfaces.
 //!
-//! A surface is sampled once; a query starts a safeguarded Newton descent from the best few local minima among the samples of each
+//! Of a profile carried straight or turned the profile's own nearest point is taken, found by bounds ([`SweptProfile`]). Any other
+//! surface is sampled once; a query starts a safeguarded Newton descent from the best few local minima among the samples of each
 //! rectangle between creases; blocks of samples whose box is too far away are not looked at. The samples are finer than the bends of
 //! the curves below (at least four in every cell between knots), but this is sampling: a dent narrower than a sixteenth of a cell
 //! may be missed. The distance found is never below the true one.
@@ -10,6 +11,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::Jet2;
+use super::closest_swept::SweptProfile;
 use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend_within};
 use super::quick::Quick;
@@ -35,10 +37,18 @@ pub struct Nearest {
     surface: Surface,
     /// The surface without its borders, which is sampled.
     whole: Surface,
-    quick: Option<Quick>,
-    samples: Samples,
+    swept: Option<SweptProfile>,
+    /// Made when first needed.
+    sampled: OnceLock<Sampled>,
     /// Which samples a trimmed surface keeps.
     kept: OnceLock<Vec<bool>>,
+}
+
+/// A surface sampled, and made ready for many evaluations where that can be.
+#[derive(Clone, Debug, Default)]
+struct Sampled {
+    quick: Option<Quick>,
+    samples: Samples,
 }
 
 /// Creases and seams that a descent goes through, at the most.
@@ -50,17 +60,20 @@ impl Nearest {
     /// Samples the surface.
     pub fn new(surface: &Surface) -> Self {
         let whole = if surface.domain() == Domain::Loop && !surface.is_flat() { surface.untrimmed() } else { surface.clone() };
-        let mut nearest = Self { surface: surface.clone(), whole, quick: None, samples: Samples::default(), kept: OnceLock::new() };
-        if matches!(nearest.whole.domain(), Domain::Square | Domain::Triangle) {
-            nearest.samples = Samples::new(&nearest.whole);
-            nearest.quick = nearest.whole.quick();
-        }
-        nearest
+        let swept = SweptProfile::of(&whole);
+        Self { surface: surface.clone(), whole, swept, sampled: OnceLock::new(), kept: OnceLock::new() }
+    }
+
+    fn sampled(&self) -> &Sampled {
+        self.sampled.get_or_init(|| match self.whole.domain() {
+            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), quick: self.whole.quick() },
+            _ => Sampled::default(),
+        })
     }
 
     /// Point and derivatives at a place of the unit square.
     fn jet(&self, x: f64, y: f64) -> Jet2 {
-        self.quick.as_ref().map_or_else(|| self.whole.square_jet(x, y), |quick| quick.jet(x, y))
+        self.sampled().quick.as_ref().map_or_else(|| self.whole.square_jet(x, y), |quick| quick.jet(x, y))
     }
 
     /// The surface.
@@ -86,13 +99,16 @@ impl Nearest {
 
     /// The nearest point of the surface without its borders.
     fn search(&self, p: DVec3) -> Closest {
+        if let Some(uv) = self.swept.as_ref().and_then(|swept| swept.at(p)) {
+            return self.closest(uv, p);
+        }
         self.lowest(p, None, |_| true).unwrap_or_else(|| self.closest((0.0, 0.0), p))
     }
 
     /// The least local minimum of the distance that counts, found from samples, or from those that are kept.
     fn lowest(&self, p: DVec3, kept: Option<&[bool]>, counts: impl Fn((f64, f64)) -> bool) -> Option<Closest> {
         let mut best: Option<Closest> = None;
-        for start in self.samples.starts(p, kept) {
+        for start in self.sampled().samples.starts(p, kept) {
             if best.is_some_and(|best| best.distance <= start.least.max(EPSILON * p.length())) {
                 continue;
             }
@@ -124,7 +140,7 @@ impl Nearest {
         };
         let (mut end, mut point) = down(start);
         for _ in 0..BEYOND {
-            let next = self.samples.beyond(end.place, end.within).map(down);
+            let next = self.sampled().samples.beyond(end.place, end.within).map(down);
             let Some(next) = next.min_by(|a, b| a.1.distance_squared(p).total_cmp(&b.1.distance_squared(p))) else { break };
             if next.1.distance_squared(p) >= point.distance_squared(p) {
                 break;
@@ -146,7 +162,7 @@ impl Nearest {
         if keeps(found.uv) {
             return found;
         }
-        let kept = self.kept.get_or_init(|| self.samples.places().map(|(x, y)| keeps(self.whole.from_square(x, y))).collect());
+        let kept = self.kept.get_or_init(|| self.sampled().samples.places().map(|(x, y)| keeps(self.whole.from_square(x, y))).collect());
         let inside = self.lowest(p, Some(kept), keeps);
         let border = |k: usize| match (self.surface.side(k), self.surface.border_line(k)) {
             (Side::Chain { chain, .. }, _) => {

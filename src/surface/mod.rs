@@ -8,6 +8,7 @@ mod cardinal;
 pub mod carry;
 mod cells;
 pub mod closest;
+mod closest_swept;
 mod compose;
 pub mod coons;
 pub mod core;

@@ -1,14 +1,14 @@
 //! Faces as surface values.
 
-use super::damage::Damage;
-use super::face::{Border, Face, least_area};
+use super::damage::{Damage, damage};
+use super::face::{Border, Face, least_area, reach};
 use super::healing::{Repair, Rule};
 use super::part::{Figure, Part, Unusable};
 use crate::base::fault::{Malformed, Share};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{MOST_REPAIR, Tolerance};
 use crate::model::measure;
 use crate::network::Chain;
 use crate::surface::{Doubt, Ground, Outlined, Side, Surface, outlined, trim};
@@ -84,6 +84,9 @@ impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
     /// the file has them: as they were found to be, else what it says that may lie between two points that are one.
     pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Made, Damage> {
+        if let Some(why) = self.beyond_repair() {
+            return Err(why);
+        }
         let found = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
         let said = Tolerance { point: self.slack, ..*tolerance };
         let made = |(surfaces, doubts): (Vec<Surface>, Vec<Doubt>), by_accuracy: bool| Made { surfaces, doubts, by_accuracy };
@@ -93,6 +96,18 @@ impl Face {
         };
         let again = if said.point > found.point { self.within(origin, &said).ok() } else { None };
         again.map(|all| made(all, true)).ok_or(why)
+    }
+
+    /// Why its borders are no borders of its surface: they are off by too large a share of their size.
+    fn beyond_repair(&self) -> Option<Damage> {
+        let loops: Vec<Vec<Border>> = self.outer.iter().chain(&self.holes).cloned().collect();
+        let share = self.off.distance / reach(&loops).diagonal();
+        let percent = decimals(share * 100.0, 0);
+        let why = match self.off.rule {
+            Rule::Ends => format!("a gap in its border is {percent} % of its size"),
+            _ => format!("its border is off its surface by {percent} % of its size"),
+        };
+        (!loops.is_empty() && share > MOST_REPAIR).then(|| damage(why))
     }
 
     fn within(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
