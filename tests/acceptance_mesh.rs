@@ -1,4 +1,4 @@
-//! Models of the papers on meshing (math notes §16, P1 and P4), as scripts with checks, and the same bytes on any number of
+//! Models of the papers on meshing [Yoo & Yoon 2000; Jeong & Park 2000], as scripts with checks, and the same bytes on any number of
 //! threads.
 
 use std::collections::BTreeMap;
@@ -122,7 +122,7 @@ fn facts(model: &str) -> Json {
     reference("acceptance_models")[model].clone()
 }
 
-/// P1 figure 16, with points that were measured once for all faces and with errors of each: no node of an edge belongs to one
+/// Figure 16 of [Yoo & Yoon 2000], with points that were measured once for all faces and with errors of each: no node of an edge belongs to one
 /// face alone, and the mesh is within 0.1 mm of every face.
 #[test]
 fn the_fender_has_no_unmatched_nodes() {
@@ -136,7 +136,7 @@ fn the_fender_has_no_unmatched_nodes() {
     }
 }
 
-/// P1 figure 17: 8 planes and 24 curved faces; what the triangles enclose differs from the block by the chord error at most.
+/// Figure 17 of [Yoo & Yoon 2000]: 8 planes and 24 curved faces; what the triangles enclose differs from the block by the chord error at most.
 #[test]
 fn the_block_encloses_what_it_should() {
     let outcome = outcome(&root().join("examples/block.loft"));

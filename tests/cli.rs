@@ -105,7 +105,7 @@ export [for i in 0..2: {i: i, x: i * width}] to "rows.csv"
 export south, east to "edges.obj"
 "#;
 
-/// The curves of figure 2.2 of the 1990 paper with its two surfaces.
+/// The curves of figure 2.2 of [Koh & Park 1990] with its two surfaces.
 const FIGURE: &str = r#"units m
 curve c1 = line((0, 0, 0), (8, 0, 0))
 curve c2 = line((0, 6, 0), (4, 6, 2))

@@ -274,3 +274,94 @@ fn goldens_hold_no_failed_checks() {
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
+
+/// Where the papers and books stand that are cited by a key in square brackets.
+const SOURCES: &str = "docs/notes/sources.md";
+
+/// A key of citation (names and a year) with a line for it, and a line for nothing that is not cited.
+#[test]
+fn every_cited_source_stands_in_the_list() {
+    let list = fs::read_to_string(SOURCES).expect("the list of sources can be read");
+    let listed: Vec<&str> = list.lines().filter_map(|line| line.strip_prefix("- **")?.split("**").next()).collect();
+    let mut files = Vec::new();
+    for dir in ["src", "tests", "benches", "docs"] {
+        all_text(Path::new(dir), &mut files);
+    }
+    files.sort();
+    let mut cited = Vec::new();
+    let mut found = Vec::new();
+    for file in files.iter().filter(|file| file.as_path() != Path::new(SOURCES)) {
+        let Ok(text) = fs::read_to_string(file) else { continue };
+        for (number, key) in citations(&text) {
+            if !listed.contains(&key.as_str()) {
+                found.push(format!("{}:{number}: {key} has no line in {SOURCES}", file.display()));
+            }
+            cited.push(key);
+        }
+    }
+    for (k, key) in listed.iter().enumerate() {
+        if !cited.iter().any(|one| one == key) {
+            found.push(format!("{SOURCES}: nothing cites {key}"));
+        }
+        if listed[..k].contains(key) {
+            found.push(format!("{SOURCES}: {key} stands there twice"));
+        }
+    }
+    report("what is cited stands in the list of sources, and what stands there is cited", found);
+}
+
+/// The keys between square brackets, several of them apart by semicolons, with their lines. A bracket may go on in the next line
+/// of a comment.
+fn citations(text: &str) -> Vec<(usize, String)> {
+    let plain: Vec<&str> = text.lines().map(uncommented).collect();
+    let plain = plain.join("\n");
+    let mut found = Vec::new();
+    let mut open = None;
+    for (at, c) in plain.char_indices().filter(|(_, c)| matches!(c, '[' | ']')) {
+        if c == '[' {
+            open = Some(at);
+        } else if let Some(start) = open.take() {
+            for key in plain[start + 1..at].split(';').filter_map(citation) {
+                found.push((plain[..start].matches('\n').count() + 1, key));
+            }
+        }
+    }
+    found
+}
+
+/// A line without blanks round it and without the mark of a comment.
+fn uncommented(line: &str) -> &str {
+    let line = line.trim();
+    ["//!", "///", "//", "#"].iter().find_map(|mark| line.strip_prefix(mark)).unwrap_or(line)
+}
+
+/// The names and the year that an entry begins with, one blank apart; none where it begins otherwise.
+fn citation(entry: &str) -> Option<String> {
+    let words: Vec<&str> = entry.split_whitespace().collect();
+    let year = words.iter().position(|word| is_year(word.trim_end_matches(',')))?;
+    let names = &words[..year];
+    let last = *names.last()?;
+    let named = |word: &str| word == "&" || is_name(word.trim_end_matches([',', '.']));
+    let whole = names.iter().all(|word| named(word)) && (last == "al." || last.ends_with(char::is_alphabetic));
+    let capital = names.iter().any(|word| word.starts_with(char::is_uppercase));
+    (whole && capital).then(|| format!("{} {}", names.join(" "), words[year].trim_end_matches(',')))
+}
+
+fn is_year(word: &str) -> bool {
+    word.len() == 4 && word.bytes().all(|b| b.is_ascii_digit()) && ["18", "19", "20"].iter().any(|century| word.starts_with(century))
+}
+
+fn is_name(word: &str) -> bool {
+    !word.is_empty() && word.chars().all(|c| c.is_alphabetic() || matches!(c, '-' | '\''))
+}
+
+#[test]
+fn keys_of_citations_are_found() {
+    // Written apart, so that this file cites nothing itself.
+    let text =
+        ["//! Lengths [", "Press et al. 1992, rtsafe; de Boor\n//! 1978] of `[f64; 2000]`, [A, 1990] and [Steele, Lea & ", "Flood 2014]."]
+            .concat();
+    let keys: Vec<(usize, String)> = citations(&text);
+    let wanted = [(1, "Press et al. 1992"), (1, "de Boor 1978"), (2, "Steele, Lea & Flood 2014")];
+    assert_eq!(keys, wanted.map(|(line, key)| (line, key.to_owned())));
+}

@@ -1,4 +1,4 @@
-//! The numbers of the reference notes on meshing (§14.2, §14.3, §14.5, §14.7): what weak methods miss is found here.
+//! The reference numbers of meshing (`data/reference/meshing.json`, `point_in_loop.json`): what weak methods miss is found here.
 
 use std::sync::Arc;
 

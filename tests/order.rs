@@ -11,7 +11,7 @@ use lofting::session::guard::guarded;
 use lofting::session::json::report_text;
 use lofting::session::run::{Task, run};
 
-/// Pseudo-random numbers (SplitMix64), the same in every run.
+/// Pseudo-random numbers (SplitMix64 [Steele, Lea & Flood 2014]), the same in every run.
 struct Random(u64);
 
 impl Random {

@@ -106,7 +106,7 @@ fn a_quadrilateral_to_given_depths() {
     }
 }
 
-/// The plate of figure 13 of the quadtree paper: minimum angle (degrees) and mean quality of its triangles.
+/// The plate of figure 13 of [Yoo & Yoon 2000]: minimum angle (degrees) and mean quality of its triangles.
 mod plate {
     use super::*;
     use glam::DVec3;

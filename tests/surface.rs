@@ -220,7 +220,7 @@ fn grid_parameters_of_a_reversed_curve() {
     }
 }
 
-/// The two surfaces of figure 2.2 from its ten curves.
+/// The two surfaces of figure 2.2 of [Koh & Park 1990] from its ten curves.
 fn figure() -> (Surface, Surface) {
     let t = tolerance();
     let c = |a: [f64; 3], b: [f64; 3]| straight(a, b);

@@ -1,4 +1,4 @@
-//! Limits that keep bad input from eating the machine (language.md section 9). Checked before allocating.
+//! Limits that keep bad input from eating the machine. Checked before allocating.
 
 /// Declares the limits once, as constants and as the table that the reference prints.
 macro_rules! limits {

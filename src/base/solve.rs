@@ -80,7 +80,7 @@ pub fn cyclic<T: Linear>(rows: &[Row], right: &mut [T]) {
     }
 }
 
-/// Newton with a bracket [Press et al., rtsafe]: a root of `f` (value, derivative) between `low` and `high`, where it changes sign.
+/// Newton with a bracket [Press et al. 1992, rtsafe]: a root of `f` (value, derivative) between `low` and `high`, where it changes sign.
 ///
 /// Steps that leave the bracket become bisections; ends when the step is below `accuracy` or after 100 rounds.
 pub fn bracketed(mut low: f64, mut high: f64, accuracy: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {

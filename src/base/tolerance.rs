@@ -21,9 +21,9 @@ crate::content!(Tolerance { point, rounding, angle, parameter });
 
 /// Sine of the angle by which normals may differ from those of the simple form that a surface is taken for.
 pub const FLAT: f64 = 1e-6;
-/// Relative accuracy of a stored arc length (math.md section 4).
+/// Relative accuracy of a stored arc length.
 pub const LENGTH_ACCURACY: f64 = 1e-13;
-/// Absolute error that a stretch of a stored arc length may always have, model length units (math notes §4).
+/// Absolute error that a stretch of a stored arc length may always have, model length units.
 pub const LENGTH_FLOOR: f64 = 1e-16;
 /// Error of a stretch of a stored arc length that rounding of the points makes, as a share of their distance from the origin.
 pub const LENGTH_ROUNDING: f64 = 4e-15;
@@ -35,7 +35,7 @@ pub const PARALLEL: f64 = 1e-9;
 pub const EPSILON: f64 = 1e-14;
 /// How far a fitted frame along a path may be from the exact one, entry by entry.
 pub const FRAME: f64 = 1e-12;
-/// Share of the largest speed below which a curve stands still: a cusp (math notes §4).
+/// Share of the largest speed below which a curve stands still: a cusp.
 pub const CUSP: f64 = 1e-10;
 /// Two runs of a loop that meet within the tolerance and are farther apart than this share of it do not cross each other.
 pub const BESIDE: f64 = 1e-3;
@@ -60,7 +60,7 @@ pub const SIGN_ACCURACY: f64 = 1e-3;
 pub const STATED: f64 = 1e-4;
 /// Below this barycentric distance from a corner a quotient 0/0 is replaced by its expansion.
 pub const POLE_REACH: f64 = 1e-6;
-/// Parameter distance from a pole at which its normal is averaged when the tangents there are parallel (math notes §7).
+/// Parameter distance from a pole at which its normal is averaged when the tangents there are parallel.
 pub const POLE_STEP: f64 = 1e-3;
 /// |U_u × U_v| below this share of the largest |U_u|·|U_v| is singular.
 pub const SINGULAR: f64 = 1e-9;
@@ -78,7 +78,7 @@ pub const NEAR_MISS: f64 = 10.0;
 /// A loop of a file within this share of the tolerance of a surface's own border is that border: two such borders of one curve are then
 /// within the tolerance of each other. Beyond that the curve is the border, for every face that has it.
 pub const ONE_BORDER: f64 = 0.5;
-/// Borders of imported faces are glued over this many times the widest gap inside the borders of one face (math notes §14.2).
+/// Borders of imported faces are glued over this many times the widest gap inside the borders of one face (`docs/notes/glue.md`).
 pub const GAP_ROOM: f64 = 10.0;
 /// Free borders that run along each other within this many times the stated glue distance were meant to be one.
 pub const MISMATCH: f64 = 3.0;

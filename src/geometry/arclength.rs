@@ -1,4 +1,4 @@
-//! Arc length and its inverse (math notes §4): adaptive Gauss–Kronrod panels, a monotone table, bracketed Newton.
+//! Arc length and its inverse [Koh & Park 1990, §3.2]: adaptive Gauss–Kronrod panels, a monotone table, bracketed Newton.
 
 use super::curve::{Curve, Jet};
 use crate::base::job;

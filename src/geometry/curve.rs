@@ -298,7 +298,7 @@ impl Curve {
         tolerance.same_point(self.start(), self.end())
     }
 
-    /// Arc length, model units (math notes §4, relative error 1e-13).
+    /// Arc length, model units (relative error 1e-13).
     pub fn length(&self) -> f64 {
         match &self.0.shape {
             Shape::Composite(c) => c.starts()[c.pieces.len()],

@@ -1,4 +1,4 @@
-//! Curves through or near many points: the cubic of math notes §11.2, or one within a tolerance with fewest spans.
+//! Curves through or near many points: the interpolating C2 cubic, or one within a tolerance with fewest spans.
 //!
 //! Within a tolerance: least squares with one span, then a knot where the error is largest, until every point lies within the
 //! tolerance; then every knot goes without which that is still so. Parameters are corrected to the nearest places meanwhile.
@@ -76,7 +76,7 @@ fn chords(points: &[DVec3]) -> Vec<f64> {
     points.windows(2).map(|p| p[0].distance(p[1])).collect()
 }
 
-/// Derivative at the first point of the parabola through the first three [math notes §11.2].
+/// Derivative at the first point of the parabola through the first three [de Boor 1978, chapter IV].
 pub fn bessel(points: &[DVec3], spans: &[f64]) -> DVec3 {
     let secant = |i: usize| (points[i + 1] - points[i]) / spans[i];
     if spans.len() < 2 {

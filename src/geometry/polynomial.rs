@@ -1,4 +1,4 @@
-//! Polynomial segments of the paper form: r(t) = Σ a_i tⁱ over a part of 0…1 [math notes §14.1].
+//! Polynomial segments in powers: r(t) = Σ a_i tⁱ over a part of 0…1 [Yoo & Yoon 2000].
 
 use glam::DVec3;
 

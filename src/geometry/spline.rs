@@ -1,4 +1,4 @@
-//! The interpolating cubic spline (math notes §11.2): C2, chord-length knots.
+//! The interpolating cubic spline [de Boor 1978, chapter IV]: C2, chord-length knots.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub struct Spline {
     pub closed: bool,
 }
 
-/// C2 cubic spline through points, chord-length knots (math notes §11.2).
+/// C2 cubic spline through points, chord-length knots.
 pub fn spline(points: &[DVec3], settings: &Spline, origin: Origin) -> Result<Curve> {
     finite_points(points, origin)?;
     let closed = settings.closed;

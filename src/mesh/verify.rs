@@ -125,7 +125,7 @@ impl Tally {
     }
 }
 
-/// A number for an edge that no other edges make up by chance [Steele, Lea & Flood 2014, the finalizer of SplitMix].
+/// A number for an edge that no other edges make up by chance (the finaliser of SplitMix [Steele, Lea & Flood 2014]).
 fn drawn(low: u32, high: u32) -> u64 {
     let mut x = (u64::from(high) << 32 | u64::from(low)).wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,4 +1,4 @@
-//! Atoms of edges: what is left when every edge is cut where a corner of another one lies on it [math notes §14.2].
+//! Atoms of edges: what is left when every edge is cut where a corner of another one lies on it [Yoo & Yoon 2000].
 //!
 //! One long side may meet several shorter ones (a non-conformal join). The sides keep their own edges; their atoms are
 //! shared, so that shells know which stretches are free and meshes divide each stretch once. How near borders must be to be

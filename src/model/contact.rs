@@ -1,4 +1,4 @@
-//! How faces join along the edges they share: gap and angle of the normals [math notes §13.3].
+//! How faces join along the edges they share: gap and angle of the normals.
 //!
 //! Each stretch that two faces share is walked in equal steps along the first face's own border, at least 200 and 20 a
 //! span; round the least and the largest value found the walk is refined. So a bump narrower than a step may be missed.

@@ -1,4 +1,4 @@
-//! How near the borders of a shell's faces must be to be one, and what joining them did [math notes §14.2].
+//! How near the borders of a shell's faces must be to be one, and what joining them did (`docs/notes/glue.md`).
 
 use std::collections::BTreeMap;
 

@@ -197,7 +197,7 @@ impl Model {
         Track::of(&self.edges[edge.index()].curve, &self.surfaces, network)
     }
 
-    /// Invariants of math.md 3.1; the sentence says what is broken.
+    /// What must always hold of patches, edges and vertices; the sentence says what is broken.
     pub fn check(&self) -> std::result::Result<(), String> {
         let mut at_vertex = vec![0_usize; self.vertices.len()];
         for (n, edge) in self.edges.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! From contacts to nodes and links [math notes §3.2, steps 3–4].
+//! From contacts to nodes and links (`docs/notes/network.md`).
 //!
 //! Everything is made afresh from the contacts, so that inserting, removing and rebuilding cannot differ:
 //! sites (ends, cuts, contacts) are clustered to nodes, nodes become stations along each curve, and the stretches

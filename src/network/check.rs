@@ -1,9 +1,9 @@
-//! What must always hold of a network (math notes §3.1).
+//! What must always hold of a network.
 
 use super::graph::{LinkId, NetCurve, Network};
 
 impl Network {
-    /// Invariants of math notes §3.1; the sentence says what is broken.
+    /// What must always hold; the sentence says what is broken.
     pub fn check(&self) -> Result<(), String> {
         for (k, net) in self.curves.iter().enumerate() {
             self.check_curve(k, net)?;

@@ -1,4 +1,4 @@
-//! Finds flows from node lists alone [math notes §7].
+//! Finds flows from node lists alone [Koh & Park 1990, §4.2].
 //!
 //! Every division into families that could be a flow is laid out completely; the first one that holds wins, and of
 //! those that fail the one nearest to success says what is missing.

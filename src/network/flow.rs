@@ -1,4 +1,4 @@
-//! Flow types of curve grids [Koh & Park 1990, §4.2; math notes §7]: what a set of curves spans, and which way.
+//! Flow types of curve grids [Koh & Park 1990, §4.2]: what a set of curves spans, and which way.
 //!
 //! ```text
 //!    v ↑  Φ0   Φ1   Φ2          Φ (along v, at u = uₘ) and Ψ (along u, at v = vₙ) meet in one node each.
@@ -65,7 +65,7 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// The phrase of math notes §7, as the JSON report has it: "quadrilateral closed in u".
+    /// The flow in words, as the JSON report has it: "quadrilateral closed in u".
     pub fn phrase(&self) -> String {
         let mut text = match self.kind {
             FlowKind::Quadrilateral => "quadrilateral",
@@ -83,7 +83,7 @@ impl Flow {
         text
     }
 
-    /// Number of intervals in u and v, M and N of math notes §6.1; poles count as curves along u, a uniform trilateral is (1, 1).
+    /// Number of intervals in u and v, M and N of [Koh & Park 1990, §4.1]; poles count as curves along u, a uniform trilateral is (1, 1).
     pub fn orders(&self) -> (usize, usize) {
         if self.kind == FlowKind::UniformTrilateral {
             return (1, 1);

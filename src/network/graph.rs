@@ -1,7 +1,7 @@
 //! The curve network: all declared curves in one graph of nodes and links [Koh & Park 1990, §3.1].
 //!
 //! It keeps the contacts of its curves pair by pair and assembles nodes and links from them after every change, so a
-//! network that was edited and one that was built afresh are the same (math notes §3.2, §3.3).
+//! network that was edited and one that was built afresh are the same (`docs/notes/network.md`).
 
 use std::sync::OnceLock;
 

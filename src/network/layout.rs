@@ -1,4 +1,4 @@
-//! Lays a division into families out as a flow: completeness, orders, directions, borders [math notes §7, steps 4–7].
+//! Lays a division into families out as a flow: completeness, orders, directions, borders [Koh & Park 1990, §4.2].
 
 use super::detect::{Division, Grid, Passage, Ring, shared};
 use super::flow::{Flow, FlowFault, FlowKind, FlowOptions, Member, NodeList, Overhang};

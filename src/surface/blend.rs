@@ -1,4 +1,4 @@
-//! The blending algebra of curve grids [Koh & Park 1990, §4.1; math notes §6.2, §6.3].
+//! The blending algebra of curve grids [Koh & Park 1990, §4.1].
 //!
 //! ```text
 //! U(u,v) = Σ_i a_i(u) F_i(v) + Σ_j b_j(v) G_j(u) − ΣΣ a_i(u) b_j(v) P_ij

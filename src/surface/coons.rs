@@ -1,5 +1,5 @@
 //! Surfaces from a grid of curves: Coons, Lagrange transfinite, and the uniform trilateral
-//! [Koh & Park 1990, §4; Coons 1967; math notes §6, §7].
+//! [Koh & Park 1990, §4; Coons 1967].
 
 use glam::DVec3;
 
@@ -261,7 +261,7 @@ fn trimmed(
     Ok(Prepared { chain: part, raw, place: member.curve })
 }
 
-/// u_i: the mean over the family of the oriented fractions [math notes §6.4]; E604 unless they ascend.
+/// u_i: the mean over the family of the oriented fractions [Koh & Park 1990, eq. 4.6–4.7]; E604 unless they ascend.
 fn averages(curves: &[Prepared], grid: &Grid, across: &[Member], tolerance: &Tolerance) -> Result<Vec<f64>> {
     let n = curves.first().map_or(2, |c| c.raw.len());
     let origin = |k: usize| across.get(k % across.len().max(1)).map_or(Origin::NONE, |m| grid.chains[m.curve].origin());

@@ -297,7 +297,7 @@ impl Surface {
         self.0.parts.kind
     }
 
-    /// Phrase of its flow (math notes §7), for example "quadrilateral"; empty where there is none.
+    /// Its flow in words, for example "quadrilateral"; empty where there is none.
     pub fn flow(&self) -> String {
         self.0.parts.flow.clone()
     }
@@ -395,7 +395,7 @@ impl Surface {
     }
 
     /// The normal of the pole on side `k`: the cross product of the tangents of the two borders that end there, or the
-    /// mean of the normals a step away where these are parallel (math notes §7).
+    /// mean of the normals a step away where these are parallel.
     fn pole_normal(&self, k: usize) -> DVec3 {
         let place = |along: f64, inward: f64| match k {
             0 => (along, inward),
@@ -549,7 +549,7 @@ impl Surface {
     }
 
     /// Curves the surface makes itself: copies of a swept profile and the paths of its ends. They join the network as
-    /// links and nodes, not as modeling curves (math notes §9).
+    /// links and nodes, not as modeling curves [Koh & Park 1990, §4.2].
     pub fn generated(&self) -> &[Chain] {
         &self.0.parts.generated
     }

@@ -33,8 +33,8 @@ pub fn descend(jet: &impl Fn(f64, f64) -> Jet2, start: (f64, f64), f: impl Fn(&J
 /// are those from inside: beyond them the surface may go on round a crease.
 ///
 /// Each step solves the shifted Newton equations; the shift grows until the value falls and shrinks when it falls as
-/// foreseen (Levenberg's rule), so the method is Newton's near a minimum. Steps are weighed by the lengths that they move the
-/// point by, not by parameters (Marquardt's scaling): beside a pole one of the two moves it by next to nothing.
+/// foreseen [Levenberg 1944], so the method is Newton's near a minimum. Steps are weighed by the lengths that they move the
+/// point by, not by parameters [Marquardt 1963]: beside a pole one of the two moves it by next to nothing.
 pub fn descend_within(
     jet: &impl Fn(f64, f64) -> Jet2,
     [xs, ys]: [(f64, f64); 2],

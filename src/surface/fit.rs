@@ -1,4 +1,4 @@
-//! Surfaces through or near gridded points: bicubic nets of math notes §11.3, or within a tolerance with fewest spans.
+//! Surfaces through or near gridded points: bicubic nets with mean spans, or within a tolerance with fewest spans.
 //!
 //! Near points: least squares along the rows, then along the columns of what that gives, judged at every point. The direction whose
 //! own error is larger gets knots where that is largest, until all points are near; then every knot goes that is not needed.

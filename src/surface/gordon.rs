@@ -1,4 +1,4 @@
-//! Gordon surfaces: cubic splines through both families of a complete net [Gordon 1969; math notes §10.4].
+//! Gordon surfaces: cubic splines through both families of a complete net [Gordon 1969].
 //!
 //! ```text
 //! U = P_u F + P_v F − P_u P_v F,   P_u F = Σ a_i(u) F(u_i, v),   P_v F = Σ b_j(v) F(u, v_j)

@@ -1,4 +1,4 @@
-//! A surface through gridded points: the tensor C2 cubic with mean spans [math notes §11.3].
+//! A surface through gridded points: the tensor C2 cubic with mean spans.
 
 use glam::{DVec3, DVec4};
 

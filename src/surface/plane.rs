@@ -61,7 +61,7 @@ impl Frame {
     }
 }
 
-/// The unbounded plane through a point, u and v in model units from it [math notes §14.1]; E409 for a normal without length.
+/// The unbounded plane through a point, u and v in model units from it; E409 for a normal without length.
 pub fn unbounded(at: DVec3, normal: DVec3, origin: Origin) -> Result<Surface> {
     let Some(n) = math::unit(normal, 0.0) else {
         return Err(CurveFault::ZeroDirection { of: origin, argument: "normal", needed: "with a length" }.into());

@@ -1,4 +1,4 @@
-//! Polynomial patches of the paper form: r(u, v) = Σ a_ij uⁱ vʲ in each coordinate [math notes §14.1].
+//! Polynomial patches in powers: r(u, v) = Σ a_ij uⁱ vʲ in each coordinate [Yoo & Yoon 2000].
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Monotone maps from a surface parameter to the arc-length fraction of a network curve [math notes §6.5].
+//! Monotone maps from a surface parameter to the arc-length fraction of a network curve.
 //!
 //! `u_i ↦ s_i` at the nodes. Piecewise linear maps, as in [Koh & Park 1990, eq. 4.8], leave a turn of the normal across
 //! `u_i`; a C1 monotone cubic does not.
@@ -11,7 +11,7 @@ use crate::base::tolerance::EPSILON;
 pub enum Reparam {
     /// C1 monotone cubic: harmonic mean of the neighbouring secants [Fritsch & Butland 1984].
     Smooth,
-    /// Piecewise linear, the C0 map of the 1990 paper.
+    /// Piecewise linear, the C0 map of [Koh & Park 1990, eq. 4.8].
     Linear,
 }
 

@@ -141,7 +141,7 @@ fn clear_of_axis(profile: &Chain, axis: &Axis, tolerance: &Tolerance) -> Result<
     Ok(())
 }
 
-/// The exact net of a turned profile: arcs of at most 90° in u [math notes §2], the profile's degree in v.
+/// The exact net of a turned profile: arcs of at most 90° in u, the profile's degree in v.
 pub fn net(profile: &Nurbs, axis: &Axis, angle: f64) -> NurbsSurface {
     // A unit arc says the weights and how far out its middle poles stand.
     let unit = EllipticArc::new(DVec3::ZERO, DVec3::X, DVec3::Y, angle.abs()).to_nurbs();

@@ -1,4 +1,4 @@
-//! Simple sweeps [Koh & Park 1990, §4.2; math notes §9]: a profile carried along a straight path or turned about an axis.
+//! Simple sweeps [Koh & Park 1990, §4.2]: a profile carried along a straight path or turned about an axis.
 //!
 //! u runs along the path, v along the profile by its arc-length fraction; both are exact.
 

@@ -1,4 +1,4 @@
-//! Three borders without a pole: the uniform trilateral of Barnhill, Birkhoff & Gordon (1973).
+//! Three borders without a pole: the uniform trilateral [Barnhill, Birkhoff & Gordon 1973].
 //!
 //! ```text
 //! U = ½ (P_0 + P_1 + P_2 − L),  P_a = (l_c C_ac(l_a) + l_b C_ab(l_a)) / (l_b + l_c),  L = Σ l_a V_a

@@ -1,4 +1,4 @@
-//! Trimmed surfaces: a part of a surface inside an outer loop and outside others [math notes §14.1].
+//! Trimmed surfaces: a part of a surface inside an outer loop and outside others [Yoo & Yoon 2000].
 
 use std::sync::Arc;
 

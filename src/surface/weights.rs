@@ -388,7 +388,7 @@ mod tests {
 
     #[test]
     fn lebesgue_constants_of_equal_nodes() {
-        // Closed values for equally spaced nodes: degree 2 gives 1.25, degree 6 gives 4.549 (Brutman 1997, table 1).
+        // Closed values for equally spaced nodes: degree 2 gives 1.25, degree 6 gives 4.549 [Brutman 1997, table 1].
         let equal = |n: usize| Axis::new((0..=n).map(|k| k as f64 / n as f64).collect(), Rule::Lagrange).lebesgue();
         assert!((equal(1) - 1.0).abs() < 1e-12);
         assert!((equal(2) - 1.25).abs() < 1e-9);

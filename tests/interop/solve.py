@@ -2,7 +2,7 @@
 
 Plate: square, side a, simply supported, uniform pressure q: the middle sinks by 0.00406235 q a^4 / D (Navier).
 Roof: radius 25, length 50, half angle 40 degrees, thickness 0.25, E 4.32e8, weight 90 per area, on diaphragms: the
-middle of the eaves sinks by 0.3024 (Scordelis and Lo; the value shells converge to, MacNeal and Harder 1985).
+middle of the eaves sinks by 0.3024 ([Scordelis & Lo 1964]; the value shells converge to, [MacNeal & Harder 1985]).
 """
 import os
 import shutil

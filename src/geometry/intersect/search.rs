@@ -1,4 +1,4 @@
-//! Where two curves may meet: subdivision with guaranteed bounds [Sederberg & Nishita 1990 for the idea].
+//! Where two curves may meet: subdivision with guaranteed bounds [Sederberg & Nishita 1990].
 //!
 //! A pair of parts is dropped when their chords are further apart than both bulges and the tolerance. Where no two
 //! tangents can be parallel there is at most one meeting, and Newton's method finds it. Parts that run along each

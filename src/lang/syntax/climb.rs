@@ -31,7 +31,7 @@ struct Operator {
 }
 
 impl Operator {
-    /// How tightly it binds; language chapter 4 from loose to tight.
+    /// How tightly it binds, from loose to tight.
     fn strength(self) -> u8 {
         match self.kind {
             Kind::OrWord => 1,

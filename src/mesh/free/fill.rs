@@ -41,7 +41,7 @@ impl Worth {
 }
 
 /// The triangulation of a polygon, counter-clockwise, whose worst error `load` is least, and of those the one with the largest
-/// least angle [dynamic programming after Klincsek 1980]. Triangles with an error above `most` are left out.
+/// least angle (by dynamic programming [Klincsek 1980]). Triangles with an error above `most` are left out.
 ///
 /// `None` where there is none.
 pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f64) -> Option<Filling> {

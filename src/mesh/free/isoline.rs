@@ -1,7 +1,7 @@
 //! Cells between lines of constant u and v: boxes halved by one direction at a time, each only where it has to be.
 //!
 //! Lines that run through all of a face would be made everywhere for one place that asks for them; cells are halved alone, and
-//! what is fine beside what is not meets it node to node [math notes §15(e); Piegl & Tiller 1998]. A cut starts where one beyond
+//! what is fine beside what is not meets it node to node [Piegl & Tiller 1998]. A cut starts where one beyond
 //! the side of its cell ends, or at a node of a straight border, when there is one near its place, and else at a value that is
 //! cut elsewhere when one is very near: lines go on from cell to cell. Kink lines are cut first. Whether a border crosses a cell is decided exactly.
 

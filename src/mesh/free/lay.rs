@@ -1,4 +1,4 @@
-//! A face between lines of constant u and v [Paper 004; math notes §15]: whole cells in two triangles or a few more, what
+//! A face between lines of constant u and v [Jeong & Park 2000]: whole cells in two triangles or a few more, what
 //! borders cross by one constrained triangulation, and cells cut until every triangle keeps the limits for sure.
 
 mod beside;

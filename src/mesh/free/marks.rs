@@ -1,4 +1,4 @@
-//! The marks 0, 1 and 2 at the corners of a cell that a loop crosses [Paper 004, §3.1.2; math notes §15.5].
+//! The marks 0, 1 and 2 at the corners of a cell that a loop crosses [Jeong & Park 2000, §3.1.2].
 //!
 //! Travelling along a loop with what is kept on the right, at each crossing of a side the corner at its right end is 2, and
 //! the one at the right end of the opposite side one more unless it is 2. Corners with 2 are kept. The marks see nothing of a

@@ -4,8 +4,8 @@
 //! a heap of costs of which those near a change are found again when their turn comes. When none goes any more, two neighbours
 //! become one node where some place between them keeps the limits, edges are flipped to where the bounds of their two triangles
 //! are smaller, nodes are moved towards those of their triangles that have the larger bounds, and nodes beside what changed are tried
-//! again. Triangles come out long where the surface bends one way only [decimation after Schroeder, Zarge & Lorensen 1992, with the bound
-//! of `bound.rs` in place of a distance of points]. At last neighbours are joined whose bounds are too large at first, where moving the
+//! again. Triangles come out long where the surface bends one way only (decimation [Schroeder, Zarge & Lorensen 1992] with the bound
+//! of `bound.rs` in place of a distance of points). At last neighbours are joined whose bounds are too large at first, where moving the
 //! nodes round them brings these below the limit.
 
 mod relax;

@@ -1,4 +1,4 @@
-//! The cubic triangle of Clough & Tocher (1965): three cubics about the centre of a triangle that meet its corners with their
+//! The cubic triangle [Clough & Tocher 1965]: three cubics about the centre of a triangle that meet its corners with their
 //! gradients. Towards the centre of the neighbour the slope is linear along each side: neighbours are C1, quadratics are reproduced,
 //! and a short side does not carry its steepness through a long triangle, as slopes at right angles to it would.
 

@@ -1,6 +1,6 @@
 //! `scatter`: a smooth surface through scattered points, a height over their mean plane or along a direction.
 //!
-//! The points are triangulated in that plane [Delaunay]; over each triangle lie three cubics [Clough & Tocher 1965] that meet
+//! The points are triangulated in that plane [Delaunay 1934]; over each triangle lie three cubics [Clough & Tocher 1965] that meet
 //! the gradients estimated at its corners. The border is the convex hull of the points, without thin triangles along it.
 
 mod border;

@@ -1,5 +1,5 @@
 //! Gradients at scattered points: at each point the quadratic that comes nearest to its neighbours and theirs, weighted by distance
-//! [local least squares, Lawson 1977; Franke & Nielson 1980].
+//! (local least squares [Lawson 1977; Franke & Nielson 1980]).
 //!
 //! Second derivatives are damped (Tikhonov), and the damped step is repeated: what the neighbours determine well is found to
 //! rounding, so that quadratics are reproduced; what they determine badly stays small, and planes are reproduced always.

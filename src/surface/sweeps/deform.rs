@@ -1,4 +1,4 @@
-//! Sections in Bézier pieces, deformed to touch guides elsewhere [P2; math notes §10.5].
+//! Sections in Bézier pieces, deformed to touch guides elsewhere.
 
 use std::sync::Arc;
 

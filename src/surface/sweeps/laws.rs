@@ -1,4 +1,4 @@
-//! The four laws by which sections travel [P2; math notes §10.2]: where a station lies, and what each law asks of sections.
+//! The four laws by which sections travel: where a station lies, and what each law asks of sections.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! Common breaks of sections, so that all have as many pieces [math notes §10.3, step 6].
+//! Common breaks of sections, so that all have as many pieces.
 
 use super::deform;
 use super::sections::Section;

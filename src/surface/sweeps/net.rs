@@ -1,4 +1,4 @@
-//! The net of a sweep: stations along the main guide, a section at each, and the guides between [math notes §10.3].
+//! The net of a sweep: stations along the main guide, a section at each, and the guides between.
 
 use glam::{DMat3, DVec3};
 
