@@ -54,7 +54,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 9_000),
     ("geometry", 5_650),
     ("network", 3_800),
-    ("surface", 25_000),
+    ("surface", 25_150),
     ("model", 6_400),
     ("mesh", 23_900),
     ("io", 16_500),

@@ -8,6 +8,7 @@ pub mod contact;
 mod cut_border;
 mod cut_triangles;
 mod edge_chain;
+mod evened;
 mod feet;
 pub mod gather;
 pub mod glue;

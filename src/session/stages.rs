@@ -204,7 +204,9 @@ impl Pipeline for Stages<'_> {
         let (plan, Scene { model, network }) = plan::of(cx, module, spec, &mut sink)?;
         let (k, of) = cx.place_of_mesh(module, &spec.name);
         let _phase = cx.job.phase(format!("meshing {} ({k} of {of})", spec.name));
-        let input = mesh::Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance };
+        let evened = model.evened(plan.surfaces.iter().map(|surface| surface.0));
+        let model = evened.as_ref().unwrap_or(model.as_ref());
+        let input = mesh::Input { plan: &plan, model, network: &network, tolerance: &tolerance };
         let made = self.made(&input, (module, spec.name.clone()), cx.job);
         self.found().mesh_seconds += (self.clock)() - start;
         // What the plan has to say comes first, also when the mesh fails.

@@ -1,9 +1,10 @@
 //! One surface of any kind: what every caller above this floor works with.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 
+use super::evened::Evened;
 use super::quick::Ready;
 use super::rail::Lean;
 use super::rail::Rail;
@@ -196,6 +197,8 @@ struct Whole {
     parts: Parts,
     ready: Ready,
     area: Once<(f64, f64)>,
+    /// In parameters in which it runs evenly, where it does not in its own.
+    evened: OnceLock<Option<Box<Evened>>>,
     /// The surfaces that it is a part of.
     part_of: Vec<Surface>,
 }
@@ -242,7 +245,7 @@ impl Content for Surface {
 
 impl Surface {
     pub(super) fn new(parts: Parts) -> Self {
-        Self(Arc::new(Whole { parts, ready: Ready::default(), area: Once::default(), part_of: Vec::new() }))
+        Self(Arc::new(Whole { parts, ready: Ready::default(), area: Once::default(), evened: OnceLock::new(), part_of: Vec::new() }))
     }
 
     /// The surfaces that this one was cut from, and those that they were cut from; none of what was moved since.
@@ -256,17 +259,34 @@ impl Surface {
         // What is kept holds no list of its own: a row of cuts makes no row of surfaces within surfaces.
         let own = wholes.iter().map(|w| if w.part_of().is_empty() { w.clone() } else { Self::new(w.0.parts.clone()) });
         let part_of = own.chain(before).chain(self.part_of().iter().cloned()).collect();
-        Self(Arc::new(Whole { parts: self.0.parts.clone(), ready: Ready::default(), area: Once::default(), part_of }))
+        Self(Arc::new(Whole {
+            parts: self.0.parts.clone(),
+            ready: Ready::default(),
+            area: Once::default(),
+            evened: OnceLock::new(),
+            part_of,
+        }))
     }
 
     /// Other parts of the same surface: it stays a part of what it is a part of.
-    fn remade(&self, parts: Parts) -> Self {
-        Self(Arc::new(Whole { parts, ready: Ready::default(), area: Once::default(), part_of: self.0.part_of.clone() }))
+    pub(super) fn remade(&self, parts: Parts) -> Self {
+        Self(Arc::new(Whole {
+            parts,
+            ready: Ready::default(),
+            area: Once::default(),
+            evened: OnceLock::new(),
+            part_of: self.0.part_of.clone(),
+        }))
     }
 
     /// Its area with an estimate of the error, square model units, as `measure` finds them: once for all copies of it.
     pub fn area_once(&self, measure: impl FnOnce() -> (f64, f64)) -> (f64, f64) {
         self.0.area.get(measure)
+    }
+
+    /// The same surface in parameters in which it runs evenly, where it is a trimmed net that runs very unevenly in its own.
+    pub fn evened(&self) -> Option<&Evened> {
+        self.0.evened.get_or_init(|| Evened::of(self).map(Box::new)).as_deref()
     }
 
     pub(super) fn ready(&self) -> &Ready {

@@ -119,22 +119,31 @@ impl NurbsSurface {
     }
 
     /// The homogeneous pole in a column across a direction and a row along it.
-    fn pole_of(&self, in_u: bool, i: usize, j: usize) -> DVec4 {
+    pub(super) fn pole_of(&self, in_u: bool, i: usize, j: usize) -> DVec4 {
         let (i, j) = if in_u { (i, j) } else { (j, i) };
         self.poles[j * self.counts.0 + i]
     }
 
     /// The Bézier points of one direction between two values inside one span.
     pub fn strip(&self, in_u: bool, (x0, x1): (f64, f64)) -> NetStrip {
-        let (knots, p) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
-        let middle = 0.5 * (x0 + x1);
-        let span = (knots.partition_point(|k| *k <= middle)).clamp(p + 1, knots.len() - p - 1) - 1;
+        let p = if in_u { self.degree.0 } else { self.degree.1 };
         let point = |k: usize| {
             let mut arguments = [x0; MAX_DEGREE];
             arguments[..k].fill(x1);
-            if p <= COMMON_DEGREE { shares(knots, p, span, &arguments[..p]) } else { shares_by_levels(knots, p, span, &arguments[..p]) }
+            self.blossom(in_u, (x0, x1), &arguments[..p])
         };
-        NetStrip { first: span - p, width: x1 - x0, shares: (0..=p).map(point).collect() }
+        let points: Vec<_> = (0..=p).map(point).collect();
+        NetStrip { first: points[0].0, width: x1 - x0, shares: points.into_iter().map(|point| point.1).collect() }
+    }
+
+    /// The blossom of one direction at as many arguments as its degree, in the span that holds two values: the first active pole, and the
+    /// shares of these.
+    pub(super) fn blossom(&self, in_u: bool, (x0, x1): (f64, f64), arguments: &[f64]) -> (usize, [f64; MAX_DEGREE + 1]) {
+        let (knots, p) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
+        let middle = 0.5 * (x0 + x1);
+        let span = (knots.partition_point(|k| *k <= middle)).clamp(p + 1, knots.len() - p - 1) - 1;
+        let shares = if p <= COMMON_DEGREE { shares(knots, p, span, arguments) } else { shares_by_levels(knots, p, span, arguments) };
+        (span - p, shares)
     }
 
     /// Bounds over the rectangle of two strips.

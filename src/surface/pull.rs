@@ -71,14 +71,23 @@ impl Course {
 
     /// Shifted in (u, v).
     pub fn shifted(&self, by: DVec2) -> Self {
-        let shift = |(u, v): (f64, f64)| (u + by.x, v + by.y);
+        self.mapped(&|(u, v)| (u + by.x, v + by.y))
+    }
+
+    /// In other parameters; a line stays one, between other ends.
+    pub fn mapped(&self, to: &dyn Fn((f64, f64)) -> (f64, f64)) -> Self {
         match self {
-            Self::Line(a, b) => Self::Line(shift(*a), shift(*b)),
+            Self::Line(a, b) => Self::Line(to(*a), to(*b)),
             Self::Pull(pull) => {
-                let at = pull.at.iter().map(|(f, uv)| (*f, *uv + by)).collect();
+                let at = pull.at.iter().map(|(f, uv)| (*f, to((uv.x, uv.y)).into())).collect();
                 Self::Pull(Arc::new(Pull::new(at, pull.off)))
             }
         }
+    }
+
+    /// Whether it stays what it is where u and v are mapped each by itself: an oblique straight line does not.
+    pub fn is_upright(&self) -> bool {
+        !matches!(self, Self::Line(a, b) if a.0 != b.0 && a.1 != b.1)
     }
 
     /// Places along it, ends included.

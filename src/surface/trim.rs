@@ -56,6 +56,11 @@ impl Trim {
             courses.extend(self.courses[first..first + n].iter().rev().map(|c| c.flipped(&turn)));
             first += n;
         }
+        self.with_courses(courses)
+    }
+
+    /// The same by other courses.
+    pub fn with_courses(&self, courses: Vec<Course>) -> Self {
         Self { reach: reach(&courses), courses, ..self.clone() }
     }
 }

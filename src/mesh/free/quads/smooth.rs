@@ -275,6 +275,8 @@ impl<'a> Smoother<'a> {
     /// Moves corners of elements below `wanted` to where the worst element round them is best, the worst ones first, for so
     /// many rounds at most.
     pub fn mend(&mut self, wanted: f64, rounds: usize, job: &Job) -> Result<()> {
+        // Nodes round which nothing moved since they were tried: they would stay where they are once more.
+        let mut tried = vec![false; self.net.p.len()];
         for _ in 0..rounds {
             let changed = |f: &usize| self.net.corners(*f).iter().any(|n| self.fresh[*n as usize]);
             let quality = (0..self.net.face.len()).filter(changed).map(|f| (self.net.quality(f), f));
@@ -284,8 +286,15 @@ impl<'a> Smoother<'a> {
             for (_, f) in bad {
                 job.go_on()?;
                 for n in self.net.face[f] {
-                    if n != NONE && n >= self.net.fixed && self.net.quality(f) < wanted {
-                        gained |= self.climb(n as usize, (&least_quality, f64::INFINITY));
+                    if n == NONE || n < self.net.fixed || tried[n as usize] || self.net.quality(f) >= wanted {
+                        continue;
+                    }
+                    let before = self.net.xy[n as usize];
+                    gained |= self.climb(n as usize, (&least_quality, f64::INFINITY));
+                    tried[n as usize] = true;
+                    if self.net.xy[n as usize] != before {
+                        let round = self.faces(n as usize).iter().flat_map(|f| self.net.corners(*f as usize));
+                        round.for_each(|n| tried[*n as usize] = false);
                     }
                 }
             }

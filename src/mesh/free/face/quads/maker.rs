@@ -27,7 +27,7 @@ use crate::mesh::plan::{Elements, Method};
 use crate::mesh::shape_check::is_concave;
 use crate::mesh::wanted::floor_keeps;
 
-/// Work of an element over that of a triangle: nets are smoothed, split and smoothed again, and made several times.
+/// Work of an element over that of a triangle: nets are smoothed, split and smoothed again, and repaired.
 const WORK_OF_QUADS: u64 = 4;
 /// Quality of pairs that is better than two triangles: of `mixed`.
 const MIXED: Alone = Alone { least: 0.5, worth: 0.5 };
@@ -77,9 +77,8 @@ impl Maker<'_> {
     pub(super) fn fitted(&self, field: &mut Blend, job: &Job) -> Fitted {
         let plan = self.fit.made.input.plan;
         let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
-        let mut allowed = 0;
         for round in 0..TRIES {
-            let mut net = match self.net(field, &mut allowed, job)? {
+            let mut net = match self.net(field, job)? {
                 Ok(net) => net,
                 Err(trouble) => return Ok(Err(trouble)),
             };
@@ -115,8 +114,8 @@ impl Maker<'_> {
         Err(MeshFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
     }
 
-    /// One net for these lengths; `allowed` is the work that the elements of nets before were allowed.
-    fn net(&self, field: &Blend, allowed: &mut u64, job: &Job) -> Fitted {
+    /// One net for these lengths, which may take the work that its elements are worth whatever nets before took.
+    fn net(&self, field: &Blend, job: &Job) -> Fitted {
         let same = Even(field.spacing * self.fit.face.size.0);
         let plain = field.sources.is_empty() && field.background.is_none();
         let wanted: &dyn Field = if plain { &same } else { field };
@@ -131,7 +130,7 @@ impl Maker<'_> {
             Ok(web) => web,
             Err(trouble) => return Ok(Err(trouble)),
         };
-        allow(WORK_OF_QUADS * if quads { 2 } else { 1 } * web.tri.len() as u64, allowed);
+        allow(WORK_OF_QUADS * if quads { 2 } else { 1 } * web.tri.len() as u64, &mut 0);
         let mut gardener = Gardener::new(web, ground, cells, self.fit.care);
         gardener.flip_all();
         let mut web = gardener.web;

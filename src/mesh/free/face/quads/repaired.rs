@@ -13,32 +13,41 @@ use crate::mesh::free::quads::net::{NONE, Net, least_quality};
 use crate::mesh::free::quads::smooth::Smoother;
 use crate::mesh::free::size::Blend;
 
-/// Rounds of moves.
-const ROUNDS: usize = 5;
+/// Rounds of moves at most.
+const ROUNDS: usize = 12;
+/// Rounds that may leave as many elements as before.
+const IDLE: usize = 2;
 /// Where more than one element in so many breaks a limit, lengths are wrong.
 const FEW: usize = 12;
 /// Least quality, 0 to 1, of elements that a move changes, unless it was lower.
 const MIN_QUALITY: f64 = 0.65;
-/// So many elements are moved by their bounds, more by samples, for a twentieth of the work.
-const BOUNDED: usize = 24;
-/// Loads that are enough, by bounds and by samples: what is left over is more than these two differ.
-const ENOUGH: (f64, f64) = (0.98, 0.9);
+/// So many elements are moved by their bounds in a round, and in all rounds: more by samples, for a twentieth of the work.
+const BOUNDED: (usize, usize) = (24, 32);
+/// A load that is enough.
+const ENOUGH: f64 = 0.98;
+/// How much bounds are above samples: of elements that keep the limits, and of others at most.
+const ABOVE: (f64, f64) = (1.1, 3.0);
 
 impl Maker<'_> {
     /// Repairs elements that break a limit where they are few; what is left of them needs shorter lengths.
     pub(super) fn repair(&self, net: &mut Net, field: &Blend, loads: &mut Loads, job: &Job) -> Result<()> {
+        let (mut least, mut idle, mut bounded) = (usize::MAX, 0, 0);
         for round in 0..=ROUNDS {
             let over = self.over(net, loads);
-            if over.is_empty() || over.len() * FEW > net.face.len() || round == ROUNDS {
+            idle = if over.len() < least { 0 } else { idle + 1 };
+            least = least.min(over.len());
+            if over.is_empty() || over.len() * FEW > net.face.len() || idle > IDLE || round == ROUNDS {
                 break;
             }
-            self.move_nodes(net, field, &over, job)?;
+            let by_bounds = over.len() <= BOUNDED.0 && bounded + over.len() <= BOUNDED.1;
+            bounded += if by_bounds { over.len() } else { 0 };
+            self.move_nodes((net, field), &over, by_bounds, job)?;
         }
         Ok(())
     }
 
-    /// Elements that break a limit whichever way they are cut; the others are cut so that they keep it.
-    fn over(&self, net: &mut Net, loads: &mut Loads) -> Vec<usize> {
+    /// Elements that break a limit whichever way they are cut, with the lesser load; the others are cut so that they keep it.
+    fn over(&self, net: &mut Net, loads: &mut Loads) -> Vec<(f64, usize)> {
         let turn = |net: &mut Net, f: usize, by: usize| {
             if net.face[f][3] != NONE {
                 net.face[f].rotate_left(by);
@@ -49,7 +58,8 @@ impl Maker<'_> {
         let second = self.loaded(net, loads);
         let other = |f: usize| second.binary_search_by_key(&f, |found| found.1).map_or(0.0, |k| second[k].0);
         first.iter().filter(|(load, f)| other(*f) >= *load).for_each(|(_, f)| turn(net, *f, 3));
-        second.iter().map(|found| found.1).collect()
+        let own = |f: usize| first.binary_search_by_key(&f, |found| found.1).map_or(f64::INFINITY, |k| first[k].0);
+        second.iter().map(|(load, f)| (load.min(own(*f)), *f)).collect()
     }
 
     /// Elements that break a limit as they are cut, with their loads.
@@ -66,15 +76,14 @@ impl Maker<'_> {
         (0..net.face.len()).map(load).filter(|found| found.0 > 1.0).collect()
     }
 
-    /// Moves nodes of some elements to where the worst load round them is least.
-    fn move_nodes(&self, net: &mut Net, field: &Blend, over: &[usize], job: &Job) -> Result<()> {
-        let bounded = over.len() <= BOUNDED;
-        let enough = if bounded { ENOUGH.0 } else { ENOUGH.1 };
-        let load = |net: &Net, f: usize| {
+    /// Moves nodes of some elements to where the worst load round them is least: by their bounds, or by samples and how much the bound of each
+    /// is above them.
+    fn move_nodes(&self, (net, field): (&mut Net, &Blend), over: &[(f64, usize)], by_bounds: bool, job: &Job) -> Result<()> {
+        let found = |net: &Net, f: usize, enough: f64| {
             let half = |corners: [u32; 3]| {
                 let c = corners.map(|n| n as usize);
                 let (sheet, at, limits) = (self.fit.sheet, (c.map(|n| net.xy[n]), c.map(|n| net.p[n])), &self.fit.limits);
-                if bounded { load_of(sheet, at, limits).worst() } else { likely(sheet, at, limits) }
+                if by_bounds { load_of(sheet, at, limits).worst() } else { likely(sheet, at, limits) }
             };
             let [a, b, c, d] = net.face[f];
             if d == NONE {
@@ -83,10 +92,15 @@ impl Maker<'_> {
             let cut = half([a, b, c]).max(half([a, c, d]));
             if cut <= enough { cut } else { cut.min(half([b, c, d]).max(half([b, d, a]))) }
         };
+        let mut above = vec![if by_bounds { 1.0 } else { ABOVE.0 }; net.face.len()];
+        if !by_bounds {
+            over.iter().for_each(|(load, f)| above[*f] = (load / found(net, *f, 0.0)).clamp(ABOVE.0, ABOVE.1));
+        }
+        let load = |net: &Net, f: usize| above[f] * found(net, f, ENOUGH / above[f]);
         let mut smoother = Smoother::new(net, self.fit.sheet, field);
-        for f in over.iter().copied() {
+        for f in over.iter().map(|found| found.1) {
             for n in smoother.net.face[f] {
-                if n == NONE || n < smoother.net.fixed || load(smoother.net, f) <= enough {
+                if n == NONE || n < smoother.net.fixed || load(smoother.net, f) <= ENOUGH {
                     continue;
                 }
                 let least = least_quality(smoother.net, smoother.faces(n as usize)).min(MIN_QUALITY);
@@ -103,7 +117,7 @@ impl Maker<'_> {
                     best.set(most.min(best.get()));
                     -most
                 };
-                smoother.climb(n as usize, (&score, -enough));
+                smoother.climb(n as usize, (&score, -ENOUGH));
                 job.go_on()?;
             }
         }
