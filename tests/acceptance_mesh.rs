@@ -7,7 +7,7 @@ use std::process::Command;
 
 use glam::{DVec2, DVec3};
 use lofting::mesh::Mesh;
-use lofting::mesh::chart::Shape;
+use lofting::mesh::face_geometry::Shape;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::run::Outcome;
@@ -70,8 +70,8 @@ fn written_limit(script: &Path, mesh: &str) -> Option<f64> {
 /// The largest distance along their normals of triangles from their surface at 25 places in each.
 fn sampled(mesh: &Mesh) -> f64 {
     let mut worst = 0.0_f64;
-    for (chart, face) in mesh.charts.0.iter().zip(&mesh.faces) {
-        let Shape::Free(free) = &chart.shape else { panic!("{} is not made freely", mesh.name) };
+    for (geometry, face) in mesh.geometries.0.iter().zip(&mesh.faces) {
+        let Shape::Free(free) = &geometry.shape else { panic!("{} is not made freely", mesh.name) };
         let own = &mesh.triangles[face.triangles.start as usize..face.triangles.end as usize];
         for (places, nodes) in free.triangles.iter().zip(own) {
             let uv = places.map(|n| DVec2::from(free.uv[n as usize]));
@@ -80,7 +80,7 @@ fn sampled(mesh: &Mesh) -> f64 {
             for (i, j) in (0..7).flat_map(|i| (0..7 - i).map(move |j| (i, j))).filter(|(i, j)| (i + j) % 8 < 7).take(25) {
                 let (s, t) = (f64::from(i) / 6.0, f64::from(j) / 6.0);
                 let at = uv[0] + (uv[1] - uv[0]) * s + (uv[2] - uv[0]) * t;
-                worst = worst.max((chart.surface.point(at.x, at.y) - p[0]).dot(normal).abs());
+                worst = worst.max((geometry.surface.point(at.x, at.y) - p[0]).dot(normal).abs());
             }
         }
     }

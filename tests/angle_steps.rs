@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::mesh::Mesh;
-use lofting::mesh::chart::{Chart, Grid, Shape};
+use lofting::mesh::face_geometry::{FaceGeometry, Grid, Shape};
 use lofting::session::live::{Depth, Live};
 
 /// Limits that each shape is made with, degrees, falling.
@@ -47,8 +47,8 @@ fn under_limits(shape: &str) -> Vec<Arc<Mesh>> {
 }
 
 /// Cells along u and along v.
-fn cells(chart: &Chart) -> [usize; 2] {
-    let Shape::Grid(grid) = &chart.shape else { panic!("not mapped") };
+fn cells(geometry: &FaceGeometry) -> [usize; 2] {
+    let Shape::Grid(grid) = &geometry.shape else { panic!("not mapped") };
     let (nu, nv) = grid.size();
     [nu, nv]
 }
@@ -89,21 +89,21 @@ fn curves_take_few_more_steps_than_their_angle_needs() {
         let shape = format!("{profile}surface s = extrude(p, by: (0, 0, 20))\n");
         let mut before = 0;
         for (mesh, limit) in under_limits(&shape).iter().zip(LIMITS) {
-            let chart = &mesh.charts.0[0];
-            let steps = cells(chart)[1].max(cells(chart)[0]);
+            let geometry = &mesh.geometries.0[0];
+            let steps = cells(geometry)[1].max(cells(geometry)[0]);
             assert!(steps >= before, "{shape}{limit}°: {steps} after {before}");
             before = steps;
-            let along_v = cells(chart)[1] == steps;
+            let along_v = cells(geometry)[1] == steps;
             let at = |k: u32| f64::from(k) / 600.0;
             let place = |t: f64| if along_v { (0.5, t) } else { (t, 0.5) };
             let mut sampled: Vec<(f64, DVec3)> = Vec::new();
             let mut last = None;
             for k in 0..=600 {
                 let (u, v) = place(at(k));
-                let p = chart.surface.point(u, v);
+                let p = geometry.surface.point(u, v);
                 let s = sampled.last().map_or(0.0, |l| l.0) + last.map_or(0.0, |l: DVec3| l.distance(p));
                 last = Some(p);
-                sampled.push((s, chart.surface.normal(u, v)));
+                sampled.push((s, geometry.surface.normal(u, v)));
             }
             let best = least_along(&sampled, limit.to_radians());
             let over = (steps as f64 - 1.0) / best as f64;
@@ -130,15 +130,15 @@ const FINE: usize = 96;
 const INSIDE: usize = 4;
 
 impl Normals {
-    fn new(chart: &Chart) -> Self {
+    fn new(geometry: &FaceGeometry) -> Self {
         let at = |k: usize| k as f64 / FINE as f64;
-        let all = (0..(FINE + 1) * (FINE + 1)).map(|n| chart.surface.normal(at(n % (FINE + 1)), at(n / (FINE + 1)))).collect();
+        let all = (0..(FINE + 1) * (FINE + 1)).map(|n| geometry.surface.normal(at(n % (FINE + 1)), at(n / (FINE + 1)))).collect();
         let sides = [0, 1, 2, 3].map(|side| {
             let point = |k: usize| match side {
-                0 => chart.surface.point(at(k), 0.0),
-                1 => chart.surface.point(1.0, at(k)),
-                2 => chart.surface.point(at(k), 1.0),
-                _ => chart.surface.point(0.0, at(k)),
+                0 => geometry.surface.point(at(k), 0.0),
+                1 => geometry.surface.point(1.0, at(k)),
+                2 => geometry.surface.point(at(k), 1.0),
+                _ => geometry.surface.point(0.0, at(k)),
             };
             let mut run = vec![0.0];
             (0..FINE).for_each(|k| run.push(run[k] + point(k).distance(point(k + 1))));
@@ -210,10 +210,10 @@ fn faces_take_few_more_steps_than_their_angle_needs() {
         let rows: Vec<String> = (0..4).map(|j| row(j, &mut random)).collect();
         let shape = format!("surface s = {}([{}])\n", if case % 2 == 0 { "bezier_surface" } else { "grid" }, rows.join(", "));
         let made = under_limits(&shape);
-        let normals = Normals::new(&made[0].charts.0[0]);
+        let normals = Normals::new(&made[0].geometries.0[0]);
         let mut before = 0;
         for (mesh, limit) in made.iter().zip(LIMITS) {
-            let [nu, nv] = cells(&mesh.charts.0[0]);
+            let [nu, nv] = cells(&mesh.geometries.0[0]);
             assert!(nu * nv >= before, "{shape}{limit}°: {nu} by {nv} after {before}");
             before = nu * nv;
             if nu.max(nv) > FINE / 6 {

@@ -5,8 +5,8 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_through, circle, ellipse, helix, line, offset, polyline, spline};
-use lofting::geometry::{Curve, Ends, Motion, Spline, spread};
-use lofting::mesh::chart::{Chart, Shape};
+use lofting::geometry::{Curve, Ends, Motion, Spline, enclosure};
+use lofting::mesh::face_geometry::{FaceGeometry, Shape};
 use lofting::mesh::faces::Frame;
 use lofting::mesh::free::bound::chord;
 use lofting::mesh::free::sides::distance;
@@ -19,7 +19,7 @@ use lofting::surface::gordon::{CurveNet, Named as NamedNet, gordon};
 use lofting::surface::nurbs::{Net, bezier, nurbs};
 use lofting::surface::revolve::Axis;
 use lofting::surface::{
-    Domain, Lean, Map, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, extrude, plane, revolve, ruled, trim,
+    Domain, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, extrude, plane, revolve, ruled, trim,
 };
 use serde_json::Value;
 
@@ -187,13 +187,13 @@ impl Chance {
 fn largest(surface: &Surface, u: (f64, f64), v: (f64, f64), n: u32) -> [f64; 3] {
     let mut most = [0.0_f64; 3];
     let at = |(low, high): (f64, f64), k: u32| low + (high - low) * f64::from(k) / f64::from(n);
-    let lean = |k: u32| if k == n { Lean::Before } else { Lean::After };
+    let lean = |k: u32| if k == n { OneSided::Before } else { OneSided::After };
     for (i, j) in (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))) {
         let (x, y) = (at(u, i), at(v, j));
         if surface.domain() == Domain::Triangle && x + y > 1.0 {
             continue;
         }
-        let jet = surface.jet_lean(x, y, (lean(i), lean(j)));
+        let jet = surface.jet_one_sided(x, y, (lean(i), lean(j)));
         for (m, d) in most.iter_mut().zip([jet.duu, jet.duv, jet.dvv]) {
             *m = m.max(d.length());
         }
@@ -215,7 +215,7 @@ fn no_second_derivative_exceeds_its_bound() {
             let (u, v) = ((u0, u0 + w), (v0, v0 + h));
             let bound = surface.second_derivative_bound(u, v);
             let most = largest(&surface, u, v, 24);
-            let spread = surface.spread(u, v);
+            let enclosure = surface.enclosure(u, v);
             for k in 0..3 {
                 assert!(most[k] <= bound[k] * (1.0 + 1e-9) + 1e-7, "{name} {u:?} {v:?} derivative {k}: {most:?} above {bound:?}");
             }
@@ -225,7 +225,7 @@ fn no_second_derivative_exceeds_its_bound() {
                     continue;
                 }
                 let jet = surface.jet(x, y);
-                for (d, r, what) in [(jet.p, spread.p, "p"), (jet.du, spread.du, "du"), (jet.dv, spread.dv, "dv")] {
+                for (d, r, what) in [(jet.p, enclosure.p, "p"), (jet.du, enclosure.du, "du"), (jet.dv, enclosure.dv, "dv")] {
                     let out = (r.low - d).max(d - r.high).max_element();
                     assert!(out <= 1e-8, "{name} {what} at {x} {y} of {u:?} {v:?}: {out}");
                 }
@@ -242,7 +242,7 @@ fn a_stretch_that_ends_beside_a_knot_is_bounded_as_one_that_ends_at_it() {
     let knots = curve.knots();
     for w in knots.windows(2) {
         for off in [1e-15, 1e-14, 1e-13, 1e-12] {
-            let (at, beside) = (spread(&curve, w[0], w[1]), spread(&curve, w[0] - off, w[1] + off));
+            let (at, beside) = (enclosure(&curve, w[0], w[1]), enclosure(&curve, w[0] - off, w[1] + off));
             assert!(beside.bend.reach() <= 1.001 * at.bend.reach(), "{off:e}: {} for {}", beside.bend.reach(), at.bend.reach());
             assert!(beside.tangent.reach() <= 1.001 * at.tangent.reach());
         }
@@ -420,7 +420,7 @@ fn uneven_net(degree: usize, repeated: usize) -> Surface {
 fn nets_made_ready_are_the_nets_and_their_bends_are_bounded() {
     for surface in [uneven_net(3, 1), uneven_net(4, 2), uneven_net(2, 1), uneven_net(3, 1).flipped(), uneven_net(11, 1), uneven_net(14, 1)]
     {
-        let quick = surface.quick().unwrap();
+        let quick = surface.power_form().unwrap();
         let mut seed = 7_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -461,12 +461,12 @@ fn jumps_of_first_derivatives_are_bounded() {
     let rows = |radii: [f64; 2]| line(p(radii[0], 0.0, 0.0), p(radii[1], 0.0, 3.0), Origin::NONE).unwrap().to_nurbs(&tolerance()).unwrap();
     for radii in [[2.0, 2.0], [1.0, 4.0]] {
         let turned = revolve::net(&rows(radii), &axis, std::f64::consts::TAU).surface(SurfaceKind::Revolve, Origin::NONE, &tolerance());
-        let quick = turned.quick().unwrap();
+        let quick = turned.power_form().unwrap();
         let bends = quick.bends((glam::DVec2::new(0.24, 0.4), glam::DVec2::new(0.26, 0.5)), DVec3::X).unwrap();
         assert!(bends.jump.abs() < 1e-9 && bends.mid.iter().chain(&bends.slack).all(|x| x.is_finite()), "{bends:?}");
     }
     let surface = uneven_net(3, 3);
-    let quick = surface.quick().unwrap();
+    let quick = surface.power_form().unwrap();
     let knot = 1.0 / 3.0;
     let mut jumps = 0;
     for k in 0..200_u32 {
@@ -507,9 +507,9 @@ fn meshed(surface: &Surface, chord: f64, elements: Elements) -> Mesh {
 }
 
 /// Triangles of a face, a quad as two, by the (u, v) and points of their corners.
-fn flat_triangles(mesh: &Mesh, face: &FaceRange, chart: &Chart) -> Vec<[((f64, f64), DVec3); 3]> {
+fn flat_triangles(mesh: &Mesh, face: &FaceRange, geometry: &FaceGeometry) -> Vec<[((f64, f64), DVec3); 3]> {
     let mut places: Vec<(u32, (f64, f64))> = Vec::new();
-    match (&chart.shape, &chart.frame) {
+    match (&geometry.shape, &geometry.frame) {
         (Shape::Grid(grid), Frame::Grid(frame)) => {
             let (nu, nv) = grid.size();
             (0..=nv).for_each(|j| (0..=nu).for_each(|i| places.push((frame.node(i, j), grid.uv(i, j)))));
@@ -520,7 +520,7 @@ fn flat_triangles(mesh: &Mesh, face: &FaceRange, chart: &Chart) -> Vec<[((f64, f
         }
         (Shape::Blocks(blocks), Frame::Blocks(ids)) => places.extend(ids.iter().copied().zip(blocks.uv.iter().copied())),
         (Shape::Free(free), Frame::Free(ids)) => places.extend(ids.iter().copied().zip(free.uv.iter().copied())),
-        _ => panic!("another chart"),
+        _ => panic!("another geometry"),
     }
     let own = |n: u32| places.iter().filter(move |p| p.0 == n).map(|p| p.1).collect::<Vec<_>>();
     let (triangles, quads) =
@@ -571,15 +571,15 @@ fn off(surface: &Surface, q: DVec3, from: (f64, f64)) -> f64 {
 /// Largest distance of the elements from the surface at a dense lattice of points.
 fn densely(mesh: &Mesh, n: u32) -> f64 {
     let mut worst = 0.0_f64;
-    for (face, chart) in mesh.faces.iter().zip(&mesh.charts.0) {
-        for t in flat_triangles(mesh, face, chart) {
+    for (face, geometry) in mesh.faces.iter().zip(&mesh.geometries.0) {
+        for t in flat_triangles(mesh, face, geometry) {
             for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))) {
                 let w = [i, j, n - i - j].map(|k| f64::from(k) / f64::from(n));
                 let mean = |f: &dyn Fn(usize) -> f64| f(0) * w[0] + f(1) * w[1] + f(2) * w[2];
                 let q = t[0].1 * w[0] + t[1].1 * w[1] + t[2].1 * w[2];
                 let uv = (mean(&|k| t[k].0.0), mean(&|k| t[k].0.1));
-                if chart.surface.point(uv.0, uv.1).distance(q) > worst {
-                    worst = worst.max(off(&chart.surface, q, uv));
+                if geometry.surface.point(uv.0, uv.1).distance(q) > worst {
+                    worst = worst.max(off(&geometry.surface, q, uv));
                 }
             }
         }
@@ -672,7 +672,7 @@ fn forty_sliver_patches_leave_the_grid_unchanged() {
 #[test]
 fn the_surface_over_sides_is_as_near_as_their_bound_says() {
     let surface = uneven_net(3, 3);
-    let quick = surface.quick().unwrap();
+    let quick = surface.power_form().unwrap();
     let mut near = 0;
     for k in 0..200_u32 {
         let part = |n: u32, of: u32| f64::from(k * n % of) / f64::from(of);

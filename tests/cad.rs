@@ -12,7 +12,7 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::io::iges::{Options, open};
-use lofting::mesh::chart::Shape;
+use lofting::mesh::face_geometry::Shape;
 use lofting::mesh::{Input, Mesh, Plan, build};
 use lofting::model::topology::Named;
 use lofting::model::{Model, Shell, ShellRequest, SurfaceId, measure};
@@ -137,12 +137,12 @@ fn census(mesh: &Mesh, near: f64) -> Census {
 /// Triangles whose normal turns away from that of their surface in the middle; faces of free triangles.
 fn turned(mesh: &Mesh) -> usize {
     let mut count = 0;
-    for chart in &mesh.charts.0 {
-        let (Shape::Free(free), lofting::mesh::faces::Frame::Free(ids)) = (&chart.shape, &chart.frame) else { continue };
+    for geometry in &mesh.geometries.0 {
+        let (Shape::Free(free), lofting::mesh::faces::Frame::Free(ids)) = (&geometry.shape, &geometry.frame) else { continue };
         for t in &free.triangles {
             let [a, b, c] = t.map(|n| mesh.nodes[ids[n as usize] as usize]);
             let uv = t.iter().map(|n| free.uv[*n as usize]).fold((0.0, 0.0), |s, uv| (s.0 + uv.0 / 3.0, s.1 + uv.1 / 3.0));
-            let normal = chart.surface.normal(uv.0, uv.1);
+            let normal = geometry.surface.normal(uv.0, uv.1);
             if (b - a).cross(c - a).dot(normal) <= 0.0 {
                 count += 1;
             }

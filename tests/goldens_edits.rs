@@ -358,8 +358,11 @@ fn idle(text: &str, random: &mut Random) -> (&'static str, String) {
             ("comments", parts.iter().map(|d| format!("// note {}\n{d}", random.below(100))).collect())
         }
         _ => {
-            let spread: String = declarations(text).iter().map(|d| format!("{d}\n")).collect();
-            ("another layout", if random.below(2) == 0 { spread } else { lofting::lang::fmt::format(&spread.replace(", ", ",")).text })
+            let enclosure: String = declarations(text).iter().map(|d| format!("{d}\n")).collect();
+            (
+                "another layout",
+                if random.below(2) == 0 { enclosure } else { lofting::lang::fmt::format(&enclosure.replace(", ", ",")).text },
+            )
         }
     }
 }

@@ -8,11 +8,11 @@ use lofting::geometry::build::line;
 use lofting::network::Chain;
 use lofting::surface::nurbs::{Net, nurbs};
 use lofting::surface::revolve::{Axis, revolve};
-use lofting::surface::{Lean, Nearest, Surface, join};
+use lofting::surface::{Nearest, OneSided, Surface, join};
 
 use crate::support::random::{Random, cases};
 
-const AFTER: Lean = Lean::After;
+const AFTER: OneSided = OneSided::After;
 
 fn tolerance() -> Tolerance {
     Tolerance::new(1e-7, 5.0)
@@ -56,7 +56,7 @@ fn nothing_moves_and_borders_have_one_parameter() {
             // The first one's v stays.
             assert!(whole.point(0.0, v).distance(parts[0].point(0.0, v)) < 1e-13, "case {case}");
             for u in whole.kinks().0 {
-                let [a, b] = [Lean::Before, Lean::After].map(|lean| whole.jet_lean(*u, v, (lean, AFTER)));
+                let [a, b] = [OneSided::Before, OneSided::After].map(|lean| whole.jet_one_sided(*u, v, (lean, AFTER)));
                 assert!(a.p.distance(b.p) < 1e-13, "case {case}: {:e}", a.p.distance(b.p));
                 assert!(a.dv.distance(b.dv) < 1e-10, "case {case}: {:e}", a.dv.distance(b.dv));
                 assert!(a.dvv.distance(b.dvv) < 1e-8 * (1.0 + a.dvv.length()), "case {case}: {:e}", a.dvv.distance(b.dvv));
@@ -75,7 +75,7 @@ fn nothing_moves_and_borders_have_one_parameter() {
             }
         }
         let (u, v) = (numbers.share() * 0.7, numbers.share() * 0.7);
-        let bounds = whole.spread((u, u + 0.2), (v, v + 0.2));
+        let bounds = whole.enclosure((u, u + 0.2), (v, v + 0.2));
         for _ in 0..30 {
             let jet = whole.jet(u + 0.2 * numbers.share(), v + 0.2 * numbers.share());
             for (value, range) in
@@ -140,7 +140,7 @@ fn seams_of_closed_borders_may_lie_anywhere() {
             // No step is at the seam of all, nor at that of a part.
             assert!(whole.point(0.0, v).distance(whole.point(1.0, v)) < 1e-12, "case {case}");
             for line in whole.breaks().0 {
-                let [a, b] = [Lean::Before, Lean::After].map(|lean| whole.jet_lean(line, v, (lean, AFTER)));
+                let [a, b] = [OneSided::Before, OneSided::After].map(|lean| whole.jet_one_sided(line, v, (lean, AFTER)));
                 assert!(a.p.distance(b.p) < 1e-9 && a.du.distance(b.du) < 1e-6, "case {case}: {line}");
             }
             // Every point is on a cone of the tower.
@@ -149,7 +149,7 @@ fn seams_of_closed_borders_may_lie_anywhere() {
             assert!(off < 1e-9, "case {case}: {p} is {off} off");
         }
         let (u, v) = (numbers.share() * 0.8, numbers.share() * 0.8);
-        let bounds = whole.spread((u, u + 0.2), (v, v + 0.2));
+        let bounds = whole.enclosure((u, u + 0.2), (v, v + 0.2));
         for _ in 0..30 {
             let jet = whole.jet(u + 0.2 * numbers.share(), v + 0.2 * numbers.share());
             for (value, range) in [(jet.p, bounds.p), (jet.du, bounds.du), (jet.dv, bounds.dv), (jet.duu, bounds.duu)] {

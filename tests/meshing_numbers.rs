@@ -8,8 +8,8 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::line;
 use lofting::mesh::Mesh;
-use lofting::mesh::chart::Shape;
-use lofting::mesh::free::ground::{Even, Ground, Spot};
+use lofting::mesh::face_geometry::Shape;
+use lofting::mesh::free::ground::{ParametricSurface, Spot, UniformSize};
 use lofting::mesh::free::quads::net::Net;
 use lofting::mesh::free::quads::smooth::Smoother;
 use lofting::network::Chain;
@@ -22,7 +22,7 @@ use crate::support::reference::reference;
 /// The plane z = 0.
 struct Flat;
 
-impl Ground for Flat {
+impl ParametricSurface for Flat {
     fn spot(&self, xy: DVec2) -> Spot {
         Spot { p: xy.extend(0.0), dx: DVec3::X, dy: DVec3::Y }
     }
@@ -283,7 +283,7 @@ fn a_node_goes_to_the_weighted_centroid_of_the_reference() {
     }
     let middle = net.fixed as usize;
     assert_eq!(net.p.len(), middle + 1);
-    Smoother::new(&mut net, &Flat, &Even(1.0)).smooth(1, &Job::new()).unwrap();
+    Smoother::new(&mut net, &Flat, &UniformSize(1.0)).smooth(1, &Job::new()).unwrap();
     assert!(net.p[middle].distance(point(&fact["new_position"])) < 1e-12, "{}", net.p[middle]);
 }
 
@@ -359,15 +359,15 @@ fn random(state: &mut u64) -> f64 {
 /// Largest turn of the normal over the cells of a mapped face, at places between nodes too.
 fn turn(mesh: &Mesh) -> f64 {
     let mut most = 0.0_f64;
-    for chart in &mesh.charts.0 {
-        let Shape::Grid(grid) = &chart.shape else { panic!("not mapped") };
+    for geometry in &mesh.geometries.0 {
+        let Shape::Grid(grid) = &geometry.shape else { panic!("not mapped") };
         let (nu, nv) = grid.size();
         for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (i, j))) {
             let (a, c) = (grid.uv(i, j), grid.uv(i + 1, j + 1));
             let share = |k: usize| 0.001 + 0.998 * k as f64 / 4.0;
             let normal = |k: usize| {
                 let (x, y) = (share(k % 5), share(k / 5));
-                chart.surface.normal(a.0 + (c.0 - a.0) * x, a.1 + (c.1 - a.1) * y)
+                geometry.surface.normal(a.0 + (c.0 - a.0) * x, a.1 + (c.1 - a.1) * y)
             };
             let all: Vec<DVec3> = (0..25).map(normal).collect();
             let pairs = (0..25).flat_map(|i| (0..i).map(move |j| (i, j)));
@@ -417,10 +417,12 @@ fn looser_limits_never_take_more_steps_along_a_curve() {
             assert!(steps <= before, "{profile}{limit}°: {steps} after {before}");
             before = steps;
             assert!(turn(&mesh) <= limit.to_radians() * 1.0001, "{profile}{limit}°: {}", turn(&mesh).to_degrees());
-            // Even steps over samples of the tangent.
-            let chart = &mesh.charts.0[0];
-            let jets: Vec<(DVec3, DVec3)> =
-                (0..=1000).map(|k| f64::from(k) / 1000.0).map(|v| (chart.surface.point(0.0, v), chart.surface.normal(0.5, v))).collect();
+            // UniformSize steps over samples of the tangent.
+            let geometry = &mesh.geometries.0[0];
+            let jets: Vec<(DVec3, DVec3)> = (0..=1000)
+                .map(|k| f64::from(k) / 1000.0)
+                .map(|v| (geometry.surface.point(0.0, v), geometry.surface.normal(0.5, v)))
+                .collect();
             let mut run = vec![0.0];
             jets.windows(2).for_each(|w| run.push(run[run.len() - 1] + w[0].0.distance(w[1].0)));
             let keeps = |n: usize| {

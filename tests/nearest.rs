@@ -56,7 +56,7 @@ fn no_other_point_is_nearer() {
     assert_eq!(outcome.meshes.len(), 10, "{:?}", outcome.report.meshes.len());
     let mut random = Random(7);
     for (name, mesh) in &outcome.meshes {
-        let surface = &mesh.charts.0[0].surface;
+        let surface = &mesh.geometries.0[0].surface;
         let (near, all) = (Nearest::new(surface), points(surface));
         assert!(all.len() > 1000, "{name}");
         let (low, high) = all.iter().fold((DVec3::MAX, DVec3::MIN), |(low, high), p| (low.min(*p), high.max(*p)));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use lofting::mesh::free::tree::{Cell, Class, DEEPEST, Halt, Tree};
+use lofting::mesh::free::tree::{Cell, Class, Halt, MAX_DEPTH, Tree};
 use serde_json::Value;
 
 use crate::support::borders::closed;
@@ -113,14 +113,14 @@ mod plate {
     use lofting::base::job::Job;
     use lofting::base::triangulate_points::points;
     use lofting::mesh::free::build::{Lattice, Task, triangulate};
-    use lofting::mesh::free::ground::{Even, Ground, Spot};
-    use lofting::mesh::free::improve::{Care, FINEST};
+    use lofting::mesh::free::ground::{ParametricSurface, Spot, UniformSize};
+    use lofting::mesh::free::improve::{FINEST, OptimizeSettings};
     use lofting::mesh::free::outline::Outline;
     use lofting::mesh::free::shape::quality;
 
     struct Flat;
 
-    impl Ground for Flat {
+    impl ParametricSurface for Flat {
         fn spot(&self, xy: DVec2) -> Spot {
             Spot { p: xy.extend(0.0), dx: DVec3::X, dy: DVec3::Y }
         }
@@ -177,11 +177,11 @@ mod plate {
         let inside = |t: &[u32; 3]| tree.holds(t.map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0);
         let bare = figures(&outline.p, all.corners.iter().copied().filter(inside));
         let mesh = |smooth: usize| {
-            let care = Care { smooth, beyond: 1.0, fine: FINEST, wanted: 0.8, fair: 1.0, longest: 1.3 };
-            let (field, lattice) = (Even(4.0 * 0.8), Lattice::Tree);
+            let care = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: 0.8, fair: 1.0, longest: 1.3 };
+            let (field, lattice) = (UniformSize(4.0 * 0.8), Lattice::Tree);
             let task = Task { ground: &Flat, field: &field, outline: &outline, lattice, care, most: 100_000, guard: None };
-            let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;
-            figures(&web.p, web.tri.iter().copied())
+            let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
+            figures(&triangulation.p, triangulation.tri.iter().copied())
         };
         let (plain, smoothed) = (mesh(0), mesh(30));
         assert!(bare.0 < plain.0 && plain.0 < smoothed.0, "{bare:?} {plain:?} {smoothed:?}");
@@ -218,5 +218,5 @@ fn the_deepest_level_is_told() {
         low.cmple(at).all() && (low + tree.side(cell.level)).cmpgt(at).all()
     };
     let Err(Halt::Deep(cell)) = tree.refine(&holds, 10_000) else { panic!("a tree without end") };
-    assert_eq!((tree.cells()[cell as usize].level, tree.cells()[cell as usize].at), (DEEPEST, (0, 0)));
+    assert_eq!((tree.cells()[cell as usize].level, tree.cells()[cell as usize].at), (MAX_DEPTH, (0, 0)));
 }

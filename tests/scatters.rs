@@ -142,7 +142,7 @@ fn bounds_hold() {
         for _ in 0..10 {
             let size = [0.02, 0.2, 0.9][case % 3];
             let (u, v) = (numbers.share() * (1.0 - size), numbers.share() * (1.0 - size));
-            let bounds = surface.spread((u, u + size), (v, v + size));
+            let bounds = surface.enclosure((u, u + size), (v, v + size));
             for _ in 0..20 {
                 let (x, y) = (u + size * numbers.share(), v + size * numbers.share());
                 let jet = surface.jet(x, y);

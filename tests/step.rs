@@ -83,14 +83,14 @@ fn text_may_be_laid_out_in_any_way() {
     assert_eq!(same.len(), 3);
     let no_blanks = plain.replace('\n', "");
     let commented = plain.replace("=", "/* a comment; with ' and #7 = X(); */ = ").replace(",", " /**/ , ");
-    let spread = plain.replace("(", "\n(\n").replace(",", "\n,\n");
+    let enclosure = plain.replace("(", "\n(\n").replace(",", "\n,\n");
     let long = format!("{}{}", " ".repeat(1 << 20), no_blanks);
     for (what, text) in [
         ("CR LF", plain.replace('\n', "\r\n")),
         ("CR", plain.replace('\n', "\r")),
         ("one line", no_blanks.clone()),
         ("comments", commented),
-        ("spread", spread),
+        ("enclosure", enclosure),
         ("byte order mark", format!("\u{FEFF}{plain}")),
         ("a long line", long),
         ("no end", plain.replace("END-ISO-10303-21;", "")),

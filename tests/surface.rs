@@ -12,7 +12,7 @@ use lofting::network::{Chain, ChainFlow, Flow, FlowKind, of_chains};
 use lofting::surface::coons::{Grid, Method, Settings, build};
 use lofting::surface::interpolate::{Tangents, fitted};
 use lofting::surface::revolve::Axis;
-use lofting::surface::{Domain, Lean, Nearest, NurbsSurface, Reparam, Side, Surface, axis_of, extrude, plane, revolve, ruled};
+use lofting::surface::{Domain, Nearest, NurbsSurface, OneSided, Reparam, Side, Surface, axis_of, extrude, plane, revolve, ruled};
 use serde_json::Value;
 
 use crate::support::reference::reference;
@@ -100,8 +100,8 @@ fn coons_patches_meet_smoothly() {
         let mut turn: f64 = 0.0;
         for row in case["rows"].as_array().unwrap() {
             let v = number(&row["v"]);
-            let left = surface.jet_lean(u1, v, (Lean::Before, Lean::After));
-            let right = surface.jet_lean(u1, v, (Lean::After, Lean::After));
+            let left = surface.jet_one_sided(u1, v, (OneSided::Before, OneSided::After));
+            let right = surface.jet_one_sided(u1, v, (OneSided::After, OneSided::After));
             close(left.du, vec3(&row["dU_du_left"]), 1e-4, "left derivative");
             close(right.du, vec3(&row["dU_du_right"]), 1e-4, "right derivative");
             let (a, b) = (left.du.cross(left.dv), right.du.cross(right.dv));
@@ -262,11 +262,11 @@ fn the_two_surfaces_of_figure_2_2() {
     }
     // The kink of the border is met from the side that is asked for.
     let v = a.kinks().1[0];
-    let side = |lean| a.jet_lean(0.0, v, (Lean::After, lean)).dv.normalize();
-    assert!(side(Lean::Before).distance(side(Lean::After)) > 0.1);
-    let far = |lean, h| a.jet_lean(0.0, v + h, (Lean::After, lean)).dv.normalize();
-    close(side(Lean::Before), far(Lean::After, -1e-9), 1e-6, "before");
-    close(side(Lean::After), far(Lean::After, 1e-9), 1e-6, "after");
+    let side = |lean| a.jet_one_sided(0.0, v, (OneSided::After, lean)).dv.normalize();
+    assert!(side(OneSided::Before).distance(side(OneSided::After)) > 0.1);
+    let far = |lean, h| a.jet_one_sided(0.0, v + h, (OneSided::After, lean)).dv.normalize();
+    close(side(OneSided::Before), far(OneSided::After, -1e-9), 1e-6, "before");
+    close(side(OneSided::After), far(OneSided::After, 1e-9), 1e-6, "after");
 }
 
 /// First and second derivatives are difference quotients of points, away from lines where they jump.
@@ -354,7 +354,7 @@ fn check_net(data: &Value, net: &NurbsSurface, exchanged: bool, residual: impl F
     let place = |u: f64, v: f64| if exchanged { (v, u) } else { (u, v) };
     let at = |u: f64, v: f64| {
         let (u, v) = place(u, v);
-        net.jet(u, v, (Lean::After, Lean::After)).p
+        net.jet(u, v, (OneSided::After, OneSided::After)).p
     };
     for sample in data["samples"].as_array().unwrap() {
         close(at(number(&sample["u"]), number(&sample["v"])), vec3(&sample["point"]), 1e-12, "sample");
@@ -393,7 +393,7 @@ fn gridded_points_with_given_tangents() {
     }
     for sample in data["samples"].as_array().unwrap() {
         let (u, v) = (number(&sample["u_fraction"]), number(&sample["v_fraction"]));
-        close(net.jet(u, v, (Lean::After, Lean::After)).p, vec3(&sample["point"]), 1e-12, "sample");
+        close(net.jet(u, v, (OneSided::After, OneSided::After)).p, vec3(&sample["point"]), 1e-12, "sample");
     }
 }
 
@@ -540,7 +540,7 @@ fn closed_flows_have_a_seam() {
     assert!(notes.is_empty());
     assert_eq!((surface.flow().as_str(), surface.closed()), ("quadrilateral closed in u", (true, false)));
     for v in [0.0, 0.4, 1.0] {
-        let (a, b) = (surface.jet(0.0, v), surface.jet_lean(1.0, v, (Lean::Before, Lean::After)));
+        let (a, b) = (surface.jet(0.0, v), surface.jet_one_sided(1.0, v, (OneSided::Before, OneSided::After)));
         close(a.p, b.p, 1e-12, "seam");
         close(a.du, b.du, 1e-9, "C1 across the seam");
     }

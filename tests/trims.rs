@@ -13,10 +13,10 @@ use lofting::base::tolerance::Tolerance;
 use lofting::base::triangulate_points::NO_TRIANGLE;
 use lofting::geometry::build::{arc_through, circle, line};
 use lofting::mesh::free::build::{Lattice, Task, triangulate};
-use lofting::mesh::free::ground::{Even, Field, Ground, Spot};
-use lofting::mesh::free::improve::{Care, FINEST};
+use lofting::mesh::free::ground::{ParametricSurface, SizeField, Spot, UniformSize};
+use lofting::mesh::free::improve::{FINEST, OptimizeSettings};
 use lofting::mesh::free::outline::Outline;
-use lofting::mesh::free::web::Web;
+use lofting::mesh::free::triangulation::Triangulation;
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::session::disk::{Disk, Outputs};
@@ -32,7 +32,7 @@ use crate::support::script;
 /// z = h sin x cos y.
 struct Waves(f64);
 
-impl Ground for Waves {
+impl ParametricSurface for Waves {
     fn spot(&self, xy: DVec2) -> Spot {
         let ((sx, cx), (sy, cy)) = (sin_cos(xy.x), sin_cos(xy.y));
         let h = self.0;
@@ -47,15 +47,15 @@ impl Ground for Waves {
 /// Small at the origin.
 struct Graded(f64);
 
-impl Field for Graded {
+impl SizeField for Graded {
     fn size(&self, xy: DVec2, _: DVec3) -> f64 {
         self.0 * (0.3 + 0.2 * xy.length()).min(1.0)
     }
 }
 
-const CARE: Care = Care { smooth: 20, beyond: 1.0, fine: FINEST, wanted: 0.9, fair: 1.0, longest: 1.25 };
+const CARE: OptimizeSettings = OptimizeSettings { smooth: 20, beyond: 1.0, fine: FINEST, wanted: 0.9, fair: 1.0, longest: 1.25 };
 
-fn add_loop(outline: &mut Outline, ground: &dyn Ground, corners: &[DVec2], size: f64) {
+fn add_loop(outline: &mut Outline, ground: &dyn ParametricSurface, corners: &[DVec2], size: f64) {
     let first = outline.xy.len() as u32;
     for k in 0..corners.len() {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
@@ -77,21 +77,21 @@ fn star(center: DVec2, radii: &[f64], turn: f64) -> Vec<DVec2> {
 }
 
 /// Everything that must hold of a finished face with so many holes that lie apart.
-fn sound(web: &Web, outline: &Outline, holes: Option<usize>) -> TestCaseResult {
-    web.check().map_err(TestCaseError::fail)?;
-    prop_assert!(!web.tri.is_empty());
-    let open = web.across.iter().flatten().filter(|t| **t == NO_TRIANGLE).count();
+fn sound(triangulation: &Triangulation, outline: &Outline, holes: Option<usize>) -> TestCaseResult {
+    triangulation.check().map_err(TestCaseError::fail)?;
+    prop_assert!(!triangulation.tri.is_empty());
+    let open = triangulation.across.iter().flatten().filter(|t| **t == NO_TRIANGLE).count();
     prop_assert_eq!(open, outline.loops.len(), "free edges are those of the loops");
-    let mut used = vec![false; web.p.len()];
-    web.tri.iter().flatten().for_each(|n| used[*n as usize] = true);
+    let mut used = vec![false; triangulation.p.len()];
+    triangulation.tri.iter().flatten().for_each(|n| used[*n as usize] = true);
     prop_assert!(used.iter().all(|u| *u), "a node without triangles");
-    let edges = (3 * web.tri.len() + open) / 2;
-    let euler = web.p.len() as i64 - edges as i64 + web.tri.len() as i64;
+    let edges = (3 * triangulation.tri.len() + open) / 2;
+    let euler = triangulation.p.len() as i64 - edges as i64 + triangulation.tri.len() as i64;
     if let Some(holes) = holes {
         prop_assert_eq!(euler, 1 - holes as i64);
     }
     for (k, p) in outline.p.iter().enumerate() {
-        prop_assert_eq!(web.p[k], *p, "border nodes stay");
+        prop_assert_eq!(triangulation.p[k], *p, "border nodes stay");
     }
     Ok(())
 }
@@ -124,11 +124,11 @@ fn spiked_loops_make_sound_faces_or_say_why() {
         let mut outline = Outline::default();
         add_loop(&mut outline, &ground, &star(DVec2::ZERO, &outer, 0.0), size);
         add_loop(&mut outline, &ground, &star(DVec2::ZERO, &inner, turn), size);
-        let (even, by_place) = (Even(size), Graded(size));
-        let field: &dyn Field = if graded { &by_place } else { &even };
+        let (even, by_place) = (UniformSize(size), Graded(size));
+        let field: &dyn SizeField = if graded { &by_place } else { &even };
         let task = Task { ground: &ground, field, outline: &outline, lattice: Lattice::Crystal, care: CARE, most: 100_000, guard: None };
         match triangulate(&task, &Job::new()).unwrap() {
-            Ok(made) => sound(&made.web, &outline, None),
+            Ok(made) => sound(&made.triangulation, &outline, None),
             Err(_) => Ok(()),
         }
     });
@@ -153,15 +153,15 @@ fn holes_of_any_size_are_kept() {
         }
         let task = Task {
             ground: &ground,
-            field: &Even(size),
+            field: &UniformSize(size),
             outline: &outline,
             lattice: Lattice::Crystal,
             care: CARE,
             most: 100_000,
             guard: None,
         };
-        let web = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?.web;
-        sound(&web, &outline, Some(holes.len()))
+        let triangulation = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?.triangulation;
+        sound(&triangulation, &outline, Some(holes.len()))
     });
 }
 
@@ -180,11 +180,12 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
             add_loop(&mut outline, &ground, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
         }
     }
-    let care = Care { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
-    let task = Task { ground: &ground, field: &Even(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, guard: None };
-    let web = triangulate(&task, &Job::new()).unwrap().unwrap().web;
-    sound(&web, &outline, Some(20)).unwrap();
-    let all: Vec<f64> = (0..web.tri.len() as u32).map(|t| web.quality(t)).collect();
+    let care = OptimizeSettings { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
+    let task =
+        Task { ground: &ground, field: &UniformSize(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, guard: None };
+    let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
+    sound(&triangulation, &outline, Some(20)).unwrap();
+    let all: Vec<f64> = (0..triangulation.tri.len() as u32).map(|t| triangulation.quality(t)).collect();
     let (mean, worst) = (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(1.0, f64::min));
     assert!(mean > 0.985 && worst > 0.85, "mean {mean}, worst {worst}");
 }

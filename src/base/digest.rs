@@ -11,9 +11,9 @@ pub struct Digest(pub u128);
 
 /// Takes in content piece by piece; each piece is separated from the next.
 #[derive(Clone, Debug, Default)]
-pub struct Digester(SipHasher13);
+pub struct StableHasher(SipHasher13);
 
-impl Digester {
+impl StableHasher {
     /// Nothing taken in yet; `purpose` keeps digests of different things apart.
     pub fn new(purpose: &str) -> Self {
         Self::default().text(purpose)
@@ -49,7 +49,7 @@ impl Digester {
     }
 
     /// Takes in content.
-    pub fn with(mut self, content: &(impl Content + ?Sized)) -> Self {
+    pub fn with(mut self, content: &(impl StableHash + ?Sized)) -> Self {
         content.tell(&mut self);
         self
     }
@@ -62,124 +62,124 @@ impl Digester {
 
 /// What has a digest of its content: all that its results depend on, to the last bit. Where it stands in a script is no
 /// part of it, nor what is worked out from the rest when it is first asked for.
-pub trait Content {
+pub trait StableHash {
     /// Tells all of it.
-    fn tell(&self, to: &mut Digester);
+    fn tell(&self, to: &mut StableHasher);
 }
 
-/// Implements [`Content`] for a structure field by field. Every field must be named, as content or behind `but` as one that
+/// Implements [`StableHash`] for a structure field by field. Every field must be named, as content or behind `but` as one that
 /// adds nothing, so that a new field cannot be forgotten.
 #[macro_export]
 macro_rules! content {
     ($name:ty { $($field:ident),* $(,)? } $(but { $($idle:ident),* $(,)? })?) => {
-        impl $crate::base::digest::Content for $name {
-            fn tell(&self, to: &mut $crate::base::digest::Digester) {
+        impl $crate::base::digest::StableHash for $name {
+            fn tell(&self, to: &mut $crate::base::digest::StableHasher) {
                 let Self { $($field,)* $($($idle: _,)*)? } = self;
-                $($crate::base::digest::Content::tell($field, to);)*
+                $($crate::base::digest::StableHash::tell($field, to);)*
             }
         }
     };
 }
 
-/// Implements [`Content`] for an enumeration without fields by the numbers of its variants.
+/// Implements [`StableHash`] for an enumeration without fields by the numbers of its variants.
 #[macro_export]
 macro_rules! content_of_word {
     ($($name:ty),* $(,)?) => {
-        $(impl $crate::base::digest::Content for $name {
-            fn tell(&self, to: &mut $crate::base::digest::Digester) {
-                $crate::base::digest::Content::tell(&(*self as u64), to);
+        $(impl $crate::base::digest::StableHash for $name {
+            fn tell(&self, to: &mut $crate::base::digest::StableHasher) {
+                $crate::base::digest::StableHash::tell(&(*self as u64), to);
             }
         })*
     };
 }
 
-impl Content for u64 {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for u64 {
+    fn tell(&self, to: &mut StableHasher) {
         to.0.write_u64(*self);
     }
 }
 
-impl Content for u32 {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for u32 {
+    fn tell(&self, to: &mut StableHasher) {
         u64::from(*self).tell(to);
     }
 }
 
-impl Content for u8 {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for u8 {
+    fn tell(&self, to: &mut StableHasher) {
         u64::from(*self).tell(to);
     }
 }
 
-impl Content for usize {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for usize {
+    fn tell(&self, to: &mut StableHasher) {
         (*self as u64).tell(to);
     }
 }
 
-impl Content for bool {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for bool {
+    fn tell(&self, to: &mut StableHasher) {
         u64::from(*self).tell(to);
     }
 }
 
-impl Content for f64 {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for f64 {
+    fn tell(&self, to: &mut StableHasher) {
         self.to_bits().tell(to);
     }
 }
 
-impl Content for str {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for str {
+    fn tell(&self, to: &mut StableHasher) {
         to.0.write_u64(self.len() as u64);
         to.0.write(self.as_bytes());
     }
 }
 
-impl Content for String {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for String {
+    fn tell(&self, to: &mut StableHasher) {
         self.as_str().tell(to);
     }
 }
 
-impl Content for Digest {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Digest {
+    fn tell(&self, to: &mut StableHasher) {
         to.0.write(&self.0.to_le_bytes());
     }
 }
 
-impl Content for DVec3 {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for DVec3 {
+    fn tell(&self, to: &mut StableHasher) {
         self.to_array().iter().for_each(|x| x.tell(to));
     }
 }
 
-impl Content for DVec4 {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for DVec4 {
+    fn tell(&self, to: &mut StableHasher) {
         self.to_array().iter().for_each(|x| x.tell(to));
     }
 }
 
-impl<T: Content + ?Sized> Content for &T {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash + ?Sized> StableHash for &T {
+    fn tell(&self, to: &mut StableHasher) {
         (**self).tell(to);
     }
 }
 
-impl<T: Content + ?Sized> Content for Box<T> {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash + ?Sized> StableHash for Box<T> {
+    fn tell(&self, to: &mut StableHasher) {
         (**self).tell(to);
     }
 }
 
-impl<T: Content + ?Sized> Content for std::sync::Arc<T> {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash + ?Sized> StableHash for std::sync::Arc<T> {
+    fn tell(&self, to: &mut StableHasher) {
         (**self).tell(to);
     }
 }
 
-impl<T: Content> Content for Option<T> {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash> StableHash for Option<T> {
+    fn tell(&self, to: &mut StableHasher) {
         self.is_some().tell(to);
         if let Some(content) = self {
             content.tell(to);
@@ -187,34 +187,34 @@ impl<T: Content> Content for Option<T> {
     }
 }
 
-impl<T: Content> Content for [T] {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash> StableHash for [T] {
+    fn tell(&self, to: &mut StableHasher) {
         self.len().tell(to);
         self.iter().for_each(|content| content.tell(to));
     }
 }
 
-impl<T: Content> Content for Vec<T> {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash> StableHash for Vec<T> {
+    fn tell(&self, to: &mut StableHasher) {
         self.as_slice().tell(to);
     }
 }
 
-impl<T: Content, const N: usize> Content for [T; N] {
-    fn tell(&self, to: &mut Digester) {
+impl<T: StableHash, const N: usize> StableHash for [T; N] {
+    fn tell(&self, to: &mut StableHasher) {
         self.iter().for_each(|content| content.tell(to));
     }
 }
 
-impl<A: Content, B: Content> Content for (A, B) {
-    fn tell(&self, to: &mut Digester) {
+impl<A: StableHash, B: StableHash> StableHash for (A, B) {
+    fn tell(&self, to: &mut StableHasher) {
         self.0.tell(to);
         self.1.tell(to);
     }
 }
 
-impl<A: Content, B: Content, C: Content> Content for (A, B, C) {
-    fn tell(&self, to: &mut Digester) {
+impl<A: StableHash, B: StableHash, C: StableHash> StableHash for (A, B, C) {
+    fn tell(&self, to: &mut StableHasher) {
         self.0.tell(to);
         self.1.tell(to);
         self.2.tell(to);
@@ -227,11 +227,14 @@ mod tests {
 
     #[test]
     fn pieces_are_kept_apart_and_nothing_depends_on_the_platform() {
-        let of = |a: &str, b: &str| Digester::new("test").text(a).text(b).finish();
+        let of = |a: &str, b: &str| StableHasher::new("test").text(a).text(b).finish();
         assert_eq!(of("ab", "c"), of("ab", "c"));
         assert_ne!(of("ab", "c"), of("a", "bc"));
-        assert_ne!(Digester::new("a").finish(), Digester::new("b").finish());
-        assert_ne!(Digester::new("a").real(0.0).finish(), Digester::new("a").real(-0.0).finish());
-        assert_eq!(Digester::new("a").number(7).digest(Digest(9)).finish(), Digest(291_297_908_609_795_430_229_299_162_435_872_836_234));
+        assert_ne!(StableHasher::new("a").finish(), StableHasher::new("b").finish());
+        assert_ne!(StableHasher::new("a").real(0.0).finish(), StableHasher::new("a").real(-0.0).finish());
+        assert_eq!(
+            StableHasher::new("a").number(7).digest(Digest(9)).finish(),
+            Digest(291_297_908_609_795_430_229_299_162_435_872_836_234)
+        );
     }
 }

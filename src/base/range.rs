@@ -12,14 +12,14 @@ use super::tolerance::VAST;
 
 /// The numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Range {
+pub struct Interval {
     /// Least.
     pub low: f64,
     /// Largest.
     pub high: f64,
 }
 
-impl Range {
+impl Interval {
     /// One number.
     pub const fn at(x: f64) -> Self {
         Self { low: x, high: x }
@@ -66,28 +66,28 @@ impl Range {
     }
 }
 
-impl Add for Range {
+impl Add for Interval {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { low: self.low + other.low, high: self.high + other.high }
     }
 }
 
-impl Sub for Range {
+impl Sub for Interval {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Self { low: self.low - other.high, high: self.high - other.low }
     }
 }
 
-impl Neg for Range {
+impl Neg for Interval {
     type Output = Self;
     fn neg(self) -> Self {
         Self { low: -self.high, high: -self.low }
     }
 }
 
-impl Mul for Range {
+impl Mul for Interval {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let (a, b, c, d) = (self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high);
@@ -95,7 +95,7 @@ impl Mul for Range {
     }
 }
 
-impl Mul<f64> for Range {
+impl Mul<f64> for Interval {
     type Output = Self;
     fn mul(self, f: f64) -> Self {
         Self::between(self.low * f, self.high * f)
@@ -104,14 +104,14 @@ impl Mul<f64> for Range {
 
 /// The vectors of a box along the axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ranges {
+pub struct Interval3 {
     /// Least of each coordinate.
     pub low: DVec3,
     /// Largest of each coordinate.
     pub high: DVec3,
 }
 
-impl Ranges {
+impl Interval3 {
     /// One vector.
     pub const fn at(v: DVec3) -> Self {
         Self { low: v, high: v }
@@ -143,16 +143,16 @@ impl Ranges {
     }
 
     /// One coordinate.
-    pub fn coordinate(&self, k: usize) -> Range {
-        Range { low: self.low[k], high: self.high[k] }
+    pub fn coordinate(&self, k: usize) -> Interval {
+        Interval { low: self.low[k], high: self.high[k] }
     }
 
-    fn from_coordinates(c: [Range; 3]) -> Self {
+    fn from_coordinates(c: [Interval; 3]) -> Self {
         Self { low: DVec3::new(c[0].low, c[1].low, c[2].low), high: DVec3::new(c[0].high, c[1].high, c[2].high) }
     }
 
     /// Whether no useful bound is known.
-    pub fn is_vast(&self) -> bool {
+    pub fn is_unbounded(&self) -> bool {
         let reach = self.reach();
         reach.is_nan() || reach >= VAST.sqrt()
     }
@@ -163,21 +163,21 @@ impl Ranges {
     }
 
     /// Lengths.
-    pub fn length(&self) -> Range {
+    pub fn length(&self) -> Interval {
         let nearest = DVec3::ZERO.clamp(self.low, self.high);
-        Range { low: nearest.length(), high: self.reach() }
+        Interval { low: nearest.length(), high: self.reach() }
     }
 
     /// Products with one vector.
-    pub fn along(&self, n: DVec3) -> Range {
+    pub fn along(&self, n: DVec3) -> Interval {
         let (a, b) = (self.low * n, self.high * n);
-        Range { low: a.min(b).element_sum(), high: a.max(b).element_sum() }
+        Interval { low: a.min(b).element_sum(), high: a.max(b).element_sum() }
     }
 
     /// Scalar products.
-    pub fn dot(&self, other: &Self) -> Range {
+    pub fn dot(&self, other: &Self) -> Interval {
         let product = *self * *other;
-        Range { low: product.low.element_sum(), high: product.high.element_sum() }
+        Interval { low: product.low.element_sum(), high: product.high.element_sum() }
     }
 
     /// Vector products.
@@ -193,28 +193,28 @@ impl Ranges {
     }
 }
 
-impl Add for Ranges {
+impl Add for Interval3 {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { low: self.low + other.low, high: self.high + other.high }
     }
 }
 
-impl Add<DVec3> for Ranges {
+impl Add<DVec3> for Interval3 {
     type Output = Self;
     fn add(self, v: DVec3) -> Self {
         Self { low: self.low + v, high: self.high + v }
     }
 }
 
-impl Sub for Ranges {
+impl Sub for Interval3 {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Self { low: self.low - other.high, high: self.high - other.low }
     }
 }
 
-impl Neg for Ranges {
+impl Neg for Interval3 {
     type Output = Self;
     fn neg(self) -> Self {
         Self { low: -self.high, high: -self.low }
@@ -222,7 +222,7 @@ impl Neg for Ranges {
 }
 
 /// Coordinate by coordinate.
-impl Mul for Ranges {
+impl Mul for Interval3 {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let (a, b, c, d) = (self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high);
@@ -230,15 +230,15 @@ impl Mul for Ranges {
     }
 }
 
-impl Mul<Range> for Ranges {
+impl Mul<Interval> for Interval3 {
     type Output = Self;
-    fn mul(self, f: Range) -> Self {
+    fn mul(self, f: Interval) -> Self {
         let (a, b, c, d) = (self.low * f.low, self.low * f.high, self.high * f.low, self.high * f.high);
         Self { low: a.min(b).min(c.min(d)), high: a.max(b).max(c.max(d)) }
     }
 }
 
-impl Mul<f64> for Ranges {
+impl Mul<f64> for Interval3 {
     type Output = Self;
     fn mul(self, f: f64) -> Self {
         let (a, b) = (self.low * f, self.high * f);
@@ -247,11 +247,11 @@ impl Mul<f64> for Ranges {
 }
 
 /// Multiples of one vector.
-impl Mul<DVec3> for Range {
-    type Output = Ranges;
-    fn mul(self, v: DVec3) -> Ranges {
+impl Mul<DVec3> for Interval {
+    type Output = Interval3;
+    fn mul(self, v: DVec3) -> Interval3 {
         let (a, b) = (v * self.low, v * self.high);
-        Ranges { low: a.min(b), high: a.max(b) }
+        Interval3 { low: a.min(b), high: a.max(b) }
     }
 }
 
@@ -261,15 +261,15 @@ mod tests {
 
     #[test]
     fn operations_hold_all_results() {
-        let pick = |r: Range, k: u32| r.low + (r.high - r.low) * f64::from(k) / 4.0;
-        let holds = |r: Range, x: f64| r.low - 1e-12 <= x && x <= r.high + 1e-12;
+        let pick = |r: Interval, k: u32| r.low + (r.high - r.low) * f64::from(k) / 4.0;
+        let holds = |r: Interval, x: f64| r.low - 1e-12 <= x && x <= r.high + 1e-12;
         let ends = [-2.0, -0.5, 0.0, 0.75, 3.0];
         for (&a, &b) in ends.iter().zip(&ends[1..]) {
             for (&c, &d) in ends.iter().zip(&ends[1..]) {
-                let (r, s) = (Range::between(b, a), Range::between(c, d));
+                let (r, s) = (Interval::between(b, a), Interval::between(c, d));
                 let (x, y) = (
-                    Ranges { low: DVec3::new(a, c, a), high: DVec3::new(b, d, b) },
-                    Ranges { low: DVec3::new(c, a, c), high: DVec3::new(d, b, d) },
+                    Interval3 { low: DVec3::new(a, c, a), high: DVec3::new(b, d, b) },
+                    Interval3 { low: DVec3::new(c, a, c), high: DVec3::new(d, b, d) },
                 );
                 for k in 0..25 {
                     let (p, q) = (pick(r, k / 5), pick(s, k % 5));

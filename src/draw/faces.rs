@@ -5,10 +5,10 @@ use glam::DVec3;
 use super::scene::{Paint, Sheet};
 use crate::base::par;
 use crate::model::{Model, Patch, SurfaceId};
-use crate::surface::{Domain, Jet2, Lean, Surface};
+use crate::surface::{Domain, Jet2, OneSided, Surface};
 
 /// Places along each direction where a patch is asked how much it bends.
-pub(super) const LOOKS: usize = 9;
+pub(super) const MAX_SAMPLES: usize = 9;
 /// Most steps along each direction of a patch.
 pub(super) const MOST: usize = 400;
 
@@ -66,8 +66,8 @@ pub(super) fn even(sheet: (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), values: Vec<f
 }
 
 /// Places between two parameters, each leaning into the range.
-fn places((low, high): (f64, f64), n: usize) -> Vec<(f64, Lean)> {
-    let at = |k: usize| if k == n { (high, Lean::Before) } else { (low + (high - low) * k as f64 / n as f64, Lean::After) };
+fn places((low, high): (f64, f64), n: usize) -> Vec<(f64, OneSided)> {
+    let at = |k: usize| if k == n { (high, OneSided::Before) } else { (low + (high - low) * k as f64 / n as f64, OneSided::After) };
     (0..=n).map(at).collect()
 }
 
@@ -84,7 +84,7 @@ fn steps(jets: &[Jet2], (du, dv): (f64, f64), fine: f64, show: Show) -> (usize, 
 }
 
 fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
-    let look = surface.jets(&places(patch.u, LOOKS - 1), &places(patch.v, LOOKS - 1));
+    let look = surface.jets(&places(patch.u, MAX_SAMPLES - 1), &places(patch.v, MAX_SAMPLES - 1));
     let (nu, nv) = steps(&look, (patch.u.1 - patch.u.0, patch.v.1 - patch.v.0), fine, show);
     let (us, vs) = (places(patch.u, nu), places(patch.v, nv));
     let jets = surface.jets(&us, &vs);
@@ -123,8 +123,10 @@ pub fn curvature(jet: &Jet2, normal: DVec3) -> f64 {
 }
 
 fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
-    let inner: Vec<Jet2> =
-        (0..LOOKS).flat_map(|j| (0..LOOKS - j).map(move |i| (i, j))).map(|(i, j)| jet_of(surface, i, j, LOOKS - 1)).collect();
+    let inner: Vec<Jet2> = (0..MAX_SAMPLES)
+        .flat_map(|j| (0..MAX_SAMPLES - j).map(move |i| (i, j)))
+        .map(|(i, j)| jet_of(surface, i, j, MAX_SAMPLES - 1))
+        .collect();
     let (a, b) = steps(&inner, (1.0, 1.0), fine, show);
     let n = a.max(b);
     let index = |i: usize, j: usize| (j * (n + 1) - j * j.saturating_sub(1) / 2 + i) as u32;

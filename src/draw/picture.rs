@@ -17,7 +17,7 @@ const SPARSE: f64 = 11.0;
 /// Share of full ink that edges of elements get.
 const ELEMENT_INK: f64 = 0.85;
 /// Sides looked at to find how long edges of elements are.
-const LOOKS: usize = 4096;
+const MAX_SAMPLES: usize = 4096;
 /// How much nearer than they are lines count, pixels, and what each more important kind adds.
 const LIFT: (f64, f64) = (2.0, 0.5);
 /// How much nearer than they are marks and names count.
@@ -118,7 +118,7 @@ fn edge_strength(scene: &Scene, camera: &Camera, settings: &Settings) -> f64 {
     }
     let with_edges: Vec<_> = scene.sheets.iter().filter(|s| !s.edges.is_empty()).collect();
     let total: usize = with_edges.iter().map(|s| s.triangles.len()).sum();
-    let step = total.div_ceil(LOOKS).max(1);
+    let step = total.div_ceil(MAX_SAMPLES).max(1);
     let (mut sum, mut count, mut skip) = (0.0, 0.0, 0);
     for sheet in with_edges {
         for (triangle, sides) in sheet.triangles.iter().zip(&sheet.edges).skip(skip).step_by(step) {

@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 
-use super::faces::{LOOKS, MOST, Show, curvature, even};
+use super::faces::{MAX_SAMPLES, MOST, Show, curvature, even};
 use super::scene::Sheet;
 use crate::base::bbox::Box3;
 use crate::base::job::Job;
 use crate::mesh::free::build::{Lattice, Task, triangulate};
-use crate::mesh::free::ground::Even;
-use crate::mesh::free::improve::{Care, FINEST};
+use crate::mesh::free::chart::Chart;
+use crate::mesh::free::ground::UniformSize;
+use crate::mesh::free::improve::{FINEST, OptimizeSettings};
 use crate::mesh::free::outline::Outline;
-use crate::mesh::free::sheet as chart;
 use crate::surface::{Side, Surface};
 
 /// Points of a border, for each of its sides.
@@ -63,7 +63,7 @@ type Filled = (Vec<DVec3>, Vec<(f64, f64)>, Vec<[u32; 3]>);
 /// Triangles inside an outline, small enough that they show the surface; none where its borders cross.
 fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: f64, show: Show) -> Filled {
     let none = (outline.p.clone(), places.to_vec(), Vec::new());
-    let Some(chart) = chart::Sheet::new(surface, places.iter().copied()) else { return none };
+    let Some(chart) = Chart::new(surface, places.iter().copied()) else { return none };
     outline.xy = places.iter().map(|uv| chart.xy(*uv)).collect();
     let bounds = Box3::of(outline.p.iter().copied());
     let bend = places.iter().map(|(u, v)| curvature(&surface.jet(*u, *v), surface.normal(*u, *v)).abs());
@@ -72,14 +72,14 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     // A chord of a bend k over h is k·h²/8 away.
     let size = (8.0 * fine / bend).sqrt().clamp(bounds.diagonal() / MOST as f64, bounds.diagonal() / show.least() as f64);
     let flat = surface.is_flat();
-    let field = Even(if flat { 4.0 * bounds.diagonal() } else { size });
-    let care = Care { smooth: 0, beyond: 1.0, fine: FINEST, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
+    let field = UniformSize(if flat { 4.0 * bounds.diagonal() } else { size });
+    let care = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
     let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, guard: None };
     match triangulate(&task, &Job::new()) {
         Ok(Ok(made)) => {
-            let web = made.web;
-            let uv = web.xy.iter().map(|xy| chart.uv(*xy)).collect();
-            (web.p, uv, web.tri)
+            let triangulation = made.triangulation;
+            let uv = triangulation.xy.iter().map(|xy| chart.uv(*xy)).collect();
+            (triangulation.p, uv, triangulation.tri)
         }
         _ => none,
     }
@@ -90,7 +90,7 @@ fn inner_bends(surface: &Surface, places: &[(f64, f64)]) -> Vec<f64> {
     let range =
         |of: fn(&(f64, f64)) -> f64| places.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
     let (u, v) = (range(|p| p.0), range(|p| p.1));
-    let at = |(low, high): (f64, f64), k: usize| low + (high - low) * (k as f64 + 0.5) / LOOKS as f64;
-    let places = (0..LOOKS * LOOKS).map(|k| (at(u, k % LOOKS), at(v, k / LOOKS)));
+    let at = |(low, high): (f64, f64), k: usize| low + (high - low) * (k as f64 + 0.5) / MAX_SAMPLES as f64;
+    let places = (0..MAX_SAMPLES * MAX_SAMPLES).map(|k| (at(u, k % MAX_SAMPLES), at(v, k / MAX_SAMPLES)));
     places.map(|(u, v)| curvature(&surface.jet(u, v), surface.normal(u, v)).abs()).collect()
 }

@@ -13,7 +13,7 @@ use super::nurbs::Nurbs;
 use super::offset::Offset;
 use super::pieces::Pieces;
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::work;
@@ -134,8 +134,8 @@ struct Inner {
 crate::content_of_word!(Kind);
 crate::content!(Inner { shape, kind, through } but { origin, lengths, pieces });
 
-impl Content for Shape {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Shape {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Line(a, b) => (0u8, *a, *b).tell(to),
             Self::Arc(arc) => (1u8, arc).tell(to),
@@ -147,8 +147,8 @@ impl Content for Shape {
     }
 }
 
-impl Content for Curve {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Curve {
+    fn tell(&self, to: &mut StableHasher) {
         self.0.tell(to);
     }
 }

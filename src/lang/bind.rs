@@ -1,7 +1,7 @@
 //! Arguments to parameters: positions, names, defaults, types; what is missing, too much or misspelled.
 
 use super::coerce::axis_of_word;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::elsewhere::meant;
 use super::eval::{Code, Gather};
 use super::lookalikes;
@@ -43,7 +43,7 @@ fn places(params: &[&str], rest: Option<usize>, taken: usize, args: &[Option<&st
 
 impl Cx<'_> {
     /// Parameter of each argument of a call, every mistake reported.
-    pub(super) fn match_args(&mut self, code: Code<'_>, signature: &Signature<'_>, taken: usize, args: &[Arg]) -> Result<Vec<usize>, Stop> {
+    pub(super) fn match_args(&mut self, code: Code<'_>, signature: &Signature<'_>, taken: usize, args: &[Arg]) -> Result<Vec<usize>, Halt> {
         let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.names.text(n))).collect();
         let found = places(&signature.params, signature.rest, taken, &names);
         drop(names);
@@ -77,16 +77,16 @@ impl Cx<'_> {
         builtin: &'static Builtin,
         first: Option<Value>,
         args: &[Arg],
-    ) -> Result<Args, Stop> {
+    ) -> Result<Args, Halt> {
         let (said, alone) = (self.sink.len(), first.is_none());
         let bound = self.bound(code, id, builtin, first, args);
-        if alone && matches!(bound, Err(Stop::Failed)) {
+        if alone && matches!(bound, Err(Halt::Failed)) {
             self.type_out(code, id, builtin, args, said);
         }
         bound
     }
 
-    fn bound(&mut self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: Option<Value>, args: &[Arg]) -> Result<Args, Stop> {
+    fn bound(&mut self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: Option<Value>, args: &[Arg]) -> Result<Args, Halt> {
         let rest_at = rest_of(builtin);
         let taken = usize::from(first.is_some());
         // The usual call, positions only, needs no names.
@@ -136,7 +136,7 @@ impl Cx<'_> {
 
     /// Like [`Cx::eval_as`] without building texts on the way that all is well.
     #[inline]
-    fn eval_param(&mut self, code: Code<'_>, id: ExprId, ty: Ty, subject: &dyn Fn() -> String) -> Result<Value, Stop> {
+    fn eval_param(&mut self, code: Code<'_>, id: ExprId, ty: Ty, subject: &dyn Fn() -> String) -> Result<Value, Halt> {
         if ty.choices().is_some() {
             return self.eval_as(code, id, ty, &subject());
         }
@@ -157,14 +157,14 @@ impl Cx<'_> {
     }
 
     /// One argument among the rest: a thing, or lists of things.
-    fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, (list, of): (Ty, Ty), subject: &str) -> Result<Value, Stop> {
+    fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, (list, of): (Ty, Ty), subject: &str) -> Result<Value, Halt> {
         let value = if let Value::Table(t) = value { Value::List(t.rows.clone()) } else { value };
         let ty = if matches!(value, Value::List(_) | Value::Range(..)) { list } else { of };
         self.fit_expr(code, id, value, ty, subject)
     }
 
     /// All rest arguments as one flat list; a single list is kept as it is.
-    fn one_list(&mut self, code: Code<'_>, id: ExprId, mut rest: Vec<Value>) -> Result<Value, Stop> {
+    fn one_list(&mut self, code: Code<'_>, id: ExprId, mut rest: Vec<Value>) -> Result<Value, Halt> {
         if let [Value::List(items)] = rest.as_slice()
             && !items.iter().any(|v| matches!(v, Value::List(_) | Value::Range(..)))
         {
@@ -174,7 +174,7 @@ impl Cx<'_> {
     }
 
     /// A default, evaluated once a run.
-    fn default_of(&mut self, builtin: &'static Builtin, k: usize, text: &'static str) -> Result<Value, Stop> {
+    fn default_of(&mut self, builtin: &'static Builtin, k: usize, text: &'static str) -> Result<Value, Halt> {
         let key = (std::ptr::from_ref(builtin) as usize, k);
         if let Some(value) = self.machine.defaults.get(&key) {
             return Ok(value.clone());
@@ -184,22 +184,22 @@ impl Cx<'_> {
             _ if ty.choices().is_some_and(|words| words.contains(&text)) => Value::Word(text.into()),
             "none" => Value::None,
             "true" | "false" => Value::Bool(text == "true"),
-            _ => self.literal_text(text).ok_or(Stop::Bug("a default that is no literal"))?,
+            _ => self.literal_text(text).ok_or(Halt::Bug("a default that is no literal"))?,
         };
         let value = match self.coerce(value, ty, super::value::ModuleId::MAIN) {
             Ok(value) => value,
             Err(_) if text == "0" => match ty {
                 Ty::Quantity(dim) => Value::quantity(0.0, dim),
-                _ => return Err(Stop::Bug("a default of the wrong type")),
+                _ => return Err(Halt::Bug("a default of the wrong type")),
             },
-            Err(_) => return Err(Stop::Bug("a default of the wrong type")),
+            Err(_) => return Err(Halt::Bug("a default of the wrong type")),
         };
         self.machine.defaults.insert(key, value.clone());
         Ok(value)
     }
 
     #[cold]
-    pub(super) fn missing(&mut self, code: Code<'_>, id: ExprId, signature: &Signature<'_>, name: &str) -> Stop {
+    pub(super) fn missing(&mut self, code: Code<'_>, id: ExprId, signature: &Signature<'_>, name: &str) -> Halt {
         let span = call_name(code, id);
         self.error(code, "E301", format!("`{}` needs `{name}`", signature.name), span, format!("`{name}` is missing"))
             .help(format!("`{}`", signature.shown))
@@ -207,7 +207,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn too_many(&mut self, code: Code<'_>, signature: &Signature<'_>, id: ExprId) -> Stop {
+    fn too_many(&mut self, code: Code<'_>, signature: &Signature<'_>, id: ExprId) -> Halt {
         let text = match signature.params.len() {
             0 => format!("`{}` takes no arguments", signature.name),
             1 => format!("`{}` takes one argument", signature.name),
@@ -219,7 +219,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn no_argument(&mut self, code: Code<'_>, signature: &Signature<'_>, name: &str, (span, value): (Span, ExprId)) -> Stop {
+    fn no_argument(&mut self, code: Code<'_>, signature: &Signature<'_>, name: &str, (span, value): (Span, ExprId)) -> Halt {
         let near = meant(name, signature.params.iter().copied()).map(str::to_owned);
         let text = format!("`{}` has no argument `{name}`", signature.name);
         if matches!(name, "d" | "diameter") && signature.params.contains(&"radius") {
@@ -238,7 +238,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn twice(&mut self, code: Code<'_>, signature: &Signature<'_>, k: usize, arg: &Arg, before: Option<Arg>) -> Stop {
+    fn twice(&mut self, code: Code<'_>, signature: &Signature<'_>, k: usize, arg: &Arg, before: Option<Arg>) -> Halt {
         let span = arg.name.map_or(code.span(arg.value), |(_, span)| span);
         let draft = self.error(code, "E304", format!("`{}` is given twice", signature.params[k]), span, "the second time");
         match before {

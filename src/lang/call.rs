@@ -2,7 +2,7 @@
 
 use super::bind::{Signature, call_name, positional};
 use super::coerce::accepts;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::Diagnostic;
 use super::elsewhere::meant;
 use super::eval::{Code, Frame, Gather, Site, Word};
@@ -54,7 +54,7 @@ impl Cx<'_> {
         (name, name_span): (Name, Span),
         of: Option<ExprId>,
         args: &[Arg],
-    ) -> Result<Value, Stop> {
+    ) -> Result<Value, Halt> {
         let first = match of {
             Some(of) => match self.eval(code, of)? {
                 Value::Module(module) => return self.call_in(code, id, module, (name, name_span), args),
@@ -71,12 +71,12 @@ impl Cx<'_> {
             let value = match (first, args.first()) {
                 (Some(value), _) => value,
                 (None, Some(arg)) => self.eval(code, arg.value)?,
-                (None, None) => return Err(Stop::Bug("a call of one value without any")),
+                (None, None) => return Err(Halt::Bug("a call of one value without any")),
             };
             return match (self.field_for(name, &value), function) {
                 (Some(field), _) => self.run(code, id, field, Some(value), &[]),
                 (None, Some(function)) => self.run(code, id, function, Some(value), &[]),
-                (None, None) if self.machine.at(code.module).is_broken(name) => Err(Stop::Broken),
+                (None, None) if self.machine.at(code.module).is_broken(name) => Err(Halt::Broken),
                 (None, None) => Err(self.no_field(code, &value, name, name_span)),
             };
         }
@@ -97,10 +97,10 @@ impl Cx<'_> {
     }
 
     /// `ribs.rib(3m)`: a function of a module.
-    fn call_in(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, (name, span): (Name, Span), args: &[Arg]) -> Result<Value, Stop> {
+    fn call_in(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, (name, span): (Name, Span), args: &[Arg]) -> Result<Value, Halt> {
         match self.script_fn(module, name) {
             Some(declaration) => self.call_fn(code, id, (module, declaration), None, args),
-            None if self.machine.at(module).is_broken(name) => Err(Stop::Broken),
+            None if self.machine.at(module).is_broken(name) => Err(Halt::Broken),
             None => {
                 let (label, text) = (self.machine.at(module).label.clone(), self.names.text(name).to_owned());
                 Err(self.error(code, "E214", format!("`{label}` has no function `{text}`"), span, "no such function").stop())
@@ -109,7 +109,7 @@ impl Cx<'_> {
     }
 
     /// Binds, calls a builtin, and shows its faults at the arguments.
-    fn run(&mut self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: Option<Value>, args: &[Arg]) -> Result<Value, Stop> {
+    fn run(&mut self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: Option<Value>, args: &[Arg]) -> Result<Value, Halt> {
         let before = first.clone();
         let values = self.bind(code, id, builtin, first, args)?;
         self.machine.site.expr = id;
@@ -128,8 +128,8 @@ impl Cx<'_> {
                 self.made_by_builtin(code, id, &value)?;
                 self.finite_result(code, id, value)
             }
-            Err(Stop::Fault(crate::base::fault::Fault::Interrupted)) => Err(crate::base::fault::Fault::Interrupted.into()),
-            Err(Stop::Fault(fault)) => {
+            Err(Halt::Fault(crate::base::fault::Fault::Interrupted)) => Err(crate::base::fault::Fault::Interrupted.into()),
+            Err(Halt::Fault(fault)) => {
                 let blame = self.blame(code, id, builtin, before.is_some(), args);
                 let mut diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
                 self.advise(&fault, (code, id), &blame, &mut diagnostic);
@@ -140,7 +140,7 @@ impl Cx<'_> {
                 if few {
                     self.type_out(code, id, builtin, args, self.sink.len() - 1);
                 }
-                Err(Stop::Failed)
+                Err(Halt::Failed)
             }
             Err(other) => Err(other),
         }
@@ -178,7 +178,7 @@ impl Cx<'_> {
         diagnostic
     }
 
-    fn finite_result(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Value, Stop> {
+    fn finite_result(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Value, Halt> {
         match &value {
             Value::Number(q) if !q.value.is_finite() => {
                 Err(self.error(code, "E408", "the result is not a finite number", code.span(id), "too large, or undefined, here").stop())
@@ -195,7 +195,7 @@ impl Cx<'_> {
         (module, declaration): (ModuleId, u32),
         first: Option<Value>,
         args: &[Arg],
-    ) -> Result<Value, Stop> {
+    ) -> Result<Value, Halt> {
         match self.machine.at(module).states[declaration as usize] {
             State::Done(_) => {}
             _ => {
@@ -208,7 +208,7 @@ impl Cx<'_> {
         }
         let script = self.machine.at(module).script.clone();
         let declared = &script.declarations[declaration as usize];
-        let DeclarationKind::Fn { bound, params, returns, body } = &declared.kind else { return Err(Stop::Bug("not a function")) };
+        let DeclarationKind::Fn { bound, params, returns, body } = &declared.kind else { return Err(Halt::Bug("not a function")) };
         let callee = Code { nodes: &declared.nodes, module, declaration };
         let given = self.fn_args(code, id, (bound.name, params), first, args)?;
 
@@ -233,19 +233,19 @@ impl Cx<'_> {
         result
     }
 
-    fn run_fn(&mut self, callee: Code<'_>, params: &[FnParam], given: Vec<Option<Value>>, body: ExprId) -> Result<Value, Stop> {
+    fn run_fn(&mut self, callee: Code<'_>, params: &[FnParam], given: Vec<Option<Value>>, body: ExprId) -> Result<Value, Halt> {
         for (param, value) in params.iter().zip(given) {
             let value = match (value, param.default) {
                 (Some(value), _) => value,
                 (None, Some(default)) => self.param_value(callee, default, param)?,
-                (None, None) => return Err(Stop::Bug("a missing argument was not reported")),
+                (None, None) => return Err(Halt::Bug("a missing argument was not reported")),
             };
             self.machine.locals.push((param.bound.name, value));
         }
         self.eval(callee, body)
     }
 
-    fn param_value(&mut self, code: Code<'_>, id: ExprId, param: &FnParam) -> Result<Value, Stop> {
+    fn param_value(&mut self, code: Code<'_>, id: ExprId, param: &FnParam) -> Result<Value, Halt> {
         match param.ty.and_then(|ty| Ty::written(self.names.text(ty.name), ty.lists)) {
             Some(ty) => {
                 let subject = format!("`{}`", self.names.text(param.bound.name));
@@ -263,7 +263,7 @@ impl Cx<'_> {
         (name, params): (Name, &[FnParam]),
         first: Option<Value>,
         args: &[Arg],
-    ) -> Result<Vec<Option<Value>>, Stop> {
+    ) -> Result<Vec<Option<Value>>, Halt> {
         let taken = usize::from(first.is_some());
         let simple = args.iter().all(|a| a.name.is_none()) && args.len() + taken <= params.len();
         let places: Vec<usize> = if simple {
@@ -300,8 +300,8 @@ impl Cx<'_> {
         &mut self,
         name: Name,
         params: &[FnParam],
-        work: impl FnOnce(&mut Self, &Signature<'_>) -> Result<T, Stop>,
-    ) -> Result<T, Stop> {
+        work: impl FnOnce(&mut Self, &Signature<'_>) -> Result<T, Halt>,
+    ) -> Result<T, Halt> {
         let texts: Vec<String> = params.iter().map(|p| self.names.text(p.bound.name).to_owned()).collect();
         let name = self.names.text(name).to_owned();
         let parts: Vec<String> = params
@@ -318,7 +318,7 @@ impl Cx<'_> {
     }
 
     /// `of.name`: a record's field, a name of a module, a field of the kind, then a function of one value.
-    pub(super) fn field(&mut self, code: Code<'_>, id: ExprId, of: ExprId, (name, span): (Name, Span)) -> Result<Value, Stop> {
+    pub(super) fn field(&mut self, code: Code<'_>, id: ExprId, of: ExprId, (name, span): (Name, Span)) -> Result<Value, Halt> {
         let value = self.eval(code, of)?;
         match &value {
             Value::Record(r) => {
@@ -345,13 +345,13 @@ impl Cx<'_> {
     }
 
     /// `ribs.arch`: what a module declares.
-    fn member_of(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, (name, span): (Name, Span)) -> Result<Value, Stop> {
+    fn member_of(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, (name, span): (Name, Span)) -> Result<Value, Halt> {
         match self.machine.at(module).find(name) {
             Some(declaration) if self.machine.at(module).script.declarations[declaration as usize].keyword != Keyword::Fn => {
                 self.machine.site.expr = id;
                 self.ensure(module, declaration)
             }
-            None if self.machine.at(module).is_broken(name) => Err(Stop::Broken),
+            None if self.machine.at(module).is_broken(name) => Err(Halt::Broken),
             found => {
                 let label = self.machine.at(module).label.clone();
                 let text = self.names.text(name).to_owned();
@@ -367,7 +367,7 @@ impl Cx<'_> {
 
     /// E214: nothing of that name for this kind.
     #[cold]
-    fn no_field(&mut self, code: Code<'_>, value: &Value, name: Name, span: Span) -> Stop {
+    fn no_field(&mut self, code: Code<'_>, value: &Value, name: Name, span: Span) -> Halt {
         let text = self.names.text(name).to_owned();
         if later::is_function(&text) {
             return self.error(code, "E230", format!("`{text}` is not in this version"), span, "a later version has it").stop();
@@ -388,7 +388,7 @@ impl Cx<'_> {
     }
 
     /// `of[index]`.
-    pub(super) fn index(&mut self, code: Code<'_>, id: ExprId, of: ExprId, index: ExprId) -> Result<Value, Stop> {
+    pub(super) fn index(&mut self, code: Code<'_>, id: ExprId, of: ExprId, index: ExprId) -> Result<Value, Halt> {
         let value = self.eval(code, of)?;
         if matches!(value, Value::Curve(_) | Value::Link(..)) {
             return self.slice_curve(code, id, value, index);
@@ -451,7 +451,7 @@ impl Cx<'_> {
     }
 
     /// `part["deck"]`.
-    fn member(&mut self, code: Code<'_>, record: &Record, key: &str, index: ExprId) -> Result<Value, Stop> {
+    fn member(&mut self, code: Code<'_>, record: &Record, key: &str, index: ExprId) -> Result<Value, Halt> {
         if let Some(value) = self.names.find(key).and_then(|name| record.get(name)) {
             return Ok(value.clone());
         }
@@ -463,7 +463,7 @@ impl Cx<'_> {
         })
     }
 
-    fn bound_of(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<usize, Stop> {
+    fn bound_of(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<usize, Halt> {
         match self.eval(code, id)? {
             Value::Number(q) if q.dim.is_none() && q.value == q.value.trunc() => {
                 let k = if q.value < 0.0 { q.value + n as f64 } else { q.value };
@@ -477,7 +477,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn outside(&mut self, code: Code<'_>, id: ExprId, k: f64, n: usize) -> Stop {
+    fn outside(&mut self, code: Code<'_>, id: ExprId, k: f64, n: usize) -> Halt {
         let k = super::units::number_text(k);
         let text = match n {
             0 => format!("index {k} of an empty list"),

@@ -1,6 +1,6 @@
 //! Reports of declarations that need themselves.
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::Label;
 use super::eval::Code;
 use super::module::bound;
@@ -12,7 +12,7 @@ const ALL: &str = "links, nodes, `network` and meshes depend on all curves and s
 
 impl Cx<'_> {
     /// Reports a cycle once, with all its members.
-    pub(super) fn cycle(&mut self, module: ModuleId, index: u32) -> Stop {
+    pub(super) fn cycle(&mut self, module: ModuleId, index: u32) -> Halt {
         let from = self.machine.running.iter().rposition(|r| *r == (module, index)).unwrap_or(0);
         let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
         self.machine.in_cycle.extend(&members);
@@ -65,7 +65,7 @@ impl Cx<'_> {
     }
 
     /// Reports that `part`, one of all curves and surfaces, is made from all of them, at the expression that asks for all.
-    pub(super) fn circle_through_all(&mut self, part: (ModuleId, u32)) -> Stop {
+    pub(super) fn circle_through_all(&mut self, part: (ModuleId, u32)) -> Halt {
         let from = self.machine.running.iter().position(|r| *r == part).unwrap_or(0);
         let members: Vec<(ModuleId, u32)> = self.machine.running[from..].to_vec();
         self.machine.in_cycle.extend(&members);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::Code;
 use super::settings::DECK_ELEMENTS;
 use super::std::kinds::EdgeOf;
@@ -29,12 +29,12 @@ pub(super) enum Misfit {
     /// A member of a list: which, what it is, and why.
     Member(usize, Box<Value>, Box<Misfit>),
     /// Something it depends on.
-    Stop(Stop),
+    Halt(Halt),
 }
 
-impl From<Stop> for Misfit {
-    fn from(stop: Stop) -> Self {
-        Self::Stop(stop)
+impl From<Halt> for Misfit {
+    fn from(stop: Halt) -> Self {
+        Self::Halt(stop)
     }
 }
 
@@ -109,7 +109,7 @@ impl Cx<'_> {
         for ty in types {
             match self.fit(value, *ty, module) {
                 Ok(fitted) => return Ok(fitted),
-                Err(Misfit::Stop(stop)) => return Err(Misfit::Stop(stop)),
+                Err(Misfit::Halt(stop)) => return Err(Misfit::Halt(stop)),
                 Err(misfit) => {
                     if first.is_none() || matches!(misfit, Misfit::Member(..) | Misfit::Choice | Misfit::NotWhole) {
                         first = Some(misfit);
@@ -133,7 +133,7 @@ impl Cx<'_> {
             (true, true) if !matches!(value, Value::Record(_)) => self.fit_list(value, of, module),
             (true, many) => match self.fit(value, of, module) {
                 Ok(fitted) => Ok(one(fitted.unwrap_or_else(|| value.clone()))),
-                Err(Misfit::Stop(stop)) => Err(Misfit::Stop(stop)),
+                Err(Misfit::Halt(stop)) => Err(Misfit::Halt(stop)),
                 Err(_) if many => self.fit_list(value, of, module),
                 Err(misfit) => Err(misfit),
             },
@@ -163,7 +163,7 @@ impl Cx<'_> {
             let fits = if of.is_list() && item.len().is_none() { Err(Misfit::Kind) } else { self.fit(item, of, module) };
             let (fitted, nested) = match fits {
                 Ok(fitted) => (fitted, false),
-                Err(Misfit::Stop(stop)) => return Err(Misfit::Stop(stop)),
+                Err(Misfit::Halt(stop)) => return Err(Misfit::Halt(stop)),
                 Err(_) if of.is_thing() && item.part().is_some() => {
                     let faces = item.part().map_or(Value::None, |part| part.list());
                     let inner = self.fit_list(&faces, of, module).map_err(|m| member(i, item, m))?;
@@ -188,7 +188,7 @@ impl Cx<'_> {
     }
 
     /// A point, node, vertex or tuple as a vector with its dimension.
-    pub(super) fn as_vector(&mut self, value: Value) -> Result<(DVec3, Dim), Stop> {
+    pub(super) fn as_vector(&mut self, value: Value) -> Result<(DVec3, Dim), Halt> {
         match value {
             Value::Vector(v, dim) => Ok((v, dim)),
             Value::Node(p) => Ok((p, Dim::LENGTH)),
@@ -196,22 +196,22 @@ impl Cx<'_> {
                 let model = self.model(&home)?;
                 Ok((model.vertices.get(id.index()).map_or(DVec3::ZERO, |v| v.point), Dim::LENGTH))
             }
-            _ => Err(Stop::Bug("not a vector")),
+            _ => Err(Halt::Bug("not a vector")),
         }
     }
 
     /// A curve or link as a chain.
-    pub(super) fn as_chain(&mut self, value: Value) -> Result<Chain, Stop> {
+    pub(super) fn as_chain(&mut self, value: Value) -> Result<Chain, Halt> {
         match value {
             Value::Curve(chain) => Ok(chain),
             Value::Link(module, id) => Ok(self.network(module)?.link_chain(id)),
             Value::Edge(home, edge) => curve_of(self, EdgeOf(home, edge)),
-            _ => Err(Stop::Bug("not a curve")),
+            _ => Err(Halt::Bug("not a curve")),
         }
     }
 
     /// Fits the value of an expression, reporting what does not; `subject` is what wants it: "`h`".
-    pub(super) fn fit_expr(&mut self, code: Code<'_>, id: ExprId, value: Value, ty: Ty, subject: &str) -> Result<Value, Stop> {
+    pub(super) fn fit_expr(&mut self, code: Code<'_>, id: ExprId, value: Value, ty: Ty, subject: &str) -> Result<Value, Halt> {
         if super::operators::is_zero(code, id)
             && let Some(dim) = zero_dim(ty)
         {
@@ -219,14 +219,14 @@ impl Cx<'_> {
         }
         match self.coerce(value, ty, code.module) {
             Ok(value) => Ok(value),
-            Err((_, Misfit::Stop(Stop::Fault(fault)))) => Err(Stop::Fault(fault)),
-            Err((_, Misfit::Stop(stop))) => Err(stop),
+            Err((_, Misfit::Halt(Halt::Fault(fault)))) => Err(Halt::Fault(fault)),
+            Err((_, Misfit::Halt(stop))) => Err(stop),
             Err((value, misfit)) => Err(self.misfit(code, id, &value, ty, subject, &misfit)),
         }
     }
 
     #[cold]
-    fn misfit(&mut self, code: Code<'_>, id: ExprId, value: &Value, ty: Ty, subject: &str, misfit: &Misfit) -> Stop {
+    fn misfit(&mut self, code: Code<'_>, id: ExprId, value: &Value, ty: Ty, subject: &str, misfit: &Misfit) -> Halt {
         let wanted = ty.words();
         if let Misfit::Member(i, item, inner) = misfit {
             // A list written out is blamed at its member.
@@ -329,7 +329,7 @@ impl Cx<'_> {
 
     /// E213: a word that is none of those allowed.
     #[cold]
-    pub(super) fn no_choice(&mut self, code: Code<'_>, id: ExprId, word: &str, words: &[&str], subject: &str) -> Stop {
+    pub(super) fn no_choice(&mut self, code: Code<'_>, id: ExprId, word: &str, words: &[&str], subject: &str) -> Halt {
         // Of the element names of all decks those that this export may say.
         let at_hand = if words == DECK_ELEMENTS { self.element_words(code) } else { None };
         let shown = at_hand.as_deref().unwrap_or(words);
@@ -343,7 +343,7 @@ impl Cx<'_> {
     }
 
     /// Evaluates an expression where this type is wanted: a name that is one of its words is the word.
-    pub(super) fn eval_as(&mut self, code: Code<'_>, id: ExprId, ty: Ty, subject: &str) -> Result<Value, Stop> {
+    pub(super) fn eval_as(&mut self, code: Code<'_>, id: ExprId, ty: Ty, subject: &str) -> Result<Value, Halt> {
         let value = match ty.choices() {
             Some(words) => self.eval_choice(code, id, words, subject)?,
             None => self.eval(code, id)?,
@@ -351,7 +351,7 @@ impl Cx<'_> {
         self.fit_expr(code, id, value, ty, subject)
     }
 
-    fn eval_choice(&mut self, code: Code<'_>, id: ExprId, words: &[&str], subject: &str) -> Result<Value, Stop> {
+    fn eval_choice(&mut self, code: Code<'_>, id: ExprId, words: &[&str], subject: &str) -> Result<Value, Halt> {
         match code.expr(id) {
             Expr::Name(name) => {
                 let text = self.names.text(*name);
@@ -384,7 +384,7 @@ impl Cx<'_> {
 /// Why a list does not fit: its i-th member.
 fn member(i: usize, item: &Value, misfit: Misfit) -> Misfit {
     match misfit {
-        Misfit::Stop(stop) => Misfit::Stop(stop),
+        Misfit::Halt(stop) => Misfit::Halt(stop),
         other => Misfit::Member(i, Box::new(item.clone()), Box::new(other)),
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::coerce::flatten_into;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::elsewhere::meant;
 use super::eval::{Code, Gather};
 use super::faults::member_name;
@@ -12,7 +12,7 @@ use super::lookalikes;
 use super::module::bound;
 use super::origins::NO_MEMBER;
 use super::part::Skin;
-use super::plans::{MeshSpec, RefineSpec, RuleSpec, Said};
+use super::plans::{Located, MeshSpec, RefineSpec, RuleSpec};
 use super::room::flat_len;
 use super::scene::each_once;
 use super::settings::{self, Setting};
@@ -41,7 +41,7 @@ pub(super) fn find<'r>(resolved: &'r [Resolved], key: &str) -> Option<&'r Resolv
     resolved.iter().find(|r| r.key == key)
 }
 
-pub(super) fn said<T>(resolved: &[Resolved], key: &str, take: impl Fn(&Value) -> Option<T>) -> Said<T> {
+pub(super) fn said<T>(resolved: &[Resolved], key: &str, take: impl Fn(&Value) -> Option<T>) -> Located<T> {
     find(resolved, key).and_then(|r| take(&r.value).map(|v| (v, r.origin)))
 }
 
@@ -91,7 +91,7 @@ impl Cx<'_> {
         family: &[For],
         things: &[ExprId],
         (settings, clauses): (&[ast::Setting], &[MeshClause]),
-    ) -> Result<Value, Stop> {
+    ) -> Result<Value, Halt> {
         let name = bound(declaration).map(|b| self.names.text(b.name).to_owned()).unwrap_or_default();
         let mut meshes: Vec<MeshSpec> = Vec::new();
         let base = self.machine.at(code.module).meshes.len();
@@ -128,7 +128,7 @@ impl Cx<'_> {
                                 snap = snap.or(s.snap);
                                 imprint = imprint.or(s.imprint);
                             }
-                            _ => return Err(Stop::Bug("a shell of something else")),
+                            _ => return Err(Halt::Bug("a shell of something else")),
                         }
                     }
                     let mut surfaces = each_once(surfaces);
@@ -202,7 +202,7 @@ impl Cx<'_> {
     }
 
     /// Things of a collection, nested lists flattened, each of a kind that may be there.
-    pub(super) fn things(&mut self, code: Code<'_>, things: &[ExprId], keyword: Keyword) -> Result<Vec<(Value, Origin)>, Stop> {
+    pub(super) fn things(&mut self, code: Code<'_>, things: &[ExprId], keyword: Keyword) -> Result<Vec<(Value, Origin)>, Halt> {
         self.things_for(code, things, (keyword, later::keyword_word(keyword)))
     }
 
@@ -212,7 +212,7 @@ impl Cx<'_> {
         code: Code<'_>,
         things: &[ExprId],
         (keyword, word): (Keyword, &'static str),
-    ) -> Result<Vec<(Value, Origin)>, Stop> {
+    ) -> Result<Vec<(Value, Origin)>, Halt> {
         let (wanted, fits): (&str, fn(&Value) -> bool) = match keyword {
             Keyword::Shell => ("surfaces", |v| matches!(v, Value::Surface(_) | Value::Shell(_))),
             Keyword::Mesh => ("surfaces, shells, curves and points", |v| {
@@ -294,7 +294,7 @@ impl Cx<'_> {
     }
 
     /// The skins of a part that a shell alone is of: several become a shell each.
-    fn skins(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Skin>, Stop> {
+    fn skins(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Skin>, Halt> {
         let [thing] = things else { return Ok(Vec::new()) };
         if !matches!(code.expr(*thing), Expr::Name(_) | Expr::Field { .. } | Expr::Index { .. }) {
             return Ok(Vec::new());
@@ -304,7 +304,7 @@ impl Cx<'_> {
     }
 
     /// Nested lists flattened, and parts as what they are made of: bodies as shells for what keeps them apart, else faces.
-    fn opened(&mut self, code: Code<'_>, thing: ExprId, value: Value, keyword: Keyword) -> Result<Vec<Value>, Stop> {
+    fn opened(&mut self, code: Code<'_>, thing: ExprId, value: Value, keyword: Keyword) -> Result<Vec<Value>, Halt> {
         let flat = self.flattened(code, thing, value)?;
         if flat.iter().all(|value| value.part().is_none()) {
             return Ok(flat);
@@ -358,7 +358,7 @@ impl Cx<'_> {
         word: &str,
         table: &'static [Setting],
         settings: &[ast::Setting],
-    ) -> Result<Vec<Resolved>, Stop> {
+    ) -> Result<Vec<Resolved>, Halt> {
         let (mut out, mut gather) = (Vec::<Resolved>::with_capacity(settings.len()), Gather::default());
         for setting in settings {
             let key = self.names.text(setting.key).to_owned();
@@ -381,7 +381,7 @@ impl Cx<'_> {
         gather.done().map(|()| out)
     }
 
-    fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Stop> {
+    fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Halt> {
         let Some(x) = number(&value) else { return Ok(value) };
         if x > 1.0 && matches!(&value, Value::Number(q) if q.percent) && !matches!(key, "bias" | "growth") {
             let found = self.show(&value);
@@ -398,14 +398,14 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn out_of_page(&mut self, code: Code<'_>, key: &str, value: &Value, id: ExprId) -> Stop {
+    fn out_of_page(&mut self, code: Code<'_>, key: &str, value: &Value, id: ExprId) -> Halt {
         let (least, most, found) = (limits::PICTURE_LEAST, limits::PICTURE_SIDE, self.show(value));
         let text = format!("`{key}` must be {least} to {most} pixels, got {found}");
         self.error(code, "E306", text, code.span(id), found).stop()
     }
 
     #[cold]
-    fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Stop {
+    fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Halt {
         let near = meant(key, table.iter().map(|s| s.key)).map(str::to_owned);
         let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("{} {word}", article(word)) });
         let label = near.as_ref().map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));
@@ -416,7 +416,7 @@ impl Cx<'_> {
     }
 
     /// `on things { … }`.
-    fn rule(&mut self, code: Code<'_>, clause: &MeshClause, meshed: &mut Meshed<'_>) -> Result<RuleSpec, Stop> {
+    fn rule(&mut self, code: Code<'_>, clause: &MeshClause, meshed: &mut Meshed<'_>) -> Result<RuleSpec, Halt> {
         let mut gather = Gather::default();
         let things = gather.take(self.rule_things(code, &clause.things)).unwrap_or_default();
         let mut settings = gather.take(self.settings(code, "on", settings::ON, &clause.settings)).unwrap_or_default();
@@ -437,7 +437,7 @@ impl Cx<'_> {
         })
     }
 
-    fn rule_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Stop> {
+    fn rule_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Halt> {
         let found = self.things_for(code, things, (Keyword::Group, "rule"))?;
         let wrong = found.iter().find(|(v, _)| matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Mesh(_)));
         match wrong {

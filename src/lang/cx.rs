@@ -30,7 +30,7 @@ pub(super) const SAID_JUST_NOW: usize = 64;
 
 /// Why an evaluation gives no value.
 #[derive(Clone, Debug)]
-pub enum Stop {
+pub enum Halt {
     /// It was reported already.
     Failed,
     /// It depends on a declaration that failed: script and place there.
@@ -45,7 +45,7 @@ pub enum Stop {
     Bug(&'static str),
 }
 
-impl From<Fault> for Stop {
+impl From<Fault> for Halt {
     fn from(fault: Fault) -> Self {
         Self::Fault(fault)
     }
@@ -53,7 +53,7 @@ impl From<Fault> for Stop {
 
 macro_rules! stop_from {
     ($($family:ident),+) => { $(
-        impl From<crate::base::fault::$family> for Stop {
+        impl From<crate::base::fault::$family> for Halt {
             fn from(fault: crate::base::fault::$family) -> Self {
                 Self::Fault(fault.into())
             }
@@ -130,13 +130,13 @@ pub struct Snapping {
 pub trait Pipeline: Sync {
     /// Moves ends of measured curves together (`snap d`), before anything asks for the tolerance. What moved is replaced in
     /// place and noted (N513).
-    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Stop>;
+    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Halt>;
     /// The network of all curves, nameless ones under declared surfaces included.
-    fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop>;
+    fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt>;
     /// Patches, edges and vertices of all these surfaces, on the network of these curves.
-    fn model(&self, cx: &mut Cx, module: ModuleId, parts: (&Parts, Arc<Network>)) -> Result<Arc<Model>, Stop>;
+    fn model(&self, cx: &mut Cx, module: ModuleId, parts: (&Parts, Arc<Network>)) -> Result<Arc<Model>, Halt>;
     /// A declared mesh.
-    fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Stop>;
+    fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Halt>;
 }
 
 /// One run: scripts, values, and what builtins may ask for.
@@ -182,11 +182,11 @@ impl<'w> Cx<'w> {
         }
     }
 
-    /// The tolerance, or [`Stop::NotYet`] while the box that decides it is still being found.
+    /// The tolerance, or [`Halt::NotYet`] while the box that decides it is still being found.
     ///
     /// A builtin that needs it asks first thing, before work that would be done twice.
-    pub fn tolerance(&self) -> Result<Tolerance, Stop> {
-        self.tolerance.ok_or(Stop::NotYet)
+    pub fn tolerance(&self) -> Result<Tolerance, Halt> {
+        self.tolerance.ok_or(Halt::NotYet)
     }
 
     /// The unit of all lengths of this run: that of the main script.
@@ -251,12 +251,12 @@ impl<'w> Cx<'w> {
     }
 
     /// The network of a script; evaluates all its curves first.
-    pub fn network(&mut self, module: ModuleId) -> Result<Arc<Network>, Stop> {
+    pub fn network(&mut self, module: ModuleId) -> Result<Arc<Network>, Halt> {
         super::stages::network(self, module)
     }
 
     /// The surface model of a script, whose surfaces are evaluated first, or the one that things are numbered in.
-    pub fn model(&mut self, of: impl Into<Home>) -> Result<Arc<Model>, Stop> {
+    pub fn model(&mut self, of: impl Into<Home>) -> Result<Arc<Model>, Halt> {
         match of.into() {
             Home { annex: Some(model), .. } => Ok(model),
             Home { module, annex: None, .. } => super::stages::model(self, module),
@@ -264,7 +264,7 @@ impl<'w> Cx<'w> {
     }
 
     /// The network that the model stands on in which things are numbered.
-    pub fn network_of(&mut self, home: &Home) -> Result<Arc<Network>, Stop> {
+    pub fn network_of(&mut self, home: &Home) -> Result<Arc<Network>, Halt> {
         match home {
             Home { alone: true, .. } => Ok(Arc::default()),
             Home { annex: Some(_), .. } => Ok(self.ground(home.module)?.1),
@@ -273,22 +273,22 @@ impl<'w> Cx<'w> {
     }
 
     /// What is sound of a script's geometry, for showing it; asked after everything was evaluated.
-    pub fn sound(&mut self, module: ModuleId) -> Result<Sound, Stop> {
+    pub fn sound(&mut self, module: ModuleId) -> Result<Sound, Halt> {
         super::stages::sound(self, module)
     }
 
     /// Network and surface model that shells and meshes are made on: the whole, or what is sound where declarations failed.
-    pub fn ground(&mut self, module: ModuleId) -> Result<(Arc<Model>, Arc<Network>), Stop> {
+    pub fn ground(&mut self, module: ModuleId) -> Result<(Arc<Model>, Arc<Network>), Halt> {
         super::stages::ground(self, module)
     }
 
     /// What a script declares; evaluates all its points, curves and surfaces first.
-    pub fn parts(&mut self, module: ModuleId) -> Result<Arc<Parts>, Stop> {
+    pub fn parts(&mut self, module: ModuleId) -> Result<Arc<Parts>, Halt> {
         super::stages::parts(self, module)
     }
 
     /// The declared groups of a script that did not fail: their things, nested lists flattened.
-    pub fn groups(&mut self, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
+    pub fn groups(&mut self, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Halt> {
         super::stages::groups(self, module)
     }
 
@@ -298,12 +298,12 @@ impl<'w> Cx<'w> {
     }
 
     /// The declared shells of a script that did not fail.
-    pub fn shells(&mut self, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
+    pub fn shells(&mut self, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Halt> {
         super::stages::shells(self, module)
     }
 
     /// The mesh behind a value; a declared one is built on first use.
-    pub fn mesh(&mut self, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
+    pub fn mesh(&mut self, mesh: &MeshValue) -> Result<Arc<Mesh>, Halt> {
         super::stages::mesh(self, mesh)
     }
 

@@ -1,6 +1,6 @@
 //! Declarations: what each keyword makes of its right side.
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::{Code, Gather};
 use super::later::keyword_word;
 use super::module::bound;
@@ -15,11 +15,11 @@ use crate::base::origin::Origin;
 use crate::network::Chain;
 
 /// Makes one member of a family, told its indices.
-type Make<'m, C> = &'m mut dyn FnMut(&mut C, [u32; 2]) -> Result<Value, Stop>;
+type Make<'m, C> = &'m mut dyn FnMut(&mut C, [u32; 2]) -> Result<Value, Halt>;
 
 impl Cx<'_> {
     /// Evaluates a declaration.
-    pub(super) fn declare(&mut self, code: Code<'_>, declaration: &Declaration) -> Result<Value, Stop> {
+    pub(super) fn declare(&mut self, code: Code<'_>, declaration: &Declaration) -> Result<Value, Halt> {
         match &declaration.kind {
             DeclarationKind::Value { family, value, .. } => {
                 let (keyword, value) = (declaration.keyword, *value);
@@ -40,11 +40,11 @@ impl Cx<'_> {
     }
 
     /// Evaluates the members of a family, or the one thing when there is no `for`.
-    pub(super) fn family(&mut self, code: Code<'_>, family: &[For], make: Make<'_, Self>) -> Result<Value, Stop> {
+    pub(super) fn family(&mut self, code: Code<'_>, family: &[For], make: Make<'_, Self>) -> Result<Value, Halt> {
         self.members(code, family, [NO_MEMBER; 2], 0, make)
     }
 
-    fn members(&mut self, code: Code<'_>, family: &[For], member: [u32; 2], level: usize, make: Make<'_, Self>) -> Result<Value, Stop> {
+    fn members(&mut self, code: Code<'_>, family: &[For], member: [u32; 2], level: usize, make: Make<'_, Self>) -> Result<Value, Halt> {
         let Some((f, rest)) = family.split_first() else {
             self.machine.site.member = member;
             return make(self, member);
@@ -65,12 +65,12 @@ impl Cx<'_> {
             let failed = made.is_err();
             out.extend(gather.take(made));
             // Many members with the same mistake are one mistake.
-            if failed && cx.sink.len() > 20 { Err(Stop::Failed) } else { Ok(()) }
+            if failed && cx.sink.len() > 20 { Err(Halt::Failed) } else { Ok(()) }
         })?;
         gather.done().map(|()| Value::list(out))
     }
 
-    fn one_value(&mut self, code: Code<'_>, keyword: Keyword, value: ExprId, member: [u32; 2]) -> Result<Value, Stop> {
+    fn one_value(&mut self, code: Code<'_>, keyword: Keyword, value: ExprId, member: [u32; 2]) -> Result<Value, Halt> {
         let ty = match keyword {
             Keyword::Point => Ty::Point,
             Keyword::Curve | Keyword::ModelingCurve => Ty::Curve,
@@ -116,7 +116,7 @@ impl Cx<'_> {
     }
 
     /// Names and types of a function; its body is looked at when it is called.
-    fn check_fn(&mut self, code: Code<'_>, name: Name, params: &[FnParam], returns: Option<&TypeName>) -> Result<Value, Stop> {
+    fn check_fn(&mut self, code: Code<'_>, name: Name, params: &[FnParam], returns: Option<&TypeName>) -> Result<Value, Halt> {
         let mut gather = Gather::default();
         let text = self.names.text(name).to_owned();
         if std::builtins().any(|b| b.name == text) {
@@ -142,7 +142,7 @@ impl Cx<'_> {
     }
 
     /// A type as written.
-    pub(super) fn written_type(&mut self, code: Code<'_>, ty: &TypeName) -> Result<Ty, Stop> {
+    pub(super) fn written_type(&mut self, code: Code<'_>, ty: &TypeName) -> Result<Ty, Halt> {
         let text = self.names.text(ty.name).to_owned();
         if let Some(ty) = Ty::written(&text, ty.lists) {
             return Ok(ty);

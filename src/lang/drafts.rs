@@ -1,6 +1,6 @@
 //! Writing diagnostics while evaluating: place, labels, help, and the calls that led there.
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::{Diagnostic, FileId, Label};
 use super::eval::Code;
 use super::syntax::ast::Span;
@@ -118,9 +118,9 @@ impl Draft<'_, '_> {
     }
 
     /// Files it and gives the reason to stop.
-    pub fn stop(self) -> Stop {
+    pub fn stop(self) -> Halt {
         self.cx.sink.push(self.diagnostic);
-        Stop::Failed
+        Halt::Failed
     }
 
     /// Files it; evaluation goes on (warnings).

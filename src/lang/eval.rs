@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use super::bind::Blame;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::Diagnostic;
-use super::memory::Asked;
+use super::memory::Dependencies;
 use super::module::{Module, State};
 use super::names::Name;
 use super::numbering::Sees;
 use super::origins::{NO_MEMBER, Origins, Place};
 use super::plans::MeshSpec;
 use super::recall::Start;
-use super::room::Room;
+use super::room::MemoryBudget;
 use super::std::Builtin;
 use super::syntax::ast::{Declaration, Expr, ExprId, Keyword, Node, Span};
 use super::value::{ModuleId, Value};
@@ -96,7 +96,7 @@ pub struct Machine {
     /// What a call may take.
     pub(super) budget: Budget,
     /// Members of lists held.
-    pub(super) room: Room,
+    pub(super) room: MemoryBudget,
     next_look: u64,
     pub(super) depth: u32,
     pub(super) in_within: bool,
@@ -111,7 +111,7 @@ pub struct Machine {
     /// Names that nothing binds, of which it is not yet told what was meant.
     pub(super) unknown: super::near::Unknowns,
     /// What the declaration being evaluated asked for beside values.
-    pub(super) asked: Asked,
+    pub(super) asked: Dependencies,
     /// Shells that something of was asked for, by script and expression.
     pub(super) glued: std::collections::BTreeMap<(ModuleId, Origin), Vec<super::glued::Asked>>,
 }
@@ -129,7 +129,7 @@ impl Default for Machine {
             words: Vec::new(),
             steps: 0,
             budget: Budget::new(limits::CALL_WORK),
-            room: Room::default(),
+            room: MemoryBudget::default(),
             next_look: STEPS_A_LOOK,
             depth: 0,
             in_within: false,
@@ -139,7 +139,7 @@ impl Default for Machine {
             defaults: std::collections::BTreeMap::new(),
             filed: Vec::new(),
             unknown: super::near::Unknowns::new(),
-            asked: Asked::default(),
+            asked: Dependencies::default(),
             glued: std::collections::BTreeMap::new(),
         }
     }
@@ -185,7 +185,7 @@ impl Machine {
     }
 }
 
-impl Stop {
+impl Halt {
     /// Of two reasons the one that says more: what was reported, then what was skipped, then what waits.
     pub(super) fn or(self, other: Self) -> Self {
         let rank = |s: &Self| match s {
@@ -201,11 +201,11 @@ impl Stop {
 /// Collects values of independent parts: goes on after a failure, so that each part reports its own.
 #[derive(Default)]
 pub(super) struct Gather {
-    stop: Option<Stop>,
+    stop: Option<Halt>,
 }
 
 impl Gather {
-    pub fn take<T>(&mut self, result: Result<T, Stop>) -> Option<T> {
+    pub fn take<T>(&mut self, result: Result<T, Halt>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
             Err(stop) => {
@@ -218,7 +218,7 @@ impl Gather {
         }
     }
 
-    pub fn done(self) -> Result<(), Stop> {
+    pub fn done(self) -> Result<(), Halt> {
         self.stop.map_or(Ok(()), Err)
     }
 }
@@ -226,13 +226,13 @@ impl Gather {
 impl Cx<'_> {
     /// Counts a step; fails when the work limit is reached or the run is stopped.
     #[inline]
-    pub(super) fn step(&mut self) -> Result<(), Stop> {
+    pub(super) fn step(&mut self) -> Result<(), Halt> {
         self.machine.steps += 1;
         if self.machine.steps >= self.machine.next_look { self.look() } else { Ok(()) }
     }
 
     #[cold]
-    fn look(&mut self) -> Result<(), Stop> {
+    fn look(&mut self) -> Result<(), Halt> {
         self.machine.next_look = self.machine.steps + STEPS_A_LOOK;
         self.job.charge(STEPS_A_LOOK / STEPS_OF_A_UNIT);
         self.job.go_on()?;
@@ -247,19 +247,19 @@ impl Cx<'_> {
     }
 
     /// Counts `n` steps of a builtin or loop at once.
-    pub fn steps(&mut self, n: usize) -> Result<(), Stop> {
+    pub fn steps(&mut self, n: usize) -> Result<(), Halt> {
         self.machine.steps += n as u64;
         if self.machine.steps >= self.machine.next_look { self.look() } else { Ok(()) }
     }
 
     #[inline]
-    pub(super) fn deeper(&mut self, code: Code<'_>, id: ExprId) -> Result<(), Stop> {
+    pub(super) fn deeper(&mut self, code: Code<'_>, id: ExprId) -> Result<(), Halt> {
         self.machine.depth += 1;
         if self.machine.depth > EXPRESSION_DEPTH { Err(self.too_deep(code, id)) } else { Ok(()) }
     }
 
     #[cold]
-    pub(super) fn too_deep(&mut self, code: Code<'_>, id: ExprId) -> Stop {
+    pub(super) fn too_deep(&mut self, code: Code<'_>, id: ExprId) -> Halt {
         let span = code.span(id);
         self.error(code, "E216", "calls inside each other too deep", span, "no end in sight here")
             .help(format!("a function may call itself at most {} times deep; give it an `if` that ends it", limits::CALL_DEPTH))
@@ -301,7 +301,7 @@ impl Cx<'_> {
     }
 
     /// The value of a declaration, evaluated on first use.
-    pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Stop> {
+    pub(super) fn ensure(&mut self, module: ModuleId, index: u32) -> Result<Value, Halt> {
         let sees = self.sees(module, index);
         if matches!(self.seen_as(module, index, sees).0, State::Waiting) && !self.recall(module, index, sees) {
             // Its own calls have their own budgets.
@@ -310,18 +310,18 @@ impl Cx<'_> {
         let (state, asked) = self.seen_as(module, index, sees);
         let answer = match state {
             State::Done(value) => Ok(value.clone()),
-            State::Waiting => Err(Stop::Bug("a declaration that was neither evaluated nor taken over")),
-            State::Failed => Err(Stop::Skipped(module, index)),
-            State::Skipped(m, d) => Err(Stop::Skipped(*m, *d)),
-            State::Suspended => Err(Stop::NotYet),
-            State::Broken => Err(Stop::Broken),
+            State::Waiting => Err(Halt::Bug("a declaration that was neither evaluated nor taken over")),
+            State::Failed => Err(Halt::Skipped(module, index)),
+            State::Skipped(m, d) => Err(Halt::Skipped(*m, *d)),
+            State::Suspended => Err(Halt::NotYet),
+            State::Broken => Err(Halt::Broken),
             State::Running => return Err(self.cycle(module, index)),
         };
         self.machine.asked.join(asked);
         answer
     }
 
-    fn evaluate(&mut self, module: ModuleId, index: u32, sees: Sees) -> Result<Value, Stop> {
+    fn evaluate(&mut self, module: ModuleId, index: u32, sees: Sees) -> Result<Value, Halt> {
         if self.machine.running.len() >= DECLARATION_DEPTH {
             return Err(self.cycle(module, index));
         }
@@ -358,19 +358,19 @@ impl Cx<'_> {
         let state = match &result {
             Ok(_) if failed => State::Failed,
             Ok(value) => State::Done(value.clone()),
-            Err(Stop::Skipped(..) | Stop::NotYet | Stop::Broken) if failed => State::Failed,
-            Err(Stop::Skipped(m, d)) => State::Skipped(*m, *d),
-            Err(Stop::NotYet) => State::Suspended,
-            Err(Stop::Broken) => State::Broken,
+            Err(Halt::Skipped(..) | Halt::NotYet | Halt::Broken) if failed => State::Failed,
+            Err(Halt::Skipped(m, d)) => State::Skipped(*m, *d),
+            Err(Halt::NotYet) => State::Suspended,
+            Err(Halt::Broken) => State::Broken,
             Err(_) => State::Failed,
         };
         let waits = matches!(state, State::Suspended);
         let answer = match &state {
             State::Done(_) => result,
-            State::Failed => Err(Stop::Skipped(module, index)),
-            State::Skipped(m, d) => Err(Stop::Skipped(*m, *d)),
-            State::Suspended => Err(Stop::NotYet),
-            _ => Err(Stop::Broken),
+            State::Failed => Err(Halt::Skipped(module, index)),
+            State::Skipped(m, d) => Err(Halt::Skipped(*m, *d)),
+            State::Suspended => Err(Halt::NotYet),
+            _ => Err(Halt::Broken),
         };
         let files = !waits && (sees == Sees::All || failed || !self.machine.asked.numbered);
         self.put_back((module, index), (state, sees), start, (asked, seen, &said));
@@ -386,7 +386,7 @@ impl Cx<'_> {
         (module, index): (ModuleId, u32),
         (state, sees): (State, Sees),
         start: Start,
-        (around, seen, said): (Asked, Box3, &[Diagnostic]),
+        (around, seen, said): (Dependencies, Box3, &[Diagnostic]),
     ) {
         let mut asked = std::mem::replace(&mut self.machine.asked, around);
         let own_seen = std::mem::replace(&mut self.seen, seen);
@@ -401,15 +401,15 @@ impl Cx<'_> {
     }
 
     /// Turns a fault that reached a declaration into its diagnostic.
-    pub(super) fn settle(&mut self, code: Code<'_>, stop: Stop, span: Span) -> Stop {
+    pub(super) fn settle(&mut self, code: Code<'_>, stop: Halt, span: Span) -> Halt {
         match stop {
-            Stop::Fault(Fault::Interrupted) => Stop::Broken,
-            Stop::Fault(fault) => {
+            Halt::Fault(Fault::Interrupted) => Halt::Broken,
+            Halt::Fault(fault) => {
                 let diagnostic = self.locate(&fault, code, span, &Blame::default());
                 self.sink.push(diagnostic);
-                Stop::Failed
+                Halt::Failed
             }
-            Stop::Bug(what) => self.error(code, "E999", format!("a bug in loft: {what}"), span, "while evaluating this").stop(),
+            Halt::Bug(what) => self.error(code, "E999", format!("a bug in loft: {what}"), span, "while evaluating this").stop(),
             other => other,
         }
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::{Code, Gather};
 use super::module::State;
 use super::names::Name;
@@ -18,7 +18,7 @@ use crate::base::limits;
 
 impl Cx<'_> {
     /// The value of an expression.
-    pub(super) fn eval(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Stop> {
+    pub(super) fn eval(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Halt> {
         self.step()?;
         match code.expr(id) {
             Expr::Number(value) if value.is_finite() => Ok(Value::number(*value)),
@@ -36,7 +36,7 @@ impl Cx<'_> {
         }
     }
 
-    fn compound(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Stop> {
+    fn compound(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Halt> {
         match code.expr(id) {
             Expr::Binary { op, op_span, a, b } => self.binary(code, id, (*op, *op_span), *a, *b),
             Expr::Unary(op, of) => self.unary(code, *op, *of),
@@ -78,7 +78,7 @@ impl Cx<'_> {
             Expr::Slice { .. } => {
                 Err(self.error(code, "E102", "a run stands inside `[ ]`", code.span(id), "runs from where to where").stop())
             }
-            _ => Err(Stop::Bug("a simple expression in the wrong place")),
+            _ => Err(Halt::Bug("a simple expression in the wrong place")),
         }
     }
 
@@ -90,7 +90,7 @@ impl Cx<'_> {
         result
     }
 
-    fn literal(&mut self, code: Code<'_>, id: ExprId, value: f64, unit: &str) -> Result<Value, Stop> {
+    fn literal(&mut self, code: Code<'_>, id: ExprId, value: f64, unit: &str) -> Result<Value, Halt> {
         match units::quantity(value, unit, self.unit) {
             Some(q) if q.value.is_finite() => Ok(Value::Number(q)),
             Some(_) => Err(self.error(code, "E408", "this number is too large", code.span(id), "not a finite number").stop()),
@@ -99,7 +99,7 @@ impl Cx<'_> {
         }
     }
 
-    fn name(&mut self, code: Code<'_>, id: ExprId, name: Name) -> Result<Value, Stop> {
+    fn name(&mut self, code: Code<'_>, id: ExprId, name: Name) -> Result<Value, Halt> {
         let locals = &self.machine.locals[self.machine.base..];
         if let Some((_, value)) = locals.iter().rev().find(|l| l.0 == name) {
             return Ok(value.clone());
@@ -115,7 +115,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn declared(&mut self, code: Code<'_>, id: ExprId, declaration: u32) -> Result<Value, Stop> {
+    fn declared(&mut self, code: Code<'_>, id: ExprId, declaration: u32) -> Result<Value, Halt> {
         let declared = &self.machine.at(code.module).script.declarations[declaration as usize];
         if declared.keyword == Keyword::Fn {
             let name = self.declaration_name(code.module, declaration);
@@ -131,13 +131,13 @@ impl Cx<'_> {
         self.machine.locals[self.machine.base..].iter().any(|l| l.0 == name) || self.machine.at(module).find(name).is_some()
     }
 
-    pub(super) fn items(&mut self, code: Code<'_>, items: &[ExprId]) -> Result<Vec<Value>, Stop> {
+    pub(super) fn items(&mut self, code: Code<'_>, items: &[ExprId]) -> Result<Vec<Value>, Halt> {
         let mut gather = Gather::default();
         let values = items.iter().filter_map(|item| gather.take(self.eval(code, *item))).collect();
         gather.done().map(|()| values)
     }
 
-    fn record_literal(&mut self, code: Code<'_>, fields: &[(Name, ExprId)]) -> Result<Value, Stop> {
+    fn record_literal(&mut self, code: Code<'_>, fields: &[(Name, ExprId)]) -> Result<Value, Halt> {
         let mut gather = Gather::default();
         let mut keys: Vec<Name> = Vec::with_capacity(fields.len());
         let mut values = Vec::with_capacity(fields.len());
@@ -154,7 +154,7 @@ impl Cx<'_> {
     }
 
     /// `(a, b)` and `(a, b, c)`: one length among them makes them lengths.
-    fn tuple(&mut self, code: Code<'_>, id: ExprId, items: &[ExprId]) -> Result<Value, Stop> {
+    fn tuple(&mut self, code: Code<'_>, id: ExprId, items: &[ExprId]) -> Result<Value, Halt> {
         if !(2..=3).contains(&items.len()) {
             let text = format!("a point has two or three coordinates, this has {}", items.len());
             return Err(self.error(code, "E211", text, code.span(id), "a list is written with [ ]").stop());
@@ -193,7 +193,7 @@ impl Cx<'_> {
         Ok(Value::Vector(DVec3::from_array(coordinates), dim))
     }
 
-    pub(super) fn condition(&mut self, code: Code<'_>, id: ExprId) -> Result<bool, Stop> {
+    pub(super) fn condition(&mut self, code: Code<'_>, id: ExprId) -> Result<bool, Halt> {
         match self.eval(code, id)? {
             Value::Bool(b) => Ok(b),
             other => {
@@ -203,7 +203,7 @@ impl Cx<'_> {
         }
     }
 
-    fn unary(&mut self, code: Code<'_>, op: Unary, of: ExprId) -> Result<Value, Stop> {
+    fn unary(&mut self, code: Code<'_>, op: Unary, of: ExprId) -> Result<Value, Halt> {
         if op == Unary::Not {
             return self.condition(code, of).map(|b| Value::Bool(!b));
         }
@@ -221,7 +221,7 @@ impl Cx<'_> {
     }
 
     /// Runs nested `for`s and `if`s, collecting the body's values.
-    fn comprehension(&mut self, code: Code<'_>, id: ExprId, clauses: &[Clause], body: ExprId, out: &mut Vec<Value>) -> Result<(), Stop> {
+    fn comprehension(&mut self, code: Code<'_>, id: ExprId, clauses: &[Clause], body: ExprId, out: &mut Vec<Value>) -> Result<(), Halt> {
         match clauses.split_first() {
             None => {
                 if out.len() >= limits::LIST_MEMBERS {
@@ -252,7 +252,7 @@ impl Cx<'_> {
     }
 
     /// The list that a `for` runs over, not longer than the limit.
-    pub(super) fn list_of(&mut self, code: Code<'_>, f: &For) -> Result<Value, Stop> {
+    pub(super) fn list_of(&mut self, code: Code<'_>, f: &For) -> Result<Value, Halt> {
         let list = self.eval(code, f.list)?;
         let list = if let Value::Table(t) = list { Value::List(t.rows.clone()) } else { list };
         match list.len() {
@@ -267,7 +267,7 @@ impl Cx<'_> {
     }
 
     /// A list, unless lists inside it stand deeper than the limit: what walks them must not overflow the stack.
-    fn shallow(&mut self, code: Code<'_>, id: ExprId, items: Vec<Value>) -> Result<Value, Stop> {
+    fn shallow(&mut self, code: Code<'_>, id: ExprId, items: Vec<Value>) -> Result<Value, Halt> {
         let list = Value::list(items);
         let mut level = inner(&list);
         for _ in 0..limits::LIST_NESTING {
@@ -285,8 +285,8 @@ impl Cx<'_> {
         &mut self,
         name: Name,
         list: &Value,
-        mut work: impl FnMut(&mut Self, usize) -> Result<(), Stop>,
-    ) -> Result<(), Stop> {
+        mut work: impl FnMut(&mut Self, usize) -> Result<(), Halt>,
+    ) -> Result<(), Halt> {
         let slot = self.machine.locals.len();
         self.machine.locals.push((name, Value::None));
         let mut result = Ok(());
@@ -302,7 +302,7 @@ impl Cx<'_> {
     }
 
     /// A text with its interpolations.
-    pub(super) fn interpolate(&mut self, code: Code<'_>, parts: &[TextPart]) -> Result<String, Stop> {
+    pub(super) fn interpolate(&mut self, code: Code<'_>, parts: &[TextPart]) -> Result<String, Halt> {
         let (mut text, mut gather) = (String::new(), Gather::default());
         for part in parts {
             match part {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::scene::Scene;
 use super::value::{ModuleId, ShellValue};
 use crate::base::fault::{Fault, SurfaceFault};
@@ -56,7 +56,7 @@ impl Asked {
 
 impl Cx<'_> {
     /// A shell in the model of a script's surfaces, extended by those of its own that are not among them.
-    pub fn glued(&mut self, module: ModuleId, shell: &ShellValue) -> Result<Arc<Glued>, Stop> {
+    pub fn glued(&mut self, module: ModuleId, shell: &ShellValue) -> Result<Arc<Glued>, Halt> {
         let tolerance = self.tolerance()?;
         // Whoever asks depends on all surfaces, also where the shell is known.
         self.ground(module)?;
@@ -78,7 +78,7 @@ impl Cx<'_> {
     }
 
     /// What a closed shell encloses; an open one encloses nothing.
-    pub fn solid(&mut self, shell: &ShellValue) -> Result<Solid, Stop> {
+    pub fn solid(&mut self, shell: &ShellValue) -> Result<Solid, Halt> {
         let glued = self.glued(self.module(), shell)?;
         let built = &glued.shell;
         if !built.closed {

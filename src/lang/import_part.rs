@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::imports::File;
 use super::origins::{NO_MEMBER, Place};
 use super::part::{Body, PartFile, PartValue, Said};
@@ -23,13 +23,13 @@ use crate::surface::Surface;
 
 impl Cx<'_> {
     /// An IGES file.
-    pub(super) fn iges(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Stop> {
+    pub(super) fn iges(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Halt> {
         let opened = iges::open(bytes, &self.cad_options(file)).map_err(|at| file.malformed(at))?;
         self.cad(file, opened.reach(), |tolerance| opened.part(tolerance))
     }
 
     /// A STEP file.
-    pub(super) fn step_file(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Stop> {
+    pub(super) fn step_file(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Halt> {
         let opened = step::open(bytes, &self.cad_options(file)).map_err(|at| file.malformed(at))?;
         self.cad(file, opened.reach(), |tolerance| opened.part(tolerance))
     }
@@ -40,7 +40,7 @@ impl Cx<'_> {
     }
 
     /// Lists in file order, then everything once more by its name in the file.
-    fn cad(&mut self, file: &File, reach: Box3, make: impl FnOnce(Tolerance) -> Part) -> Result<Value, Stop> {
+    fn cad(&mut self, file: &File, reach: Box3, make: impl FnOnce(Tolerance) -> Part) -> Result<Value, Halt> {
         if !reach.is_empty() {
             self.seen([reach.min, reach.max]);
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::bind::Signature;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::{Code, Gather};
 use super::load::file_fault;
 use super::settings::IMPORT;
@@ -38,7 +38,7 @@ pub(super) struct File<'f> {
 }
 
 impl File<'_> {
-    pub fn malformed(&self, at: Malformed) -> Stop {
+    pub fn malformed(&self, at: Malformed) -> Halt {
         FileFault::Malformed { of: self.origin, path: self.path.to_owned(), at }.into()
     }
 
@@ -49,7 +49,7 @@ impl File<'_> {
 }
 
 impl Cx<'_> {
-    pub(super) fn import(&mut self, code: Code<'_>, path: ExprId, args: &[Arg]) -> Result<Value, Stop> {
+    pub(super) fn import(&mut self, code: Code<'_>, path: ExprId, args: &[Arg]) -> Result<Value, Halt> {
         let (written, origin) = self.path_text(code, path)?;
         let ending = written.rsplit_once('.').map_or(String::new(), |e| e.1.to_ascii_lowercase());
         if !ENDINGS.contains(&ending.as_str()) {
@@ -86,7 +86,7 @@ impl Cx<'_> {
     }
 
     /// `header:` and `unit:`; E303 for one that files of this ending have no use for.
-    fn import_args(&mut self, code: Code<'_>, args: &[Arg], ending: &str) -> Result<(Option<bool>, Option<LengthUnit>), Stop> {
+    fn import_args(&mut self, code: Code<'_>, args: &[Arg], ending: &str) -> Result<(Option<bool>, Option<LengthUnit>), Halt> {
         let shown = "import \"…\" (header: true, unit: m)".to_owned();
         let signature = Signature { name: "import", params: IMPORT.iter().map(|setting| setting.key).collect(), rest: None, shown };
         let places = self.match_args(code, &signature, 0, args)?;
@@ -178,7 +178,7 @@ impl Cx<'_> {
         Value::Mesh(Arc::new(MeshValue::Data(Arc::new(mesh), file.origin)))
     }
 
-    fn table_value(&mut self, file: &File, table: io::Table) -> Result<Value, Stop> {
+    fn table_value(&mut self, file: &File, table: io::Table) -> Result<Value, Halt> {
         self.steps(table.rows.iter().map(Vec::len).sum())?;
         let model = self.unit;
         let number = |x: f64| match file.unit {

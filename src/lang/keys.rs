@@ -13,7 +13,7 @@ use super::syntax::{
     ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword, TextPart},
 };
 use super::value::{ModuleId, Value};
-use crate::base::digest::{Digest, Digester};
+use crate::base::digest::{Digest, StableHasher};
 use crate::base::limits;
 
 /// What the stages of a script are made from.
@@ -35,7 +35,7 @@ pub(super) fn token_keys(text: &str, declarations: &[Declaration]) -> Vec<Digest
     let key = |d: &Declaration| {
         let first = tokens.partition_point(|t| t.start < d.span.start);
         let own = tokens[first..].iter().take_while(|t| t.end <= d.span.end);
-        own.fold(Digester::new("tokens"), |digester, t| digester.text(&text[t.start as usize..t.end as usize])).finish()
+        own.fold(StableHasher::new("tokens"), |digester, t| digester.text(&text[t.start as usize..t.end as usize])).finish()
     };
     declarations.iter().map(key).collect()
 }
@@ -54,7 +54,7 @@ impl Cx<'_> {
         let tokens = token_keys(text, &script.declarations);
         let mut nameless: BTreeMap<Digest, u64> = BTreeMap::new();
         let homes = script.declarations.iter().zip(&tokens).map(|(declaration, tokens)| {
-            let identity = Digester::new("home").text(label);
+            let identity = StableHasher::new("home").text(label);
             let identity = match bound(declaration) {
                 Some(b) => identity.text(self.names.text(b.name)),
                 None => {
@@ -129,7 +129,7 @@ impl Cx<'_> {
             }
         }
         let world = script.declarations.iter().zip(&of).filter(|(d, _)| WORLD.contains(&d.keyword));
-        let start = Some(Digester::new("world").number(script.broken.len() as u64));
+        let start = Some(StableHasher::new("world").number(script.broken.len() as u64));
         let world = world.fold(start, |all, (_, key)| Some(all?.digest((*key)?))).map(|d| d.finish());
         Keys { of: of.into(), world }
     }
@@ -137,7 +137,7 @@ impl Cx<'_> {
     /// The digest of a declaration's text.
     pub(super) fn text_key(&self, module: ModuleId, index: u32) -> Digest {
         let m = self.machine.at(module);
-        Digester::new("text").text(self.sources.text(m.file, m.script.declarations[index as usize].span)).finish()
+        StableHasher::new("text").text(self.sources.text(m.file, m.script.declarations[index as usize].span)).finish()
     }
 
     /// The key, or one with the text in it where what is kept under the key depends on another text.
@@ -145,7 +145,7 @@ impl Cx<'_> {
         match self.memory.as_ref().and_then(|memory| memory.text_of(key)) {
             Some(text) => match self.text_key(module, at as u32) {
                 now if now == text => key,
-                now => Digester::new("spoken").digest(key).digest(now).finish(),
+                now => StableHasher::new("spoken").digest(key).digest(now).finish(),
             },
             None => key,
         }
@@ -156,7 +156,7 @@ impl Cx<'_> {
         let m = self.machine.at(module);
         let script = m.script.clone();
         let declaration = &script.declarations[index as usize];
-        let own = Digester::new(env!("CARGO_PKG_VERSION")).text(self.unit.name).text(m.unit.name).text(&m.label);
+        let own = StableHasher::new(env!("CARGO_PKG_VERSION")).text(self.unit.name).text(m.unit.name).text(&m.label);
         let own = own.digest(*m.tokens.get(index as usize)?);
         Some(match &declaration.kind {
             DeclarationKind::Param { bound, .. } => match m.given.iter().rev().find(|g| g.0 == bound.name) {
@@ -178,7 +178,7 @@ impl Cx<'_> {
     fn file_key(&mut self, from: &str, path: &str, is_script: bool, depth: usize) -> Option<Digest> {
         let resolved = self.files.resolve(from, path).ok()?;
         let bytes = self.files.read(&resolved, if is_script { limits::SOURCE_BYTES } else { limits::DATA_BYTES }).ok()?;
-        let digester = Digester::new("file").text(path).bytes(&bytes);
+        let digester = StableHasher::new("file").text(path).bytes(&bytes);
         if !is_script {
             return Some(digester.finish());
         }
@@ -232,7 +232,7 @@ impl Cx<'_> {
 
 /// A key together with the keys of what it leads to; `None` in a cycle and above one.
 fn joined(own: Digest, leads: &[Lead], of: &[Option<Digest>], met: &[u8]) -> Option<Digest> {
-    let start = Digester::new("joined").digest(own);
+    let start = StableHasher::new("joined").digest(own);
     let all = leads.iter().try_fold(start, |digester, lead| match lead {
         Lead::Declaration(d) if met[*d as usize] == 2 => Some(digester.digest(of[*d as usize]?)),
         Lead::Declaration(_) => None,
@@ -255,7 +255,7 @@ fn literal(declaration: &Declaration, path: ExprId) -> Option<&str> {
 
 /// The digest of a value without geometry.
 fn plain_key(value: &Value) -> Option<Digest> {
-    let digester = Digester::new("value");
+    let digester = StableHasher::new("value");
     Some(match value {
         Value::Number(q) => {
             let dim = [q.dim.length, q.dim.angle, q.dim.mass].map(|e| e as u8);

@@ -1,6 +1,6 @@
 //! Words of later versions: known, and refused by one error instead of being taken for a mistake.
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::elsewhere::instead;
 use super::eval::Code;
 use super::names::Name;
@@ -20,15 +20,15 @@ pub(super) fn is_function(name: &str) -> bool {
 impl Cx<'_> {
     /// E230 at a place.
     #[cold]
-    pub(super) fn not_yet(&mut self, code: Code<'_>, what: &str, span: Span) -> Stop {
+    pub(super) fn not_yet(&mut self, code: Code<'_>, what: &str, span: Span) -> Halt {
         self.error(code, "E230", format!("{what} is not in this version"), span, "a later version has it").stop()
     }
 
     /// A name that nothing binds: a word, `pi`, `network`, or a mistake.
     #[cold]
-    pub(super) fn unbound(&mut self, code: Code<'_>, id: ExprId, name: Name) -> Result<Value, Stop> {
+    pub(super) fn unbound(&mut self, code: Code<'_>, id: ExprId, name: Name) -> Result<Value, Halt> {
         if self.machine.at(code.module).is_broken(name) {
-            return Err(Stop::Broken);
+            return Err(Halt::Broken);
         }
         match self.names.text(name) {
             "pi" => return Ok(Value::number(::std::f64::consts::PI)),
@@ -53,13 +53,13 @@ impl Cx<'_> {
 
     /// E201 or E230: a function that is none.
     #[cold]
-    pub(super) fn no_function(&mut self, code: Code<'_>, id: ExprId, name: Name, span: Span) -> Stop {
+    pub(super) fn no_function(&mut self, code: Code<'_>, id: ExprId, name: Name, span: Span) -> Halt {
         let text = self.names.text(name).to_owned();
         if is_function(&text) {
             return self.not_yet(code, &format!("`{text}`"), span);
         }
         if self.machine.at(code.module).is_broken(name) {
-            return Stop::Broken;
+            return Halt::Broken;
         }
         if let Some(declaration) = self.machine.at(code.module).find(name) {
             let word = match self.machine.at(code.module).script.declarations[declaration as usize].keyword {

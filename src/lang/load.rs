@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::Diagnostic;
 use super::eval::{Code, Gather};
 use super::module::{Given, Module};
@@ -76,7 +76,7 @@ impl Cx<'_> {
     }
 
     /// A `use` declaration.
-    pub(super) fn load_module(&mut self, code: Code<'_>, path: ExprId, args: &[Arg], bound: Bound) -> Result<Value, Stop> {
+    pub(super) fn load_module(&mut self, code: Code<'_>, path: ExprId, args: &[Arg], bound: Bound) -> Result<Value, Halt> {
         let (written, origin) = self.path_text(code, path)?;
         let mut gather = Gather::default();
         let mut given = Vec::with_capacity(args.len());
@@ -124,7 +124,7 @@ impl Cx<'_> {
     }
 
     /// A value that may be given to a param of a module.
-    fn param_of_module(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Stop> {
+    fn param_of_module(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Halt> {
         if let Expr::Name(name) = code.expr(id)
             && !self.is_bound(code.module, *name)
             && !self.machine.at(code.module).is_broken(*name)
@@ -143,13 +143,13 @@ impl Cx<'_> {
     }
 
     /// The text of a path and where it stands.
-    pub(super) fn path_text(&mut self, code: Code<'_>, path: ExprId) -> Result<(String, Origin), Stop> {
+    pub(super) fn path_text(&mut self, code: Code<'_>, path: ExprId) -> Result<(String, Origin), Halt> {
         let text = match code.expr(path) {
             Expr::Text(parts) => match parts.as_slice() {
                 [TextPart::Literal(text)] => text.to_string(),
                 _ => self.interpolate(code, parts)?,
             },
-            _ => return Err(Stop::Bug("a path that is no text")),
+            _ => return Err(Halt::Bug("a path that is no text")),
         };
         Ok((text, self.origin_at(path)))
     }

@@ -1,7 +1,7 @@
 //! Where things meet, and the runs of curves between such places: `a & b` and `c[A..B]`.
 
 use super::bind::Blame;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::Code;
 use super::std::kinds::{Cutter, Meeting};
 use super::syntax::ast::{Expr, ExprId};
@@ -14,7 +14,7 @@ use crate::network::meet;
 use crate::surface::{Surface, meet as surfaces, plane};
 
 /// The one place where two things meet; E507, E508, E509 name the candidates.
-pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop> {
+pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Halt> {
     let sides = [(a, "a"), (b, "b")];
     let mut kinds = Vec::with_capacity(sides.len());
     for (value, argument) in sides {
@@ -48,7 +48,7 @@ pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Stop
 }
 
 /// All places where two things meet.
-pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Value>, Stop> {
+pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Value>, Halt> {
     let tolerance = cx.tolerance()?;
     match (a, b) {
         (Meeting::Mesh(mesh), Meeting::Plane(plane)) | (Meeting::Plane(plane), Meeting::Mesh(mesh)) => {
@@ -83,7 +83,7 @@ pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
 const MESH: &str = "`meet` of a mesh";
 
 /// The curves by which things cut a surface: curves themselves, of surfaces those in which they meet it.
-pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result<Vec<Chain>, Stop> {
+pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result<Vec<Chain>, Halt> {
     let tolerance = cx.tolerance()?;
     let mut chains = Vec::new();
     for cutter in by {
@@ -107,7 +107,7 @@ pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result
 }
 
 /// A link as the curve it is.
-fn plain(cx: &mut Cx, value: &Value) -> Result<Value, Stop> {
+fn plain(cx: &mut Cx, value: &Value) -> Result<Value, Halt> {
     match value {
         Value::Link(..) => cx.as_chain(value.clone()).map(Value::Curve),
         other => Ok(other.clone()),
@@ -115,7 +115,7 @@ fn plain(cx: &mut Cx, value: &Value) -> Result<Value, Stop> {
 }
 
 /// The surfaces of a thing; `None` for a mesh or a curve.
-fn faces(of: &Meeting) -> Result<Option<Vec<Surface>>, Stop> {
+fn faces(of: &Meeting) -> Result<Option<Vec<Surface>>, Halt> {
     Ok(match of {
         Meeting::Surface(surface) => Some(vec![surface.clone()]),
         Meeting::Shell(shell) => Some(shell.surfaces.clone()),
@@ -124,14 +124,14 @@ fn faces(of: &Meeting) -> Result<Option<Vec<Surface>>, Stop> {
     })
 }
 
-fn later(cx: &Cx, a: &Value, b: &Value) -> Stop {
+fn later(cx: &Cx, a: &Value, b: &Value) -> Halt {
     let what = format!("`&` of {} and {}", cx.kind(a), cx.kind(b));
     ValueFault::NotInThisVersion { what }.into()
 }
 
 impl Cx<'_> {
     /// `c[A..B]`: the run from A to B.
-    pub(super) fn slice_curve(&mut self, code: Code<'_>, id: ExprId, curve: Value, index: ExprId) -> Result<Value, Stop> {
+    pub(super) fn slice_curve(&mut self, code: Code<'_>, id: ExprId, curve: Value, index: ExprId) -> Result<Value, Halt> {
         let (from, to) = match code.expr(index) {
             Expr::Slice { from, to } => (*from, *to),
             _ => {
@@ -157,13 +157,13 @@ impl Cx<'_> {
             Err(fault) => {
                 let diagnostic = self.locate(&fault, code, code.span(id), &Blame::default());
                 self.sink.push(diagnostic);
-                Err(Stop::Failed)
+                Err(Halt::Failed)
             }
         }
     }
 
     /// Where an end of a slice lies on the curve, as a fraction of its length.
-    fn fraction(&mut self, code: Code<'_>, id: ExprId, chain: &Chain) -> Result<f64, Stop> {
+    fn fraction(&mut self, code: Code<'_>, id: ExprId, chain: &Chain) -> Result<f64, Halt> {
         let tolerance = self.tolerance()?;
         let value = self.eval(code, id)?;
         self.machine.site.expr = id;
@@ -183,7 +183,7 @@ impl Cx<'_> {
                 return Err(self.error(code, "E306", text, code.span(id), format!("between 0 and 100%, or 0 and {end}")).stop());
             }
             point @ (Value::Vector(..) | Value::Node(_) | Value::Vertex(..)) => {
-                let Value::Vector(p, _) = self.point_value(code, id, point)? else { return Err(Stop::Bug("a point is a vector")) };
+                let Value::Vector(p, _) = self.point_value(code, id, point)? else { return Err(Halt::Bug("a point is a vector")) };
                 chain.fraction_at(p, &tolerance)
             }
             other => {
@@ -195,11 +195,11 @@ impl Cx<'_> {
         result.map_err(|fault| {
             let diagnostic = self.locate(&fault, code, code.span(id), &Blame::default());
             self.sink.push(diagnostic);
-            Stop::Failed
+            Halt::Failed
         })
     }
 
-    fn point_value(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Value, Stop> {
+    fn point_value(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Value, Halt> {
         match self.fit_expr(code, id, value, Ty::Point, "this end")? {
             Value::Node(p) => Ok(Value::point(p)),
             other => Ok(other),

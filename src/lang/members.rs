@@ -1,7 +1,7 @@
 //! The members of an entity with their values, as `report roof` shows them.
 
 use super::coerce::{Misfit, accepts, flatten_into};
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::plans::ReportTable;
 use super::room::flat_len;
 use super::std::{self, Builtin};
@@ -19,7 +19,7 @@ type Member = (String, Value);
 
 impl Cx<'_> {
     /// The members of an entity a row each, or of a list with entities those of each a row; `None` for other values.
-    pub(super) fn members_table(&mut self, value: &Value) -> Result<Option<ReportTable>, Stop> {
+    pub(super) fn members_table(&mut self, value: &Value) -> Result<Option<ReportTable>, Halt> {
         match value {
             Value::List(_) => self.members_rows(&[(String::new(), value.clone())]),
             one if is_entity(one) || is_place(one) => {
@@ -38,7 +38,7 @@ impl Cx<'_> {
     }
 
     /// A row for each of these things, members of families and groups included; `None` where none is an entity.
-    pub(super) fn members_rows(&mut self, things: &[(String, Value)]) -> Result<Option<ReportTable>, Stop> {
+    pub(super) fn members_rows(&mut self, things: &[(String, Value)]) -> Result<Option<ReportTable>, Halt> {
         // So many are no rows to read.
         if things.iter().any(|(_, value)| flat_len(value, limits::LIST_MEMBERS) > limits::LIST_MEMBERS) {
             return Ok(None);
@@ -75,7 +75,7 @@ impl Cx<'_> {
 
     /// What an entity is and its members: lists by how many they hold, records by their own members, `none` for what this one does
     /// not have (the volume of an open shell).
-    fn members_of(&mut self, of: &Value) -> Result<Vec<Member>, Stop> {
+    fn members_of(&mut self, of: &Value) -> Result<Vec<Member>, Halt> {
         let mut members = what(of);
         let (mut any, mut first) = (!members.is_empty(), None);
         for field in std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, of))) {
@@ -84,7 +84,7 @@ impl Cx<'_> {
                     any = true;
                     self.push_member(field.name, value, &mut members);
                 }
-                Err(Stop::Fault(fault)) if !matches!(fault, Fault::Interrupted) => {
+                Err(Halt::Fault(fault)) if !matches!(fault, Fault::Interrupted) => {
                     first.get_or_insert(fault);
                     members.push((field.name.to_owned(), Value::None));
                 }
@@ -92,13 +92,13 @@ impl Cx<'_> {
             }
         }
         match first {
-            Some(fault) if !any => Err(Stop::Fault(fault)),
+            Some(fault) if !any => Err(Halt::Fault(fault)),
             _ => Ok(members),
         }
     }
 
     /// The sets of a mesh by their counts.
-    fn sets_of(&mut self, of: &Value) -> Result<Vec<Member>, Stop> {
+    fn sets_of(&mut self, of: &Value) -> Result<Vec<Member>, Halt> {
         let Value::Mesh(mesh) = of else { return Ok(Vec::new()) };
         let mesh = self.mesh(mesh)?;
         let counts = |g: &Group| {
@@ -139,7 +139,7 @@ impl Cx<'_> {
     }
 
     /// The value of a member; of lists that are as long as a mesh their length.
-    fn member_value(&mut self, field: &Builtin, of: &Value) -> Result<Value, Stop> {
+    fn member_value(&mut self, field: &Builtin, of: &Value) -> Result<Value, Halt> {
         if let Value::Mesh(mesh) = of {
             let mesh = self.mesh(mesh)?;
             let count = match field.name {
@@ -153,10 +153,10 @@ impl Cx<'_> {
                 return Ok(Value::number(count as f64));
             }
         }
-        let (Some(param), module) = (field.params.first(), self.module()) else { return Err(Stop::Bug("a field of nothing")) };
+        let (Some(param), module) = (field.params.first(), self.module()) else { return Err(Halt::Bug("a field of nothing")) };
         let fitted = self.coerce(of.clone(), param.ty, module).map_err(|(_, misfit)| match misfit {
-            Misfit::Stop(stop) => stop,
-            _ => Stop::Bug("a field does not take what it accepts"),
+            Misfit::Halt(stop) => stop,
+            _ => Halt::Bug("a field does not take what it accepts"),
         })?;
         (field.call)(self, vec![fitted])
     }

@@ -193,7 +193,7 @@ pub(super) fn attached(said: &[Diagnostic], file: FileId, start: u32) -> Vec<Dia
 
 /// What an evaluation asked for beside the values of other declarations.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Asked {
+pub(super) struct Dependencies {
     /// The network, the surface model or another stage of its own script.
     pub world: bool,
     /// Something that is not kept: a mesh, a stage of another script.
@@ -205,7 +205,7 @@ pub(super) struct Asked {
     pub steps: u64,
 }
 
-impl Asked {
+impl Dependencies {
     /// Takes over what a declaration depended on that this one uses.
     pub fn join(&mut self, other: Self) {
         self.world |= other.world;

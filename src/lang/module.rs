@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::cx::{Parts, Sound};
 use super::diag::FileId;
-use super::memory::{Asked, Keys};
+use super::memory::{Dependencies, Keys};
 use super::names::Name;
 use super::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
 use super::syntax::ast::{Allowed, Bound, Declaration, DeclarationKind, Expr, Script, Span};
@@ -23,7 +23,7 @@ pub(super) enum State {
     Waiting,
     /// Being evaluated; being asked for now is a cycle.
     Running,
-    /// Asked for the tolerance before it was known.
+    /// Dependencies for the tolerance before it was known.
     Suspended,
     /// Evaluated.
     Done(Value),
@@ -106,9 +106,9 @@ pub(super) struct Module {
     /// Keys of the declarations, made when first asked for.
     pub keys: Option<Keys>,
     /// What each declaration asked for beside values.
-    pub asked: Vec<Asked>,
+    pub asked: Vec<Dependencies>,
     /// Declarations whose patches and edges are numbered otherwise where geometry is made from them: as they are there.
-    pub within: BTreeMap<u32, (State, Asked)>,
+    pub within: BTreeMap<u32, (State, Dependencies)>,
     pub parts: Stage<Arc<Parts>>,
     pub network: Stage<Arc<Network>>,
     pub model: Stage<Arc<Model>>,
@@ -158,7 +158,7 @@ impl Module {
             broken,
             choices,
             entered: vec![0; states.len()],
-            asked: vec![Asked::default(); states.len()],
+            asked: vec![Dependencies::default(); states.len()],
             within: BTreeMap::new(),
             states,
             given: Vec::new(),

@@ -2,12 +2,12 @@
 //! where a curve or surface is made from them in a model of their surfaces alone, since it is itself one of all.
 
 use super::cx::Cx;
-use super::memory::Asked;
+use super::memory::Dependencies;
 use super::module::State;
 use super::stages;
 use super::syntax::ast::Keyword;
 use super::value::ModuleId;
-use crate::base::digest::{Digest, Digester};
+use crate::base::digest::{Digest, StableHasher};
 
 /// Which surfaces a declaration sees while it is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Sees {
     pub fn key(self, key: Digest) -> Digest {
         match self {
             Self::All => key,
-            Self::Own => Digester::new("within").with(&key).finish(),
+            Self::Own => StableHasher::new("within").with(&key).finish(),
         }
     }
 }
@@ -37,7 +37,7 @@ impl Cx<'_> {
     }
 
     /// Its state for who asks now, with what it asked for: waiting where it is only known, or being evaluated, for the whole script.
-    pub(super) fn seen_as(&self, module: ModuleId, index: u32, sees: Sees) -> (&State, Asked) {
+    pub(super) fn seen_as(&self, module: ModuleId, index: u32, sees: Sees) -> (&State, Dependencies) {
         let m = self.machine.at(module);
         let all = (&m.states[index as usize], m.asked[index as usize]);
         if sees == Sees::All {
@@ -45,8 +45,8 @@ impl Cx<'_> {
         }
         match (m.within.get(&index), all) {
             (Some((state, asked)), _) => (state, *asked),
-            (None, (State::Running, _)) => (&State::Waiting, Asked::default()),
-            (None, (State::Done(_), asked)) if asked.numbered => (&State::Waiting, Asked::default()),
+            (None, (State::Running, _)) => (&State::Waiting, Dependencies::default()),
+            (None, (State::Done(_), asked)) if asked.numbered => (&State::Waiting, Dependencies::default()),
             (None, all) => all,
         }
     }
@@ -57,13 +57,13 @@ impl Cx<'_> {
         match sees {
             Sees::All => m.states[index as usize] = State::Running,
             Sees::Own => {
-                m.within.insert(index, (State::Running, Asked::default()));
+                m.within.insert(index, (State::Running, Dependencies::default()));
             }
         }
     }
 
     /// Says what an evaluation ended with: what does not depend on who asked is known to all.
-    pub(super) fn end(&mut self, module: ModuleId, index: u32, (state, sees): (State, Sees), asked: Asked) {
+    pub(super) fn end(&mut self, module: ModuleId, index: u32, (state, sees): (State, Sees), asked: Dependencies) {
         let m = self.machine.at_mut(module);
         if sees == Sees::Own {
             m.within.remove(&index);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::bind::Blame;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::Code;
 use super::room::LIST_COST;
 use super::syntax::ast::{Binary, Expr, ExprId, Span};
@@ -63,7 +63,7 @@ impl Cx<'_> {
         (op, op_span): (Binary, Span),
         a: ExprId,
         b: ExprId,
-    ) -> Result<Value, Stop> {
+    ) -> Result<Value, Halt> {
         match op {
             Binary::And => return Ok(Value::Bool(self.condition(code, a)? && self.condition(code, b)?)),
             Binary::Or => return Ok(Value::Bool(self.condition(code, a)? || self.condition(code, b)?)),
@@ -92,21 +92,21 @@ impl Cx<'_> {
     }
 
     /// A fault of an operator, shown at it.
-    fn at_operator(&mut self, at: At<'_>, stop: Stop) -> Stop {
+    fn at_operator(&mut self, at: At<'_>, stop: Halt) -> Halt {
         match stop {
-            Stop::Fault(fault) => {
+            Halt::Fault(fault) => {
                 let sides = vec![("a", at.code.span(at.a)), ("b", at.code.span(at.b))];
                 let blame = Blame { items: sides.clone(), whole: sides };
                 let mut diagnostic = self.locate(&fault, at.code, at.code.span(at.id), &blame);
                 self.advise(&fault, (at.code, at.id), &blame, &mut diagnostic);
                 self.sink.push(diagnostic);
-                Stop::Failed
+                Halt::Failed
             }
             other => other,
         }
     }
 
-    fn sum(&mut self, at: At<'_>, left: Value, right: Value) -> Result<Value, Stop> {
+    fn sum(&mut self, at: At<'_>, left: Value, right: Value) -> Result<Value, Halt> {
         let sign = if at.op == Binary::Plus { 1.0 } else { -1.0 };
         match (left, right) {
             (Value::Number(x), Value::Number(y)) => {
@@ -144,7 +144,7 @@ impl Cx<'_> {
         }
     }
 
-    fn product(&mut self, at: At<'_>, left: Value, right: Value) -> Result<Value, Stop> {
+    fn product(&mut self, at: At<'_>, left: Value, right: Value) -> Result<Value, Halt> {
         let times = at.op == Binary::Times;
         match (left, right) {
             (Value::Number(x), Value::Number(y)) => {
@@ -170,7 +170,7 @@ impl Cx<'_> {
         }
     }
 
-    fn scale(&mut self, at: At<'_>, vector: Value, by: Quantity, times: bool) -> Result<Value, Stop> {
+    fn scale(&mut self, at: At<'_>, vector: Value, by: Quantity, times: bool) -> Result<Value, Halt> {
         let (v, dim) = self.as_vector(vector)?;
         let out = if times { dim.times(by.dim) } else { dim.over(by.dim) };
         let v = if times { v * by.value } else { v / by.value };
@@ -178,11 +178,11 @@ impl Cx<'_> {
         self.finite_vector(at, v, dim)
     }
 
-    fn dim_of(&mut self, at: At<'_>, dim: Option<Dim>) -> Result<Dim, Stop> {
+    fn dim_of(&mut self, at: At<'_>, dim: Option<Dim>) -> Result<Dim, Halt> {
         dim.ok_or_else(|| self.error(at.code, "E211", "the dimension of this is out of range", at.op_span, "here").stop())
     }
 
-    fn power(&mut self, at: At<'_>, left: Value, right: Value) -> Result<Value, Stop> {
+    fn power(&mut self, at: At<'_>, left: Value, right: Value) -> Result<Value, Halt> {
         let (Value::Number(x), Value::Number(n)) = (&left, &right) else { return Err(self.misfit_operands(at, &left, &right)) };
         if !n.dim.is_none() {
             let found = dim_words(n.dim);
@@ -209,7 +209,7 @@ impl Cx<'_> {
         self.finite(at, Quantity::new(value, dim))
     }
 
-    fn range(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<Value, Stop> {
+    fn range(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<Value, Halt> {
         let end = |cx: &mut Self, value: &Value, id: ExprId| match value {
             Value::Number(q) if q.dim.is_none() && q.value == q.value.trunc() && q.value.abs() < 9e15 => Ok(q.value as i64),
             Value::Number(q) if !q.dim.is_none() => {
@@ -231,7 +231,7 @@ impl Cx<'_> {
     }
 
     /// `==` and `!=` without `within`.
-    fn equality(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<bool, Stop> {
+    fn equality(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<bool, Halt> {
         if let Err(stop) = self.comparable(&[left, right]) {
             return Err(self.at_operator(at, stop));
         }
@@ -255,7 +255,7 @@ impl Cx<'_> {
         }
     }
 
-    fn order(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<bool, Stop> {
+    fn order(&mut self, at: At<'_>, left: &Value, right: &Value) -> Result<bool, Halt> {
         let order = match (left, right) {
             (Value::Number(x), Value::Number(y)) => {
                 let (x, y) = self.same_dim(at, *x, *y)?;
@@ -273,7 +273,7 @@ impl Cx<'_> {
     }
 
     /// Two numbers to be added or compared: of one dimension, a literal 0 fitting any.
-    fn same_dim(&mut self, at: At<'_>, x: Quantity, y: Quantity) -> Result<(Quantity, Quantity), Stop> {
+    fn same_dim(&mut self, at: At<'_>, x: Quantity, y: Quantity) -> Result<(Quantity, Quantity), Halt> {
         if x.dim == y.dim {
             return Ok((x, y));
         }
@@ -291,7 +291,7 @@ impl Cx<'_> {
 
     /// E212: a bare number beside a quantity, with the text that would do.
     #[cold]
-    fn bare_beside(&mut self, at: At<'_>, x: Quantity, y: Quantity) -> Stop {
+    fn bare_beside(&mut self, at: At<'_>, x: Quantity, y: Quantity) -> Halt {
         let (bare, other, dim) = if x.dim.is_none() { (at.a, at.b, y.dim) } else { (at.b, at.a, x.dim) };
         let value = if x.dim.is_none() { x.value } else { y.value };
         let text = self.source(at.code, bare);
@@ -349,7 +349,7 @@ impl Cx<'_> {
         }
     }
 
-    fn same_vectors(&mut self, at: At<'_>, a: (DVec3, Dim), b: (DVec3, Dim)) -> Result<(DVec3, DVec3, Dim), Stop> {
+    fn same_vectors(&mut self, at: At<'_>, a: (DVec3, Dim), b: (DVec3, Dim)) -> Result<(DVec3, DVec3, Dim), Halt> {
         let bare = self.bare_unit(at.code.module);
         match (a.1, b.1) {
             (x, y) if x == y => Ok((a.0, b.0, x)),
@@ -361,7 +361,7 @@ impl Cx<'_> {
 
     /// E211 at an operator: what stands on its two sides.
     #[cold]
-    fn misfit_operands(&mut self, at: At<'_>, left: &Value, right: &Value) -> Stop {
+    fn misfit_operands(&mut self, at: At<'_>, left: &Value, right: &Value) -> Halt {
         let words = |cx: &Self, v: &Value| match v {
             Value::Vector(_, dim) if !dim.is_none() && *dim != Dim::LENGTH => format!("a vector of {}", dim_words(*dim)),
             other => cx.kind(other),
@@ -410,16 +410,16 @@ impl Cx<'_> {
     }
 
     #[inline]
-    fn finite(&mut self, at: At<'_>, q: Quantity) -> Result<Value, Stop> {
+    fn finite(&mut self, at: At<'_>, q: Quantity) -> Result<Value, Halt> {
         if q.value.is_finite() { Ok(Value::Number(q)) } else { Err(self.not_finite(at)) }
     }
 
-    fn finite_vector(&mut self, at: At<'_>, v: DVec3, dim: Dim) -> Result<Value, Stop> {
+    fn finite_vector(&mut self, at: At<'_>, v: DVec3, dim: Dim) -> Result<Value, Halt> {
         if v.is_finite() { Ok(Value::Vector(v, dim)) } else { Err(self.not_finite(at)) }
     }
 
     #[cold]
-    fn not_finite(&mut self, at: At<'_>) -> Stop {
+    fn not_finite(&mut self, at: At<'_>) -> Halt {
         self.error(at.code, "E408", "the result is not a finite number", at.op_span, "too large, or undefined, here").stop()
     }
 
@@ -429,7 +429,7 @@ impl Cx<'_> {
     }
 
     /// `a == b within t`.
-    pub(super) fn within(&mut self, code: Code<'_>, of: ExprId, tolerance: ExprId) -> Result<Comparison, Stop> {
+    pub(super) fn within(&mut self, code: Code<'_>, of: ExprId, tolerance: ExprId) -> Result<Comparison, Halt> {
         let Expr::Binary { op, op_span, a, b } = *code.expr(of) else {
             return Err(self.error(code, "E102", "`within` follows `==`", code.span(of), "compare with `==` here").stop());
         };
@@ -443,7 +443,7 @@ impl Cx<'_> {
         result
     }
 
-    fn near(&mut self, at: At<'_>, tolerance: ExprId) -> Result<Comparison, Stop> {
+    fn near(&mut self, at: At<'_>, tolerance: ExprId) -> Result<Comparison, Halt> {
         let code = at.code;
         let (left, right, limit) = (self.eval(code, at.a)?, self.eval(code, at.b)?, self.eval(code, tolerance)?);
         let (difference, size) = match (&left, &right) {
@@ -483,7 +483,7 @@ impl Cx<'_> {
     }
 
     /// A comparison with its sides, for checks; `None` for any other expression.
-    pub(super) fn comparison(&mut self, code: Code<'_>, id: ExprId) -> Option<Result<Comparison, Stop>> {
+    pub(super) fn comparison(&mut self, code: Code<'_>, id: ExprId) -> Option<Result<Comparison, Halt>> {
         match *code.expr(id) {
             Expr::Within { of, tolerance } => Some(self.within(code, of, tolerance)),
             Expr::Binary { op, op_span, a, b } if compares(op) => Some(self.compared(At { code, op, op_span, id, a, b })),
@@ -491,7 +491,7 @@ impl Cx<'_> {
         }
     }
 
-    fn compared(&mut self, at: At<'_>) -> Result<Comparison, Stop> {
+    fn compared(&mut self, at: At<'_>) -> Result<Comparison, Halt> {
         let (left, right) = match (self.eval(at.code, at.a), self.eval(at.code, at.b)) {
             (Ok(left), Ok(right)) => (left, right),
             (Err(x), Err(y)) => return Err(x.or(y)),

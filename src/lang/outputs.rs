@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::collections::{find, said, truth};
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::Diagnostic;
 use super::eval::{Code, Gather};
 use super::operators::Comparison;
@@ -15,9 +15,9 @@ use super::value::{ModuleId, Quantity, Value};
 use crate::base::origin::Origin;
 
 impl Cx<'_> {
-    pub(super) fn output(&mut self, code: Code<'_>, declaration: &Declaration) -> Result<Value, Stop> {
+    pub(super) fn output(&mut self, code: Code<'_>, declaration: &Declaration) -> Result<Value, Halt> {
         let DeclarationKind::Output { label, things, family, to, settings } = &declaration.kind else {
-            return Err(Stop::Bug("not an output"));
+            return Err(Halt::Bug("not an output"));
         };
         // A module's checks run; its exports, pictures and reports do not.
         if declaration.keyword != Keyword::Check && code.module != ModuleId::MAIN {
@@ -73,11 +73,11 @@ impl Cx<'_> {
         member: [u32; 2],
         (things, to): (&[ExprId], Option<ExprId>),
         settings: &[ast::Setting],
-    ) -> Result<ExportSpec, Stop> {
+    ) -> Result<ExportSpec, Halt> {
         let mut gather = Gather::default();
         let things = match self.things(code, things, Keyword::Export) {
             // What settings may say depends on the things.
-            Err(Stop::NotYet) => return Err(Stop::NotYet),
+            Err(Halt::NotYet) => return Err(Halt::NotYet),
             things => gather.take(things),
         };
         let path = gather.take(self.path(code, to));
@@ -123,8 +123,8 @@ impl Cx<'_> {
         elements
     }
 
-    pub(super) fn path(&mut self, code: Code<'_>, to: Option<ExprId>) -> Result<(String, Origin), Stop> {
-        let Some(to) = to else { return Err(Stop::Bug("an export without a path")) };
+    pub(super) fn path(&mut self, code: Code<'_>, to: Option<ExprId>) -> Result<(String, Origin), Halt> {
+        let Some(to) = to else { return Err(Halt::Bug("an export without a path")) };
         match self.eval(code, to)? {
             Value::Text(t) => Ok((t.to_string(), self.origin_at(to))),
             other => {
@@ -135,18 +135,18 @@ impl Cx<'_> {
     }
 
     /// A label as written and interpolated, or the source of what it is about.
-    fn label(&mut self, code: Code<'_>, label: Option<ExprId>, thing: Option<ExprId>) -> Result<String, Stop> {
+    fn label(&mut self, code: Code<'_>, label: Option<ExprId>, thing: Option<ExprId>) -> Result<String, Halt> {
         match (label, thing) {
             (Some(label), _) => match code.expr(label) {
                 Expr::Text(parts) => self.interpolate(code, parts),
-                _ => Err(Stop::Bug("a label that is no text")),
+                _ => Err(Halt::Bug("a label that is no text")),
             },
             (None, Some(thing)) => Ok(self.source(code, thing).split_whitespace().collect::<Vec<_>>().join(" ")),
             (None, None) => Ok(String::new()),
         }
     }
 
-    fn check(&mut self, code: Code<'_>, label: Option<ExprId>, things: &[ExprId]) -> Result<(CheckResult, Option<Diagnostic>), Stop> {
+    fn check(&mut self, code: Code<'_>, label: Option<ExprId>, things: &[ExprId]) -> Result<(CheckResult, Option<Diagnostic>), Halt> {
         let &[thing] = things else {
             let span = things.get(1).map_or(code.span(things[0]), |t| code.span(*t));
             return Err(self.error(code, "E302", "a check checks one thing", span, "one too many").help("join them with `and`").stop());
@@ -229,7 +229,7 @@ impl Cx<'_> {
     }
 
     /// A report as a table: records are rows, a record is one row, an entity tells its members, anything else is one cell.
-    fn report(&mut self, code: Code<'_>, label: Option<ExprId>, things: &[ExprId]) -> Result<ReportTable, Stop> {
+    fn report(&mut self, code: Code<'_>, label: Option<ExprId>, things: &[ExprId]) -> Result<ReportTable, Halt> {
         let (title, labelled) = (self.label(code, label, things.first().copied())?, label.is_some());
         let (mut values, mut gather) = (Vec::new(), Gather::default());
         for thing in things {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::{Diagnostic, FileId};
 use super::eval::Code;
 use super::module::{Given, Written, bound};
@@ -21,7 +21,7 @@ impl Cx<'_> {
         ty: Option<&TypeName>,
         value: ExprId,
         allowed: Option<&Allowed>,
-    ) -> Result<Value, Stop> {
+    ) -> Result<Value, Halt> {
         let subject = format!("`{}`", self.names.text(name.name));
         let ty = match ty {
             Some(ty) => Some(self.written_type(code, ty)?),
@@ -56,7 +56,7 @@ impl Cx<'_> {
         subject: &str,
         (ty, allowed): (Ty, Option<&Allowed>),
         given: Given,
-    ) -> Result<Value, Stop> {
+    ) -> Result<Value, Halt> {
         let (value, file, span, words) = match given {
             Given::Value(value, file, span) => (Some(value), file, span, None),
             Given::Text(text, Written { file, value: span, cell: words, .. }) => {
@@ -73,7 +73,7 @@ impl Cx<'_> {
         let fail = |cx: &mut Self, code: &'static str, message: String, label: &str| {
             let diagnostic = Diagnostic::new(code, message, file, span, label).label(declared, name.span, "declared here");
             cx.sink.push(words.iter().fold(diagnostic, |d, words| d.note(words)));
-            Stop::Failed
+            Halt::Failed
         };
         let Some(value) = value else {
             return Err(fail(
@@ -109,7 +109,7 @@ impl Cx<'_> {
         (ty, allowed): (Ty, Option<&Allowed>),
         outside: Option<(FileId, Span)>,
         span: Span,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), Halt> {
         let (range, holds) = match allowed {
             None => return Ok(()),
             Some(Allowed::Range(a, b)) => {
@@ -144,7 +144,7 @@ impl Cx<'_> {
             Some((file, place)) => {
                 let declared = self.machine.at(code.module).file;
                 self.sink.push(Diagnostic::new("E218", message, file, place, "outside").label(declared, span, "declared here"));
-                Err(Stop::Failed)
+                Err(Halt::Failed)
             }
         }
     }

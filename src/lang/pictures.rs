@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::collections::{Resolved, find};
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::{Code, Gather};
 use super::plans::{PICTURE_SIZE, PictureSpec, Show};
 use super::settings;
@@ -44,7 +44,7 @@ impl Cx<'_> {
         member: [u32; 2],
         (things, to): (&[ExprId], Option<ExprId>),
         settings: &[ast::Setting],
-    ) -> Result<PictureSpec, Stop> {
+    ) -> Result<PictureSpec, Halt> {
         let mut gather = Gather::default();
         let named: Vec<String> = things.iter().map(|t| self.source(code, *t).split_whitespace().collect::<Vec<_>>().join(" ")).collect();
         let drawn = gather.take(self.things(code, things, Keyword::Picture));
@@ -95,14 +95,14 @@ impl Cx<'_> {
     }
 
     /// Where the eye is; E306 for a direction without length or an up along it.
-    fn view(&mut self, code: Code<'_>, settings: &[ast::Setting], resolved: &[Resolved]) -> Result<View, Stop> {
+    fn view(&mut self, code: Code<'_>, settings: &[ast::Setting], resolved: &[Resolved]) -> Result<View, Halt> {
         let place = |cx: &Self, key: &str| settings.iter().find(|s| cx.names.text(s.key) == key).map(|s| s.value);
         let mut view = match find(resolved, "view").map(|r| &r.value) {
             Some(Value::Word(word)) => View::named(word),
             Some(Value::Vector(eye, _)) => Some(View { eye: *eye, up: None, perspective: false }),
             _ => View::named("isometric"),
         }
-        .ok_or(Stop::Bug("a view that is none"))?;
+        .ok_or(Halt::Bug("a view that is none"))?;
         let up = vector(resolved, "up").map(|found| found.0);
         view.up = up.or(view.up);
         view.perspective = flag(resolved, "perspective").unwrap_or(false);
@@ -123,7 +123,7 @@ impl Cx<'_> {
     }
 
     /// E306 for more pixels than a picture may have.
-    fn page(&mut self, code: Code<'_>, settings: &[ast::Setting], (width, height): (u32, u32)) -> Result<(), Stop> {
+    fn page(&mut self, code: Code<'_>, settings: &[ast::Setting], (width, height): (u32, u32)) -> Result<(), Halt> {
         let pixels = u64::from(width) * u64::from(height);
         let last = settings.iter().rfind(|s| matches!(self.names.text(s.key), "width" | "height")).map(|s| s.value);
         match last {

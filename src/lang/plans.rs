@@ -11,7 +11,7 @@ use crate::draw::View;
 use crate::mesh::{Elements, Method};
 
 /// A setting with the expression that says it.
-pub type Said<T> = Option<(T, Origin)>;
+pub type Located<T> = Option<(T, Origin)>;
 
 /// `on THINGS { … }` of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -19,15 +19,15 @@ pub struct RuleSpec {
     /// Links, curves, edges, surfaces, patches; nested lists flattened.
     pub things: Vec<(Value, Origin)>,
     /// Steps over the whole length.
-    pub count: Said<u32>,
+    pub count: Located<u32>,
     /// Target edge length, model units.
-    pub size: Said<f64>,
+    pub size: Located<f64>,
     /// Last step over first step.
-    pub bias: Said<f64>,
+    pub bias: Located<f64>,
     /// Elements of faces.
-    pub elements: Said<Elements>,
+    pub elements: Located<Elements>,
     /// Method of faces.
-    pub method: Said<Method>,
+    pub method: Located<Method>,
     /// The clause.
     pub origin: Origin,
 }
@@ -57,29 +57,29 @@ pub struct MeshSpec {
     /// Surfaces, shells, curves, points; nested lists flattened, each with the expression that names it.
     pub things: Vec<(Value, Origin)>,
     /// Target edge length, model units.
-    pub size: Said<f64>,
+    pub size: Located<f64>,
     /// Largest distance mesh–surface, model units.
-    pub chord_error: Said<f64>,
+    pub chord_error: Located<f64>,
     /// Largest turn of the normal across an element, radians.
-    pub angle_error: Said<f64>,
+    pub angle_error: Located<f64>,
     /// Floor of the size, model units.
-    pub min_size: Said<f64>,
+    pub min_size: Located<f64>,
     /// Ratio of neighbouring sizes.
-    pub growth: Said<f64>,
+    pub growth: Located<f64>,
     /// Rounds of smoothing.
-    pub smooth: Said<u32>,
+    pub smooth: Located<u32>,
     /// Kind of elements.
-    pub elements: Said<Elements>,
+    pub elements: Located<Elements>,
     /// 1 or 2.
-    pub order: Said<u8>,
+    pub order: Located<u8>,
     /// How faces are meshed.
-    pub method: Said<Method>,
+    pub method: Located<Method>,
     /// Neighbouring faces share nodes.
-    pub conforming: Said<bool>,
+    pub conforming: Located<bool>,
     /// Faces that touch without a shared border are joined.
-    pub imprint: Said<bool>,
+    pub imprint: Located<bool>,
     /// Faces show their other sides.
-    pub flip: Said<bool>,
+    pub flip: Located<bool>,
     /// `on` clauses in order of writing.
     pub rules: Vec<RuleSpec>,
     /// `near` and `in` clauses in order of writing.
@@ -143,17 +143,17 @@ pub struct ExportSpec {
     /// The path expression.
     pub path_origin: Origin,
     /// `encoding:` as a word.
-    pub encoding: Said<Arc<str>>,
+    pub encoding: Located<Arc<str>>,
     /// The words of `element:`, each with its place.
     pub elements: Vec<(Arc<str>, Origin)>,
     /// `schema:` as a word.
-    pub schema: Said<Arc<str>>,
+    pub schema: Located<Arc<str>>,
     /// `shells:` as a word.
-    pub shells: Said<Arc<str>>,
+    pub shells: Located<Arc<str>>,
     /// What lacks faces is written all the same.
     pub incomplete: bool,
     /// `units:` of the file.
-    pub units: Said<super::units::LengthUnit>,
+    pub units: Located<super::units::LengthUnit>,
     /// The declaration.
     pub origin: Origin,
 }
@@ -174,7 +174,7 @@ pub struct PictureSpec {
     /// Pixels across and down.
     pub size: (u32, u32),
     /// `shade:` as a word.
-    pub shade: Said<Arc<str>>,
+    pub shade: Located<Arc<str>>,
     /// What fills the picture; empty for everything.
     pub zoom: Vec<(Value, Origin)>,
     /// Words above it.

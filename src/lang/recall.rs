@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::cx::Cx;
 use super::diag::Diagnostic;
-use super::memory::{Asked, Kept, Memory, attached, detached};
+use super::memory::{Dependencies, Kept, Memory, attached, detached};
 use super::module::{Stage, State};
 use super::numbering::Sees;
 use super::syntax::ast::Keyword;
@@ -83,7 +83,7 @@ impl Cx<'_> {
         }
         self.machine.room.take_over(kept.members);
         self.machine.steps += kept.steps;
-        let asked = Asked { world: kept.world.is_some(), numbered: true, ..Asked::default() };
+        let asked = Dependencies { world: kept.world.is_some(), numbered: true, ..Dependencies::default() };
         self.machine.at_mut(module).within.insert(index, (State::Done(kept.value), asked));
     }
 
@@ -97,7 +97,8 @@ impl Cx<'_> {
         let span = m.script.declarations[index as usize].span;
         let said = attached(&kept.said, m.file, span.start);
         let fleeting = m.script.declarations[index as usize].keyword == Keyword::Mesh;
-        m.asked[index as usize] = Asked { world: kept.world.is_some(), fleeting, numbered: kept.numbered, ..Asked::default() };
+        m.asked[index as usize] =
+            Dependencies { world: kept.world.is_some(), fleeting, numbered: kept.numbered, ..Dependencies::default() };
         let mut next = m.meshes.len() as u32;
         m.states[index as usize] = State::Done(if fleeting { numbered(&kept.value, module, &mut next) } else { kept.value });
         m.meshes.extend(kept.meshes);
@@ -131,7 +132,7 @@ impl Cx<'_> {
         (module, index): (ModuleId, u32),
         (state, sees): (&State, Sees),
         start: Start,
-        asked: Asked,
+        asked: Dependencies,
         (seen, said): (Box3, &[Diagnostic]),
     ) {
         if self.memory.is_none() {
@@ -164,7 +165,7 @@ impl Cx<'_> {
     }
 
     /// What an evaluation did beside making a value; `None` when that cannot be repeated.
-    fn kept(&self, module: ModuleId, index: u32, (start, asked): (Start, Asked), said: &[Diagnostic]) -> Option<Kept> {
+    fn kept(&self, module: ModuleId, index: u32, (start, asked): (Start, Dependencies), said: &[Diagnostic]) -> Option<Kept> {
         let m = self.machine.at(module);
         let declaration = &m.script.declarations[index as usize];
         match declaration.keyword {

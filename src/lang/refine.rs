@@ -1,7 +1,7 @@
 //! `near` and `in` clauses of a mesh: places where elements are smaller.
 
 use super::collections::{number, said};
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 
 use super::eval::{Code, Gather};
 use super::plans::RefineSpec;
@@ -15,7 +15,7 @@ use crate::base::origin::Origin;
 
 impl Cx<'_> {
     /// `near points, curves { … }` or `in box { … }`.
-    pub(super) fn refine(&mut self, code: Code<'_>, clause: &MeshClause, meshed: &mut Meshed<'_>) -> Result<RefineSpec, Stop> {
+    pub(super) fn refine(&mut self, code: Code<'_>, clause: &MeshClause, meshed: &mut Meshed<'_>) -> Result<RefineSpec, Halt> {
         let mut gather = Gather::default();
         let (word, table) = if clause.word == ClauseWord::Near { ("near", settings::NEAR) } else { ("in", settings::IN) };
         let (mut things, mut boxes) = (Vec::new(), Vec::new());
@@ -38,7 +38,7 @@ impl Cx<'_> {
         Ok(RefineSpec { things, boxes, size, radius, origin })
     }
 
-    fn near_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Stop> {
+    fn near_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Halt> {
         let found = self.things_for(code, things, (Keyword::Group, "clause `near`"))?;
         let fits = |v: &Value| {
             matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Curve(_) | Value::Link(..) | Value::Edge(..))
@@ -50,7 +50,7 @@ impl Cx<'_> {
     }
 
     /// Boxes as `box` and `bbox` give them: records with the points `min` and `max`.
-    fn boxes(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Box3>, Stop> {
+    fn boxes(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Box3>, Halt> {
         let mut boxes = Vec::new();
         let (min, max) = (self.names.intern("min"), self.names.intern("max"));
         for &thing in things {

@@ -1,11 +1,11 @@
-//! Room for lists: what a run holds is counted before it is made, so that no script eats the machine.
+//! MemoryBudget for lists: what a run holds is counted before it is made, so that no script eats the machine.
 //!
 //! A member takes 32 bytes and a list of its own some more. What a declaration made on the way is given back when it is
 //! evaluated, all but the value that it keeps.
 
 use std::sync::Arc;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::eval::Code;
 use super::syntax::ast::ExprId;
 use super::value::Value;
@@ -19,14 +19,14 @@ const MEMBER_BYTES: usize = size_of::<Value>();
 
 /// Members made and kept, in places of [`MEMBER_BYTES`].
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Room {
+pub(super) struct MemoryBudget {
     /// Held by finished declarations and by those being evaluated.
     made: usize,
     /// Of these, held by finished declarations.
     kept: usize,
 }
 
-impl Room {
+impl MemoryBudget {
     fn has(&self, n: usize) -> bool {
         n <= limits::MEMBERS_MADE.saturating_sub(self.made)
     }
@@ -102,12 +102,12 @@ pub(super) fn flat_len(value: &Value, limit: usize) -> usize {
 
 impl Cx<'_> {
     /// Fails before a builtin makes a list of so many members.
-    pub fn room(&mut self, n: usize) -> Result<(), Stop> {
+    pub fn room(&mut self, n: usize) -> Result<(), Halt> {
         self.room_of_lists(n, None)
     }
 
     /// Fails before a builtin makes a list of so many members, each a list of `inner` when given.
-    pub fn room_of_lists(&mut self, n: usize, inner: Option<usize>) -> Result<(), Stop> {
+    pub fn room_of_lists(&mut self, n: usize, inner: Option<usize>) -> Result<(), Halt> {
         let each = 1 + inner.map_or(0, |m| LIST_COST + m);
         let (what, limit) = if n > limits::LIST_MEMBERS {
             (format!("a list of {n} members"), "10^7 members")
@@ -121,7 +121,7 @@ impl Cx<'_> {
 
     /// Counts the list that a builtin has made; one that something else holds as well is not new.
     #[inline]
-    pub(super) fn made_by_builtin(&mut self, code: Code<'_>, id: ExprId, value: &Value) -> Result<(), Stop> {
+    pub(super) fn made_by_builtin(&mut self, code: Code<'_>, id: ExprId, value: &Value) -> Result<(), Halt> {
         match value {
             Value::List(items) if Arc::strong_count(items) == 1 => {
                 let inner = items.iter().filter(|v| matches!(v, Value::List(l) if Arc::strong_count(l) == 1));
@@ -134,13 +134,13 @@ impl Cx<'_> {
     }
 
     /// Counts a text that is made.
-    pub(super) fn made_text(&mut self, code: Code<'_>, id: ExprId, text: &str) -> Result<(), Stop> {
+    pub(super) fn made_text(&mut self, code: Code<'_>, id: ExprId, text: &str) -> Result<(), Halt> {
         self.made(code, id, 1 + text.len() / MEMBER_BYTES)
     }
 
     /// Counts members of lists that are made; fails when too many are held.
     #[inline]
-    pub(super) fn made(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Stop> {
+    pub(super) fn made(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Halt> {
         self.has_room(code, id, n)?;
         self.machine.room.made += n;
         Ok(())
@@ -148,12 +148,12 @@ impl Cx<'_> {
 
     /// Fails before `n` more members are made than a run may hold.
     #[inline]
-    pub(super) fn has_room(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Stop> {
+    pub(super) fn has_room(&mut self, code: Code<'_>, id: ExprId, n: usize) -> Result<(), Halt> {
         if self.machine.room.has(n) { Ok(()) } else { Err(self.no_room(code, id)) }
     }
 
     /// Fails before lists are compared that hold each other so often that no comparison would end.
-    pub fn comparable(&self, values: &[&Value]) -> Result<(), Stop> {
+    pub fn comparable(&self, values: &[&Value]) -> Result<(), Halt> {
         match values.iter().all(|v| flat_len(v, limits::MEMBERS_MADE) <= limits::MEMBERS_MADE) {
             true => Ok(()),
             false => {
@@ -164,7 +164,7 @@ impl Cx<'_> {
     }
 
     /// Nested lists as one, unless it would be too long.
-    pub(super) fn flattened(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Vec<Value>, Stop> {
+    pub(super) fn flattened(&mut self, code: Code<'_>, id: ExprId, value: Value) -> Result<Vec<Value>, Halt> {
         let n = flat_len(&value, limits::LIST_MEMBERS);
         if n > limits::LIST_MEMBERS {
             return Err(self.too_long(code, id, "this list"));
@@ -177,14 +177,14 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn no_room(&mut self, code: Code<'_>, id: ExprId) -> Stop {
+    fn no_room(&mut self, code: Code<'_>, id: ExprId) -> Halt {
         self.error(code, "E217", "the lists of this run have too many members together", code.span(id), "more than fit")
             .help("the limit is 2 x 10^7 members at a time, those of lists inside lists included")
             .stop()
     }
 
     #[cold]
-    pub(super) fn too_long(&mut self, code: Code<'_>, id: ExprId, what: &str) -> Stop {
+    pub(super) fn too_long(&mut self, code: Code<'_>, id: ExprId, what: &str) -> Halt {
         self.error(code, "E217", format!("{what} has too many members"), code.span(id), "made here")
             .help("the limit is 10^7 members")
             .stop()
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_declaration_gives_back_what_it_does_not_keep() {
-        let mut room = Room::default();
+        let mut room = MemoryBudget::default();
         let outer = room;
         room.made += 100;
         let inner = room;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::cx::{Cx, SAID_JUST_NOW, Stop};
+use super::cx::{Cx, Halt, SAID_JUST_NOW};
 use super::diag::{self, Diagnostic};
 use super::eval::Code;
 use super::module::{Stage, State, bound};
@@ -148,7 +148,7 @@ impl Cx<'_> {
                     self.error(code, "E306", format!("{subject} must be more than 0, got {found}"), code.span(*expr), found).say();
                 }
                 Ok(value) => out.push(value),
-                Err(Stop::NotYet) => {
+                Err(Halt::NotYet) => {
                     let text = format!("{subject} cannot depend on what depends on the tolerance");
                     self.error(code, "E203", text, code.span(*expr), "needs the tolerance").say();
                 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::module::{State, bound};
 use super::stages;
 use super::syntax::ast::Keyword;
@@ -31,7 +31,7 @@ pub struct Scene {
 impl Scene {
     /// The script's model, extended by those of `surfaces` that it does not declare (moved ones, `let`s); where declarations failed
     /// the model of the others.
-    pub fn of<'s>(cx: &mut Cx, module: ModuleId, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
+    pub fn of<'s>(cx: &mut Cx, module: ModuleId, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Halt> {
         let (model, network) = cx.ground(module)?;
         Self { model, network }.with(cx, surfaces)
     }
@@ -39,7 +39,7 @@ impl Scene {
     /// The scene of `surfaces`, and where its patches, edges and vertices are numbered: the script's own where that declares them all,
     /// else (and where some of it failed) one of these surfaces or of what is sound, on the script's network. The same surfaces are at home in one place. What is itself a curve or
     /// surface of the script is made from them alone, on no network: how a surface is bounded does not depend on the others.
-    pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, Home), Stop> {
+    pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, Home), Halt> {
         cx.machine.asked.numbered = true;
         let alone = stages::is_within(cx, module);
         let own = if alone {
@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// This scene, extended by those of `surfaces` that it does not hold.
-    pub fn with<'s>(self, cx: &mut Cx, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Stop> {
+    pub fn with<'s>(self, cx: &mut Cx, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Self, Halt> {
         let extra = self.missing(cx, surfaces);
         if extra.is_empty() { Ok(self) } else { self.extended(cx, extra) }
     }
@@ -91,7 +91,7 @@ impl Scene {
         extra
     }
 
-    fn extended(self, cx: &mut Cx, extra: Vec<Named>) -> Result<Self, Stop> {
+    fn extended(self, cx: &mut Cx, extra: Vec<Named>) -> Result<Self, Halt> {
         let scene = self;
         let tolerance = cx.tolerance()?;
         let all = scene.model.surfaces.iter().cloned().chain(extra).collect();
@@ -106,14 +106,14 @@ impl Scene {
     }
 
     /// Places of several surfaces; all are in the scene they were asked with.
-    pub fn find_all<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<(SurfaceId, bool)>, Stop> {
-        let place = |surface| self.find(surface).ok_or(Stop::Bug("a surface is not in its scene"));
+    pub fn find_all<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<(SurfaceId, bool)>, Halt> {
+        let place = |surface| self.find(surface).ok_or(Halt::Bug("a surface is not in its scene"));
         surfaces.into_iter().map(place).collect()
     }
 
     /// A shell as the model sees it; notes go to `sink`. A closed one points out of its material, an open one follows its first
     /// surface as listed; `flip: true` turns either.
-    pub fn shell(&self, shell: &ShellValue, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell, Stop> {
+    pub fn shell(&self, shell: &ShellValue, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell, Halt> {
         let places = self.find_all(&shell.surfaces)?;
         let mut surfaces: Vec<SurfaceId> = Vec::with_capacity(places.len());
         places.iter().for_each(|(id, _)| {
@@ -136,7 +136,7 @@ impl Scene {
     }
 
     /// The modeling curve along an edge; `None` for a line across a trimmed surface that follows neither u nor v.
-    pub fn shared_chain(&self, edge: &SharedEdge, tolerance: &Tolerance) -> Result<Option<Chain>, Stop> {
+    pub fn shared_chain(&self, edge: &SharedEdge, tolerance: &Tolerance) -> Result<Option<Chain>, Halt> {
         let Some(part) = edge.first() else { return Ok(None) };
         let whole = &self.model.edges[part.edge.index()];
         let Some(chain) = self.model.edge_chain(part.edge, &self.network, tolerance)? else { return Ok(None) };

@@ -1,7 +1,7 @@
 //! `size: 1%`: lengths of a mesh as shares of the diagonal of the box around what is meshed.
 
 use super::collections::Resolved;
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::diag::Label;
 use super::eval::Code;
 use super::syntax::ast::{ExprId, Span};
@@ -22,7 +22,7 @@ pub(super) struct Meshed<'t> {
 
 impl Cx<'_> {
     /// Shares among settings as the lengths that they are.
-    pub(super) fn shares(&mut self, code: Code<'_>, settings: &mut [Resolved], meshed: &mut Meshed<'_>) -> Result<(), Stop> {
+    pub(super) fn shares(&mut self, code: Code<'_>, settings: &mut [Resolved], meshed: &mut Meshed<'_>) -> Result<(), Halt> {
         for setting in settings.iter_mut().filter(|setting| setting.ty == Ty::Size) {
             let Value::Number(Quantity { value, percent: true, .. }) = setting.value else { continue };
             if meshed.things.is_empty() && meshed.diagonal.is_none() {
@@ -44,7 +44,7 @@ impl Cx<'_> {
     }
 
     /// E306: a share of what is meshed, where that is empty: names what chose nothing.
-    fn share_of_none(&mut self, code: Code<'_>, setting: &Resolved, said: &[ExprId]) -> Stop {
+    fn share_of_none(&mut self, code: Code<'_>, setting: &Resolved, said: &[ExprId]) -> Halt {
         let file = self.machine.at(code.module).file;
         let (share, found) = (self.span_of(setting.origin), said.iter().map(|expr| code.span(*expr)).collect::<Vec<_>>());
         let span = found.first().copied().unwrap_or_default();
@@ -59,7 +59,7 @@ impl Cx<'_> {
     }
 
     /// The smallest box along the axes around all things of a mesh.
-    fn box_around(&mut self, things: &[(Value, Origin)]) -> Result<Box3, Stop> {
+    fn box_around(&mut self, things: &[(Value, Origin)]) -> Result<Box3, Halt> {
         let (mut around, mut surfaces) = (Box3::EMPTY, Vec::<Surface>::new());
         for (thing, _) in things {
             match thing {

@@ -19,7 +19,7 @@ use super::syntax::ast::{DeclarationKind, ExprId, Keyword};
 use super::types::Ty;
 use super::value::{Dim, ModuleId, Value};
 use crate::base::bbox::Box3;
-use crate::base::digest::{Digest, Digester};
+use crate::base::digest::{Digest, StableHasher};
 use crate::network::Chain;
 
 /// What a round looks at.
@@ -41,7 +41,7 @@ impl Cx<'_> {
     fn snap_module(&mut self, module: ModuleId) -> Option<Digest> {
         let asked = self.snap_distance(module);
         let rounds = Rounds::of(self, module);
-        let mut all: Option<Digester> = None;
+        let mut all: Option<StableHasher> = None;
         for round in 0..rounds.count() {
             if self.job.go_on().is_err() {
                 break;
@@ -51,7 +51,7 @@ impl Cx<'_> {
             let sound = asked.is_none_or(|asked| self.snap_round(module, (&rounds, round), asked, &mut moved));
             if moved.iter().any(Option::is_some) {
                 let each = moved.iter().enumerate().filter_map(|(i, moved)| Some((i, (*moved)?)));
-                all = Some(each.fold(all.unwrap_or_else(|| Digester::new("rounds")), |d, (i, moved)| d.number(i as u64).digest(moved)));
+                all = Some(each.fold(all.unwrap_or_else(|| StableHasher::new("rounds")), |d, (i, moved)| d.number(i as u64).digest(moved)));
                 let stale = rounds.users(|i| moved[i].is_some());
                 self.snapped_keys(module, &moved, &stale);
                 self.forget(module, &stale);
@@ -145,14 +145,14 @@ impl Cx<'_> {
         next: &mut dyn FnMut() -> Option<Chain>,
         all: &mut Moved,
     ) {
-        fn walk(value: &Value, next: &mut dyn FnMut() -> Option<Chain>, moved: &mut (u64, Option<Digester>)) -> Value {
+        fn walk(value: &Value, next: &mut dyn FnMut() -> Option<Chain>, moved: &mut (u64, Option<StableHasher>)) -> Value {
             match value {
                 Value::List(items) => Value::list(items.iter().map(|v| walk(v, next, moved)).collect()),
                 Value::Curve(before) => {
                     let now = next().unwrap_or_else(|| before.clone());
                     moved.0 += 1;
                     if !now.is(before) {
-                        let all = moved.1.take().unwrap_or_else(|| Digester::new("moved"));
+                        let all = moved.1.take().unwrap_or_else(|| StableHasher::new("moved"));
                         moved.1 = Some(all.number(moved.0).with(&now));
                     }
                     Value::Curve(now)
@@ -186,7 +186,7 @@ impl Cx<'_> {
         let own = |i: usize| {
             let key = before.of[i]?;
             let changed = moved[i].is_some() || stale[i];
-            let after = || Digester::new("snapped").digest(key);
+            let after = || StableHasher::new("snapped").digest(key);
             Some(if changed { moved[i].iter().fold(after(), |after, moved| after.digest(*moved)).finish() } else { key })
         };
         let own: Vec<Option<Digest>> = (0..moved.len()).map(own).collect();

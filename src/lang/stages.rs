@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::cx::{Cx, Declared, Parts, Sound, Stop};
+use super::cx::{Cx, Declared, Halt, Parts, Sound};
 use super::eval::Code;
 use super::faults::member_name;
 use super::module::{Module, Stage, State, bound};
@@ -29,10 +29,10 @@ type Member<'m> = &'m mut dyn FnMut(u32, Keyword, [u32; 2], Arc<str>, &Value);
 type Found<T> = (u32, [u32; 2], Arc<str>, T);
 
 /// Evaluates all declarations of these keywords; the first that failed is the reason to stop.
-fn all(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<(), Stop> {
+fn all(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<(), Halt> {
     let script = cx.machine.at(module).script.clone();
     cx.machine.stages += 1;
-    let mut stop: Option<Stop> = None;
+    let mut stop: Option<Halt> = None;
     for (i, declaration) in script.declarations.iter().enumerate() {
         if keywords.contains(&declaration.keyword)
             && let Err(found) = cx.ensure(module, i as u32)
@@ -46,7 +46,7 @@ fn all(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<(), Stop> 
     cx.machine.stages -= 1;
     // A curve that did not parse leaves a hole that must not be meshed over.
     if stop.is_none() && !script.broken.is_empty() {
-        stop = Some(Stop::Broken);
+        stop = Some(Halt::Broken);
     }
     stop.map_or(Ok(()), Err)
 }
@@ -114,7 +114,7 @@ pub(super) fn is_within(cx: &Cx, module: ModuleId) -> bool {
     cx.own_part(module, GEOMETRY).is_some()
 }
 
-pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
+pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Halt> {
     asks(cx, module);
     if let Stage::Done(parts) = &cx.machine.at(module).parts {
         return Ok(parts.clone());
@@ -130,17 +130,17 @@ pub(super) fn parts(cx: &mut Cx, module: ModuleId) -> Result<Arc<Parts>, Stop> {
 }
 
 /// Evaluates all declarations of these keywords; those that failed are left out, and the first of them is told.
-fn all_sound(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<Option<(ModuleId, u32)>, Stop> {
+fn all_sound(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<Option<(ModuleId, u32)>, Halt> {
     asks(cx, module);
     all(cx, module, keywords).map_or_else(without, |()| Ok(None))
 }
 
 /// The declaration that failed where one can go on without it; what cannot be gone on from stays.
-fn without(stop: Stop) -> Result<Option<(ModuleId, u32)>, Stop> {
+fn without(stop: Halt) -> Result<Option<(ModuleId, u32)>, Halt> {
     match stop {
-        Stop::Skipped(m, d) => Ok(Some((m, d))),
-        Stop::Broken | Stop::Failed => Ok(None),
-        Stop::NotYet | Stop::Fault(_) | Stop::Bug(_) => Err(stop),
+        Halt::Skipped(m, d) => Ok(Some((m, d))),
+        Halt::Broken | Halt::Failed => Ok(None),
+        Halt::NotYet | Halt::Fault(_) | Halt::Bug(_) => Err(stop),
     }
 }
 
@@ -151,7 +151,7 @@ fn lacking(cx: &mut Cx, module: ModuleId, missing: Option<(ModuleId, u32)>) {
 }
 
 /// The declared groups of a script with what they hold.
-pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Stop> {
+pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<Value>>>, Halt> {
     let missing = all_sound(cx, module, &[Keyword::Group])?;
     lacking(cx, module, missing);
     let mut found: Vec<Found<Vec<Value>>> = Vec::new();
@@ -168,7 +168,7 @@ pub(super) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<V
 }
 
 /// The declared shells of a script.
-pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Stop> {
+pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Halt> {
     all_sound(cx, module, &[Keyword::Shell])?;
     let mut found = Vec::new();
     each_member(cx.machine.at(module), &cx.names, &[Keyword::Shell], &mut |_, _, _, name, value| {
@@ -184,13 +184,13 @@ pub(super) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<S
 fn once<T: Clone>(
     cx: &mut Cx,
     slot: impl for<'a> Fn(&'a mut Cx<'_>) -> Option<&'a mut Stage<T>>,
-    make: impl FnOnce(&mut Cx) -> Result<T, Stop>,
-) -> Result<T, Stop> {
+    make: impl FnOnce(&mut Cx) -> Result<T, Halt>,
+) -> Result<T, Halt> {
     match slot(cx) {
         Some(Stage::Done(made)) => return Ok(made.clone()),
-        Some(Stage::Failed) => return Err(Stop::Broken),
-        Some(Stage::Skipped(m, d)) => return Err(Stop::Skipped(*m, *d)),
-        Some(Stage::Running) | None => return Err(Stop::Bug("a stage that needs itself")),
+        Some(Stage::Failed) => return Err(Halt::Broken),
+        Some(Stage::Skipped(m, d)) => return Err(Halt::Skipped(*m, *d)),
+        Some(Stage::Running) | None => return Err(Halt::Bug("a stage that needs itself")),
         Some(stage) => *stage = Stage::Running,
     }
     // What a stage says is its own, whichever declaration asked first.
@@ -201,16 +201,16 @@ fn once<T: Clone>(
     cx.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     let (stage, result) = match made {
         Ok(made) => (Stage::Done(made.clone()), Ok(made)),
-        Err(Stop::Fault(Fault::Interrupted)) => (Stage::Failed, Err(Stop::Broken)),
-        Err(Stop::Fault(fault)) => {
+        Err(Halt::Fault(Fault::Interrupted)) => (Stage::Failed, Err(Halt::Broken)),
+        Err(Halt::Fault(fault)) => {
             let diagnostic = cx.diagnose(&fault);
             cx.machine.filed.push((None, diagnostic));
-            (Stage::Failed, Err(Stop::Broken))
+            (Stage::Failed, Err(Halt::Broken))
         }
-        Err(Stop::Bug(what)) => (Stage::Failed, Err(Stop::Bug(what))),
-        Err(Stop::Skipped(m, d)) => (Stage::Skipped(m, d), Err(Stop::Skipped(m, d))),
-        Err(Stop::NotYet) => (Stage::Waiting, Err(Stop::NotYet)),
-        Err(_) => (Stage::Failed, Err(Stop::Broken)),
+        Err(Halt::Bug(what)) => (Stage::Failed, Err(Halt::Bug(what))),
+        Err(Halt::Skipped(m, d)) => (Stage::Skipped(m, d), Err(Halt::Skipped(m, d))),
+        Err(Halt::NotYet) => (Stage::Waiting, Err(Halt::NotYet)),
+        Err(_) => (Stage::Failed, Err(Halt::Broken)),
     };
     if let Some(slot) = slot(cx) {
         *slot = stage;
@@ -219,7 +219,7 @@ fn once<T: Clone>(
 }
 
 /// The whole geometry, or what was evaluated of it.
-pub(super) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
+pub(super) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Halt> {
     match parts(cx, module) {
         Ok(parts) => {
             if let (Ok(network), Ok(model)) = (network(cx, module), model(cx, module)) {
@@ -234,7 +234,7 @@ pub(super) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
 }
 
 /// Network and model of what was evaluated. What is wrong with the rest was said when the whole was asked for.
-fn gathered(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
+fn gathered(cx: &mut Cx, module: ModuleId) -> Result<Sound, Halt> {
     let parts = Arc::new(gather(cx, module));
     // What is odd about a part of the curves may be right with the rest.
     let sink = std::mem::take(&mut cx.sink);
@@ -242,29 +242,29 @@ fn gathered(cx: &mut Cx, module: ModuleId) -> Result<Sound, Stop> {
     cx.sink = sink;
     let stands = network.is_ok();
     let network = network.unwrap_or_default();
-    let model = cx.pipeline.model(cx, module, (&parts, network.clone())).map_err(|_| Stop::Broken)?;
+    let model = cx.pipeline.model(cx, module, (&parts, network.clone())).map_err(|_| Halt::Broken)?;
     Ok(Sound { parts, network, model, stands })
 }
 
 /// What shells and meshes are made on: the whole model, or what is sound where declarations of it failed.
-pub(super) fn ground(cx: &mut Cx, module: ModuleId) -> Result<(Arc<Model>, Arc<Network>), Stop> {
+pub(super) fn ground(cx: &mut Cx, module: ModuleId) -> Result<(Arc<Model>, Arc<Network>), Halt> {
     match parts(cx, module) {
         Ok(_) => Ok((model(cx, module)?, network(cx, module)?)),
         Err(stop) => {
             let missing = without(stop)?;
             lacking(cx, module, missing);
             let Sound { network, model, stands, .. } = sound(cx, module)?;
-            if stands { Ok((model, network)) } else { Err(Stop::Broken) }
+            if stands { Ok((model, network)) } else { Err(Halt::Broken) }
         }
     }
 }
 
-pub(super) fn network(cx: &mut Cx, module: ModuleId) -> Result<Arc<Network>, Stop> {
+pub(super) fn network(cx: &mut Cx, module: ModuleId) -> Result<Arc<Network>, Halt> {
     let parts = parts(cx, module)?;
     once(cx, |cx| Some(&mut cx.machine.at_mut(module).network), |cx| cx.pipeline.network(cx, module, &parts))
 }
 
-pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Stop> {
+pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Halt> {
     let parts = parts(cx, module)?;
     let make = |cx: &mut Cx| {
         let network = network(cx, module)?;
@@ -273,7 +273,7 @@ pub(super) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Stop> {
     once(cx, |cx| Some(&mut cx.machine.at_mut(module).model), make)
 }
 
-pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
+pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Halt> {
     let found = made_mesh(cx, mesh)?;
     // A call that asks a mesh may look at all of it.
     if let Some(budget) = work::budget() {
@@ -282,7 +282,7 @@ pub(super) fn mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
     Ok(found)
 }
 
-fn made_mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
+fn made_mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Halt> {
     match mesh {
         MeshValue::Data(mesh, _) => Ok(mesh.clone()),
         MeshValue::Declared { module, index } => {
@@ -290,7 +290,7 @@ fn made_mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Stop> {
             cx.machine.asked.fleeting = true;
             cx.tolerance()?;
             let Some(spec) = cx.machine.at(module).meshes.get(index).cloned() else {
-                return Err(Stop::Bug("a mesh that was not declared"));
+                return Err(Halt::Bug("a mesh that was not declared"));
             };
             once(cx, |cx| cx.machine.at_mut(module).mesh_stages.get_mut(index), |cx| cx.pipeline.mesh(cx, module, &spec))
         }

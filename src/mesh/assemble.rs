@@ -5,20 +5,20 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::Charts;
 use super::data::{FaceRange, Mesh};
 use super::edges::Limits;
 use super::explain::Explanation;
-use super::faces::{self, FaceRanges, Frame, Prepared};
-use super::free::face::{self as free_face, Made};
+use super::face_geometry::FaceGeometries;
+use super::faces::{self, FaceMesh, FaceRanges, Frame};
+use super::free::face::{self as free_face, FaceInput};
 use super::free::twins;
 use super::layout::{Face, Layout};
 use super::limits::{self, Finished, Verdict};
 use super::narrow::{self, Narrow};
 use super::nodes::Nodes;
 use super::relations::Relations;
-use super::reuse::{Inside, Known, recalled};
-use super::rows::{self, Wish};
+use super::reuse::{CacheView, Inside, recalled};
+use super::rows::{self, RowDemand};
 use super::sizing::{MOST, Remark, Sizing};
 use super::together::Asked;
 use super::uneven::Uneven;
@@ -28,12 +28,12 @@ use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::{par, work};
 use crate::surface::Domain;
-use crate::surface::quick::Quick;
+use crate::surface::quick::PowerForm;
 
 /// Refinements of whole faces before a limit counts as out of reach.
 const ROUNDS: usize = 40;
 /// Times borders are divided anew where they come too near to each other.
-const LOOKS: usize = 24;
+const MAX_SAMPLES: usize = 24;
 
 /// The mesh of some faces, with what is needed to name its parts.
 pub struct Part {
@@ -43,7 +43,7 @@ pub struct Part {
     pub ranges: super::sets::Ranges,
     /// How it came about.
     pub explanation: Explanation,
-    /// Its stretches.
+    /// Its segments.
     pub layout: Layout,
     /// Nodes on them.
     pub nodes: Nodes,
@@ -56,13 +56,13 @@ pub struct Part {
 const HELD: usize = 64;
 
 /// The surfaces of faces that are surely made freely under limits, ready for many evaluations.
-fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Quick> {
+fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PowerForm> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
     }
     let surface = |face: &Face| &input.model.surfaces[face.surface.index()].surface;
     let free = |face: &&Face| face.method.is_free() || surface(face).domain() == Domain::Loop;
-    layout.faces.iter().filter(free).take(HELD).filter_map(|face| surface(face).quick()).collect()
+    layout.faces.iter().filter(free).take(HELD).filter_map(|face| surface(face).power_form()).collect()
 }
 
 /// Times that the steps of the border of a face that closes on itself are halved for it.
@@ -73,7 +73,7 @@ const LEANING: u32 = 3;
 
 /// Whether a face that is made freely meets itself at a seam or in a pole.
 pub(super) fn closes(face: &Face) -> bool {
-    let mut round: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).collect();
+    let mut round: Vec<usize> = face.sides.iter().flat_map(|s| s.segments()).collect();
     let all = round.len();
     round.sort_unstable();
     round.dedup();
@@ -82,7 +82,7 @@ pub(super) fn closes(face: &Face) -> bool {
 
 /// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
 /// another, model units.
-pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Part> {
+pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&CacheView>, &Job)) -> Result<Part> {
     inside::place(input, &mut layout);
     loop {
         match attempt(input, &mut layout, size, (known, job)) {
@@ -113,7 +113,7 @@ fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
     let of = |face: &Face| input.model.surfaces[face.surface.index()].surface.origin();
     let mut any = false;
     for face in layout.faces.iter_mut().filter(|face| of(face) == *surface) {
-        if face.method.is_sparing() && face.halved < LEANING {
+        if face.method.is_coarse() && face.halved < LEANING {
             face.halved += 1;
             any = true;
         }
@@ -122,17 +122,17 @@ fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
 }
 
 /// Divides, refines and fills once.
-fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<&Known>, &Job)) -> Result<Done> {
+fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<&CacheView>, &Job)) -> Result<Done> {
     let mut narrow: Vec<Narrow> = Vec::new();
     let limits = faces::limits_of(input);
     let _held = held(input, layout, &limits);
-    let (mut sizing, mut wishes, mut relations) = begin(input, layout, size, (known, job))?;
+    let (mut sizing, mut demands, mut relations) = begin(input, layout, size, (known, job))?;
     let (mut last, mut verdicts): (Vec<u32>, Vec<Verdict>) = (Vec::new(), Vec::new());
-    let (mut looks, mut before, mut worth) = (LOOKS, Vec::new(), 0);
+    let (mut looks, mut before, mut worth) = (MAX_SAMPLES, Vec::new(), 0);
     let mut asked = BTreeMap::new();
-    for _ in 0..ROUNDS + LOOKS + (2 + HALVED as usize) * layout.faces.len() {
+    for _ in 0..ROUNDS + MAX_SAMPLES + (2 + HALVED as usize) * layout.faces.len() {
         job.go_on()?;
-        let mut unknown = sizing.stretches(layout);
+        let mut unknown = sizing.segments(layout);
         unknown.extend(relations.rows());
         let (counts, strip) = strips::solve(&unknown, &relations.list, (MOST, input.tolerance.point))
             .map_err(|c| relations.fault(input, layout, &sizing, &c))?;
@@ -140,21 +140,21 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
         // Nothing moved, so only the size is missed, where a written count overrules it.
         let settled = counts == last;
         ahead::refuse_counts(input, layout, (&sizing, &relations), (&counts, &mut worth))?;
-        let nodes = Nodes::new(layout, &sizing, &counts[..layout.pieces.atoms.len()]);
-        let uneven = uneven::look(layout, (&nodes, input.tolerance.point), &sizing);
+        let nodes = Nodes::new(layout, &sizing, &counts[..layout.pieces.segments.len()]);
+        let uneven = uneven::find(layout, (&nodes, input.tolerance.point), &sizing);
         if !uneven.is_empty() {
             uneven.into_iter().for_each(|(f, step)| layout.faces[f].uneven = Some(step));
-            (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+            (sizing, demands, relations) = begin(input, layout, size, (known, job))?;
             narrow.clear();
             (last, before) = (Vec::new(), Vec::new());
             continue;
         }
         let border = nodes.points(layout, &input.plan.points);
-        let made = Made { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
+        let made = FaceInput { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
         // Shorter steps that leave all counts as they are help no more.
         if looks > 0 && counts != before {
             looks -= 1;
-            let found = narrow::look(&made);
+            let found = narrow::find(&made);
             if !found.is_empty() {
                 narrow.extend(found);
                 sizing = Sizing::new(input, layout, size, (known, &narrow))?;
@@ -163,23 +163,23 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
             }
         }
         let mut prepared = prepare(&made, &relations, &counts)?;
-        let foreseen = foresee::look(&made, &prepared);
+        let foreseen = foresee::find(&made, &prepared);
         let better = foresee::better_free(&made, &sizing, &foreseen, &prepared);
         if !better.is_empty() {
             for (f, why, elements) in better {
                 (layout.faces[f].uneven, layout.faces[f].foreseen_free) = (Some(why), elements);
             }
-            (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+            (sizing, demands, relations) = begin(input, layout, size, (known, job))?;
             narrow.clear();
             (last, before) = (Vec::new(), Vec::new());
             continue;
         }
-        let key = |known: &Known| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
+        let key = |known: &CacheView| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
         let keys: Vec<Digest> = known.map(key).unwrap_or_default();
         let keyed = known.map(|known| (known, keys.as_slice()));
         let mut mesh = fill(input, &border, &prepared, (keyed, false), job)?;
         if !settled {
-            verdicts = limits::check(input, &limits, &mesh, &finished(layout, &sizing, &prepared, &wishes), keyed);
+            verdicts = limits::check(input, &limits, &mesh, &finished(layout, &sizing, &prepared, &demands), keyed);
         }
         if settled || verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
             shape_check::refuse_turned(input, &prepared, &mesh, keyed)?;
@@ -189,7 +189,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
                 let back = foresee::better_mapped(&made, &prepared, &mesh);
                 if !back.is_empty() {
                     back.into_iter().for_each(|f| layout.faces[f].keep_map());
-                    (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+                    (sizing, demands, relations) = begin(input, layout, size, (known, job))?;
                     narrow.clear();
                     (last, before) = (Vec::new(), Vec::new());
                     continue;
@@ -208,7 +208,7 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
                         last = Vec::new();
                     }
                     Some(Asked::Anew) => {
-                        (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+                        (sizing, demands, relations) = begin(input, layout, size, (known, job))?;
                         narrow.clear();
                         (last, before) = (Vec::new(), Vec::new());
                     }
@@ -230,13 +230,13 @@ fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<
             if let Some(f) = found.map(|(f, _)| f).or(twisted) {
                 // Where a face closes on itself, elements from one of its sides to another may be the same ones.
                 layout.faces[f].halved += 1;
-                (sizing, wishes, relations) = begin(input, layout, size, (known, job))?;
+                (sizing, demands, relations) = begin(input, layout, size, (known, job))?;
                 narrow.clear();
                 (last, before) = (Vec::new(), Vec::new());
                 continue;
             }
             layout.faces.iter_mut().zip(&foreseen).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
-            let made = Made { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
+            let made = FaceInput { input, layout: &*layout, nodes: &nodes, points: &border, wanted: &sizing.wanted };
             let blames = blame::of_faces(&made, (&sizing, &foreseen), &prepared, &mesh);
             let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
             sizing.sharp = sharp.into_iter().reduce(Remark::sharper);
@@ -257,30 +257,30 @@ fn begin(
     input: &Input,
     layout: &mut Layout,
     size: f64,
-    (known, job): (Option<&Known>, &Job),
-) -> Result<(Sizing, Vec<[Wish; 2]>, Relations)> {
+    (known, job): (Option<&CacheView>, &Job),
+) -> Result<(Sizing, Vec<[RowDemand; 2]>, Relations)> {
     let sizing = Sizing::new(input, layout, size, (known, &[]))?;
     ahead::refuse_large(input, layout, &sizing, job)?;
-    let wishes = wishes(input, layout, &sizing, &faces::limits_of(input), known);
-    let relations = Relations::new(layout, &wishes);
-    Ok((sizing, wishes, relations))
+    let demands = demands(input, layout, &sizing, &faces::limits_of(input), known);
+    let relations = Relations::new(layout, &demands);
+    Ok((sizing, demands, relations))
 }
 
 /// What the rows of each face want; nothing where all is written and no limit is set.
-fn wishes(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, known: Option<&Known>) -> Vec<[Wish; 2]> {
+fn demands(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, known: Option<&CacheView>) -> Vec<[RowDemand; 2]> {
     par::map(layout.faces.len(), |f| {
         let face = &layout.faces[f];
         if face.free {
-            return [Wish::default(); 2];
+            return [RowDemand::default(); 2];
         }
         let no_limit = limits.chord.is_none() && limits.angle.is_none();
         if no_limit && written(layout, sizing, f) == [true; 2] {
-            return [Wish::default(); 2];
+            return [RowDemand::default(); 2];
         }
         let patch = &input.model.patches[face.patch.index()];
-        let key = |known: &Known| known.on("wishes", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
+        let key = |known: &CacheView| known.on("demands", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
         let surface = &input.model.surfaces[face.surface.index()].surface;
-        recalled(known, |reuse| &reuse.wishes, key, || rows::wishes(surface, patch.u, patch.v, face.size.0, limits))
+        recalled(known, |reuse| &reuse.demands, key, || rows::demands(surface, patch.u, patch.v, face.size.0, limits))
     })
 }
 
@@ -290,12 +290,12 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
     if layout.faces[face].free {
         return [true; 2];
     }
-    let all = |k: usize| !sides[k].uses.is_empty() && sides[k].uses.iter().all(|u| sizing.decisions[u.atom].count.is_some());
+    let all = |k: usize| !sides[k].uses.is_empty() && sides[k].uses.iter().all(|u| sizing.decisions[u.segment].count.is_some());
     if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
 }
 
-/// Charts and ids of all faces; free ones are left empty, since nothing else depends on what is in them.
-fn prepare(made: &Made, relations: &Relations, counts: &[u32]) -> Result<Vec<Prepared>> {
+/// FaceGeometries and ids of all faces; free ones are left empty, since nothing else depends on what is in them.
+fn prepare(made: &FaceInput, relations: &Relations, counts: &[u32]) -> Result<Vec<FaceMesh>> {
     let layout = made.layout;
     let mut prepared = par::try_map(layout.faces.len(), |f| {
         if layout.faces[f].free {
@@ -313,7 +313,7 @@ fn prepare(made: &Made, relations: &Relations, counts: &[u32]) -> Result<Vec<Pre
 const AT_A_TIME: usize = 64;
 
 /// Makes the free faces; E217 for more elements than a mesh may have.
-fn free(made: &Made, prepared: &mut [Prepared], (known, job): (Option<&Known>, &Job)) -> Result<()> {
+fn free(made: &FaceInput, prepared: &mut [FaceMesh], (known, job): (Option<&CacheView>, &Job)) -> Result<()> {
     let faces = &made.layout.faces;
     let which: Vec<usize> = (0..faces.len()).filter(|f| faces[*f].free).collect();
     job.expect(which.len() as u64);
@@ -338,7 +338,7 @@ fn free(made: &Made, prepared: &mut [Prepared], (known, job): (Option<&Known>, &
 }
 
 /// Ids of the inner nodes, face by face.
-fn number(made: &Made, prepared: &mut [Prepared]) {
+fn number(made: &FaceInput, prepared: &mut [FaceMesh]) {
     let mut first = made.nodes.total;
     for ready in prepared.iter_mut() {
         ready.number(first);
@@ -348,8 +348,8 @@ fn number(made: &Made, prepared: &mut [Prepared]) {
 
 /// One face being filled: its parts of the arrays.
 struct Fill<'a> {
-    ready: &'a Prepared,
-    key: Option<(&'a Known<'a>, Digest)>,
+    ready: &'a FaceMesh,
+    key: Option<(&'a CacheView<'a>, Digest)>,
     again: bool,
     nodes: &'a mut [DVec3],
     triangles: &'a mut [[u32; 3]],
@@ -359,7 +359,7 @@ struct Fill<'a> {
 
 impl Fill<'_> {
     fn fill(&mut self, input: &Input, border: &[DVec3]) {
-        let found = |(known, key): (&Known, Digest)| if self.again { known.inside_again(key) } else { known.inside(key) };
+        let found = |(known, key): (&CacheView, Digest)| if self.again { known.inside_again(key) } else { known.inside(key) };
         if let Some(inside) = self.key.and_then(found)
             && inside.nodes.len() == self.nodes.len()
         {
@@ -381,11 +381,11 @@ impl Fill<'_> {
 }
 
 /// Keys of the faces before free ones have their insides, and whether the mapped ones were filled under them just now.
-type Keyed<'a> = (Option<(&'a Known<'a>, &'a [Digest])>, bool);
+type Keyed<'a> = (Option<(&'a CacheView<'a>, &'a [Digest])>, bool);
 
 /// All nodes and elements; faces and rows of large faces on several threads.
-fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], (keyed, again): Keyed, job: &Job) -> Result<Mesh> {
-    let sum = |f: &dyn Fn(&Prepared) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
+fn fill(input: &Input, border: &[DVec3], prepared: &[FaceMesh], (keyed, again): Keyed, job: &Job) -> Result<Mesh> {
+    let sum = |f: &dyn Fn(&FaceMesh) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
     let on_border = border.len();
     let mut all = Vec::with_capacity(on_border + sum(&|p| p.inner));
     all.extend_from_slice(border);
@@ -402,7 +402,7 @@ fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], (keyed, again): 
         let (t, q);
         (t, triangles) = triangles.split_at_mut(ready.triangles as usize);
         (q, quads) = quads.split_at_mut(ready.quads as usize);
-        let free = matches!(ready.chart.frame, Frame::Free(_));
+        let free = matches!(ready.geometry.frame, Frame::Free(_));
         let key = keyed.filter(|_| !free).map(|(known, keys)| (known, keys[k]));
         work.push(Fill { ready, key, again, nodes: own, triangles: t, quads: q, result: Ok(()) });
     }
@@ -420,12 +420,12 @@ fn fill(input: &Input, border: &[DVec3], prepared: &[Prepared], (keyed, again): 
     Ok(mesh)
 }
 
-fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [Prepared], wishes: &'a [[Wish; 2]]) -> Vec<Finished<'a>> {
+fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [FaceMesh], demands: &'a [[RowDemand; 2]]) -> Vec<Finished<'a>> {
     let one = |(f, (triangles, _)): (usize, FaceRanges)| Finished {
         face: &layout.faces[f],
         ready: &prepared[f],
         triangles,
-        wishes: &wishes[f],
+        demands: &demands[f],
         written: written(layout, sizing, f),
     };
     faces::element_ranges(prepared).into_iter().enumerate().map(one).collect()
@@ -434,7 +434,7 @@ fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [Prepared], w
 /// Everything but the layout.
 struct Done {
     nodes: Nodes,
-    prepared: Vec<Prepared>,
+    prepared: Vec<FaceMesh>,
     sizing: Sizing,
     mesh: Mesh,
     explanation: Explanation,
@@ -455,6 +455,6 @@ fn finish(input: &Input, layout: Layout, done: Done) -> Part {
         second_order::add(input, &layout, &nodes, &prepared, &mut mesh);
     }
     mesh.border_error = border_error::of_free_borders(&layout, &nodes);
-    mesh.charts = Charts(prepared.into_iter().map(Prepared::into_chart).collect());
+    mesh.geometries = FaceGeometries(prepared.into_iter().map(FaceMesh::into_chart).collect());
     Part { mesh, ranges, explanation, layout, nodes, sizing }
 }

@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use super::data::Mesh;
 use super::edges::distance_to_segment;
-use super::faces::{Prepared, element_ranges};
+use super::faces::{FaceMesh, element_ranges};
 use super::foresee::{self, Foreseen, SHARP};
-use super::free::face::Made;
+use super::free::face::FaceInput;
 use super::layout::Face;
 use super::plan::Method;
 use super::sizing::{Remark, Sizing};
@@ -43,7 +43,7 @@ pub struct Seen {
 }
 
 /// The least angle of each face; nothing where triangles are long by their method.
-pub fn of_faces(made: &Made, (sizing, foreseen): (&Sizing, &[Option<Foreseen>]), prepared: &[Prepared], mesh: &Mesh) -> Vec<Seen> {
+pub fn of_faces(made: &FaceInput, (sizing, foreseen): (&Sizing, &[Option<Foreseen>]), prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Seen> {
     let ranges = element_ranges(prepared);
     par::map(prepared.len(), |f| {
         let elements = (&mesh.triangles[ranges[f].0.clone()], &mesh.quads[ranges[f].1.clone()]);
@@ -54,13 +54,13 @@ pub fn of_faces(made: &Made, (sizing, foreseen): (&Sizing, &[Option<Foreseen>]),
 type Elements<'a> = (&'a [[u32; 3]], &'a [[u32; 4]]);
 
 fn of_face(
-    made: &Made,
+    made: &FaceInput,
     (sizing, foreseen): (&Sizing, Option<&Foreseen>),
     face: &Face,
     (triangles, quads): Elements,
     mesh: &Mesh,
 ) -> Option<Seen> {
-    if face.free && face.method.is_sparing() {
+    if face.free && face.method.is_coarse() {
         return None;
     }
     // Each corner first, with the nodes before and after it.
@@ -99,19 +99,19 @@ fn digits(x: f64) -> String {
     real(format!("{x:.2e}").parse().unwrap_or(x))
 }
 
-/// Border edges of a face by the numbers of their nodes, with their stretches.
-fn edges(made: &Made, face: &Face) -> BTreeMap<(u32, u32), usize> {
+/// Border edges of a face by the numbers of their nodes, with their segments.
+fn edges(made: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), usize> {
     let mut edges = BTreeMap::new();
-    for stretch in face.stretches() {
-        for w in made.nodes.of_stretch(made.layout, stretch, false).windows(2) {
-            edges.insert((w[0].min(w[1]), w[0].max(w[1])), stretch);
+    for segment in face.segments() {
+        for w in made.nodes.of_segment(made.layout, segment, false).windows(2) {
+            edges.insert((w[0].min(w[1]), w[0].max(w[1])), segment);
         }
     }
     edges
 }
 
 struct Blame<'a> {
-    made: &'a Made<'a>,
+    made: &'a FaceInput<'a>,
     sizing: &'a Sizing,
     face: &'a Face,
     mesh: &'a Mesh,
@@ -119,14 +119,14 @@ struct Blame<'a> {
 }
 
 impl Blame<'_> {
-    fn stretch(&self, a: u32, b: u32) -> Option<usize> {
+    fn segment(&self, a: u32, b: u32) -> Option<usize> {
         self.edges.get(&(a.min(b), a.max(b))).copied()
     }
 
-    /// The longest step of the border at a node, and its stretch.
+    /// The longest step of the border at a node, and its segment.
     fn longest_at(&self, n: u32) -> Option<(f64, usize)> {
         let length = |(a, b): &(u32, u32)| self.mesh.nodes[*a as usize].distance(self.mesh.nodes[*b as usize]);
-        let own = self.edges.iter().filter(|((a, b), _)| *a == n || *b == n).map(|(e, stretch)| (length(e), *stretch));
+        let own = self.edges.iter().filter(|((a, b), _)| *a == n || *b == n).map(|(e, segment)| (length(e), *segment));
         own.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
@@ -176,7 +176,7 @@ impl Blame<'_> {
         // The side opposite each corner: where it is the border's, with its length and the distance of the corner.
         let side = |k: usize| (c[(k + 1) % 3], c[(k + 2) % 3]);
         let length = |k: usize| p[(k + 1) % 3].distance(p[(k + 2) % 3]);
-        let given = [0, 1, 2].map(|k| self.stretch(side(k).0, side(k).1));
+        let given = [0, 1, 2].map(|k| self.segment(side(k).0, side(k).1));
         for k in 0..3 {
             // Between two edges of the border.
             if given[k].is_none() && given[(k + 1) % 3].is_some() && given[(k + 2) % 3].is_some() {
@@ -191,12 +191,12 @@ impl Blame<'_> {
         }
         let longest = (0..3).map(length).fold(0.0, f64::max);
         for k in 0..3 {
-            let Some(stretch) = given[k] else { continue };
+            let Some(segment) = given[k] else { continue };
             // Short steps on one side and long ones on the other.
             let facing = self.longest_at(c[k]).filter(|l| l.0 * SHORT > length(k) && given[(k + 1) % 3].or(given[(k + 2) % 3]).is_none());
-            if let Some((step, stretch)) = facing {
+            if let Some((step, segment)) = facing {
                 let gap = distance_to_segment(p[k], p[(k + 1) % 3], p[(k + 2) % 3]);
-                return Some(format!("between borders {} apart, with a step of {}{}", digits(gap), digits(step), self.kept(stretch, gap)));
+                return Some(format!("between borders {} apart, with a step of {}{}", digits(gap), digits(step), self.kept(segment, gap)));
             }
             if length(k) < SHORT * longest {
                 return Some(format!("beside a piece of the border of {}", digits(length(k))));
@@ -204,7 +204,7 @@ impl Blame<'_> {
             if self.on_border(c[k]) {
                 let gap = distance_to_segment(p[k], p[(k + 1) % 3], p[(k + 2) % 3]);
                 let step = digits(length(k));
-                return Some(format!("between borders {} apart, with a step of {step}{}", digits(gap), self.kept(stretch, gap)));
+                return Some(format!("between borders {} apart, with a step of {step}{}", digits(gap), self.kept(segment, gap)));
             }
         }
         let shortest = (0..3).find(|k| length(*k) < SHORT * longest)?;
@@ -213,9 +213,9 @@ impl Blame<'_> {
     }
 
     /// Why a step was not made shorter, in words that follow it.
-    fn kept(&self, stretch: usize, gap: f64) -> String {
-        let mapped = || self.made.layout.faces.iter().any(|f| !f.free && f.stretches().any(|s| s == stretch));
-        if self.sizing.decisions[stretch].count.is_some() {
+    fn kept(&self, segment: usize, gap: f64) -> String {
+        let mapped = || self.made.layout.faces.iter().any(|f| !f.free && f.segments().any(|s| s == segment));
+        if self.sizing.decisions[segment].count.is_some() {
             " by a written count".to_owned()
         } else if mapped() {
             " of the rows of a mapped face".to_owned()

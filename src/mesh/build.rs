@@ -10,11 +10,11 @@ use super::explain::Explanation;
 use super::layout::Layout;
 use super::nodes::Nodes;
 use super::plan::Plan;
-use super::reuse::{Known, Reuse};
+use super::reuse::{CacheView, Reuse};
 use super::sizing::Remark;
 use super::{contact_bodies, contacts, faces, key, sets};
 use crate::base::bbox::Box3;
-use crate::base::digest::{Digest, Digester};
+use crate::base::digest::{Digest, StableHasher};
 use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
 use crate::base::limits::WORK_OF_A_SURFACE;
@@ -90,7 +90,7 @@ impl Outline {
             patches.iter().map(|p| Layout::new(input, &[*p], false)).chain(lines).collect()
         };
         let surfaces = &input.model.surfaces;
-        let digest = |s: SurfaceId| Digester::new("surface").with(&surfaces[s.index()].surface).finish();
+        let digest = |s: SurfaceId| StableHasher::new("surface").with(&surfaces[s.index()].surface).finish();
         let surfaces = input.plan.surfaces.iter().map(|(s, _)| (*s, digest(*s))).collect();
         Ok(Self { layouts, size, surfaces })
     }
@@ -120,7 +120,7 @@ impl Outline {
     }
 
     fn built(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
-        let known = reuse.map(|reuse| Known { reuse, surfaces: &self.surfaces });
+        let known = reuse.map(|reuse| CacheView { reuse, surfaces: &self.surfaces });
         let (mut parts, mut made): (Vec<Part>, u64) = (Vec::new(), 0);
         for layout in self.layouts {
             parts.push(assemble(input, layout, self.size, (known.as_ref(), job))?);
@@ -137,14 +137,14 @@ impl Outline {
             let mut leaves = Vec::with_capacity(parts.len());
             // Faces that were asked not to share nodes touch as they were asked to.
             for part in parts.iter().filter(|_| input.plan.conforming) {
-                let (touches, own) = contacts::look(input, &part.layout, &part.nodes, &part.mesh);
+                let (touches, own) = contacts::find(input, &part.layout, &part.nodes, &part.mesh);
                 contacts::refuse_overlaps(input, &touches)?;
                 leaves.push(own);
                 remarks.extend(touches.into_iter().map(Remark::Touch));
             }
             // Bodies were asked not to share nodes, and may touch; none is where another one is.
             if input.plan.conforming {
-                remarks.extend(contact_bodies::look(input, &parts, leaves).into_iter().map(Remark::Touch));
+                remarks.extend(contact_bodies::find(input, &parts, leaves).into_iter().map(Remark::Touch));
             }
         }
         Ok(Built { remarks, ..merge(input, parts)? })
@@ -242,6 +242,6 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
     }
     let diagonal = around.diagonal();
     // What is to be sparing has its chord error for a size.
-    let share = if input.plan.method.is_sparing() && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
+    let share = if input.plan.method.is_coarse() && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
     if diagonal > 0.0 { share * diagonal } else { 1.0 }
 }

@@ -7,28 +7,28 @@
 
 use glam::{DVec2, DVec3};
 
-use super::chart::{Chart, Grid, Shape};
+use super::face_geometry::{FaceGeometry, Grid, Shape};
 use super::faces::Frame;
 use super::free::bound::stationary;
 use super::free::poles::from_pole;
 use super::trilateral::{LatticeFrame, lattice_points};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::surface::quick::Quick;
+use crate::surface::quick::PowerForm;
 use crate::surface::{Domain, Surface, foot_within};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
 /// Share of what a triangle seems to be off that it is at least, where it does not only seem so.
-const WORTH: f64 = 0.5;
+const MIN_GAIN: f64 = 0.5;
 /// Triangles that one thread measures at a time.
 const BATCH: usize = 1024;
 /// Triangles of a row that are followed at most, but for those that only seem far.
 const FOLLOWED: usize = 64;
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
-pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
-    match (&chart.shape, &chart.frame) {
+pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
+    match (&geometry.shape, &geometry.frame) {
         (Shape::Grid(grid), Frame::Grid(frame)) => {
             let (nu, nv) = grid.size();
             let starts = triangle_rows(frame, !triangles.is_empty());
@@ -55,7 +55,7 @@ pub fn of_face(surface: &Surface, chart: &Chart, triangles: &[[u32; 3]], nodes: 
                     halves.push([a, b, d]);
                 }
             });
-            let quick = surface.quick();
+            let quick = surface.power_form();
             let point = |(u, v)| surface.point_by(quick.as_ref(), u, v);
             let of_half = |k: usize| {
                 let at = beside_pole(surface, halves[k].map(|n| uv[n]));
@@ -302,7 +302,7 @@ fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points
 }
 
 /// Follows the triangles that seem farthest to their feet: the distance of the farthest.
-fn follow((surface, quick): (&Surface, Option<&Quick>), mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
+fn follow((surface, quick): (&Surface, Option<&PowerForm>), mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
     farthest.retain(|s| s.seems > tolerance.rounding);
     farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
     // A trimmed face may run over the seam of the surface below.
@@ -319,7 +319,7 @@ fn follow((surface, quick): (&Surface, Option<&Quick>), mut farthest: Vec<Seen>,
         }
         let distance = foot_within((surface, quick), seen.p, seen.uv, u, v).0;
         // What only seems far, as beside a pole, is passed by.
-        followed += usize::from(distance >= WORTH * seen.seems);
+        followed += usize::from(distance >= MIN_GAIN * seen.seems);
         most = f64::max(most, distance);
     }
     most

@@ -21,7 +21,7 @@ use crate::base::{job, par, work};
 use crate::surface::{Closest, Nearest};
 
 /// Crossings of elements of two faces that are looked at, and those that they are chosen from.
-const LOOKS: usize = 8;
+const MAX_SAMPLES: usize = 8;
 const MOST: usize = 256;
 /// Steps until a place on both of two faces is found.
 const ROUNDS: usize = 30;
@@ -37,7 +37,7 @@ type Face = (usize, usize);
 
 /// Every two bodies that take the same room, with a place where that is so, in the order of the parts; `known` has the elements of the
 /// faces of each part in boxes, or nothing.
-pub fn look(input: &Input, parts: &[Part], known: Vec<Vec<Leaves>>) -> Vec<Touch> {
+pub fn find(input: &Input, parts: &[Part], known: Vec<Vec<Leaves>>) -> Vec<Touch> {
     if parts.iter().filter(|part| !part.layout.faces.is_empty()).count() < 2 {
         return Vec::new();
     }
@@ -117,14 +117,14 @@ struct Scan<'a> {
 }
 
 /// The surface of a face, to look for places on it.
-struct Ground<'a> {
+struct BodyProbe<'a> {
     input: &'a Input<'a>,
     part: &'a Part,
     face: usize,
     nearest: Nearest,
 }
 
-impl Ground<'_> {
+impl BodyProbe<'_> {
     fn on(&self, p: DVec3) -> bool {
         let patch = self.part.layout.faces[self.face].patch;
         inside::on(&self.nearest, &self.input.model.patches[patch.index()], p, self.input.tolerance)
@@ -148,10 +148,10 @@ impl<'a> Scan<'a> {
         self.known[face.0].get(face.1).unwrap_or_else(|| &self.made[&face])
     }
 
-    fn ground(&self, (part, face): Face) -> Ground<'a> {
+    fn ground(&self, (part, face): Face) -> BodyProbe<'a> {
         let part = &self.parts[part];
         let surface = &self.input.model.surfaces[part.layout.faces[face].surface.index()].surface;
-        Ground { input: self.input, part, face, nearest: Nearest::new(surface) }
+        BodyProbe { input: self.input, part, face, nearest: Nearest::new(surface) }
     }
 
     fn touch(&self, kind: Kind, a: Face, b: Face, at: DVec3) -> Touch {
@@ -172,7 +172,7 @@ impl<'a> Scan<'a> {
             }
             let (one, other) = (self.ground(x), self.ground(y));
             // Evenly among all, so that none hides behind many in one place.
-            let step = places.len().div_ceil(LOOKS);
+            let step = places.len().div_ceil(MAX_SAMPLES);
             let found = places.into_iter().step_by(step).find_map(|near| common(&one, &other, near));
             if let Some(at) = found {
                 return Some(self.touch(Kind::Crossing, x, y, at));
@@ -215,7 +215,7 @@ impl<'a> Scan<'a> {
 }
 
 /// A place where two faces cross each other off their borders, near a point: on both tangent planes at its feet, as Newton's method has it.
-fn common(a: &Ground, b: &Ground, near: DVec3) -> Option<DVec3> {
+fn common(a: &BodyProbe, b: &BodyProbe, near: DVec3) -> Option<DVec3> {
     let tolerance = a.input.tolerance.point;
     let mut p = near;
     for _ in 0..ROUNDS {

@@ -11,35 +11,35 @@ use crate::network::Chain;
 use crate::surface::meet::{SurfaceMeeting, with_curve};
 use crate::surface::{Surface, with_loops};
 
-/// A stretch of an edge and a face near it.
+/// A segment of an edge and a face near it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Task {
-    pub stretch: usize,
+    pub segment: usize,
     pub face: usize,
 }
 
-/// Where a stretch of an edge meets a face.
+/// Where a segment of an edge meets a face.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Met {
     /// Runs on it: middle and length, model units.
     pub runs: Vec<(DVec3, f64)>,
-    /// Points, with `true` where the stretch goes on beyond.
+    /// Points, with `true` where the segment goes on beyond.
     pub points: Vec<(DVec3, bool)>,
-    /// The ends of the stretch that the face has, and how far from one of them it may leave the face slowly.
+    /// The ends of the segment that the face has, and how far from one of them it may leave the face slowly.
     pub known: ([Option<DVec3>; 2], f64),
 }
 
-/// A stretch as a part of an edge: the place of the edge, arc lengths on it.
+/// A segment as a part of an edge: the place of the edge, arc lengths on it.
 type Place = (usize, (f64, f64));
 
 /// The meetings of each task; `None` where no curve carries the edge or they could not be found.
 pub(super) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     let pieces = &scan.layout.pieces;
-    let wanted: BTreeSet<usize> = tasks.iter().map(|t| t.stretch).collect();
+    let wanted: BTreeSet<usize> = tasks.iter().map(|t| t.segment).collect();
     let mut places: BTreeMap<usize, Place> = BTreeMap::new();
     for edge in 0..scan.layout.edges.len() {
-        for u in pieces.of_track[edge].iter().filter(|u| wanted.contains(&u.atom)) {
-            places.entry(u.atom).or_insert((edge, u.s));
+        for u in pieces.of_track[edge].iter().filter(|u| wanted.contains(&u.segment)) {
+            places.entry(u.segment).or_insert((edge, u.s));
         }
     }
     let edges: BTreeSet<usize> = places.values().map(|p| p.0).collect();
@@ -51,8 +51,8 @@ pub(super) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     let surfaces: Vec<SurfaceId> = surfaces.into_iter().collect();
     let bordered = par::map(surfaces.len(), |n| with_loops(&model.surfaces[surfaces[n].index()].surface, tolerance).ok());
     let surfaces: BTreeMap<SurfaceId, Surface> = surfaces.into_iter().zip(bordered).filter_map(|(id, s)| Some((id, s?))).collect();
-    // An edge meets a surface once, whatever the stretches of the one and the faces of the other.
-    let pair = |task: &Task| Some((places.get(&task.stretch)?.0, scan.surface_of(task.face)));
+    // An edge meets a surface once, whatever the segments of the one and the faces of the other.
+    let pair = |task: &Task| Some((places.get(&task.segment)?.0, scan.surface_of(task.face)));
     let pairs: BTreeSet<(usize, SurfaceId)> = tasks.iter().filter_map(pair).collect();
     let pairs: Vec<(usize, SurfaceId)> = pairs.into_iter().collect();
     let found = par::map(pairs.len(), |n| {
@@ -62,20 +62,20 @@ pub(super) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     let found: BTreeMap<(usize, SurfaceId), Vec<SurfaceMeeting>> =
         pairs.into_iter().zip(found).filter_map(|(pair, found)| Some((pair, found?))).collect();
     let of = |task: &Task| {
-        let place = places.get(&task.stretch)?;
+        let place = places.get(&task.segment)?;
         let way = ways.get(&place.0)?;
-        Some(on_stretch(scan, *task, (*place, way), found.get(&(place.0, scan.surface_of(task.face)))?))
+        Some(on_segment(scan, *task, (*place, way), found.get(&(place.0, scan.surface_of(task.face)))?))
     };
     tasks.iter().map(of).collect()
 }
 
-/// What of the meetings of an edge lies on one of its stretches, off the nodes that the face has itself.
-fn on_stretch(scan: &Scan, task: Task, ((edge, (first, last)), way): (Place, &Chain), found: &[SurfaceMeeting]) -> Met {
+/// What of the meetings of an edge lies on one of its segments, off the nodes that the face has itself.
+fn on_segment(scan: &Scan, task: Task, ((edge, (first, last)), way): (Place, &Chain), found: &[SurfaceMeeting]) -> Met {
     /// Borders that were glued may go through each other so many times as far from their ends as they are apart.
     const GLUED: f64 = 4.0;
     /// What touches a face at its end is within the tolerance of it for so many times the root of tolerance times length.
     const TOUCH: f64 = 8.0;
-    let along = &scan.along[task.stretch];
+    let along = &scan.along[task.segment];
     let near = GLUED * scan.layout.faces[task.face].near.max(scan.input.tolerance.point);
     let track = &scan.layout.parts[edge].track;
     let (start, length) = (track.point(0.0), way.length());

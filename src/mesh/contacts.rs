@@ -64,12 +64,12 @@ pub struct Touch {
     pub names: (String, String),
     /// Length of the edges that lie on the other face, model units; 0 where there is none.
     pub length: f64,
-    /// In the middle of the longest stretch.
+    /// In the middle of the longest segment.
     pub at: DVec3,
 }
 
 /// Crossings of elements of two faces that are looked at before the faces count as apart, and those that they are chosen from.
-const LOOKS: usize = 64;
+const MAX_SAMPLES: usize = 64;
 const MOST: usize = 4096;
 /// Steps until a place on both of two faces is found.
 const ROUNDS: usize = 60;
@@ -85,24 +85,24 @@ pub(super) struct Scan<'a> {
     tree: BoxTree,
     /// Faces that have each node of a border.
     users: Vec<Vec<u32>>,
-    /// Nodes along each stretch.
+    /// Nodes along each segment.
     pub along: Vec<Vec<u32>>,
-    /// Surfaces of the faces that have each stretch on their border or inside.
+    /// Surfaces of the faces that have each segment on their border or inside.
     pub on: Vec<Vec<SurfaceId>>,
     /// Where each surface stands first in the plan.
     places: BTreeMap<SurfaceId, usize>,
 }
 
-/// A stretch of an edge on a face, nodes from and to by their places along it.
+/// A segment of an edge on a face, nodes from and to by their places along it.
 struct Found {
-    stretch: usize,
+    segment: usize,
     face: usize,
     nodes: Vec<usize>,
 }
 
 /// Every two surfaces of a mesh that touch, cross or cover each other without sharing nodes there, in the order of the plan; with the
 /// elements of each face in boxes, where it took them.
-pub fn look(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &Mesh) -> (Vec<Touch>, Vec<Leaves>) {
+pub fn find(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &Mesh) -> (Vec<Touch>, Vec<Leaves>) {
     let mut surfaces: Vec<SurfaceId> = layout.faces.iter().map(|f| f.surface).collect();
     surfaces.dedup();
     if surfaces.len() < 2 {
@@ -135,12 +135,12 @@ impl<'a> Scan<'a> {
             Leaves::new(mesh, f, flat, input.tolerance.point)
         });
         let boxes: Vec<Box3> = leaves.iter().map(|l| l.hull).collect();
-        let along: Vec<Vec<u32>> = (0..layout.pieces.atoms.len()).map(|k| nodes.of_stretch(layout, k, false)).collect();
+        let along: Vec<Vec<u32>> = (0..layout.pieces.segments.len()).map(|k| nodes.of_segment(layout, k, false)).collect();
         let mut users: Vec<Vec<u32>> = vec![Vec::new(); nodes.total as usize];
         for (f, face) in layout.faces.iter().enumerate() {
             let poles = face.sides.iter().filter_map(|s| s.pole).map(|j| nodes.of_junction(j));
             let points = face.points.iter().map(|k| nodes.points[*k]);
-            for n in face.stretches().flat_map(|k| along[k].iter().copied()).chain(poles).chain(points) {
+            for n in face.segments().flat_map(|k| along[k].iter().copied()).chain(poles).chain(points) {
                 if let Some(own) = users.get_mut(n as usize)
                     && own.last() != Some(&(f as u32))
                 {
@@ -150,7 +150,7 @@ impl<'a> Scan<'a> {
         }
         let mut on: Vec<Vec<SurfaceId>> = vec![Vec::new(); along.len()];
         for face in &layout.faces {
-            face.stretches().for_each(|k| on[k].push(face.surface));
+            face.segments().for_each(|k| on[k].push(face.surface));
         }
         let mut places = BTreeMap::new();
         input.plan.surfaces.iter().enumerate().for_each(|(place, (s, _))| {
@@ -193,7 +193,7 @@ impl<'a> Scan<'a> {
 struct Known<'a> {
     scan: &'a Scan<'a>,
     nearest: BTreeMap<SurfaceId, Nearest>,
-    /// By the places of the surfaces, with the length of the longest stretch.
+    /// By the places of the surfaces, with the length of the longest segment.
     touches: BTreeMap<(usize, usize), (Touch, f64)>,
     /// Crossings of elements that were looked at, by faces.
     tries: BTreeMap<(usize, usize), usize>,
@@ -227,7 +227,7 @@ impl Known<'_> {
             std::collections::btree_map::Entry::Occupied(mut slot) => {
                 let (old, before) = slot.get_mut();
                 let length = old.length + length;
-                // What covers more is said first; of the same kind the longest stretch gives the place.
+                // What covers more is said first; of the same kind the longest segment gives the place.
                 if (kind, *before) < (old.kind, longest) && kind <= old.kind {
                     (*old, *before) = (touch, longest);
                 }
@@ -241,48 +241,48 @@ impl Known<'_> {
         let scan = self.scan;
         let used: Vec<bool> = {
             let mut used = vec![false; scan.along.len()];
-            scan.layout.faces.iter().flat_map(|f| f.sides.iter().flat_map(|s| &s.uses)).for_each(|u| used[u.atom] = true);
+            scan.layout.faces.iter().flat_map(|f| f.sides.iter().flat_map(|s| &s.uses)).for_each(|u| used[u.segment] = true);
             used
         };
-        let stretches: Vec<usize> = (0..used.len()).filter(|k| used[*k]).collect();
-        let near = par::map(stretches.len(), |n| scan.beside(stretches[n]));
-        let tasks = near.iter().zip(&stretches).flat_map(|(b, k)| b.near.iter().map(|face| Task { stretch: *k, face: *face }));
+        let segments: Vec<usize> = (0..used.len()).filter(|k| used[*k]).collect();
+        let near = par::map(segments.len(), |n| scan.beside(segments[n]));
+        let tasks = near.iter().zip(&segments).flat_map(|(b, k)| b.near.iter().map(|face| Task { segment: *k, face: *face }));
         let tasks: Vec<Task> = tasks.collect();
         let met = meetings(scan, &tasks);
         let exact: BTreeMap<Task, usize> = tasks.iter().enumerate().filter(|(n, _)| met[*n].is_some()).map(|(n, t)| (*t, n)).collect();
         for (n, found) in near.into_iter().enumerate() {
-            let stretch = stretches[n];
+            let segment = segments[n];
             for face in found.near {
-                if let Some(met) = exact.get(&Task { stretch, face }).and_then(|n| met[*n].as_ref()) {
-                    met.runs.iter().for_each(|run| self.runs_along(stretch, face, *run));
+                if let Some(met) = exact.get(&Task { segment, face }).and_then(|n| met[*n].as_ref()) {
+                    met.runs.iter().for_each(|run| self.runs_along(segment, face, *run));
                     for (at, inside) in &met.points {
                         let (ends, slow) = met.known;
                         let leaves = ends.into_iter().flatten().any(|p| p.distance(*at) <= slow && self.on(face, p.midpoint(*at)));
                         if !leaves && self.on(face, *at) {
                             let kind = if *inside { Kind::Crossing } else { Kind::Edge };
-                            self.add((scan.owner(stretch), face), kind, (0.0, 0.0), *at);
+                            self.add((scan.owner(segment), face), kind, (0.0, 0.0), *at);
                         }
                     }
                 }
             }
             // Edges that no curve carries are known by their nodes.
             for (face, candidates) in found.touched {
-                if exact.contains_key(&Task { stretch, face }) {
+                if exact.contains_key(&Task { segment, face }) {
                     continue;
                 }
-                let nodes = candidates.into_iter().filter(|k| self.on(face, scan.p(scan.along[stretch][*k]))).collect();
-                self.lies_on(&Found { stretch, face, nodes });
+                let nodes = candidates.into_iter().filter(|k| self.on(face, scan.p(scan.along[segment][*k]))).collect();
+                self.lies_on(&Found { segment, face, nodes });
             }
             for (face, at) in found.pierced {
-                if !exact.contains_key(&Task { stretch, face }) {
-                    self.crosses(scan.owner(stretch), face, at);
+                if !exact.contains_key(&Task { segment, face }) {
+                    self.crosses(scan.owner(segment), face, at);
                 }
             }
         }
     }
 
     /// Takes a run of an edge on a face: its middle and its length.
-    fn runs_along(&mut self, stretch: usize, face: usize, (at, length): (DVec3, f64)) {
+    fn runs_along(&mut self, segment: usize, face: usize, (at, length): (DVec3, f64)) {
         /// How far beside the run is looked, as a share of its length, and how much nearer each time.
         const BESIDE: (f64, f64) = (0.05, 0.125);
         /// What merely touches along the run parts from it nearer than so many times the root of tolerance times length.
@@ -292,7 +292,7 @@ impl Known<'_> {
             return;
         }
         let nearest = TOUCH * (scan.input.tolerance.point * length).sqrt();
-        for owner in scan.owners(stretch) {
+        for owner in scan.owners(segment) {
             let mut by = BESIDE.0 * length;
             loop {
                 let inside = scan.leaves[owner].inwards(scan.mesh, at, by);
@@ -308,20 +308,20 @@ impl Known<'_> {
                 }
             }
         }
-        self.add((scan.owner(stretch), face), Kind::Edge, (length, length), at);
+        self.add((scan.owner(segment), face), Kind::Edge, (length, length), at);
     }
 
     /// Takes an edge on a face.
     fn lies_on(&mut self, found: &Found) {
         let scan = self.scan;
         let Some(&middle) = found.nodes.get(found.nodes.len() / 2) else { return };
-        let along = &scan.along[found.stretch];
+        let along = &scan.along[found.segment];
         let on = |k: usize| {
             found.nodes.binary_search(&k).is_ok() || scan.users.get(along[k] as usize).is_some_and(|u| u.contains(&(found.face as u32)))
         };
         let steps = (1..along.len()).filter(|k| on(k - 1) && on(*k));
         let length: f64 = steps.map(|k| scan.p(along[k - 1]).distance(scan.p(along[k]))).sum();
-        let owner = scan.owner(found.stretch);
+        let owner = scan.owner(found.segment);
         let at = scan.p(along[middle]);
         // Beside an edge that only touches, its own face leaves the other one.
         let beside = scan.leaves[owner].beside(scan.mesh, along[middle]);
@@ -359,7 +359,7 @@ impl Known<'_> {
     fn crosses(&mut self, a: usize, b: usize, near: DVec3) -> bool {
         let tries = self.tries.entry((a, b)).or_default();
         *tries += 1;
-        if *tries > LOOKS {
+        if *tries > MAX_SAMPLES {
             return false;
         }
         let Some(p) = self.common(a, b, near) else { return false };
@@ -397,7 +397,7 @@ impl Known<'_> {
                 let middle = along[along.len() / 2];
                 let others: Vec<usize> = scan.users[middle as usize].iter().map(|n| *n as usize).collect();
                 for a in others {
-                    let own = scan.layout.faces[a].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == k));
+                    let own = scan.layout.faces[a].sides.iter().any(|s| s.uses.iter().any(|u| u.segment == k));
                     if !own || scan.surface_of(a) == scan.surface_of(f) {
                         continue;
                     }
@@ -427,7 +427,7 @@ impl Known<'_> {
                 continue;
             }
             // Evenly among all, so that none hides behind many in one place.
-            let step = places.len().div_ceil(LOOKS);
+            let step = places.len().div_ceil(MAX_SAMPLES);
             for at in places.into_iter().step_by(step) {
                 if self.touches.contains_key(&scan.key(a, b)) || self.crosses(a, b, at) {
                     break;
@@ -467,7 +467,7 @@ impl Known<'_> {
     }
 }
 
-/// Faces beside a stretch.
+/// Faces beside a segment.
 #[derive(Default)]
 struct Beside {
     /// Those that it may touch, ascending.
@@ -479,25 +479,25 @@ struct Beside {
 }
 
 impl Scan<'_> {
-    /// A face that has a stretch on its border.
-    fn owner(&self, stretch: usize) -> usize {
-        let inner = |k: usize| self.users.get(self.along[stretch][k] as usize);
-        let (a, b) = (inner(0), inner(self.along[stretch].len() - 1));
-        let has = |f: &&u32| self.layout.faces[**f as usize].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch));
+    /// A face that has a segment on its border.
+    fn owner(&self, segment: usize) -> usize {
+        let inner = |k: usize| self.users.get(self.along[segment][k] as usize);
+        let (a, b) = (inner(0), inner(self.along[segment].len() - 1));
+        let has = |f: &&u32| self.layout.faces[**f as usize].sides.iter().any(|s| s.uses.iter().any(|u| u.segment == segment));
         a.into_iter().chain(b).flatten().find(has).map_or(0, |f| *f as usize)
     }
 
-    /// The faces that have a stretch on their border.
-    fn owners(&self, stretch: usize) -> Vec<usize> {
-        let at = |k: usize| self.users.get(self.along[stretch][k] as usize).into_iter().flatten().map(|f| *f as usize);
-        let has = |f: &usize| self.layout.faces[*f].sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch));
-        let found: BTreeSet<usize> = at(0).chain(at(self.along[stretch].len() - 1)).filter(has).collect();
+    /// The faces that have a segment on their border.
+    fn owners(&self, segment: usize) -> Vec<usize> {
+        let at = |k: usize| self.users.get(self.along[segment][k] as usize).into_iter().flatten().map(|f| *f as usize);
+        let has = |f: &usize| self.layout.faces[*f].sides.iter().any(|s| s.uses.iter().any(|u| u.segment == segment));
+        let found: BTreeSet<usize> = at(0).chain(at(self.along[segment].len() - 1)).filter(has).collect();
         found.into_iter().collect()
     }
 
     /// Whether two faces have a node of a border in common.
     fn are_neighbours(&self, a: usize, b: usize) -> bool {
-        self.layout.faces[a].stretches().any(|k| self.along[k].iter().any(|n| self.users[*n as usize].contains(&(b as u32))))
+        self.layout.faces[a].segments().any(|k| self.along[k].iter().any(|n| self.users[*n as usize].contains(&(b as u32))))
     }
 
     /// Whether a place lies where two faces share nodes: within an edge of the mesh from one of them.
@@ -508,7 +508,7 @@ impl Scan<'_> {
             let step = self.p(along[0]).distance(self.p(along[1]));
             along.iter().any(|n| both(*n) && self.p(*n).distance(p) <= step)
         };
-        self.layout.faces[a].stretches().any(near)
+        self.layout.faces[a].segments().any(near)
     }
 
     /// A place between two faces, where their boxes meet.
@@ -517,8 +517,8 @@ impl Scan<'_> {
         0.5 * (a.min.max(b.min) + a.max.min(b.max))
     }
 
-    fn beside(&self, stretch: usize) -> Beside {
-        let along = &self.along[stretch];
+    fn beside(&self, segment: usize) -> Beside {
+        let along = &self.along[segment];
         let none = Vec::new();
         let users = |n: u32| self.users.get(n as usize).unwrap_or(&none);
         let mut found = Beside::default();
@@ -539,8 +539,8 @@ impl Scan<'_> {
                 }
                 let Some(q) = next else { continue };
                 let known = (self.knows(own, f), self.knows(users(along[k + 1]), f));
-                let straight = self.leaves[f].is_plane() && self.is_straight(stretch);
-                if !self.on[stretch].contains(&self.surface_of(f))
+                let straight = self.leaves[f].is_plane() && self.is_straight(segment);
+                if !self.on[segment].contains(&self.surface_of(f))
                     && !found.near.contains(&f)
                     && self.leaves[f].beside_line(self.mesh, (p, q), known, if straight { 0.0 } else { bend })
                 {
@@ -557,10 +557,10 @@ impl Scan<'_> {
         found
     }
 
-    /// Whether all nodes of a stretch and places between them lie on the line between its ends.
-    fn is_straight(&self, stretch: usize) -> bool {
-        let ends = (self.layout.point(stretch, 0.0), self.layout.point(stretch, 1.0));
+    /// Whether all nodes of a segment and places between them lie on the line between its ends.
+    fn is_straight(&self, segment: usize) -> bool {
+        let ends = (self.layout.point(segment, 0.0), self.layout.point(segment, 1.0));
         let off = |p: DVec3| (p - ends.0).cross(ends.1 - ends.0).length() / ends.0.distance(ends.1);
-        [0.21, 0.5, 0.83].iter().all(|f| off(self.layout.point(stretch, *f)) <= self.input.tolerance.point)
+        [0.21, 0.5, 0.83].iter().all(|f| off(self.layout.point(segment, *f)) <= self.input.tolerance.point)
     }
 }

@@ -1,9 +1,9 @@
-//! Shares whole numbers out: a count over stretches by length, steps along a stretch with a bias.
+//! Shares whole numbers out: a count over segments by length, steps along a segment with a bias.
 
 use crate::base::math;
 use crate::base::tolerance::WHOLE_NUMBER;
 
-/// Shares `total` out to stretches by weight: largest remainder, at least `least[i]` each; ties go to the earlier one.
+/// Shares `total` out to segments by weight: largest remainder, at least `least[i]` each; ties go to the earlier one.
 /// Weights that differ by no more than `near` are a tie.
 ///
 /// `None` when `total` is below the sum of the least shares.

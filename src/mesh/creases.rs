@@ -6,14 +6,14 @@ use super::build::Input;
 use super::inside::surround;
 use crate::base::math::angle_between;
 use crate::base::solve::turn;
-use crate::model::atoms::Part;
+use crate::model::segments::Part;
 use crate::model::{PatchId, Trace, Track};
-use crate::surface::{Domain, Lean, Side, Surface};
+use crate::surface::{Domain, OneSided, Side, Surface};
 
 /// A line that folds by less, radians (3°), is no crease that has to be seen.
 const CREASE: f64 = 0.052;
 /// Places along a line at which its fold is looked at.
-const LOOKS: usize = 16;
+const MAX_SAMPLES: usize = 16;
 /// Samples of a border between which it crosses a kink line once at most.
 const SAMPLES: usize = 128;
 /// Tracks of lower rank give the geometry of what several share: all others come first.
@@ -41,7 +41,9 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
                     continue;
                 }
                 // Nets of other programs have knots at which directions jump by a hair: held only for a limit on bends.
-                if !limited && (0..=LOOKS).all(|k| fold(surface, axis, place(w[0] + (w[1] - w[0]) * k as f64 / LOOKS as f64)) < CREASE) {
+                if !limited
+                    && (0..=MAX_SAMPLES).all(|k| fold(surface, axis, place(w[0] + (w[1] - w[0]) * k as f64 / MAX_SAMPLES as f64)) < CREASE)
+                {
                     continue;
                 }
                 let trace = Trace::new(surface, place(w[0]).into(), place(w[1]).into());
@@ -59,12 +61,12 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
 
 /// Angle between the normals on both sides of a line, radians.
 fn fold(surface: &Surface, axis: usize, at: DVec2) -> f64 {
-    let normal = |side: Lean| {
-        let lean = if axis == 0 { (side, Lean::After) } else { (Lean::After, side) };
-        let jet = surface.jet_lean(at.x, at.y, lean);
+    let normal = |side: OneSided| {
+        let lean = if axis == 0 { (side, OneSided::After) } else { (OneSided::After, side) };
+        let jet = surface.jet_one_sided(at.x, at.y, lean);
         jet.du.cross(jet.dv)
     };
-    angle_between(normal(Lean::Before), normal(Lean::After))
+    angle_between(normal(OneSided::Before), normal(OneSided::After))
 }
 
 /// Places along a border in the direction of its loop, by a fraction.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::chart::Charts;
+use super::face_geometry::FaceGeometries;
 
 /// Elements of one patch or curve, contiguous in the arrays.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +74,7 @@ pub struct Mesh {
     /// Named sets: one per surface, then one per `group`, in order of declaration.
     pub groups: Vec<Group>,
     /// Where the nodes of its faces lie on their surfaces; empty for meshes that were read.
-    pub charts: Charts,
+    pub geometries: FaceGeometries,
     /// Largest distance between the steps of borders of one face alone and their curves, model units; 0 for meshes that were read.
     pub border_error: f64,
 }
@@ -99,7 +99,7 @@ impl Mesh {
         self.line_mids.extend(other.line_mids.iter().map(|p| p + n));
         self.triangle_mids.extend(other.triangle_mids.iter().map(|e| e.map(|p| p + n)));
         self.quad_mids.extend(other.quad_mids.iter().map(|e| e.map(|p| p + n)));
-        self.charts.0.extend(other.charts.0.into_iter().map(|chart| chart.shifted(n)));
+        self.geometries.0.extend(other.geometries.0.into_iter().map(|geometry| geometry.shifted(n)));
         let shift = |r: &Range<u32>, by: u32| r.start + by..r.end + by;
         self.faces.extend(other.faces.into_iter().map(|f| FaceRange {
             triangles: shift(&f.triangles, t),

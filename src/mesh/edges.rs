@@ -1,4 +1,4 @@
-//! The least number of steps along a stretch that keeps chord error and angle, and the nodes of these steps.
+//! The least number of steps along a segment that keeps chord error and angle, and the nodes of these steps.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -63,7 +63,7 @@ const MOST_ROOM: f64 = 0.001;
 
 /// How far the worst step of a division is from its limits: 1 is just kept, the square law applies to `chord`.
 #[derive(Clone, Copy, Debug)]
-struct Load {
+struct LimitRatio {
     chord: f64,
     angle: f64,
 }
@@ -72,11 +72,11 @@ struct Load {
 ///
 /// `divided` gives the fractions 0…1 of so many steps. Counts below half of one that does are not the least in any but odd cases;
 /// from there on each is tried, so that a looser limit never asks for more.
-pub fn least_steps(layout: &Layout, stretch: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
+pub fn least_steps(layout: &Layout, segment: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Ok(1);
     }
-    let line = Line { layout, stretch, limits };
+    let line = Line { layout, segment, limits };
     let mut worst = Vec::new();
     let (mut low, mut n) = (0_u32, 1_u32);
     loop {
@@ -115,7 +115,7 @@ const OF_A_STEP: u64 = 8;
 /// Counts grow by no more at a time: steps longer than bends seem to ask for more than they do.
 const TWICE: f64 = 2.0;
 
-impl Load {
+impl LimitRatio {
     /// Steps in place of one that would keep the limits.
     fn steps(&self) -> f64 {
         self.chord.sqrt().max(self.angle)
@@ -126,13 +126,13 @@ impl Load {
 struct Broken {
     /// Fraction of its middle.
     at: f64,
-    load: Load,
+    load: LimitRatio,
 }
 
-/// A stretch under limits.
+/// A segment under limits.
 struct Line<'a> {
     layout: &'a Layout,
-    stretch: usize,
+    segment: usize,
     limits: &'a Limits,
 }
 
@@ -205,12 +205,12 @@ impl Line<'_> {
     }
 
     /// How far a step is over its limits; `None` where it keeps them.
-    fn load(&self, fractions: &[f64], k: usize) -> Result<Option<Load>> {
+    fn load(&self, fractions: &[f64], k: usize) -> Result<Option<LimitRatio>> {
         work::spend(OF_A_STEP);
-        let (limits, atom) = (self.limits, &self.layout.pieces.atoms[self.stretch]);
-        let track = &self.layout.parts[atom.track].track;
-        let length = atom.s.1 - atom.s.0;
-        let (a, b) = (atom.s.0 + length * fractions[k], atom.s.0 + length * fractions[k + 1]);
+        let (limits, segment) = (self.limits, &self.layout.pieces.segments[self.segment]);
+        let track = &self.layout.parts[segment.track].track;
+        let length = segment.s.1 - segment.s.0;
+        let (a, b) = (segment.s.0 + length * fractions[k], segment.s.0 + length * fractions[k + 1]);
         let steps = (fractions.len() - 1) as f64;
         // What is kept for sure need not be known closer.
         let most = (
@@ -222,7 +222,7 @@ impl Line<'_> {
             Track::Iso(_) => probed(track, a, b),
         };
         let over = |x: f64, limit: Option<f64>| limit.map_or(0.0, |limit| x / limit);
-        let load = Load { chord: over(chord, limits.chord), angle: over(angle, limits.angle) };
+        let load = LimitRatio { chord: over(chord, limits.chord), angle: over(angle, limits.angle) };
         Ok((chord > most.0 || angle > most.1).then_some(load))
     }
 }

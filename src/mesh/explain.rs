@@ -1,7 +1,7 @@
 //! How a mesh came about, for `-v` and `explain`.
 
 use super::build::Input;
-use super::faces::{Frame, Prepared};
+use super::faces::{FaceMesh, Frame};
 use super::layout::Layout;
 use super::plan::Method;
 use super::reasons;
@@ -20,7 +20,7 @@ pub struct FaceNote {
     pub method: &'static str,
     /// Kind of elements.
     pub elements: &'static str,
-    /// Steps along the sides (a side with several stretches: their sum; a pole: 0).
+    /// Steps along the sides (a side with several segments: their sum; a pole: 0).
     pub sides: Vec<u32>,
 }
 
@@ -72,17 +72,17 @@ pub enum Because {
     Count(Origin),
     /// The size of a rule, or of a `near` or `in` clause.
     RuleSize(Origin),
-    /// A pace: sizes that vary along it.
+    /// A spacing: sizes that vary along it.
     Varies,
     /// The size of the mesh.
     Size,
     /// Chord error or angle, or the shape of a face.
     Limit,
-    /// Other stretches of the strip, or the faces beside it.
+    /// Other segments of the strip, or the faces beside it.
     Neighbours,
 }
 
-/// The count of one stretch of a border or curve.
+/// The count of one segment of a border or curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StretchNote {
     /// Stretches with the same number form one strip.
@@ -104,8 +104,8 @@ pub struct StretchNote {
 pub struct Explanation {
     /// One a face.
     pub faces: Vec<FaceNote>,
-    /// One a stretch.
-    pub stretches: Vec<StretchNote>,
+    /// One a segment.
+    pub segments: Vec<StretchNote>,
     /// The same in words, one line a face and one a strip.
     pub lines: Vec<String>,
 }
@@ -113,29 +113,29 @@ pub struct Explanation {
 impl Explanation {
     /// Adds another part's notes.
     pub fn append(&mut self, other: &mut Self) {
-        let strips = self.stretches.iter().map(|s| s.strip + 1).max().unwrap_or(0);
-        other.stretches.iter_mut().for_each(|s| s.strip += strips);
+        let strips = self.segments.iter().map(|s| s.strip + 1).max().unwrap_or(0);
+        other.segments.iter_mut().for_each(|s| s.strip += strips);
         self.faces.append(&mut other.faces);
-        self.stretches.append(&mut other.stretches);
+        self.segments.append(&mut other.segments);
         self.lines.append(&mut other.lines);
     }
 
     /// Of one set of faces with their counts.
-    pub fn new(input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[Prepared], (counts, strip): (&[u32], &[usize])) -> Self {
+    pub fn new(input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[FaceMesh], (counts, strip): (&[u32], &[usize])) -> Self {
         let mut notes = Self::default();
         for (face, ready) in layout.faces.iter().zip(prepared) {
             let first = input.model.patches_of(face.surface).next().map_or(0, |p| p.index());
-            let sides = match &ready.chart.frame {
+            let sides = match &ready.geometry.frame {
                 Frame::Grid(frame) => {
                     let steps = |k: usize| if frame.poles[k] { 0 } else { frame.sides[k].len() as u32 - 1 };
                     (0..4).map(steps).collect()
                 }
-                _ => face.sides.iter().map(|s| s.uses.iter().map(|u| counts[u.atom]).sum()).collect(),
+                _ => face.sides.iter().map(|s| s.uses.iter().map(|u| counts[u.segment]).sum()).collect(),
             };
             notes.faces.push(FaceNote {
                 surface: face.surface,
                 patch: face.patch.index() - first,
-                method: match &ready.chart.frame {
+                method: match &ready.geometry.frame {
                     Frame::Free(_) if face.method == Method::Quadtree => "quadtree",
                     Frame::Free(_) if face.method == Method::Display => "display",
                     Frame::Free(_) if face.method == Method::Isoline => "isoline",
@@ -151,14 +151,14 @@ impl Explanation {
         for (k, d) in sizing.decisions.iter().enumerate() {
             let because = match (d.count, d.size.1) {
                 (Some((_, r)), _) => Because::Count(rule(r)),
-                _ if d.wish != counts[k] => Because::Neighbours,
-                _ if sizing.paces[k].is_some() => Because::Varies,
-                _ if d.wish == d.least && d.wish > 1 => Because::Limit,
+                _ if d.demand != counts[k] => Because::Neighbours,
+                _ if sizing.spacings[k].is_some() => Because::Varies,
+                _ if d.demand == d.least && d.demand > 1 => Because::Limit,
                 (None, Some(r)) => Because::RuleSize(rule(r)),
                 _ => Because::Size,
             };
-            let ends = layout.pieces.atoms[k].ends;
-            notes.stretches.push(StretchNote {
+            let ends = layout.pieces.segments[k].ends;
+            notes.segments.push(StretchNote {
                 strip: strip[k],
                 count: counts[k],
                 length: layout.length(k),
@@ -171,7 +171,7 @@ impl Explanation {
         notes
     }
 
-    fn words(&self, input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[Prepared]) -> Vec<String> {
+    fn words(&self, input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[FaceMesh]) -> Vec<String> {
         let face = |(k, f): (usize, &FaceNote)| {
             let sides: Vec<String> = f.sides.iter().map(|n| if *n == 0 { "pole".to_owned() } else { n.to_string() }).collect();
             let name = &input.model.surfaces[f.surface.index()].name;
@@ -184,12 +184,12 @@ impl Explanation {
             format!("face {} of {name}: {}{why}, {}, sides {}{size}{inside}", f.patch, f.method, f.elements, sides.join(" "))
         };
         let mut lines: Vec<String> = self.faces.iter().enumerate().map(face).collect();
-        let mut order: Vec<usize> = (0..self.stretches.len()).collect();
-        order.sort_by_key(|k| (self.stretches[*k].strip, *k));
-        for strip in order.chunk_by(|a, b| self.stretches[*a].strip == self.stretches[*b].strip) {
+        let mut order: Vec<usize> = (0..self.segments.len()).collect();
+        order.sort_by_key(|k| (self.segments[*k].strip, *k));
+        for strip in order.chunk_by(|a, b| self.segments[*a].strip == self.segments[*b].strip) {
             let mut names: Vec<String> = strip.iter().map(|k| layout.name_of(input, *k)).collect();
             names.dedup();
-            let ranked = |k: &&usize| match self.stretches[**k].because {
+            let ranked = |k: &&usize| match self.segments[**k].because {
                 Because::Count(_) => 0,
                 Because::RuleSize(_) => 1,
                 Because::Varies => 2,
@@ -199,7 +199,7 @@ impl Explanation {
             };
             let Some(first) = strip.iter().min_by_key(ranked) else { continue };
             let decision = &sizing.decisions[*first];
-            let why = match (self.stretches[*first].because, decision.count, decision.size.1) {
+            let why = match (self.segments[*first].because, decision.count, decision.size.1) {
                 (Because::Count(_), Some((_, clause)), _) | (Because::RuleSize(_), _, Some(clause)) => reasons::clause(input, clause),
                 (Because::Count(_) | Because::RuleSize(_), ..) => "a rule".to_owned(),
                 (Because::Varies, ..) => "sizes along it".to_owned(),
@@ -207,11 +207,11 @@ impl Explanation {
                 (Because::Size, ..) => "the size".to_owned(),
                 (Because::Neighbours, ..) => "the rows or faces beside it".to_owned(),
             };
-            let pace = sizing.paces[*first].as_ref().map_or_else(String::new, |pace| reasons::of_pace(input, pace));
+            let spacing = sizing.spacings[*first].as_ref().map_or_else(String::new, |spacing| reasons::of_pace(input, spacing));
             lines.push(format!(
-                "strip of {}: {} steps, by {why} (on {}){pace}",
+                "strip of {}: {} steps, by {why} (on {}){spacing}",
                 names.join(", "),
-                self.stretches[*first].count,
+                self.segments[*first].count,
                 layout.name_of(input, *first)
             ));
         }

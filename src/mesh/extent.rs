@@ -9,9 +9,9 @@
 use glam::DVec2;
 
 use super::build::Input;
-use super::chart::Shape;
 use super::data::Mesh;
-use super::faces::{Frame, Prepared, line};
+use super::face_geometry::Shape;
+use super::faces::{FaceMesh, Frame, line};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use crate::base::tolerance::{MEASURE_ACCURACY, NUDGE};
@@ -189,18 +189,18 @@ fn side(surface: &Surface, k: usize, (layout, nodes): (&Layout, &Nodes), face: &
 }
 
 /// The first node that is not on the surface at its place: all of those on the border, and some inside.
-pub(super) fn misplaced(input: &Input, (face, ready): (&Face, &Prepared), mesh: &Mesh) -> Option<(u32, f64)> {
-    let surface = &ready.chart.surface;
+pub(super) fn misplaced(input: &Input, (face, ready): (&Face, &FaceMesh), mesh: &Mesh) -> Option<(u32, f64)> {
+    let surface = &ready.geometry.surface;
     let near = GLUED * face.near.max(input.tolerance.point);
     // Under limits it was made ready for the bounds.
     let is_ready = face.free && (input.plan.chord_error.is_some() || input.plan.angle_error.is_some());
-    let quick = if is_ready { surface.quick() } else { None };
+    let quick = if is_ready { surface.power_form() } else { None };
     let off = |(n, (u, v)): (u32, (f64, f64))| {
         let off = surface.point_by(quick.as_ref(), u, v).distance(mesh.nodes[n as usize]);
         (off > near || off.is_nan()).then_some((n, off))
     };
     let inner = |all: usize| (0..all).step_by(all.div_ceil(PROBES).max(1));
-    match (&ready.chart.shape, &ready.chart.frame) {
+    match (&ready.geometry.shape, &ready.geometry.frame) {
         (Shape::Grid(grid), Frame::Grid(frame)) => {
             let (nu, nv) = grid.size();
             let rows = (0..=nu).flat_map(|i| [(i, 0), (i, nv)]).chain((0..=nv).flat_map(|j| [(0, j), (nu, j)]));

@@ -1,13 +1,13 @@
-//! Faces ready to be filled: their charts, the ids of their border nodes, and how many nodes and elements they make.
+//! Faces ready to be filled: their geometries, the ids of their border nodes, and how many nodes and elements they make.
 
 use std::ops::Range;
 
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::{Chart, Grid, Lattice, Shape};
 use super::edges::Limits;
 use super::explain::{Decider, Tally};
+use super::face_geometry::{FaceGeometry, Grid, Lattice, Shape};
 use super::layout::{Face, Layout, side_parameters};
 use super::mapped;
 use super::nodes::Nodes;
@@ -37,11 +37,11 @@ pub enum Frame {
 
 /// A face ready to be filled.
 #[derive(Clone, Debug)]
-pub struct Prepared {
+pub struct FaceMesh {
     /// The surface.
     pub surface: SurfaceId,
-    /// Its chart and node ids; inner ones from `first` on.
-    pub chart: Chart,
+    /// Its geometry and node ids; inner ones from `first` on.
+    pub geometry: FaceGeometry,
     /// Elements.
     pub elements: Elements,
     /// First inner node.
@@ -52,9 +52,9 @@ pub struct Prepared {
     pub triangles: u64,
     /// Number of quads.
     pub quads: u64,
-    /// Points of the inner nodes, where they are not made from the chart alone.
+    /// Points of the inner nodes, where they are not made from the geometry alone.
     pub made: Vec<DVec3>,
-    /// Edges of the loops by place in the chart, with the face on their left; of free faces.
+    /// Edges of the loops by place in the geometry, with the face on their left; of free faces.
     pub around: Vec<[u32; 2]>,
     /// What decided the sizes inside; of free faces.
     pub deciders: Vec<Decider>,
@@ -143,7 +143,7 @@ fn unmappable(surface: &Surface, face: &Face) -> Option<String> {
 }
 
 /// E704 when faces for which only quads are wanted got triangles.
-pub fn refuse_triangles(input: &Input, layout: &Layout, prepared: &[Prepared]) -> Result<()> {
+pub fn refuse_triangles(input: &Input, layout: &Layout, prepared: &[FaceMesh]) -> Result<()> {
     let mut places = Vec::new();
     for (face, ready) in layout.faces.iter().zip(prepared) {
         if ready.elements == Elements::Quads && ready.triangles > 0 {
@@ -167,13 +167,13 @@ pub fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usi
     let border = &face.sides[side];
     let (mut ids, mut lengths) = (Vec::new(), Vec::new());
     for u in &border.uses {
-        let stretch = nodes.of_stretch(layout, u.atom, u.against);
-        let fractions = nodes.fractions(u.atom, u.against);
+        let segment = nodes.of_segment(layout, u.segment, u.against);
+        let fractions = nodes.fractions(u.segment, u.against);
         if !ids.is_empty() {
             ids.pop();
             lengths.pop();
         }
-        ids.extend(stretch);
+        ids.extend(segment);
         lengths.extend(fractions.iter().map(|f| if *f == 1.0 { u.s.1 } else { u.s.0 + (u.s.1 - u.s.0) * f }));
     }
     if border.uses.is_empty() {
@@ -182,8 +182,8 @@ pub fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usi
     Line { ids, lengths }
 }
 
-/// The chart and ids of a face; `rows` are the counts of its rows, `first` becomes its first inner node.
-pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows: &[u32]) -> Result<Prepared> {
+/// The geometry and ids of a face; `rows` are the counts of its rows, `first` becomes its first inner node.
+pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows: &[u32]) -> Result<FaceMesh> {
     if face.is_triangle() {
         return prepare_triangle(input, layout, nodes, face);
     }
@@ -207,9 +207,9 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
     let frame = mapped::Frame { sides: [a.ids, b.ids, c.ids, d.ids], poles, first: 0 };
     let (triangles, quads) = frame.elements(face.elements);
     let grid = Grid::new(patch.u, patch.v, values, input.tolerance);
-    Ok(Prepared {
+    Ok(FaceMesh {
         inner: frame.inner(),
-        chart: Chart { surface: surface.clone(), shape: Shape::Grid(grid), frame: Frame::Grid(frame), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), shape: Shape::Grid(grid), frame: Frame::Grid(frame), flipped: face.flipped },
         surface: face.surface,
         elements: face.elements,
         first: 0,
@@ -222,7 +222,7 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
     })
 }
 
-fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) -> Result<Prepared> {
+fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) -> Result<FaceMesh> {
     let surface = &input.model.surfaces[face.surface.index()].surface;
     let lines = [0, 1, 2].map(|k| line(layout, nodes, face, k, 0));
     let values = [0, 1, 2].map(|k| side_parameters(input, face, k, &lines[k].lengths));
@@ -231,8 +231,8 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
     let n = ids[0].len() as u64 - 1;
     if face.elements == Elements::Triangles {
         let inner = if n < 2 { 0 } else { (n - 1) * (n - 2) / 2 };
-        return Ok(Prepared {
-            chart: Chart {
+        return Ok(FaceMesh {
+            geometry: FaceGeometry {
                 surface: surface.clone(),
                 shape: Shape::Lattice(Lattice { sides: values }),
                 frame: Frame::Lattice(LatticeFrame { sides: ids, first: 0 }),
@@ -258,11 +258,16 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
     for (side, line) in blocks.sides.iter().zip(&ids) {
         side.iter().zip(line).for_each(|(place, id)| places[*place as usize] = *id);
     }
-    Ok(Prepared {
+    Ok(FaceMesh {
         inner: blocks.inner as u64,
         triangles: 0,
         quads: blocks.quads.len() as u64,
-        chart: Chart { surface: surface.clone(), shape: Shape::Blocks(blocks), frame: Frame::Blocks(places), flipped: face.flipped },
+        geometry: FaceGeometry {
+            surface: surface.clone(),
+            shape: Shape::Blocks(blocks),
+            frame: Frame::Blocks(places),
+            flipped: face.flipped,
+        },
         surface: face.surface,
         elements: face.elements,
         first: 0,
@@ -295,9 +300,9 @@ impl Frame {
 pub type FaceRanges = (Range<usize>, Range<usize>);
 
 /// The triangles and quads of each face among those of the mesh, where they follow each other face by face.
-pub fn element_ranges(prepared: &[Prepared]) -> Vec<FaceRanges> {
+pub fn element_ranges(prepared: &[FaceMesh]) -> Vec<FaceRanges> {
     let (mut t, mut q) = (0, 0);
-    let one = |ready: &Prepared| {
+    let one = |ready: &FaceMesh| {
         let own = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
         (t, q) = (own.0.end, own.1.end);
         own
@@ -305,16 +310,16 @@ pub fn element_ranges(prepared: &[Prepared]) -> Vec<FaceRanges> {
     prepared.iter().map(one).collect()
 }
 
-impl Prepared {
+impl FaceMesh {
     /// What remains of it beside the mesh.
-    pub fn into_chart(self) -> Chart {
-        self.chart
+    pub fn into_chart(self) -> FaceGeometry {
+        self.geometry
     }
 
     /// Gives the inner nodes their ids.
     pub fn number(&mut self, first: u32) {
         self.first = first;
-        match &mut self.chart.frame {
+        match &mut self.geometry.frame {
             Frame::Grid(frame) => frame.first = first,
             Frame::Lattice(frame) => frame.first = first,
             Frame::Free(places) => {
@@ -327,7 +332,7 @@ impl Prepared {
 
     /// Points of the inner nodes.
     pub fn points(&self, surface: &Surface, out: &mut [DVec3]) {
-        match &self.chart.shape {
+        match &self.geometry.shape {
             Shape::Free(_) => out.copy_from_slice(&self.made),
             Shape::Grid(grid) => grid.inner_points(surface, out),
             Shape::Lattice(lattice) => {
@@ -347,7 +352,7 @@ impl Prepared {
     /// For each cell of a grid of triangles whether its other diagonal is the better one. `node` gives points of border and
     /// inner nodes, `even` the distance below which both diagonals of a cell are as good.
     pub fn diagonals(&self, surface: &Surface, node: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
-        match (&self.chart.frame, &self.chart.shape) {
+        match (&self.geometry.frame, &self.geometry.shape) {
             (Frame::Grid(frame), Shape::Grid(grid)) if self.elements == Elements::Triangles => {
                 mapped::diagonals(grid, frame, surface, node, even)
             }
@@ -357,30 +362,30 @@ impl Prepared {
 
     /// Elements by global ids, with these [`Self::diagonals`].
     pub fn fill(&self, diagonals: &[bool], triangles: &mut [[u32; 3]], quads: &mut [[u32; 4]]) {
-        match (&self.chart.frame, &self.chart.shape) {
+        match (&self.geometry.frame, &self.geometry.shape) {
             (Frame::Grid(frame), Shape::Grid(_)) => {
-                mapped::fill(frame, self.elements, self.chart.flipped, diagonals, triangles, quads);
+                mapped::fill(frame, self.elements, self.geometry.flipped, diagonals, triangles, quads);
             }
             (Frame::Lattice(frame), Shape::Lattice(lattice)) => {
                 for (slot, t) in triangles.iter_mut().zip(LatticeFrame::triangles(lattice.size())) {
                     let [a, b, c] = t.map(|(i, j)| frame.node(i, j));
-                    *slot = if self.chart.flipped { [a, c, b] } else { [a, b, c] };
+                    *slot = if self.geometry.flipped { [a, c, b] } else { [a, b, c] };
                 }
             }
             (Frame::Blocks(places), Shape::Blocks(blocks)) => {
                 for (slot, q) in quads.iter_mut().zip(&blocks.quads) {
                     let [a, b, c, d] = q.map(|n| places[n as usize]);
-                    *slot = if self.chart.flipped { [a, d, c, b] } else { [a, b, c, d] };
+                    *slot = if self.geometry.flipped { [a, d, c, b] } else { [a, b, c, d] };
                 }
             }
             (Frame::Free(places), Shape::Free(free)) => {
                 for (slot, t) in triangles.iter_mut().zip(&free.triangles) {
                     let [a, b, c] = t.map(|n| places[n as usize]);
-                    *slot = if self.chart.flipped { [a, c, b] } else { [a, b, c] };
+                    *slot = if self.geometry.flipped { [a, c, b] } else { [a, b, c] };
                 }
                 for (slot, q) in quads.iter_mut().zip(&free.quads) {
                     let [a, b, c, d] = q.map(|n| places[n as usize]);
-                    *slot = if self.chart.flipped { [a, d, c, b] } else { [a, b, c, d] };
+                    *slot = if self.geometry.flipped { [a, d, c, b] } else { [a, b, c, d] };
                 }
             }
             _ => {}

@@ -5,12 +5,12 @@ use std::f64::consts::{FRAC_PI_6, PI};
 
 use glam::DVec3;
 
-use super::chart::Shape;
 use super::data::Mesh;
 use super::edges::Limits;
-use super::faces::{Frame, Prepared};
+use super::face_geometry::Shape;
+use super::faces::{FaceMesh, Frame};
 use super::free::bound;
-use super::free::face::{FILLED, Made, SPACING};
+use super::free::face::{FILLED, FaceInput, SPACING};
 use super::layout::{Border, Face};
 use super::plan::{Elements, Method};
 use super::quality::least_angle;
@@ -26,7 +26,7 @@ pub const SHARP: f64 = PI / 9.0;
 /// What free faces hardly ever stay below, radians: 30°.
 const FREE: f64 = FRAC_PI_6;
 /// How much larger the least angle has to be that is worth another method.
-const WORTH: f64 = 1.5;
+const MIN_GAIN: f64 = 1.5;
 /// Free elements for one of the map at most: rows that limits make narrow save elements.
 const MORE: f64 = 2.5;
 /// Free elements for one that was foreseen at most.
@@ -56,19 +56,19 @@ pub struct Foreseen {
 impl Foreseen {
     /// Whether free elements have clearly larger angles, and are not many more. A sharp corner has one sharp element whatever the method.
     pub fn is_worse_than_free(&self) -> bool {
-        let worse = |angle: f64, free: f64| angle < SHARP && WORTH * angle <= free;
+        let worse = |angle: f64, free: f64| angle < SHARP && MIN_GAIN * angle <= free;
         (worse(self.angle, FREE.min(self.corner)) || worse(self.away, FREE)) && self.more <= MORE
     }
 }
 
 /// What the maps of faces will be like; nothing for free ones.
-pub fn look(made: &Made, prepared: &[Prepared]) -> Vec<Option<Foreseen>> {
+pub fn find(made: &FaceInput, prepared: &[FaceMesh]) -> Vec<Option<Foreseen>> {
     par::map(prepared.len(), |f| (!made.layout.faces[f].free).then(|| of_face(made, &made.layout.faces[f], &prepared[f])).flatten())
 }
 
 /// Faces that are better made freely, of those that are mapped because nothing says otherwise, and the number of elements that this
 /// makes. Rows whose steps are written out are what is meant.
-pub fn better_free(made: &Made, sizing: &Sizing, foreseen: &[Option<Foreseen>], prepared: &[Prepared]) -> Vec<(usize, Uneven, u64)> {
+pub fn better_free(made: &FaceInput, sizing: &Sizing, foreseen: &[Option<Foreseen>], prepared: &[FaceMesh]) -> Vec<(usize, Uneven, u64)> {
     let chosen = |(f, found): (usize, &Option<Foreseen>)| {
         let face = &made.layout.faces[f];
         let found = found.filter(Foreseen::is_worse_than_free)?;
@@ -80,7 +80,7 @@ pub fn better_free(made: &Made, sizing: &Sizing, foreseen: &[Option<Foreseen>], 
 }
 
 /// Faces made freely for better angles that have many more elements than was foreseen, or elements turned over against the surface.
-pub fn better_mapped(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<usize> {
+pub fn better_mapped(made: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<usize> {
     let worse = |f: usize| {
         let (face, ready) = (&made.layout.faces[f], &prepared[f]);
         let many = (ready.triangles + ready.quads) as f64 > DEARER * (face.foreseen_free.max(FEW)) as f64;
@@ -94,20 +94,20 @@ pub fn better_mapped(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<usi
 const TWISTED: f64 = 0.1;
 
 /// Whether an element is seen from its back along the normal of the surface in its middle.
-fn turned(ready: &Prepared, mesh: &Mesh) -> bool {
+fn turned(ready: &FaceMesh, mesh: &Mesh) -> bool {
     backs(ready, mesh).0 > 0
 }
 
 /// Whether the elements of a free face go through its surface and not along it, as a few of them round a whole ring may.
-pub fn is_twisted(ready: &Prepared, mesh: &Mesh) -> bool {
+pub fn is_twisted(ready: &FaceMesh, mesh: &Mesh) -> bool {
     let (backs, all) = backs(ready, mesh);
     backs as f64 > TWISTED * all as f64
 }
 
 /// How many elements of a free face are seen from their backs along the normals of the surface in their middles, and how many there are.
-fn backs(ready: &Prepared, mesh: &Mesh) -> (usize, usize) {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return (0, 0) };
-    let surface = &ready.chart.surface;
+fn backs(ready: &FaceMesh, mesh: &Mesh) -> (usize, usize) {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.geometry.shape, &ready.geometry.frame) else { return (0, 0) };
+    let surface = &ready.geometry.surface;
     let back = |corners: &[u32]| {
         let share = 1.0 / corners.len() as f64;
         let uv = corners.iter().map(|n| free.uv[*n as usize]).fold((0.0, 0.0), |s, uv| (s.0 + share * uv.0, s.1 + share * uv.1));
@@ -126,7 +126,7 @@ fn backs(ready: &Prepared, mesh: &Mesh) -> (usize, usize) {
 /// Whether all steps of a side are written, or their growth.
 pub fn is_written(face: &Face, sizing: &Sizing) -> bool {
     let says = |k: usize| sizing.decisions[k].count.is_some() || sizing.bias_rule[k].is_some();
-    let all = |side: &Border| !side.uses.is_empty() && side.uses.iter().all(|u| says(u.atom));
+    let all = |side: &Border| !side.uses.is_empty() && side.uses.iter().all(|u| says(u.segment));
     face.sides.iter().any(all)
 }
 
@@ -135,13 +135,13 @@ type Node = (u32, (f64, f64));
 
 /// Nodes of a face with their points, which are made where they are inside.
 struct View<'a> {
-    made: &'a Made<'a>,
-    ready: &'a Prepared,
+    made: &'a FaceInput<'a>,
+    ready: &'a FaceMesh,
 }
 
 impl View<'_> {
     fn point(&self, (id, (u, v)): Node) -> DVec3 {
-        if id < self.ready.first { self.made.points[id as usize] } else { self.ready.chart.surface.point(u, v) }
+        if id < self.ready.first { self.made.points[id as usize] } else { self.ready.geometry.surface.point(u, v) }
     }
 
     /// Corners of a cell, those at a pole once.
@@ -151,7 +151,7 @@ impl View<'_> {
     }
 }
 
-fn of_face(made: &Made, face: &Face, ready: &Prepared) -> Option<Foreseen> {
+fn of_face(made: &FaceInput, face: &Face, ready: &FaceMesh) -> Option<Foreseen> {
     let view = View { made, ready };
     let cells = cells(ready)?;
     let split = ready.elements == Elements::Triangles;
@@ -162,9 +162,9 @@ fn of_face(made: &Made, face: &Face, ready: &Prepared) -> Option<Foreseen> {
     let away = away.map(|((angle, _), _)| *angle).fold(f64::INFINITY, f64::min);
     let corner = corners(&view, face, ready);
     let limits = Limits::of(made.input);
-    let bends = (limits.chord.is_some() || limits.angle.is_some()) && !ready.chart.surface.is_flat();
+    let bends = (limits.chord.is_some() || limits.angle.is_some()) && !ready.geometry.surface.is_flat();
     let each = cells.iter().zip(&shapes).filter(|(_, shape)| shape.len() > 2).map(|(cell, shape)| {
-        let by_bends = if bends { wanted(&ready.chart.surface, &limits, &cell.nodes) } else { f64::INFINITY };
+        let by_bends = if bends { wanted(&ready.geometry.surface, &limits, &cell.nodes) } else { f64::INFINITY };
         more_elements(face.size.0.min(by_bends), (shape, shape.len() < cell.nodes.len()), split)
     });
     let more = each.sum::<f64>() / cells.len() as f64;
@@ -179,8 +179,8 @@ struct Cell {
 }
 
 /// Some cells of a map.
-fn cells(ready: &Prepared) -> Option<Vec<Cell>> {
-    match (&ready.chart.shape, &ready.chart.frame) {
+fn cells(ready: &FaceMesh) -> Option<Vec<Cell>> {
+    match (&ready.geometry.shape, &ready.geometry.frame) {
         (Shape::Grid(grid), Frame::Grid(frame)) => {
             let (nu, nv) = grid.size();
             let node = |(i, j): (usize, usize)| (frame.node(i, j), grid.uv(i, j));
@@ -218,9 +218,9 @@ fn cells(ready: &Prepared) -> Option<Vec<Cell>> {
 }
 
 /// The sharpest corner of a face: between the first steps of its sides; at a pole all round it.
-fn corners(view: &View, face: &Face, ready: &Prepared) -> f64 {
-    let Frame::Grid(frame) = &ready.chart.frame else {
-        let sides: Vec<&[u32]> = match &ready.chart.frame {
+fn corners(view: &View, face: &Face, ready: &FaceMesh) -> f64 {
+    let Frame::Grid(frame) = &ready.geometry.frame else {
+        let sides: Vec<&[u32]> = match &ready.geometry.frame {
             Frame::Lattice(frame) => frame.sides.iter().map(Vec::as_slice).collect(),
             _ => return least_of_blocks(view, face, ready),
         };
@@ -238,8 +238,8 @@ fn corners(view: &View, face: &Face, ready: &Prepared) -> f64 {
 }
 
 /// The corners of three sides that blocks of quads fill.
-fn least_of_blocks(view: &View, face: &Face, ready: &Prepared) -> f64 {
-    let (Shape::Blocks(blocks), Frame::Blocks(places)) = (&ready.chart.shape, &ready.chart.frame) else { return f64::INFINITY };
+fn least_of_blocks(view: &View, face: &Face, ready: &FaceMesh) -> f64 {
+    let (Shape::Blocks(blocks), Frame::Blocks(places)) = (&ready.geometry.shape, &ready.geometry.frame) else { return f64::INFINITY };
     let side = |k: usize| blocks.sides[k].iter().map(|n| places[*n as usize]).collect::<Vec<u32>>();
     let s = [side(0), side(1), side(2)];
     let ends = [(0, false, 2, false), (0, true, 1, false), (1, true, 2, true)];
@@ -258,8 +258,8 @@ fn between(view: &View, (a, a_last): (&[u32], bool), (b, b_last): (&[u32], bool)
 }
 
 /// The angle all round a pole: that of a few of its triangles, for all.
-fn round_pole(view: &View, ready: &Prepared, side: usize) -> f64 {
-    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.chart.shape, &ready.chart.frame) else { return f64::INFINITY };
+fn round_pole(view: &View, ready: &FaceMesh, side: usize) -> f64 {
+    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.geometry.shape, &ready.geometry.frame) else { return f64::INFINITY };
     let (nu, nv) = grid.size();
     let n = if side.is_multiple_of(2) { nu } else { nv };
     let next = |k: usize| match side {

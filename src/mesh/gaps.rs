@@ -11,28 +11,28 @@ use super::free::face;
 use super::layout::{Face, Layout};
 use crate::base::fault::{MeshFault, Result};
 use crate::base::par;
-use crate::model::atoms::Use;
+use crate::model::segments::SegmentUse;
 use crate::surface::{Domain, Surface, foot_within};
 
-/// Places along a stretch at which gaps and bends are asked for, less one.
+/// Places along a segment at which gaps and bends are asked for, less one.
 pub const PLACES: usize = 64;
 /// Least share of a chord error that a gap has to leave to the bend: a tenth of the step that would do without a gap.
 const LEFT: f64 = 0.01;
 /// Share of a distance that matters up to which another one is taken for what it seems at first.
 pub const SLIGHT: f64 = 0.001;
 
-/// A stretch beside a face, from its start to its end.
+/// A segment beside a face, from its start to its end.
 pub struct Beside {
     /// Places in (u, v) of the face.
     pub places: Vec<(f64, f64)>,
-    /// Points of the stretch.
+    /// Points of the segment.
     pub points: Vec<DVec3>,
     /// How far these are from the surface, model units.
     pub off: Vec<f64>,
 }
 
 impl Beside {
-    /// Of points of a stretch with their places on the surface.
+    /// Of points of a segment with their places on the surface.
     pub fn new(surface: &Surface, (places, points): (Vec<(f64, f64)>, Vec<DVec3>), slight: f64) -> Self {
         let off = places.iter().zip(&points).map(|(uv, p)| distance(surface, *p, *uv, slight)).collect();
         Self { places, points, off }
@@ -50,11 +50,11 @@ pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> 
     foot_within((surface, None), p, place, over(u), over(v)).0
 }
 
-/// A stretch as one side of a face has it.
-fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &Use)) -> Beside {
+/// A segment as one side of a face has it.
+fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &SegmentUse)) -> Beside {
     let surface = &input.model.surfaces[own.surface.index()].surface;
     let share = |i: usize| i as f64 / PLACES as f64;
-    let points: Vec<DVec3> = (0..=PLACES).map(|i| layout.point(u.atom, share(i))).collect();
+    let points: Vec<DVec3> = (0..=PLACES).map(|i| layout.point(u.segment, share(i))).collect();
     let flat = points.iter().map(|p| surface.flat_uv(*p)).collect::<Option<Vec<_>>>();
     let places = flat.unwrap_or_else(|| {
         let lengths: Vec<f64> = (0..=PLACES).map(|i| u.s.0 + (u.s.1 - u.s.0) * share(i)).collect();
@@ -80,8 +80,8 @@ pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<Beside>>
         let surface = &input.model.surfaces[own.surface.index()].surface;
         let bends = own.free && !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
         let asked = bends || limits.chord.is_some() && is_off(input, own, surface);
-        // Made ready once for all sides.
-        let _ready = if asked { surface.quick() } else { None };
+        // FaceInput ready once for all sides.
+        let _ready = if asked { surface.power_form() } else { None };
         let sides = own.sides.iter().enumerate().filter(|_| asked);
         sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, (k, u)))).collect()
     })

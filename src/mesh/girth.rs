@@ -2,7 +2,7 @@
 //! there would be fewer than three elements all round. Steps of a border that turns back along itself, where elements on its two
 //! sides are the same.
 
-use super::free::face::{Made, places, way_round};
+use super::free::face::{FaceInput, places, way_round};
 use super::layout::Face;
 use super::narrow::Narrow;
 use crate::surface::Domain;
@@ -15,7 +15,7 @@ const SLACK: f64 = 1.15;
 const LEAST: f64 = 0.25;
 
 /// Places of the seams of a face where steps have to be shorter.
-pub fn look(made: &Made, face: &Face) -> Vec<Narrow> {
+pub fn find(made: &FaceInput, face: &Face) -> Vec<Narrow> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let mut found = turned(made, face);
     if surface.domain() == Domain::Loop || face.sides.len() != 4 {
@@ -23,10 +23,10 @@ pub fn look(made: &Made, face: &Face) -> Vec<Narrow> {
     }
     for (one, other) in [(1, 3), (0, 2)] {
         let ([used], [facing]) = (face.sides[one].uses.as_slice(), face.sides[other].uses.as_slice()) else { continue };
-        if used.atom != facing.atom {
+        if used.segment != facing.segment {
             continue;
         }
-        let at = made.nodes.fractions(used.atom, false);
+        let at = made.nodes.fractions(used.segment, false);
         let middles: Vec<f64> = at.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
         let along = |f: &f64| used.s.0 + (used.s.1 - used.s.0) * if used.against { 1.0 - f } else { *f };
         let mut lengths: Vec<f64> = middles.iter().map(along).collect();
@@ -38,9 +38,9 @@ pub fn look(made: &Made, face: &Face) -> Vec<Narrow> {
         }
         let least = LEAST * round.iter().copied().fold(0.0, f64::max).min(face.size.0);
         for ((w, f), round) in at.windows(2).zip(&middles).zip(&round) {
-            let (length, size) = (made.layout.length(used.atom) * (w[1] - w[0]), round.max(least));
+            let (length, size) = (made.layout.length(used.segment) * (w[1] - w[0]), round.max(least));
             if length > SLACK * size {
-                found.push(Narrow { stretch: used.atom, f: *f, size, must: false });
+                found.push(Narrow { segment: used.segment, f: *f, size, must: false });
             }
         }
     }
@@ -48,13 +48,13 @@ pub fn look(made: &Made, face: &Face) -> Vec<Narrow> {
 }
 
 /// Places of borders that turn back along themselves: their steps are halved again and again.
-fn turned(made: &Made, face: &Face) -> Vec<Narrow> {
+fn turned(made: &FaceInput, face: &Face) -> Vec<Narrow> {
     let mut found = Vec::new();
-    for stretch in face.turns().map(|turn| turn.atom) {
-        let whole = made.layout.length(stretch);
+    for segment in face.turns().map(|turn| turn.segment) {
+        let whole = made.layout.length(segment);
         let size = (0..face.halved).fold(whole.min(face.size.0), |size, _| 0.5 * size);
-        for w in made.nodes.fractions(stretch, false).windows(2).filter(|w| whole * (w[1] - w[0]) > SLACK * size) {
-            found.push(Narrow { stretch, f: 0.5 * (w[0] + w[1]), size, must: false });
+        for w in made.nodes.fractions(segment, false).windows(2).filter(|w| whole * (w[1] - w[0]) > SLACK * size) {
+            found.push(Narrow { segment, f: 0.5 * (w[0] + w[1]), size, must: false });
         }
     }
     found

@@ -14,11 +14,11 @@ use crate::base::tolerance::Tolerance;
 use crate::model::{Patch, PatchId, SurfaceId, Track};
 use crate::surface::{Domain, Nearest, Surface, foot_within};
 
-/// Notes for each face the stretches and points of the plan that lie inside it, off its borders.
+/// Notes for each face the segments and points of the plan that lie inside it, off its borders.
 pub fn place(input: &Input, layout: &mut Layout) {
-    let mut on_face = vec![false; layout.pieces.atoms.len()];
-    layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|s| on_face[s] = true);
-    let mut lines: Vec<usize> = layout.curves.iter().flatten().map(|u| u.atom).collect();
+    let mut on_face = vec![false; layout.pieces.segments.len()];
+    layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| s.segments()).for_each(|s| on_face[s] = true);
+    let mut lines: Vec<usize> = layout.curves.iter().flatten().map(|u| u.segment).collect();
     if input.plan.imprint.is_some() {
         // Borders of other faces are lines of a face that they lie on.
         lines.extend((0..on_face.len()).filter(|k| on_face[*k]));
@@ -43,7 +43,7 @@ pub fn place(input: &Input, layout: &mut Layout) {
         let nearest = known.entry(face.surface).or_insert_with(|| Nearest::new(surface));
         let patch = &input.model.patches[face.patch.index()];
         let holds = |p: &DVec3| on(nearest, patch, *p, input.tolerance);
-        let around: BTreeSet<usize> = face.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).collect();
+        let around: BTreeSet<usize> = face.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.segment)).collect();
         let candidates = (0..lines.len()).filter(|n| !around.contains(&lines[*n]) && near(&probes[*n]) && probes[*n].iter().all(holds));
         let found: Vec<usize> = candidates.collect();
         let rim = if found.is_empty() { Vec::new() } else { rim(layout, &around) };
@@ -53,8 +53,8 @@ pub fn place(input: &Input, layout: &mut Layout) {
         face.lines.extend(own);
         face.lines.sort_unstable();
         face.lines.dedup();
-        let atoms = &layout.pieces.atoms;
-        let ends = face.stretches().flat_map(|k| <[usize; 2]>::from(atoms[k].ends)).chain(face.sides.iter().filter_map(|s| s.pole));
+        let segments = &layout.pieces.segments;
+        let ends = face.segments().flat_map(|k| <[usize; 2]>::from(segments[k].ends)).chain(face.sides.iter().filter_map(|s| s.pole));
         let ends: BTreeSet<usize> = ends.collect();
         let is_end = |k: &usize| layout.points[*k].is_some_and(|j| ends.contains(&j));
         let inside = |k: &usize| !is_end(k) && near(&[input.plan.points[*k]]) && holds(&input.plan.points[*k]);
@@ -63,22 +63,22 @@ pub fn place(input: &Input, layout: &mut Layout) {
     layout.faces = faces;
 }
 
-/// A stretch of the border of a face, inside a ball.
+/// A segment of the border of a face, inside a ball.
 struct Rim {
-    stretch: usize,
+    segment: usize,
     center: DVec3,
     radius: f64,
 }
 
 impl Rim {
     fn is_near(&self, layout: &Layout, p: DVec3, near: f64) -> bool {
-        self.center.distance(p) <= self.radius + near && layout.distance(self.stretch, p) <= near
+        self.center.distance(p) <= self.radius + near && layout.distance(self.segment, p) <= near
     }
 }
 
-/// The stretches round a face; no point of one is farther from its middle than half its length.
+/// The segments round a face; no point of one is farther from its middle than half its length.
 fn rim(layout: &Layout, around: &BTreeSet<usize>) -> Vec<Rim> {
-    let of = |k: &usize| Rim { stretch: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
+    let of = |k: &usize| Rim { segment: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
     around.iter().map(of).collect()
 }
 

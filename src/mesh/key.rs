@@ -9,14 +9,14 @@ use super::build::Input;
 use super::layout::{Border, Face, Layout};
 use super::plan::{Elements, GroupRequest, Method, Place, Plan, Refine, Rule, Target};
 use super::sizing::links_of;
-use crate::base::digest::{Content, Digest, Digester};
+use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 
 /// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another,
 /// `surfaces` the digests of the plan's surfaces.
 pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<SurfaceId, Digest>) -> Digest {
-    let mut to = Digester::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(super::VERSION));
+    let mut to = StableHasher::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(super::VERSION));
     input.tolerance.tell(&mut to);
     let mut places = BTreeMap::new();
     input.plan.surfaces.iter().enumerate().for_each(|(place, (surface, _))| {
@@ -41,7 +41,7 @@ struct Teller<'a> {
 }
 
 impl Teller<'_> {
-    fn plan(&self, size: f64, to: &mut Digester) {
+    fn plan(&self, size: f64, to: &mut StableHasher) {
         let Plan {
             name,
             origin: _,
@@ -94,7 +94,7 @@ impl Teller<'_> {
         }
     }
 
-    fn rule(&self, rule: &Rule, to: &mut Digester) {
+    fn rule(&self, rule: &Rule, to: &mut StableHasher) {
         let Rule { target, count, size, bias, elements, method, origin: _ } = rule;
         self.target(target, to);
         (count.map(|c| c.0), size.map(|s| s.0), bias.map(|b| b.0)).tell(to);
@@ -102,7 +102,7 @@ impl Teller<'_> {
     }
 
     /// What a rule or group speaks of, and what of the mesh that is.
-    fn target(&self, target: &Target, to: &mut Digester) {
+    fn target(&self, target: &Target, to: &mut StableHasher) {
         match target {
             Target::Chain(chain) => self.chain(chain, to),
             Target::Edge(courses) => {
@@ -121,12 +121,12 @@ impl Teller<'_> {
         }
     }
 
-    fn chain(&self, chain: &Chain, to: &mut Digester) {
+    fn chain(&self, chain: &Chain, to: &mut StableHasher) {
         (3u8, chain, links_of(self.input, chain)).tell(to);
         self.layouts.iter().for_each(|layout| layout.along(self.input, chain).tell(to));
     }
 
-    fn layout(&self, layout: &Layout, to: &mut Digester) {
+    fn layout(&self, layout: &Layout, to: &mut StableHasher) {
         // Which edges its tracks are is told by the faces.
         let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets, lost } = layout;
         faces.len().tell(to);
@@ -140,7 +140,7 @@ impl Teller<'_> {
         }
     }
 
-    fn face(&self, face: &Face, to: &mut Digester) {
+    fn face(&self, face: &Face, to: &mut StableHasher) {
         // How it is made and what lies in it follow from the rest.
         let Face {
             patch,

@@ -1,4 +1,4 @@
-//! What a mesh stands on: its faces, and all stretches of their borders and of its curves, each once.
+//! What a mesh stands on: its faces, and all segments of their borders and of its curves, each once.
 
 use glam::DVec3;
 
@@ -6,9 +6,9 @@ use super::build::Input;
 use super::lost::{self, Lost};
 use super::plan::{Elements, Method, Target};
 use super::uneven::Uneven;
-use crate::model::atoms::{Atoms, Part, Use, atoms};
 use crate::model::gather::Station;
 use crate::model::glue::preference;
+use crate::model::segments::{Part, SegmentUse, Segments, segments};
 use crate::model::{EdgeCurve, EdgeId, EdgePart, PatchId, SurfaceId, Trace, Track};
 use crate::network::{Chain, LinkId};
 use crate::surface::{Domain, Surface};
@@ -16,8 +16,8 @@ use crate::surface::{Domain, Surface};
 /// One side of a face, in the direction of ascending u or v.
 #[derive(Clone, Debug, Default)]
 pub struct Border {
-    /// Stretches in order: `against` where the side runs against the stretch; `s` on the side, from its start.
-    pub uses: Vec<Use>,
+    /// Stretches in order: `against` where the side runs against the segment; `s` on the side, from its start.
+    pub uses: Vec<SegmentUse>,
     /// The junction of the pole.
     pub pole: Option<usize>,
     /// Length of the side, model units.
@@ -25,9 +25,9 @@ pub struct Border {
 }
 
 impl Border {
-    /// The stretches of the side.
-    pub fn stretches(&self) -> Vec<usize> {
-        self.uses.iter().map(|u| u.atom).collect()
+    /// The segments of the side.
+    pub fn segments(&self) -> Vec<usize> {
+        self.uses.iter().map(|u| u.segment).collect()
     }
 }
 
@@ -44,7 +44,7 @@ pub struct Face {
     pub elements: Elements,
     /// Method.
     pub method: Method,
-    /// Made freely: grown from its border instead of mapped.
+    /// FaceInput freely: grown from its border instead of mapped.
     pub free: bool,
     /// Target size inside, model units, and the rule that says so.
     pub size: (f64, Option<usize>),
@@ -92,31 +92,31 @@ impl Face {
     }
 
     /// Stretches along which a side of its border runs there and back, as it runs there.
-    pub fn turns(&self) -> impl Iterator<Item = Use> + '_ {
-        self.sides.iter().flat_map(|side| side.uses.windows(2)).filter(|w| w[0].atom == w[1].atom).map(|w| w[0])
+    pub fn turns(&self) -> impl Iterator<Item = SegmentUse> + '_ {
+        self.sides.iter().flat_map(|side| side.uses.windows(2)).filter(|w| w[0].segment == w[1].segment).map(|w| w[0])
     }
 
     /// Stretches round it and inside it.
-    pub fn stretches(&self) -> impl Iterator<Item = usize> + '_ {
-        self.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.atom)).chain(self.lines.iter().copied())
+    pub fn segments(&self) -> impl Iterator<Item = usize> + '_ {
+        self.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.segment)).chain(self.lines.iter().copied())
     }
 }
 
-/// Faces, stretches and where they meet.
+/// Faces, segments and where they meet.
 #[derive(Clone, Debug, Default)]
 pub struct Layout {
     /// Faces, surface by surface as listed.
     pub faces: Vec<Face>,
     /// Tracks of edges, then of links of the mesh's curves.
     pub parts: Vec<Part>,
-    /// Stretches; where a comment says "stretch" it is an index into `pieces.atoms`.
-    pub pieces: Atoms,
+    /// Stretches; where a comment says "segment" it is an index into `pieces.segments`.
+    pub pieces: Segments,
     /// The edge of each of the first tracks, ascending.
     pub edges: Vec<EdgeId>,
-    /// Stretches of each link that has some, ascending along the link: stretch, arc lengths on the link, runs against it.
-    pub of_link: Vec<(LinkId, Vec<Use>)>,
+    /// Stretches of each link that has some, ascending along the link: segment, arc lengths on the link, runs against it.
+    pub of_link: Vec<(LinkId, Vec<SegmentUse>)>,
     /// Stretches of each curve of the plan, along it.
-    pub curves: Vec<Vec<Use>>,
+    pub curves: Vec<Vec<SegmentUse>>,
     /// Junction of each point of the plan; `None`: a node of its own.
     pub points: Vec<Option<usize>>,
     /// Stretches of curves in which faces cross that are to be joined there.
@@ -173,13 +173,13 @@ impl Layout {
         }
         let last = anchors.len();
         anchors.extend(imprint.into_iter().flat_map(|i| &i.points).map(|p| station(*p)));
-        let pieces = atoms(&parts, &anchors, input.tolerance);
+        let pieces = segments(&parts, &anchors, input.tolerance);
         let of_link = by_link(input, &edges, &links, &pieces);
         let mut layout = Self { parts, pieces, of_link, edges, ..Self::default() };
         layout.points = layout.pieces.of_anchor[nodes..last].to_vec();
-        layout.meets = met.flat_map(|part| layout.pieces.of_track[part].iter().map(|u| u.atom)).collect();
-        let stretches = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.atom).collect();
-        let mut creases: Vec<(usize, Vec<usize>)> = of_face.iter().enumerate().map(|(k, n)| (*n, stretches(creased + k))).collect();
+        layout.meets = met.flat_map(|part| layout.pieces.of_track[part].iter().map(|u| u.segment)).collect();
+        let segments = |part: usize| layout.pieces.of_track[part].iter().map(|u| u.segment).collect();
+        let mut creases: Vec<(usize, Vec<usize>)> = of_face.iter().enumerate().map(|(k, n)| (*n, segments(creased + k))).collect();
         // Patches that are slivers have no face.
         let (mut face_of, mut slivers): (Vec<Option<usize>>, Vec<PatchId>) = (Vec::with_capacity(patches.len()), Vec::new());
         for (patch, flipped) in patches {
@@ -202,7 +202,7 @@ impl Layout {
             };
             layout.curves = input.plan.curves.iter().enumerate().map(along).collect();
         }
-        layout.lost = lost::look(input, &layout, &slivers);
+        layout.lost = lost::find(input, &layout, &slivers);
         layout
     }
 
@@ -248,14 +248,14 @@ impl Layout {
     }
 
     /// Stretches of a border in its direction, `s` from its start; those of edges that are in the mesh.
-    pub fn along_course(&self, course: &[EdgePart]) -> Vec<Use> {
+    pub fn along_course(&self, course: &[EdgePart]) -> Vec<SegmentUse> {
         let (mut uses, mut start) = (Vec::new(), 0.0);
         for part in course {
             let (from, to) = part.s;
             if let Ok(track) = self.edges.binary_search(&part.edge) {
-                let inside = |u: &&Use| 0.5 * (u.s.0 + u.s.1) > from && 0.5 * (u.s.0 + u.s.1) < to;
+                let inside = |u: &&SegmentUse| 0.5 * (u.s.0 + u.s.1) > from && 0.5 * (u.s.0 + u.s.1) < to;
                 let own = self.pieces.of_track[track].iter().filter(inside);
-                let own: Vec<Use> = own.map(|u| Use { s: (u.s.0 - from, u.s.1 - from), ..*u }).collect();
+                let own: Vec<SegmentUse> = own.map(|u| SegmentUse { s: (u.s.0 - from, u.s.1 - from), ..*u }).collect();
                 uses.extend(oriented(&own, part.against, to - from, start));
             }
             start += to - from;
@@ -265,19 +265,19 @@ impl Layout {
 
     /// Stretches of a chain in its direction, `s` from its start: those of links that are in the mesh, and those of borders
     /// that run along it without being links of it.
-    pub fn along(&self, input: &Input, chain: &Chain) -> Vec<Use> {
+    pub fn along(&self, input: &Input, chain: &Chain) -> Vec<SegmentUse> {
         let mut uses = self.along_links(input, chain);
         let covered: f64 = uses.iter().map(|u| u.s.1 - u.s.0).sum();
         if covered < chain.length() - input.tolerance.point {
-            let known: Vec<usize> = uses.iter().map(|u| u.atom).collect();
-            uses.extend(super::beside::lying_on(input, self, chain).into_iter().filter(|u| !known.contains(&u.atom)));
-            uses.sort_by(|a, b| a.s.0.total_cmp(&b.s.0).then(a.atom.cmp(&b.atom)));
+            let known: Vec<usize> = uses.iter().map(|u| u.segment).collect();
+            uses.extend(super::beside::lying_on(input, self, chain).into_iter().filter(|u| !known.contains(&u.segment)));
+            uses.sort_by(|a, b| a.s.0.total_cmp(&b.s.0).then(a.segment.cmp(&b.segment)));
         }
         uses
     }
 
     /// Stretches of the links of a chain.
-    fn along_links(&self, input: &Input, chain: &Chain) -> Vec<Use> {
+    fn along_links(&self, input: &Input, chain: &Chain) -> Vec<SegmentUse> {
         let Some(links) = input.network.links_of(chain, input.tolerance) else {
             return Vec::new();
         };
@@ -292,14 +292,14 @@ impl Layout {
         uses
     }
 
-    /// What a stretch lies on, by name: its curve, or the surface whose line it is.
-    pub fn name_of(&self, input: &Input, stretch: usize) -> String {
-        let on_link = self.of_link.iter().find(|(_, uses)| uses.iter().any(|u| u.atom == stretch));
+    /// What a segment lies on, by name: its curve, or the surface whose line it is.
+    pub fn name_of(&self, input: &Input, segment: usize) -> String {
+        let on_link = self.of_link.iter().find(|(_, uses)| uses.iter().any(|u| u.segment == segment));
         if let Some((link, _)) = on_link {
             let curve = input.network.links[link.index()].curve;
             return input.network.curves[curve.index()].name.clone();
         }
-        let on_face = self.faces.iter().find(|f| f.sides.iter().any(|s| s.uses.iter().any(|u| u.atom == stretch)));
+        let on_face = self.faces.iter().find(|f| f.sides.iter().any(|s| s.uses.iter().any(|u| u.segment == segment)));
         match on_face {
             Some(face) => format!("a border in {}", input.model.surfaces[face.surface.index()].name),
             None => "a curve".to_owned(),
@@ -313,32 +313,32 @@ impl Layout {
             Target::Edge(courses) => courses.iter().flat_map(|course| self.along_course(course)).collect(),
             Target::Surface(_) | Target::Patches(_) | Target::Point(_) => Vec::new(),
         };
-        let mut stretches: Vec<usize> = uses.iter().map(|u| u.atom).collect();
-        stretches.sort_unstable();
-        stretches.dedup();
-        stretches
+        let mut segments: Vec<usize> = uses.iter().map(|u| u.segment).collect();
+        segments.sort_unstable();
+        segments.dedup();
+        segments
     }
 
-    /// Length of a stretch, model units.
-    pub fn length(&self, stretch: usize) -> f64 {
-        self.pieces.atoms[stretch].length()
+    /// Length of a segment, model units.
+    pub fn length(&self, segment: usize) -> f64 {
+        self.pieces.segments[segment].length()
     }
 
-    /// Points of a stretch at ascending fractions of its length.
-    pub fn points_along(&self, stretch: usize, fractions: &[f64]) -> Vec<DVec3> {
-        fractions.iter().map(|f| self.point(stretch, *f)).collect()
+    /// Points of a segment at ascending fractions of its length.
+    pub fn points_along(&self, segment: usize, fractions: &[f64]) -> Vec<DVec3> {
+        fractions.iter().map(|f| self.point(segment, *f)).collect()
     }
 
-    /// Distance of a point from a stretch, never below the true one and above it by a thousandth at most.
-    pub fn distance(&self, stretch: usize, p: DVec3) -> f64 {
-        let atom = &self.pieces.atoms[stretch];
-        self.parts[atom.track].track.closest(p, atom.s).1
+    /// Distance of a point from a segment, never below the true one and above it by a thousandth at most.
+    pub fn distance(&self, segment: usize, p: DVec3) -> f64 {
+        let segment = &self.pieces.segments[segment];
+        self.parts[segment.track].track.closest(p, segment.s).1
     }
 
-    /// Point of a stretch at a fraction of its length.
-    pub fn point(&self, stretch: usize, fraction: f64) -> DVec3 {
-        let atom = &self.pieces.atoms[stretch];
-        self.parts[atom.track].track.point(atom.s.0 + (atom.s.1 - atom.s.0) * fraction)
+    /// Point of a segment at a fraction of its length.
+    pub fn point(&self, segment: usize, fraction: f64) -> DVec3 {
+        let segment = &self.pieces.segments[segment];
+        self.parts[segment.track].track.point(segment.s.0 + (segment.s.1 - segment.s.0) * fraction)
     }
 }
 
@@ -354,12 +354,12 @@ fn reach(input: &Input, patches: impl Iterator<Item = PatchId>) -> f64 {
 }
 
 /// Uses of a track as seen by something that runs along or against it and places it at `start`.
-fn oriented(uses: &[Use], against: bool, length: f64, start: f64) -> Vec<Use> {
-    let turn = |u: &Use| {
+fn oriented(uses: &[SegmentUse], against: bool, length: f64, start: f64) -> Vec<SegmentUse> {
+    let turn = |u: &SegmentUse| {
         if against {
-            Use { atom: u.atom, against: !u.against, s: (start + length - u.s.1, start + length - u.s.0) }
+            SegmentUse { segment: u.segment, against: !u.against, s: (start + length - u.s.1, start + length - u.s.0) }
         } else {
-            Use { s: (start + u.s.0, start + u.s.1), ..*u }
+            SegmentUse { s: (start + u.s.0, start + u.s.1), ..*u }
         }
     };
     if against { uses.iter().rev().map(turn).collect() } else { uses.iter().map(turn).collect() }
@@ -421,8 +421,8 @@ fn cut_on_others(input: &Input, (edge, patches): (EdgeId, &[PatchId]), part: &mu
 }
 
 /// Stretches of each link, along the link.
-fn by_link(input: &Input, edges: &[EdgeId], links: &[(LinkId, usize)], pieces: &Atoms) -> Vec<(LinkId, Vec<Use>)> {
-    let mut found: std::collections::BTreeMap<LinkId, Vec<Use>> = std::collections::BTreeMap::new();
+fn by_link(input: &Input, edges: &[EdgeId], links: &[(LinkId, usize)], pieces: &Segments) -> Vec<(LinkId, Vec<SegmentUse>)> {
+    let mut found: std::collections::BTreeMap<LinkId, Vec<SegmentUse>> = std::collections::BTreeMap::new();
     for (link, part) in links {
         found.entry(*link).or_default().extend(&pieces.of_track[*part]);
     }
@@ -434,16 +434,16 @@ fn by_link(input: &Input, edges: &[EdgeId], links: &[(LinkId, usize)], pieces: &
         for (link, against) in links {
             let s = input.network.links[link.index()].s;
             let length = s.1 - s.0;
-            let inside = |u: &&Use| 0.5 * (u.s.0 + u.s.1) > start && 0.5 * (u.s.0 + u.s.1) < start + length;
-            let own: Vec<Use> =
-                pieces.of_track[part].iter().filter(inside).map(|u| Use { s: (u.s.0 - start, u.s.1 - start), ..*u }).collect();
+            let inside = |u: &&SegmentUse| 0.5 * (u.s.0 + u.s.1) > start && 0.5 * (u.s.0 + u.s.1) < start + length;
+            let own: Vec<SegmentUse> =
+                pieces.of_track[part].iter().filter(inside).map(|u| SegmentUse { s: (u.s.0 - start, u.s.1 - start), ..*u }).collect();
             found.entry(*link).or_default().extend(oriented(&own, *against, length, 0.0));
             start += length;
         }
     }
     for uses in found.values_mut() {
-        uses.sort_by(|a, b| a.s.0.total_cmp(&b.s.0).then(a.atom.cmp(&b.atom)));
-        uses.dedup_by_key(|u| u.atom);
+        uses.sort_by(|a, b| a.s.0.total_cmp(&b.s.0).then(a.segment.cmp(&b.segment)));
+        uses.dedup_by_key(|u| u.segment);
     }
     found.into_iter().collect()
 }

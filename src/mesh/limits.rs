@@ -3,20 +3,20 @@
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::{Grid, Shape};
 use super::chord;
 use super::data::Mesh;
 use super::edges::Limits;
-use super::faces::{Frame, Prepared};
+use super::face_geometry::{Grid, Shape};
+use super::faces::{FaceMesh, Frame};
 use super::layout::Face;
 use super::proof::{self, Proof};
-use super::reuse::{Known, recalled};
-use super::rows::{SIZE_ROOM, Wish};
-use crate::base::digest::{Digest, Digester};
+use super::reuse::{CacheView, recalled};
+use super::rows::{RowDemand, SIZE_ROOM};
+use crate::base::digest::{Digest, StableHasher};
 use crate::base::math::widest_angle;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
-use crate::surface::{Lean, Surface};
+use crate::surface::{OneSided, Surface};
 
 /// Room for the measured chord error: what its search may leave unseen.
 const SEEN: f64 = 1.001;
@@ -58,24 +58,28 @@ impl Verdict {
 pub struct Finished<'a> {
     /// Its place in the layout.
     pub face: &'a Face,
-    /// Its chart and ids.
-    pub ready: &'a Prepared,
+    /// Its geometry and ids.
+    pub ready: &'a FaceMesh,
     /// Its elements in the mesh.
     pub triangles: std::ops::Range<usize>,
     /// Sampled bends, to choose the direction of refinement.
-    pub wishes: &'a [Wish; 2],
+    pub demands: &'a [RowDemand; 2],
     /// Directions whose counts are written out: the size does not speak there.
     pub written: [bool; 2],
 }
 
 /// The verdict on each face.
-pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], keyed: Option<(&Known, &[Digest])>) -> Vec<Verdict> {
+pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], keyed: Option<(&CacheView, &[Digest])>) -> Vec<Verdict> {
     par::map(faces.len(), |k| {
         let finished = &faces[k];
-        let key = |_: &Known| {
-            let start = Digester::new("verdict").with(&keyed.map(|keyed| keyed.1[k]));
+        let key = |_: &CacheView| {
+            let start = StableHasher::new("verdict").with(&keyed.map(|keyed| keyed.1[k]));
             start
-                .with(&(limits, finished.face.size.0, (finished.written, finished.wishes, (input.tolerance, finished.ready.chart.flipped))))
+                .with(&(
+                    limits,
+                    finished.face.size.0,
+                    (finished.written, finished.demands, (input.tolerance, finished.ready.geometry.flipped)),
+                ))
                 .finish()
         };
         recalled(keyed.map(|keyed| keyed.0), |reuse| &reuse.verdicts, key, || verdict_on(input, limits, mesh, finished))
@@ -98,12 +102,12 @@ fn verdict_on(input: &Input, limits: &Limits, mesh: &Mesh, finished: &Finished) 
 /// The chord error: proved by bounds. Where there is no proof it is measured, and where no place breaks the limit the bound is
 /// what has to fall.
 fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finished: &Finished, verdict: &mut Verdict) {
-    let (chart, triangles) = (&finished.ready.chart, &mesh.triangles[finished.triangles.clone()]);
-    let proof = proof::of_face((surface, limit), chart, triangles, &mesh.nodes);
+    let (geometry, triangles) = (&finished.ready.geometry, &mesh.triangles[finished.triangles.clone()]);
+    let proof = proof::of_face((surface, limit), geometry, triangles, &mesh.nodes);
     if proof == Proof::Kept {
         return;
     }
-    let measured = chord::of_face(surface, chart, triangles, &mesh.nodes, input.tolerance);
+    let measured = chord::of_face(surface, geometry, triangles, &mesh.nodes, input.tolerance);
     let over = measured * SEEN / limit;
     let (over, share) = match proof {
         Proof::Open(bound, [a, b]) | Proof::Broken(bound, [a, b]) if over <= 1.0 => (bound, [2.0 * a >= b, 2.0 * b >= a]),
@@ -115,12 +119,12 @@ fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finishe
 
 /// Which directions bend enough to be worth refining: the larger one, and the other when it adds half as much.
 fn directions(finished: &Finished) -> [bool; 2] {
-    let Frame::Grid(frame) = &finished.ready.chart.frame else {
+    let Frame::Grid(frame) = &finished.ready.geometry.frame else {
         return [true; 2];
     };
     let (nu, nv) = frame.size();
-    let per_step = |wish: &Wish, n: usize| wish.bend / (n * n) as f64;
-    let (a, b) = (per_step(&finished.wishes[0], nu), per_step(&finished.wishes[1], nv));
+    let per_step = |demand: &RowDemand, n: usize| demand.bend / (n * n) as f64;
+    let (a, b) = (per_step(&finished.demands[0], nu), per_step(&finished.demands[1], nv));
     [2.0 * a >= b, 2.0 * b >= a]
 }
 
@@ -128,7 +132,7 @@ fn directions(finished: &Finished) -> [bool; 2] {
 fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict) {
     let most = finished.face.size.0 * SIZE_ROOM + near;
     let node = |id: u32| mesh.nodes[id as usize];
-    match &finished.ready.chart.frame {
+    match &finished.ready.geometry.frame {
         Frame::Grid(frame) => {
             let (nu, nv) = frame.size();
             let mut longest = [0.0_f64; 2];
@@ -165,7 +169,7 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
         // What is made freely keeps its limits by itself.
         Frame::Free(_) => {}
         Frame::Blocks(places) => {
-            let Shape::Blocks(blocks) = &finished.ready.chart.shape else { return };
+            let Shape::Blocks(blocks) = &finished.ready.geometry.shape else { return };
             let inner = blocks.inner as u32;
             let mut longest = 0.0_f64;
             for q in &blocks.quads {
@@ -188,14 +192,14 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
 
 /// Turns of the normal over each cell: between its corners, and between places inside where cells are large.
 fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64), verdict: &mut Verdict) {
-    let worst = match &finished.ready.chart.shape {
+    let worst = match &finished.ready.geometry.shape {
         Shape::Grid(grid) => turns_of_grid(surface, grid),
         shape => [0.0, 0.0, turn_of_cells(surface, shape)],
     };
     let most = worst.iter().fold(0.0_f64, |m, t| m.max(*t));
     let over = most / limit;
-    let room = |wish: &Wish| limits.turn_room(wish.length, limit);
-    if over > 1.0 + finished.wishes.iter().map(room).fold(f64::INFINITY, f64::min) {
+    let room = |demand: &RowDemand| limits.turn_room(demand.length, limit);
+    if over > 1.0 + finished.demands.iter().map(room).fold(f64::INFINITY, f64::min) {
         let share = [2.0 * worst[0] >= worst[1], 2.0 * worst[1] >= worst[0]];
         for (factor, dominates) in verdict.limit.iter_mut().zip(share) {
             if dominates {
@@ -210,16 +214,16 @@ fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64)
 }
 
 /// Places along each direction of a face at which its normal is looked at, at least.
-const LOOKS: usize = 64;
+const MAX_SAMPLES: usize = 64;
 /// Places along a side of a cell at most.
 const MOST_LOOKS: usize = 16;
 
 /// The largest turns over cells of a grid: along u, along v, and in all.
 fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
     let (nu, nv) = grid.size();
-    let parts = |n: usize| LOOKS.div_ceil(n).min(MOST_LOOKS);
+    let parts = |n: usize| MAX_SAMPLES.div_ceil(n).min(MOST_LOOKS);
     let (ku, kv) = (parts(nu), parts(nv));
-    let lean = |last: bool| if last { Lean::Before } else { Lean::After };
+    let lean = |last: bool| if last { OneSided::Before } else { OneSided::After };
     let line = |j: usize, y: usize| -> Vec<DVec3> {
         (0..=nu * ku)
             .map(|n| {
@@ -261,7 +265,7 @@ fn turn_of_cells(surface: &Surface, shape: &Shape) -> f64 {
         Shape::Grid(_) => Vec::new(),
     };
     let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
-    let few = uv.len() < LOOKS * LOOKS;
+    let few = uv.len() < MAX_SAMPLES * MAX_SAMPLES;
     let mut worst = 0.0_f64;
     super::chord::each_cell(shape, |corners| {
         let mut own: Vec<DVec3> = corners.iter().map(|c| normals[*c]).collect();

@@ -10,7 +10,7 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, mesh: &mut Mesh) {
     for ((name, _), uses) in input.plan.curves.iter().zip(&layout.curves) {
         let from = mesh.lines.len() as u32;
         for u in uses {
-            let ids = nodes.of_stretch(layout, u.atom, u.against);
+            let ids = nodes.of_segment(layout, u.segment, u.against);
             mesh.lines.extend(ids.windows(2).map(|w| [w[0], w[1]]));
         }
         let (t, q) = (mesh.triangles.len() as u32, mesh.quads.len() as u32);

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::build::Input;
 use super::layout::{Face, Layout};
 use crate::base::bytes::{Bytes, Plain, Put};
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::{Fault, LostPart, MeshFault};
 use crate::base::origin::Origin;
 use crate::model::{PatchId, SurfaceId};
@@ -59,7 +59,7 @@ impl Lost {
 }
 
 /// What a layout has not kept, the longest of each kind. `slivers` are the patches that have no face.
-pub fn look(input: &Input, layout: &Layout, slivers: &[PatchId]) -> Vec<Lost> {
+pub fn find(input: &Input, layout: &Layout, slivers: &[PatchId]) -> Vec<Lost> {
     let place = |surface: SurfaceId| input.plan.surfaces.iter().position(|s| s.0 == surface).unwrap_or(0);
     let holes = layout.faces.iter().flat_map(|face| holes(input, face, place(face.surface)));
     let curves = input.plan.curves.iter().zip(&layout.curves).enumerate().filter(|(_, (_, uses))| uses.is_empty());
@@ -108,8 +108,8 @@ impl What {
     }
 }
 
-impl Content for Lost {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Lost {
+    fn tell(&self, to: &mut StableHasher) {
         (self.what.numbers(), (self.length, self.at, self.more)).tell(to);
     }
 }

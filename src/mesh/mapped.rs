@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::chart::Grid;
+use super::face_geometry::Grid;
 use super::plan::Elements;
 use crate::base::par;
 use crate::surface::Surface;

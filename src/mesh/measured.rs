@@ -1,11 +1,11 @@
 //! What is measured of single faces, taken over while they do not change.
 
-use super::chart::Chart;
 use super::chord;
 use super::data::{FaceRange, Mesh};
+use super::face_geometry::FaceGeometry;
 use super::faces::Frame;
 use super::reuse::Reuse;
-use crate::base::digest::{Content, Digest, Digester};
+use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 
@@ -13,24 +13,24 @@ impl Mesh {
     /// [`Mesh::chord_error`], with what was measured of the same faces before in `reuse`, and left there.
     pub fn chord_error_again(&self, tolerance: &Tolerance, reuse: Option<&Reuse>) -> Option<f64> {
         let faces: Vec<_> = self.faces.iter().filter(|f| !f.triangles.is_empty() || !f.quads.is_empty()).collect();
-        if faces.is_empty() || faces.len() != self.charts.0.len() {
+        if faces.is_empty() || faces.len() != self.geometries.0.len() {
             return None;
         }
         let errors = par::map(faces.len(), |k| {
-            let chart = &self.charts.0[k];
+            let geometry = &self.geometries.0[k];
             let measure = || {
                 let range = faces[k].triangles.start as usize..faces[k].triangles.end as usize;
-                chord::of_face(&chart.surface, chart, &self.triangles[range], &self.nodes, tolerance)
+                chord::of_face(&geometry.surface, geometry, &self.triangles[range], &self.nodes, tolerance)
             };
-            reuse.map_or_else(measure, |reuse| reuse.chord(self.face_key(faces[k], chart, tolerance), measure))
+            reuse.map_or_else(measure, |reuse| reuse.chord(self.face_key(faces[k], geometry, tolerance), measure))
         });
         Some(errors.into_iter().fold(self.border_error, f64::max))
     }
 
     /// Everything that the chord error of a face follows from, by content.
-    fn face_key(&self, face: &FaceRange, chart: &Chart, tolerance: &Tolerance) -> Digest {
-        let Chart { surface, shape, frame, flipped: _ } = chart;
-        let mut to = Digester::new("chord").with(surface);
+    fn face_key(&self, face: &FaceRange, geometry: &FaceGeometry, tolerance: &Tolerance) -> Digest {
+        let FaceGeometry { surface, shape, frame, flipped: _ } = geometry;
+        let mut to = StableHasher::new("chord").with(surface);
         (shape, tolerance).tell(&mut to);
         if let Frame::Grid(frame) = frame {
             frame.poles.tell(&mut to);

@@ -1,6 +1,6 @@
 //! Floor 5: meshes. Faces are asked for points and normals only; nothing here knows what kind a surface is.
 //!
-//! One dimension first: every stretch of a border or curve is divided once, for all faces that share it. Faces are then
+//! One dimension first: every segment of a border or curve is divided once, for all faces that share it. Faces are then
 //! mapped between their divided sides. `docs/notes/mapped-mesh.md` tells the phases.
 
 mod ahead;
@@ -9,7 +9,6 @@ mod beside;
 mod blame;
 mod border_error;
 pub mod build;
-pub mod chart;
 mod chord;
 mod contact_bodies;
 pub mod contact_edges;
@@ -21,6 +20,7 @@ pub mod data;
 mod edges;
 pub mod explain;
 pub mod extent;
+pub mod face_geometry;
 pub mod faces;
 mod foresee;
 pub mod free;
@@ -38,7 +38,6 @@ mod measured;
 mod moved;
 mod narrow;
 mod nodes;
-mod pace;
 mod parity;
 mod parts;
 pub mod plan;
@@ -55,6 +54,7 @@ mod sets;
 mod shape_check;
 pub mod sizing;
 pub mod sources;
+mod spacing;
 pub mod strips;
 mod together;
 pub mod trilateral;

@@ -9,9 +9,9 @@ impl Mesh {
         let mut moved = self.clone();
         moved.nodes.iter_mut().for_each(|p| *p = motion.point(*p));
         moved.border_error *= motion.scale();
-        for chart in &mut moved.charts.0 {
-            chart.surface = chart.surface.moved(motion);
-            chart.flipped ^= motion.mirrors();
+        for geometry in &mut moved.geometries.0 {
+            geometry.surface = geometry.surface.moved(motion);
+            geometry.flipped ^= motion.mirrors();
         }
         if motion.mirrors() {
             moved.triangles.iter_mut().for_each(|t| t.swap(1, 2));

@@ -1,6 +1,6 @@
 //! Narrow places of free faces: where borders, divided into steps, cross, or face each other over less than a step.
 //!
-//! The divided border of a face is triangulated in its chart. Where steps cross, they are halved until they do not; where a
+//! The divided border of a face is triangulated in its geometry. Where steps cross, they are halved until they do not; where a
 //! node stands nearer over a step than half of it is long, a triangle between them must have a small angle, and steps are
 //! shortened there: the distance of the borders is the local feature size of the face [Ruppert 1995]. What a corner of the
 //! border makes narrow is left: shorter steps make its triangles no better.
@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::edges::distance_to_segment;
 use super::free::build::inside;
-use super::free::face::{Made, outlined};
+use super::free::face::{FaceInput, outlined};
 use super::free::outline::Outline;
 use super::layout::Face;
 use super::plan::Elements;
@@ -21,11 +21,11 @@ use crate::base::predicates::orient;
 use crate::base::triangulate_points::{PointsFault, Triangles, points};
 use crate::model::glue::{join, root};
 
-/// A place of a stretch where steps have to be shorter.
+/// A place of a segment where steps have to be shorter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Narrow {
-    /// The stretch.
-    pub stretch: usize,
+    /// The segment.
+    pub segment: usize,
     /// Fraction of its length.
     pub f: f64,
     /// Longest step there, model units.
@@ -60,53 +60,53 @@ const SMOOTH: f64 = -0.866;
 const CORNER: f64 = 0.5;
 
 /// Places of all free faces where steps have to be shorter.
-pub fn look(made: &Made) -> Vec<Narrow> {
+pub fn find(made: &FaceInput) -> Vec<Narrow> {
     let faces = &made.layout.faces;
     let found = par::map(faces.len(), |f| if faces[f].free { of_face(made, &faces[f]) } else { Vec::new() });
     found.into_iter().flatten().collect()
 }
 
-fn of_face(made: &Made, face: &Face) -> Vec<Narrow> {
+fn of_face(made: &FaceInput, face: &Face) -> Vec<Narrow> {
     let Some((border, _, outline)) = outlined(made, face) else { return Vec::new() };
-    let gaze = Gaze { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
+    let gaze = ProximityScan { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
     let mut found = gaze.polygon();
     if face.halved > 0 {
-        found.extend(super::girth::look(made, face));
+        found.extend(super::girth::find(made, face));
     }
     if face.takes_quads()
         && let Some(halves) = super::free::face::halved(made, face, &border, &outline)
     {
         let ids: Vec<u32> = halves.of.iter().map(|n| border.ids[*n as usize]).collect();
-        found.extend(Gaze { outline: &halves.outline, ids: &ids, ..gaze }.crossings());
+        found.extend(ProximityScan { outline: &halves.outline, ids: &ids, ..gaze }.crossings());
     }
     found
 }
 
 /// The least step that facing borders ask for on a face, model units.
-pub fn floor(made: &Made, face: &Face) -> f64 {
+pub fn floor(made: &FaceInput, face: &Face) -> f64 {
     made.input.plan.min_size.map_or(LEAST * face.size.0, |s| s.0).max(made.input.tolerance.point)
 }
 
-/// The piece of a stretch between two nodes.
+/// The piece of a segment between two nodes.
 #[derive(Clone, Copy)]
 struct Bit {
-    stretch: usize,
+    segment: usize,
     /// Number in the mesh of its node at the lower fraction.
     first: u32,
     f: (f64, f64),
 }
 
-/// The pieces of a face's stretches by their ends, lower node first; of quads two steps as one as well.
-fn bits(made: &Made, face: &Face) -> BTreeMap<(u32, u32), Bit> {
+/// The pieces of a face's segments by their ends, lower node first; of quads two steps as one as well.
+fn bits(made: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), Bit> {
     let mut bits = BTreeMap::new();
-    for stretch in face.stretches() {
-        let ids = made.nodes.of_stretch(made.layout, stretch, false);
-        let at = made.nodes.fractions(stretch, false);
+    for segment in face.segments() {
+        let ids = made.nodes.of_segment(made.layout, segment, false);
+        let at = made.nodes.fractions(segment, false);
         for step in 1..=if face.takes_quads() { 2 } else { 1 } {
             for k in 0..ids.len().saturating_sub(step) {
                 job::look();
                 let (a, b) = (ids[k], ids[k + step]);
-                bits.entry((a.min(b), a.max(b))).or_insert(Bit { stretch, first: a, f: (at[k], at[k + step]) });
+                bits.entry((a.min(b), a.max(b))).or_insert(Bit { segment, first: a, f: (at[k], at[k + step]) });
             }
         }
     }
@@ -114,8 +114,8 @@ fn bits(made: &Made, face: &Face) -> BTreeMap<(u32, u32), Bit> {
 }
 
 /// A divided border that is looked at.
-struct Gaze<'a> {
-    made: &'a Made<'a>,
+struct ProximityScan<'a> {
+    made: &'a FaceInput<'a>,
     face: &'a Face,
     outline: &'a Outline,
     /// Numbers of its nodes in the mesh.
@@ -129,11 +129,11 @@ struct Corner {
     opens: f64,
 }
 
-impl Gaze<'_> {
+impl ProximityScan<'_> {
     fn polygon(&self) -> Vec<Narrow> {
         let edges: Vec<[u32; 2]> = self.outline.edges().collect();
         match points(&self.outline.xy, &edges) {
-            Ok(all) if !self.face.method.is_sparing() => self.facing(&all),
+            Ok(all) if !self.face.method.is_coarse() => self.facing(&all),
             Err(PointsFault::Crosses(..)) => self.crossings(),
             _ => Vec::new(),
         }
@@ -169,7 +169,7 @@ impl Gaze<'_> {
 
     fn half(&self, edge: [u32; 2], length: f64) -> Option<Narrow> {
         let bit = self.bit(edge).filter(|_| length > TOUCHING * self.made.input.tolerance.point)?;
-        Some(Narrow { stretch: bit.stretch, f: 0.5 * (bit.f.0 + bit.f.1), size: HALF * length, must: true })
+        Some(Narrow { segment: bit.segment, f: 0.5 * (bit.f.0 + bit.f.1), size: HALF * length, must: true })
     }
 
     /// Steps that are long for what stands over them.
@@ -238,9 +238,9 @@ impl Gaze<'_> {
                 if self.outline.length(edge) > SLACK * size
                     && let Some(bit) = self.bit(edge)
                 {
-                    // Bits run along their stretch, edges either way.
+                    // Bits run along their segment, edges either way.
                     let t = if bit.first == self.ids[edge[0] as usize] { t } else { 1.0 - t };
-                    found.push(Narrow { stretch: bit.stretch, f: bit.f.0 + (bit.f.1 - bit.f.0) * t, size, must: false });
+                    found.push(Narrow { segment: bit.segment, f: bit.f.0 + (bit.f.1 - bit.f.0) * t, size, must: false });
                 }
             };
             ask([a, b], t);
@@ -286,7 +286,7 @@ impl Gaze<'_> {
     }
 }
 
-/// Whether two edges of the chart have more in common than an end.
+/// Whether two edges of the geometry have more in common than an end.
 fn meet(xy: &[glam::DVec2], one: [u32; 2], other: [u32; 2]) -> bool {
     let [a, b] = one.map(|n| xy[n as usize]);
     let [c, d] = other.map(|n| xy[n as usize]);

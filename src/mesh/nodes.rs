@@ -1,4 +1,4 @@
-//! Nodes on borders and curves: junctions, then the inner nodes of every stretch, each once for all its faces.
+//! Nodes on borders and curves: junctions, then the inner nodes of every segment, each once for all its faces.
 
 use glam::DVec3;
 
@@ -7,27 +7,27 @@ use super::layout::Layout;
 use super::sizing::Sizing;
 use crate::base::par;
 
-/// Ids and fractions of the nodes of all stretches.
+/// Ids and fractions of the nodes of all segments.
 #[derive(Clone, Debug, Default)]
 pub struct Nodes {
     junctions: Vec<u32>,
     first: Vec<u32>,
     counts: Vec<u32>,
     fractions: Vec<Vec<f64>>,
-    /// Number of nodes on junctions and stretches, and of points that lie on none.
+    /// Number of nodes on junctions and segments, and of points that lie on none.
     pub total: u32,
     /// Node of each point of the plan.
     pub points: Vec<u32>,
 }
 
 impl Nodes {
-    /// Numbers the nodes: used junctions, lonely points, then stretch by stretch.
+    /// Numbers the nodes: used junctions, lonely points, then segment by segment.
     pub fn new(layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Self {
-        let n = layout.pieces.atoms.len();
+        let n = layout.pieces.segments.len();
         let mut used = vec![false; layout.pieces.junctions.len()];
-        for atom in &layout.pieces.atoms {
-            used[atom.ends.0] = true;
-            used[atom.ends.1] = true;
+        for segment in &layout.pieces.segments {
+            used[segment.ends.0] = true;
+            used[segment.ends.1] = true;
         }
         let mut nodes = Self { junctions: vec![u32::MAX; used.len()], counts: counts[..n].to_vec(), ..Self::default() };
         for (slot, _) in nodes.junctions.iter_mut().zip(&used).filter(|(_, used)| **used) {
@@ -45,8 +45,8 @@ impl Nodes {
         }
         for (count, decision) in nodes.counts.iter().zip(&sizing.decisions) {
             nodes.first.push(nodes.total);
-            nodes.fractions.push(match &sizing.paces[nodes.fractions.len()] {
-                Some(pace) => pace.steps(*count),
+            nodes.fractions.push(match &sizing.spacings[nodes.fractions.len()] {
+                Some(spacing) => spacing.steps(*count),
                 None => steps(*count, decision.bias),
             });
             nodes.total += count - 1;
@@ -59,23 +59,23 @@ impl Nodes {
         self.junctions[junction]
     }
 
-    /// Steps of a stretch.
-    pub fn count(&self, stretch: usize) -> u32 {
-        self.counts[stretch]
+    /// Steps of a segment.
+    pub fn count(&self, segment: usize) -> u32 {
+        self.counts[segment]
     }
 
-    /// First inner node of a stretch.
-    pub fn first_inner(&self, stretch: usize) -> u32 {
-        self.first[stretch]
+    /// First inner node of a segment.
+    pub fn first_inner(&self, segment: usize) -> u32 {
+        self.first[segment]
     }
 
-    /// All nodes of a stretch from its start, or from its end.
-    pub fn of_stretch(&self, layout: &Layout, stretch: usize, against: bool) -> Vec<u32> {
-        let ends = layout.pieces.atoms[stretch].ends;
-        let first = self.first[stretch];
-        let mut ids = Vec::with_capacity(self.counts[stretch] as usize + 1);
+    /// All nodes of a segment from its start, or from its end.
+    pub fn of_segment(&self, layout: &Layout, segment: usize, against: bool) -> Vec<u32> {
+        let ends = layout.pieces.segments[segment].ends;
+        let first = self.first[segment];
+        let mut ids = Vec::with_capacity(self.counts[segment] as usize + 1);
         ids.push(self.junctions[ends.0]);
-        ids.extend(first..first + self.counts[stretch] - 1);
+        ids.extend(first..first + self.counts[segment] - 1);
         ids.push(self.junctions[ends.1]);
         if against {
             ids.reverse();
@@ -84,8 +84,8 @@ impl Nodes {
     }
 
     /// Fractions of the length of these nodes.
-    pub fn fractions(&self, stretch: usize, against: bool) -> Vec<f64> {
-        let own = &self.fractions[stretch];
+    pub fn fractions(&self, segment: usize, against: bool) -> Vec<f64> {
+        let own = &self.fractions[segment];
         if against { own.iter().rev().map(|f| 1.0 - f).collect() } else { own.clone() }
     }
 
@@ -100,9 +100,9 @@ impl Nodes {
                 points[*id as usize] = *p;
             }
         }
-        let made = par::map(self.counts.len(), |stretch| {
-            let inner = &self.fractions[stretch][1..self.counts[stretch] as usize];
-            layout.points_along(stretch, inner)
+        let made = par::map(self.counts.len(), |segment| {
+            let inner = &self.fractions[segment][1..self.counts[segment] as usize];
+            layout.points_along(segment, inner)
         });
         for (first, part) in self.first.iter().zip(made) {
             points[*first as usize..*first as usize + part.len()].copy_from_slice(&part);

@@ -41,7 +41,7 @@ pub enum Method {
 
 impl Method {
     /// Whether sides are only as short as limits and written sizes ask for, and triangles as long as they may be.
-    pub fn is_sparing(self) -> bool {
+    pub fn is_coarse(self) -> bool {
         matches!(self, Self::Isoline | Self::Display)
     }
 

@@ -6,16 +6,16 @@
 
 use glam::{DVec2, DVec3};
 
-use super::chart::{Chart, Grid, Shape};
 use super::chord::{each_cell, ids};
+use super::face_geometry::{FaceGeometry, Grid, Shape};
 use super::faces::Frame;
 use super::free::bound::over_sides;
 use super::trilateral::lattice_points;
 use crate::base::par;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::EPSILON;
 use crate::surface::quick::Bends;
-use crate::surface::{Domain, Spread, Surface, foot_within};
+use crate::surface::{Domain, Enclosure, Surface, foot_within};
 
 /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).
 const WIDER: f64 = 0.05;
@@ -63,8 +63,8 @@ impl Proof {
 
 /// Whether all elements of a mapped face (a quad as its two triangles) keep a distance from its surface, model units;
 /// `triangles` are those of the face.
-pub fn of_face((surface, limit): (&Surface, f64), chart: &Chart, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
-    match (&chart.shape, &chart.frame) {
+pub fn of_face((surface, limit): (&Surface, f64), geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
+    match (&geometry.shape, &geometry.frame) {
         (Shape::Grid(grid), Frame::Grid(frame)) => {
             let field = Field { surface, u: grid.u, v: grid.v, slanted: false, limit };
             let columns = Columns::new(&field, grid);
@@ -158,7 +158,7 @@ impl Row<'_> {
             for half in halves {
                 let corner = |k: usize| {
                     let (p, uv) = (self.nodes[ids[k] as usize], grid.uv(at[k].0, at[k].1));
-                    // What is made from the chart lies on the surface; border nodes are those of glued edges.
+                    // What is made from the geometry lies on the surface; border nodes are those of glued edges.
                     if ids[k] >= self.frame.first { Corner::on(p, uv) } else { self.field.corner(p, uv, free(k)) }
                 };
                 let proof = self.field.proof(half.map(corner), known.as_ref());
@@ -227,7 +227,7 @@ impl Field<'_> {
     }
 
     /// `known`: bounds over the widened box of the triangle.
-    fn proof(&self, triangle: [Corner; 3], known: Option<&Spread>) -> Proof {
+    fn proof(&self, triangle: [Corner; 3], known: Option<&Enclosure>) -> Proof {
         let mut open = vec![(triangle, DEPTH)];
         let mut known = known;
         let mut looks = 0;
@@ -276,29 +276,29 @@ impl Field<'_> {
     }
 
     /// How far the surface is from the flat triangle between feet.
-    fn bound(&self, t: &[Corner; 3], uv: [DVec2; 3], known: Option<&Spread>) -> Bound {
+    fn bound(&self, t: &[Corner; 3], uv: [DVec2; 3], known: Option<&Enclosure>) -> Bound {
         let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
         let ((x0, x1), (y0, y1)) = (widened(low.x, high.x, self.u), widened(low.y, high.y, self.v));
         let own;
-        let spread = match known {
-            Some(spread) => spread,
+        let enclosure = match known {
+            Some(enclosure) => enclosure,
             None => {
-                own = self.surface.spread((x0, x1), (y0, y1));
+                own = self.surface.enclosure((x0, x1), (y0, y1));
                 &own
             }
         };
         let width = high - low;
-        let second = [spread.duu, spread.duv, spread.dvv];
-        if second.iter().any(Ranges::is_vast) {
+        let second = [enclosure.duu, enclosure.duv, enclosure.dvv];
+        if second.iter().any(Interval3::is_unbounded) {
             // What is left of a function without its mean slopes has slopes of half their width, and changes by half of that
             // on the mean over the corners.
-            let wide = |r: &Ranges| 0.25 * (r.high - r.low).length();
-            let bends = [width.x * wide(&spread.du), width.y * wide(&spread.dv)];
+            let wide = |r: &Interval3| 0.25 * (r.high - r.low).length();
+            let bends = [width.x * wide(&enclosure.du), width.y * wide(&enclosure.dv)];
             return Bound { error: bends[0] + bends[1], bends };
         }
         let (a, b) = (t[1].foot - t[0].foot, t[2].foot - t[0].foot);
         let twice = a.cross(b).length();
-        let square = |r: &Ranges| r.reach();
+        let square = |r: &Interval3| r.reach();
         if twice <= EPSILON * (a.length_squared() + b.length_squared()) {
             let slack = second.each_ref().map(square);
             let error = over_sides(&Bends { mid: [0.0; 3], slack, jump: 0.0 }, uv, width);
@@ -313,7 +313,7 @@ impl Field<'_> {
 
     /// What the border of the face may cut off of a flat triangle; `None` where feet may lie beyond the box in which the
     /// surface is known.
-    fn beside(&self, t: &[Corner; 3], flat: &Flat, (least, most): (DVec2, DVec2), second: &[Ranges; 3]) -> Option<f64> {
+    fn beside(&self, t: &[Corner; 3], flat: &Flat, (least, most): (DVec2, DVec2), second: &[Interval3; 3]) -> Option<f64> {
         let (low, high) = (flat.low - flat.shift, flat.high + flat.shift);
         let mut cut = 0.0;
         for (axis, range) in [self.u, self.v].into_iter().enumerate() {
@@ -342,7 +342,7 @@ impl Field<'_> {
         t: &[Corner; 3],
         normal: DVec3,
         (along, span): (DVec2, f64),
-        second: &[Ranges; 3],
+        second: &[Interval3; 3],
         away: &dyn Fn(DVec2) -> f64,
     ) -> f64 {
         let on: Vec<&Corner> = t.iter().filter(|c| away(c.uv) <= EPSILON).collect();
@@ -381,7 +381,7 @@ struct Flat {
 }
 
 impl Flat {
-    fn new(uv: [DVec2; 3], (a, b): (DVec3, DVec3), twice: f64, second: &[Ranges; 3]) -> Self {
+    fn new(uv: [DVec2; 3], (a, b): (DVec3, DVec3), twice: f64, second: &[Interval3; 3]) -> Self {
         let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
         let width = high - low;
         let normal = a.cross(b) / twice;

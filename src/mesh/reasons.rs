@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::build::Input;
 use super::explain::{Decider, Tally, Why};
-use super::pace::Pace;
 use super::plan::{Place, Target};
+use super::spacing::BorderSpacing;
 use crate::base::text::real;
 use crate::model::{Course, EdgePart};
 use crate::network::Chain;
@@ -96,11 +96,11 @@ fn cause(input: &Input, why: Why) -> String {
     }
 }
 
-/// "; steps 0.05 to 0.9: 80 % by size 0.05 near (5, 3, 0), 20 % by the size" of a stretch whose steps vary.
-pub fn of_pace(input: &Input, pace: &Pace) -> String {
+/// "; steps 0.05 to 0.9: 80 % by size 0.05 near (5, 3, 0), 20 % by the size" of a segment whose steps vary.
+pub fn of_pace(input: &Input, spacing: &BorderSpacing) -> String {
     let part = |(why, share): (Why, f64)| format!("{:.0} % by {}", 100.0 * share, cause(input, why));
-    let parts: Vec<String> = pace.shares().into_iter().map(part).collect();
-    format!("; steps {:.3} to {:.3}: {}", pace.least(), pace.most(), parts.join(", "))
+    let parts: Vec<String> = spacing.shares().into_iter().map(part).collect();
+    format!("; steps {:.3} to {:.3}: {}", spacing.least(), spacing.most(), parts.join(", "))
 }
 
 /// "; 40 cells, 12 crossed by borders, marks 0 1 2 right at 30 of 31 corners" of a face between lines of constant u and v.

@@ -1,10 +1,10 @@
 //! Meshes as bytes and back. What comes back is either a sound mesh or nothing.
 
 use super::build::Built;
-use super::chart::{Chart, Charts, Free, Grid, Lattice, Shape};
 use super::contacts::{Kind, Touch};
 use super::data::{FaceRange, Group, Mesh};
 use super::explain::Explanation;
+use super::face_geometry::{FaceGeometries, FaceGeometry, Free, Grid, Lattice, Shape};
 use super::faces::Frame;
 use super::mapped;
 use super::sizing::Remark;
@@ -22,7 +22,7 @@ crate::plain!(Blocks { uv, inner, quads, sides });
 crate::plain!(mapped::Frame { sides, poles, first });
 crate::plain!(LatticeFrame { sides, first });
 
-/// A chart without its surface, which is told by its place in a list.
+/// A geometry without its surface, which is told by its place in a list.
 #[derive(Debug)]
 struct Sheet {
     surface: u32,
@@ -142,7 +142,7 @@ impl Plain for Remark {
     }
 }
 
-/// A made mesh as bytes. Its charts lie on `surfaces`, which [`read`] is given again; `None` when one lies on another.
+/// A made mesh as bytes. Its geometries lie on `surfaces`, which [`read`] is given again; `None` when one lies on another.
 ///
 /// Of the explanation the lines are kept.
 pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
@@ -161,7 +161,7 @@ pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
         quad_mids,
         faces,
         groups,
-        charts,
+        geometries,
         border_error,
     } = mesh;
     (name, (order, border_error)).put(&mut to);
@@ -170,10 +170,10 @@ pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
     (line_mids, (triangle_mids, quad_mids)).put(&mut to);
     (faces, groups).put(&mut to);
     (&explanation.lines, remarks).put(&mut to);
-    charts.0.len().put(&mut to);
-    for chart in &charts.0 {
-        let surface = surfaces.iter().position(|s| s.is(&chart.surface))? as u32;
-        let Chart { surface: _, shape, frame, flipped } = chart;
+    geometries.0.len().put(&mut to);
+    for geometry in &geometries.0 {
+        let surface = surfaces.iter().position(|s| s.is(&geometry.surface))? as u32;
+        let FaceGeometry { surface: _, shape, frame, flipped } = geometry;
         (surface, (shape, (frame, flipped))).put(&mut to);
     }
     Some(to)
@@ -191,10 +191,10 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     let (faces, groups) = Plain::take(&mut from)?;
     let (said, remarks) = Plain::take(&mut from)?;
     let sheets: Vec<Sheet> = Plain::take(&mut from)?;
-    let charts = sheets.into_iter().map(|Sheet { surface, shape, frame, flipped }| {
-        Some(Chart { surface: (*surfaces.get(surface as usize)?).clone(), shape, frame, flipped })
+    let geometries = sheets.into_iter().map(|Sheet { surface, shape, frame, flipped }| {
+        Some(FaceGeometry { surface: (*surfaces.get(surface as usize)?).clone(), shape, frame, flipped })
     });
-    let charts = Charts(charts.collect::<Option<_>>()?);
+    let geometries = FaceGeometries(geometries.collect::<Option<_>>()?);
     let mesh = Mesh {
         name,
         order,
@@ -208,14 +208,14 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
         quad_mids,
         faces,
         groups,
-        charts,
+        geometries,
         border_error,
     };
     let sound = from.is_empty() && is_sound(&mesh);
     sound.then(|| Built { mesh, explanation: Explanation { lines: said, ..Explanation::default() }, remarks })
 }
 
-/// Every number of a node or an element names one that is there, and charts are as large as their faces.
+/// Every number of a node or an element names one that is there, and geometries are as large as their faces.
 fn is_sound(mesh: &Mesh) -> bool {
     let nodes = mesh.nodes.len() as u32;
     let node = |n: &u32| *n < nodes;
@@ -233,13 +233,13 @@ fn is_sound(mesh: &Mesh) -> bool {
         && mids(mesh.quad_mids.len(), mesh.quads.len())
         && mesh.faces.iter().all(|f| inside(&f.triangles, t) && inside(&f.quads, q) && inside(&f.lines, l))
         && mesh.groups.iter().all(|g| below(&g.nodes, nodes) && below(&g.lines, l) && below(&g.triangles, t) && below(&g.quads, q))
-        && mesh.charts.0.iter().all(|chart| fits(chart, nodes))
+        && mesh.geometries.0.iter().all(|geometry| fits(geometry, nodes))
 }
 
-fn fits(chart: &Chart, nodes: u32) -> bool {
+fn fits(geometry: &FaceGeometry, nodes: u32) -> bool {
     let node = |ids: &[u32]| ids.iter().all(|n| *n < nodes);
     let last = |first: u32, inner: u64| u64::from(first) + inner <= u64::from(nodes);
-    match (&chart.shape, &chart.frame) {
+    match (&geometry.shape, &geometry.frame) {
         (Shape::Grid(grid), Frame::Grid(frame)) => {
             let same =
                 (0..4).all(|k| frame.sides[k].len() == grid.sides[k].len() && frame.sides[k].len() == frame.sides[(k + 2) % 4].len());

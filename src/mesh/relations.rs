@@ -4,7 +4,7 @@ use super::build::Input;
 use super::layout::{Face, Layout};
 use super::limits::Verdict;
 use super::plan::Elements;
-use super::rows::Wish;
+use super::rows::RowDemand;
 use super::sizing::{MOST, Sizing};
 use super::strips::{Conflict, Relation, Stretch};
 use crate::base::fault::{Fault, MeshFault, Result};
@@ -15,12 +15,12 @@ use crate::base::tolerance::WHOLE_NUMBER;
 #[derive(Clone, Debug)]
 struct Row {
     face: usize,
-    stretch: Stretch,
+    segment: Stretch,
     /// The limit behind `least`, once the finished face has asked for more.
     limit: &'static str,
 }
 
-/// Equations of all faces; unknowns are the stretches of the layout, then the rows.
+/// Equations of all faces; unknowns are the segments of the layout, then the rows.
 #[derive(Clone, Debug, Default)]
 pub struct Relations {
     /// The equations.
@@ -37,48 +37,48 @@ fn whole(x: f64) -> u32 {
 }
 
 impl Relations {
-    /// The equations of a layout whose rows have these wishes.
-    pub fn new(layout: &Layout, wishes: &[[Wish; 2]]) -> Self {
-        let mut relations = Self { first_row: layout.pieces.atoms.len(), ..Self::default() };
+    /// The equations of a layout whose rows have these demands.
+    pub fn new(layout: &Layout, demands: &[[RowDemand; 2]]) -> Self {
+        let mut relations = Self { first_row: layout.pieces.segments.len(), ..Self::default() };
         for (index, face) in layout.faces.iter().enumerate() {
             relations.of_face.push(Vec::new());
             if face.free {
                 if face.takes_quads() {
-                    let round = face.sides.iter().flat_map(|s| s.stretches()).collect();
+                    let round = face.sides.iter().flat_map(|s| s.segments()).collect();
                     relations.push(index, Relation::EvenSum(round));
                 }
                 continue;
             }
             if !face.is_triangle() {
-                for (direction, wish) in wishes[index].iter().enumerate() {
+                for (direction, demand) in demands[index].iter().enumerate() {
                     // Between two poles one row of triangles would meet in both.
                     let both_ends = face.sides[1 - direction].uses.is_empty() && face.sides[3 - direction].uses.is_empty();
                     // Round a seam, fewer than three columns would fall on each other.
-                    let [from, to] = if direction == 0 { [3, 1] } else { [0, 2] }.map(|k| face.sides[k].stretches());
+                    let [from, to] = if direction == 0 { [3, 1] } else { [0, 2] }.map(|k| face.sides[k].segments());
                     let is_ring = from.iter().any(|s| to.contains(s));
                     let least = if is_ring { 3 } else { 1 + u32::from(both_ends) };
-                    let row = relations.row(index, wish, least);
+                    let row = relations.row(index, demand, least);
                     relations.join(index, row, face, &[direction, direction + 2]);
                 }
             } else if face.elements == Elements::Triangles {
-                let row = relations.row(index, &wishes[index][0], 1);
+                let row = relations.row(index, &demands[index][0], 1);
                 relations.join(index, row, face, &[0, 1, 2]);
             } else {
                 for side in 0..3 {
-                    let row = relations.row(index, &Wish::default(), 1);
+                    let row = relations.row(index, &RowDemand::default(), 1);
                     relations.join(index, row, face, &[side]);
                 }
-                let sides = [0, 1, 2].map(|k| face.sides[k].stretches());
+                let sides = [0, 1, 2].map(|k| face.sides[k].segments());
                 relations.push(index, Relation::ThreeSides(sides));
             }
         }
         relations
     }
 
-    fn row(&mut self, face: usize, wish: &Wish, least: u32) -> usize {
-        let least = whole(wish.least).max(least);
-        let stretch = Stretch { least, wish: whole(wish.size).max(least), written: None, length: wish.length, even: false };
-        self.rows.push(Row { face, stretch, limit: "" });
+    fn row(&mut self, face: usize, demand: &RowDemand, least: u32) -> usize {
+        let least = whole(demand.least).max(least);
+        let segment = Stretch { least, demand: whole(demand.size).max(least), written: None, length: demand.length, even: false };
+        self.rows.push(Row { face, segment, limit: "" });
         let row = self.first_row + self.rows.len() - 1;
         self.of_face[face].push(row);
         row
@@ -86,7 +86,7 @@ impl Relations {
 
     fn join(&mut self, index: usize, row: usize, face: &Face, sides: &[usize]) {
         for side in sides.iter().map(|k| &face.sides[*k]).filter(|s| !s.uses.is_empty()) {
-            self.push(index, Relation::Equal(vec![row], side.stretches()));
+            self.push(index, Relation::Equal(vec![row], side.segments()));
         }
     }
 
@@ -97,10 +97,10 @@ impl Relations {
 
     /// The rows as unknowns.
     pub fn rows(&self) -> impl Iterator<Item = Stretch> + '_ {
-        self.rows.iter().map(|r| r.stretch.clone())
+        self.rows.iter().map(|r| r.segment.clone())
     }
 
-    /// Asks for more where a finished face broke a limit. `counts` are of stretches and rows.
+    /// Asks for more where a finished face broke a limit. `counts` are of segments and rows.
     pub fn raise(&mut self, verdicts: &[Verdict], counts: &[u32]) {
         for (face, verdict) in verdicts.iter().enumerate() {
             for (k, &row) in self.of_face[face].clone().iter().enumerate() {
@@ -109,11 +109,11 @@ impl Relations {
                 let slot = &mut self.rows[row - self.first_row];
                 let direction = if verdict.size.len() > k { k } else { 0 };
                 if verdict.size[direction] > 1.0 {
-                    slot.stretch.wish = slot.stretch.wish.max(more(verdict.size[direction]));
+                    slot.segment.demand = slot.segment.demand.max(more(verdict.size[direction]));
                 }
                 if verdict.limit[direction] > 1.0 {
-                    slot.stretch.least = slot.stretch.least.max(more(verdict.limit[direction]));
-                    slot.stretch.wish = slot.stretch.wish.max(slot.stretch.least);
+                    slot.segment.least = slot.segment.least.max(more(verdict.limit[direction]));
+                    slot.segment.demand = slot.segment.demand.max(slot.segment.least);
                     slot.limit = verdict.broken;
                 }
             }
@@ -123,7 +123,7 @@ impl Relations {
     /// E704 where free quads have a border with an odd number of steps in all.
     pub fn refuse_odd_borders(&self, input: &Input, layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Result<()> {
         for face in layout.faces.iter().filter(|f| f.takes_quads()) {
-            let round = face.sides.iter().flat_map(|s| &s.uses).map(|u| u.atom);
+            let round = face.sides.iter().flat_map(|s| &s.uses).map(|u| u.segment);
             let odd: Vec<usize> = round.filter(|k| counts[*k] % 2 == 1).collect();
             if odd.len() % 2 == 1 {
                 let written = odd.iter().copied().find(|k| sizing.decisions[*k].count.is_some());
@@ -137,8 +137,8 @@ impl Relations {
     /// A contradiction in the user's words.
     pub fn fault(&self, input: &Input, layout: &Layout, sizing: &Sizing, conflict: &Conflict) -> Fault {
         let plan = input.plan;
-        let written = |stretch: usize| -> (u32, Origin) {
-            let (count, rule) = sizing.decisions.get(stretch).and_then(|d| d.count).unwrap_or((0, usize::MAX));
+        let written = |segment: usize| -> (u32, Origin) {
+            let (count, rule) = sizing.decisions.get(segment).and_then(|d| d.count).unwrap_or((0, usize::MAX));
             let rule = plan.rules.get(rule);
             (count, rule.map_or(Origin::NONE, |r| r.count.map_or(r.origin, |c| c.1)))
         };
@@ -165,7 +165,7 @@ impl Relations {
             }
             Conflict::Odd { written: by, needs } => {
                 let at = layout.point(*needs, 0.5);
-                let on = |f: &&Face| f.takes_quads() && f.stretches().any(|s| s == *needs);
+                let on = |f: &&Face| f.takes_quads() && f.segments().any(|s| s == *needs);
                 let surface =
                     layout.faces.iter().find(on).map_or(Origin::NONE, |f| input.model.surfaces[f.surface.index()].surface.origin());
                 MeshFault::OddCount { count: by.map_or((0, Origin::NONE), written), surface, at }.into()

@@ -1,4 +1,4 @@
-//! Parts of meshes that were made before: divisions of stretches, and faces with what was measured of them.
+//! Parts of meshes that were made before: divisions of segments, and faces with what was measured of them.
 //!
 //! Every part has a key of all that it is made from, by content, so that one that is taken over is bit by bit the one
 //! that would be made.
@@ -9,15 +9,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 
-use super::chart::{Free, Grid, Lattice, Shape};
 use super::edges::Limits;
-use super::faces::{Frame, Prepared};
-use super::free::taken::Taken;
+use super::face_geometry::{Free, Grid, Lattice, Shape};
+use super::faces::{FaceMesh, Frame};
+use super::free::taken::CachedFace;
 use super::limits::Verdict;
-use super::rows::Wish;
+use super::rows::RowDemand;
 use super::shape_check::Turned;
 use super::trilateral::Blocks;
-use crate::base::digest::{Content, Digest, Digester};
+use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::base::fault::Result;
 use crate::base::work;
 use crate::model::SurfaceId;
@@ -87,11 +87,11 @@ pub trait Shelf: std::fmt::Debug + Send + Sync {
 #[derive(Debug, Default)]
 pub struct Reuse {
     pub(super) steps: Store<u32>,
-    pub(super) wishes: Store<[Wish; 2]>,
+    pub(super) demands: Store<[RowDemand; 2]>,
     pub(super) insides: Store<Arc<Inside>>,
     pub(super) verdicts: Store<Verdict>,
     pub(super) turned: Store<Option<Turned>>,
-    free: Store<Arc<Taken>>,
+    free: Store<Arc<CachedFace>>,
     chords: Store<f64>,
     shelf: Option<Arc<dyn Shelf>>,
     run: u64,
@@ -116,13 +116,13 @@ impl Reuse {
 
     /// Ends a run; when it made meshes, what was not used for long is forgotten.
     pub fn end_run(&mut self) {
-        let Self { steps, wishes, insides, verdicts, turned, free, chords, shelf: _, run, worked, faces: _ } = self;
+        let Self { steps, demands, insides, verdicts, turned, free, chords, shelf: _, run, worked, faces: _ } = self;
         if !std::mem::take(worked.get_mut()) {
             return;
         }
         *run += 1;
         steps.tidy(*run);
-        wishes.tidy(*run);
+        demands.tidy(*run);
         insides.tidy(*run);
         verdicts.tidy(*run);
         turned.tidy(*run);
@@ -138,17 +138,17 @@ impl Reuse {
 
 /// What is known while a mesh is made: parts of others, and the digests of the surfaces.
 #[derive(Clone, Copy, Debug)]
-pub struct Known<'a> {
+pub struct CacheView<'a> {
     /// Parts made before, and the place for new ones.
     pub reuse: &'a Reuse,
     /// Digests of the surfaces of the plan.
     pub surfaces: &'a BTreeMap<SurfaceId, Digest>,
 }
 
-impl Known<'_> {
+impl CacheView<'_> {
     /// Begins the key of something on a surface.
-    pub fn on(&self, what: &str, surface: SurfaceId) -> Digester {
-        Digester::new(what).with(&self.surfaces.get(&surface))
+    pub fn on(&self, what: &str, surface: SurfaceId) -> StableHasher {
+        StableHasher::new(what).with(&self.surfaces.get(&surface))
     }
 
     /// The inside of a face, when it was made before.
@@ -171,10 +171,10 @@ impl Known<'_> {
     }
 
     /// The inside of a free face, when it was made before.
-    pub fn free(&self, key: Digest) -> Option<Arc<Taken>> {
+    pub fn free(&self, key: Digest) -> Option<Arc<CachedFace>> {
         let Reuse { free, shelf, run, .. } = self.reuse;
         let found = free.find(key, *run).or_else(|| {
-            let taken = Arc::new(Taken::read(&shelf.as_ref()?.face(key)?)?);
+            let taken = Arc::new(CachedFace::read(&shelf.as_ref()?.face(key)?)?);
             // A free face has its own budget, within which it was made.
             free.keep(key, (taken.clone(), 0), *run);
             Some(taken)
@@ -185,7 +185,7 @@ impl Known<'_> {
     }
 
     /// Keeps the inside of a free face.
-    pub fn keep_free(&self, key: Digest, taken: Taken) {
+    pub fn keep_free(&self, key: Digest, taken: CachedFace) {
         self.reuse.worked.store(true, Ordering::Relaxed);
         if let Some(shelf) = self.reuse.shelf.as_ref().filter(|_| taken.is_large()) {
             shelf.put_face(key, &taken.bytes());
@@ -195,17 +195,17 @@ impl Known<'_> {
 
     /// The key of a face: its surface, where its nodes lie, and the points of its border. `border` are the points of all
     /// nodes on borders.
-    pub fn face(&self, ready: &Prepared, border: &[DVec3], even: f64) -> Digest {
+    pub fn face(&self, ready: &FaceMesh, border: &[DVec3], even: f64) -> Digest {
         let mut to = self.on("face", ready.surface);
-        (&ready.chart.shape, ready.elements, even).tell(&mut to);
+        (&ready.geometry.shape, ready.elements, even).tell(&mut to);
         let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).tell(&mut to));
-        match &ready.chart.frame {
+        match &ready.geometry.frame {
             Frame::Grid(frame) => frame.sides.iter().for_each(|side| points(side)),
             Frame::Lattice(frame) => frame.sides.iter().for_each(|side| points(side)),
             Frame::Blocks(places) => points(&places[ready.inner as usize..]),
             Frame::Free(places) => points(places),
         }
-        if let Frame::Grid(frame) = &ready.chart.frame {
+        if let Frame::Grid(frame) = &ready.geometry.frame {
             frame.poles.tell(&mut to);
         }
         to.finish()
@@ -217,10 +217,10 @@ crate::content!(Lattice { sides });
 crate::content!(Free { uv, border, triangles, quads });
 crate::content!(Blocks { uv, inner, quads, sides });
 crate::content!(Limits { chord, angle, near });
-crate::content!(Wish { size, least, length, bend });
+crate::content!(RowDemand { size, least, length, bend });
 
-impl Content for Shape {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Shape {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Grid(grid) => (0u8, grid).tell(to),
             Self::Lattice(lattice) => (1u8, lattice).tell(to),
@@ -231,7 +231,11 @@ impl Content for Shape {
 }
 
 /// The steps found before under the key, or what `make` finds; failures are not kept.
-pub fn recalled_if_sound(known: Option<&Known>, key: impl FnOnce(&Known) -> Digest, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
+pub fn cached_if_valid(
+    known: Option<&CacheView>,
+    key: impl FnOnce(&CacheView) -> Digest,
+    make: impl FnOnce() -> Result<u32>,
+) -> Result<u32> {
     let Some(known) = known else { return make() };
     let (key, run) = (work::uncharged(|| key(known)), known.reuse.run);
     if let Some(found) = known.reuse.steps.find(key, run) {
@@ -245,9 +249,9 @@ pub fn recalled_if_sound(known: Option<&Known>, key: impl FnOnce(&Known) -> Dige
 
 /// What was found before under the key, or what `make` gives; without anything known no key is made.
 pub fn recalled<T: Clone>(
-    known: Option<&Known>,
+    known: Option<&CacheView>,
     store: impl Fn(&Reuse) -> &Store<T>,
-    key: impl FnOnce(&Known) -> Digest,
+    key: impl FnOnce(&CacheView) -> Digest,
     make: impl FnOnce() -> T,
 ) -> T {
     let Some(known) = known else { return make() };

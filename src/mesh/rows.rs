@@ -12,9 +12,9 @@ const CELLS: usize = 32;
 /// Room that a row has above the size (language reference, mesh settings).
 pub const SIZE_ROOM: f64 = 1.05;
 
-/// Wanted steps in one direction of a face: for the size, and the least for chord and angle.
+/// SizeRequests steps in one direction of a face: for the size, and the least for chord and angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct RowDemand {
     /// For the size.
     pub size: f64,
     /// For chord error and angle.
@@ -26,7 +26,7 @@ pub struct Wish {
 }
 
 /// Wishes along u and along v of a patch over the rectangle (a triangle: one for both).
-pub fn wishes(surface: &Surface, u: (f64, f64), v: (f64, f64), size: f64, limits: &Limits) -> [Wish; 2] {
+pub fn demands(surface: &Surface, u: (f64, f64), v: (f64, f64), size: f64, limits: &Limits) -> [RowDemand; 2] {
     let n = CELLS + 1;
     let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / CELLS as f64;
     let mut points = vec![DVec3::ZERO; n * n];
@@ -43,19 +43,19 @@ pub fn wishes(surface: &Surface, u: (f64, f64), v: (f64, f64), size: f64, limits
         surface.grid(&us, &vs, &mut points);
     }
     let sample = Sample { points, triangle };
-    let (mut a, mut b) = (Wish::default(), Wish::default());
+    let (mut a, mut b) = (RowDemand::default(), RowDemand::default());
     for k in 0..n {
         a.length = a.length.max(sample.line(k, true));
         b.length = b.length.max(sample.line(k, false));
     }
     let cells = CELLS as f64;
-    for wish in [&mut a, &mut b] {
-        wish.size = (wish.length - limits.near).max(0.0) / (SIZE_ROOM * size);
+    for demand in [&mut a, &mut b] {
+        demand.size = (demand.length - limits.near).max(0.0) / (SIZE_ROOM * size);
     }
     sample.bends(&mut a, &mut b, limits);
     if triangle {
         let slant = sample.slants(limits);
-        let both = Wish {
+        let both = RowDemand {
             size: a.size.max(b.size).max((slant.length - limits.near).max(0.0) / (SIZE_ROOM * size)),
             least: a.least.max(b.least).max(slant.least),
             length: a.length.max(b.length).max(slant.length),
@@ -114,7 +114,7 @@ impl Sample {
         })
     }
 
-    fn bends(&self, a: &mut Wish, b: &mut Wish, limits: &Limits) {
+    fn bends(&self, a: &mut RowDemand, b: &mut RowDemand, limits: &Limits) {
         let cells = CELLS as f64;
         for (_, _, uu, vv) in self.curvatures() {
             a.bend = a.bend.max(uu.abs());
@@ -125,9 +125,9 @@ impl Sample {
             b.least = cells * (b.bend / (8.0 * chord)).sqrt();
         }
         if let Some(angle) = limits.angle {
-            for (wish, along_u) in [(a, true), (b, false)] {
-                let most = angle * (1.0 + limits.turn_room(wish.length, angle));
-                wish.least = wish.least.max(self.least_for_turns(along_u, most));
+            for (demand, along_u) in [(a, true), (b, false)] {
+                let most = angle * (1.0 + limits.turn_room(demand.length, angle));
+                demand.least = demand.least.max(self.least_for_turns(along_u, most));
             }
         }
     }
@@ -153,30 +153,30 @@ impl Sample {
     }
 
     /// Lines of constant u + v of a triangle.
-    fn slants(&self, limits: &Limits) -> Wish {
-        let mut wish = Wish::default();
+    fn slants(&self, limits: &Limits) -> RowDemand {
+        let mut demand = RowDemand::default();
         for sum in 1..Self::N {
             let length = (0..sum).map(|j| self.point(sum - j, j).distance(self.point(sum - j - 1, j + 1))).sum();
-            wish.length = wish.length.max(length);
+            demand.length = demand.length.max(length);
             for j in 1..sum {
                 let i = sum - j;
                 if let Some(n) = self.normal(i, j) {
                     let second = self.point(i + 1, j - 1) - 2.0 * self.point(i, j) + self.point(i - 1, j + 1);
-                    wish.bend = wish.bend.max(second.dot(n).abs());
+                    demand.bend = demand.bend.max(second.dot(n).abs());
                 }
             }
         }
         if let Some(chord) = limits.chord {
-            wish.least = CELLS as f64 * (wish.bend / (8.0 * chord)).sqrt();
+            demand.least = CELLS as f64 * (demand.bend / (8.0 * chord)).sqrt();
         }
-        wish
+        demand
     }
 
     /// The middle of a cell is off by the bends of both directions: raises the one that adds more until their sum is kept.
-    fn balance(&self, a: &mut Wish, b: &mut Wish, chord: f64, cells: f64) {
-        let steps = |wish: &Wish| (wish.least.max(wish.size).max(1.0) - WHOLE_NUMBER).ceil();
+    fn balance(&self, a: &mut RowDemand, b: &mut RowDemand, chord: f64, cells: f64) {
+        let steps = |demand: &RowDemand| (demand.least.max(demand.size).max(1.0) - WHOLE_NUMBER).ceil();
         for _ in 0..CELLS {
-            let share = |wish: &Wish| cells * cells / (8.0 * steps(wish) * steps(wish));
+            let share = |demand: &RowDemand| cells * cells / (8.0 * steps(demand) * steps(demand));
             let (fu, fv) = (share(a), share(b));
             let sums = self.curvatures().map(|(_, _, uu, vv)| (uu * fu, vv * fv));
             let Some((du, dv)) = sums.max_by(|x, y| (x.0 + x.1).abs().total_cmp(&(y.0 + y.1).abs())) else {
@@ -185,11 +185,11 @@ impl Sample {
             if (du + dv).abs() <= chord {
                 return;
             }
-            let (wish, other, own) = if du.abs() >= dv.abs() { (&mut *a, dv.abs(), du.abs()) } else { (&mut *b, du.abs(), dv.abs()) };
+            let (demand, other, own) = if du.abs() >= dv.abs() { (&mut *a, dv.abs(), du.abs()) } else { (&mut *b, du.abs(), dv.abs()) };
             // What is left for the larger one when the smaller stays; at least half.
             let left = (chord - other).max(0.5 * chord);
-            let now = steps(wish);
-            wish.least = (now * (own / left).sqrt()).max(now + 1.0);
+            let now = steps(demand);
+            demand.least = (now * (own / left).sqrt()).max(now + 1.0);
         }
     }
 }

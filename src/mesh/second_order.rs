@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::{Chart, Shape};
 use super::chord::{each_cell, ids};
 use super::data::Mesh;
-use super::faces::{Frame, Prepared, element_ranges};
+use super::face_geometry::{FaceGeometry, Shape};
+use super::faces::{FaceMesh, Frame, element_ranges};
 use super::layout::Layout;
 use super::nodes::Nodes;
 use crate::base::job;
@@ -45,15 +45,15 @@ impl Table {
 }
 
 /// Adds mid nodes to a finished mesh of corner nodes.
-pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared], mesh: &mut Mesh) {
+pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[FaceMesh], mesh: &mut Mesh) {
     let corners = mesh.nodes.len() as u32;
     let mut table = Table::new(corners as usize);
     let mut next = corners;
-    for stretch in 0..layout.pieces.atoms.len() {
-        let (of, at) = (nodes.of_stretch(layout, stretch, false), nodes.fractions(stretch, false));
+    for segment in 0..layout.pieces.segments.len() {
+        let (of, at) = (nodes.of_segment(layout, segment, false), nodes.fractions(segment, false));
         for (w, f) in of.windows(2).zip(at.windows(2)) {
             table.mid(w[0], w[1], || {
-                mesh.nodes.push(layout.point(stretch, 0.5 * (f[0] + f[1])));
+                mesh.nodes.push(layout.point(segment, 0.5 * (f[0] + f[1])));
                 next += 1;
                 next - 1
             });
@@ -61,9 +61,9 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[Prepared],
     }
     for (ready, (triangles, quads)) in prepared.iter().zip(element_ranges(prepared)) {
         let surface = &input.model.surfaces[ready.surface.index()].surface;
-        let places = Places { chart: &ready.chart, frame: &ready.chart.frame };
+        let places = Places { geometry: &ready.geometry, frame: &ready.geometry.frame };
         let mut made: Vec<Edge> = Vec::new();
-        let free = matches!(ready.chart.shape, Shape::Free(_));
+        let free = matches!(ready.geometry.shape, Shape::Free(_));
         let corner = &mesh.nodes;
         let mut mid = |a: u32, b: u32, uv: &dyn Fn(u32, u32) -> (f64, f64)| {
             table.mid(a, b, || {
@@ -127,7 +127,7 @@ fn middle_of(surface: &Surface, edge: &Edge) -> DVec3 {
 
 /// (u, v) of the corners of elements, cell by cell.
 struct Places<'a> {
-    chart: &'a Chart,
+    geometry: &'a FaceGeometry,
     frame: &'a Frame,
 }
 
@@ -136,9 +136,9 @@ type Middle<'a> = &'a dyn Fn(u32, u32) -> (f64, f64);
 
 impl Places<'_> {
     /// Visits the elements of a face in the order of the mesh: corner nodes, and where the middles of their edges lie.
-    fn each(&self, ready: &Prepared, triangles: &[[u32; 3]], mut visit: impl FnMut(&[u32], Middle, bool), quads: &[[u32; 4]]) {
+    fn each(&self, ready: &FaceMesh, triangles: &[[u32; 3]], mut visit: impl FnMut(&[u32], Middle, bool), quads: &[[u32; 4]]) {
         let (mut t, mut q) = (triangles.iter(), quads.iter());
-        if let (Shape::Grid(grid), Frame::Grid(frame)) = (&self.chart.shape, self.frame) {
+        if let (Shape::Grid(grid), Frame::Grid(frame)) = (&self.geometry.shape, self.frame) {
             let (nu, nv) = grid.size();
             for j in 0..nv {
                 for i in 0..nu {
@@ -161,14 +161,14 @@ impl Places<'_> {
             }
             return;
         }
-        let uv = match &self.chart.shape {
+        let uv = match &self.geometry.shape {
             Shape::Lattice(lattice) => super::trilateral::lattice_points(lattice),
             Shape::Blocks(blocks) => blocks.uv.clone(),
             Shape::Free(free) => free.uv.clone(),
             Shape::Grid(_) => Vec::new(),
         };
-        let ids = ids(&self.chart.shape, self.frame);
-        each_cell(&self.chart.shape, |cell| {
+        let ids = ids(&self.geometry.shape, self.frame);
+        each_cell(&self.geometry.shape, |cell| {
             let middle = |a: u32, b: u32| {
                 let of = |id: u32| cell.iter().find(|n| ids[**n] == id).map_or((0.0, 0.0), |n| uv[*n]);
                 mean(of(a), of(b))

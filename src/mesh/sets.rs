@@ -102,7 +102,7 @@ fn nodes_of(mesh: &Mesh, group: &Group) -> Vec<u32> {
 
 /// The set of a `group`: its surfaces, the nodes along its curves and edges with their line elements, its points.
 ///
-/// Fails with E672 where a curve ends inside a stretch of a border, where no node is: its set would hold a part of it.
+/// Fails with E672 where a curve ends inside a segment of a border, where no node is: its set would hold a part of it.
 pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, ranges: &Ranges, request: &GroupRequest) -> Result<Group> {
     let mut group = Group { name: request.name.clone(), ..Group::default() };
     let mut nodes = Vec::new();
@@ -125,8 +125,8 @@ pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, 
                             MeshFault::SetInPart { group: request.origin, mesh: input.plan.origin, curve: chain.origin(), at }.into()
                         );
                     }
-                    for stretch in on {
-                        let along = of.of_stretch(layout, stretch, false);
+                    for segment in on {
+                        let along = of.of_segment(layout, segment, false);
                         steps.extend(along.windows(2).map(|w| (w[0].min(w[1]) + offset, w[0].max(w[1]) + offset)));
                         nodes.extend(along.iter().map(|n| n + offset));
                     }

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::build::Input;
-use super::chart::{Free, Shape};
 use super::data::Mesh;
-use super::faces::{Frame, Prepared};
-use super::reuse::{Known, recalled};
+use super::face_geometry::{Free, Shape};
+use super::faces::{FaceMesh, Frame};
+use super::reuse::{CacheView, recalled};
 use crate::base::digest::Digest;
 use crate::base::fault::{MeshFault, Result};
 use crate::base::par;
@@ -19,30 +19,30 @@ const PROBES: usize = 16;
 pub type Turned = (u64, (f64, f64));
 
 /// Fails when a face has turned elements, with their number and the first place.
-pub fn refuse_turned(input: &Input, prepared: &[Prepared], mesh: &Mesh, keyed: Option<(&Known, &[Digest])>) -> Result<()> {
+pub fn refuse_turned(input: &Input, prepared: &[FaceMesh], mesh: &Mesh, keyed: Option<(&CacheView, &[Digest])>) -> Result<()> {
     let found = par::map(prepared.len(), |k| {
         let surface = &input.model.surfaces[prepared[k].surface.index()].surface;
-        let key = |_: &Known| keyed.map_or_else(Digest::default, |keyed| keyed.1[k]);
+        let key = |_: &CacheView| keyed.map_or_else(Digest::default, |keyed| keyed.1[k]);
         recalled(keyed.map(|keyed| keyed.0), |reuse| &reuse.turned, key, || turned(surface, &prepared[k], mesh))
     });
     first_fault(input, prepared, found)
 }
 
 /// Fails when a face that is made freely has concave quads, with their number and the first place.
-pub fn refuse_concave(input: &Input, prepared: &[Prepared], mesh: &Mesh) -> Result<()> {
-    let found = prepared.iter().map(|ready| match (&ready.chart.shape, &ready.chart.frame) {
+pub fn refuse_concave(input: &Input, prepared: &[FaceMesh], mesh: &Mesh) -> Result<()> {
+    let found = prepared.iter().map(|ready| match (&ready.geometry.shape, &ready.geometry.frame) {
         (Shape::Free(free), Frame::Free(places)) => concave_quads(free, places, mesh),
         _ => None,
     });
     first_fault(input, prepared, found.collect())
 }
 
-fn first_fault(input: &Input, prepared: &[Prepared], found: Vec<Option<Turned>>) -> Result<()> {
+fn first_fault(input: &Input, prepared: &[FaceMesh], found: Vec<Option<Turned>>) -> Result<()> {
     for (ready, bad) in prepared.iter().zip(found) {
         if let Some((count, uv)) = bad {
             let surface = &input.model.surfaces[ready.surface.index()].surface;
             let at = surface.point(uv.0, uv.1);
-            let free = matches!(ready.chart.shape, Shape::Free(_));
+            let free = matches!(ready.geometry.shape, Shape::Free(_));
             return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at, free }.into());
         }
     }
@@ -66,8 +66,8 @@ pub fn is_concave(p: [DVec3; 4]) -> bool {
 }
 
 /// Cells on a coarse selection of rows and columns whose normal stands against the surface's.
-fn turned(surface: &Surface, ready: &Prepared, mesh: &Mesh) -> Option<Turned> {
-    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.chart.shape, &ready.chart.frame) else {
+fn turned(surface: &Surface, ready: &FaceMesh, mesh: &Mesh) -> Option<Turned> {
+    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.geometry.shape, &ready.geometry.frame) else {
         return None;
     };
     let (nu, nv) = frame.size();

@@ -1,4 +1,4 @@
-//! Which setting decides each stretch: rules by rank, written counts shared out, wishes of size, chord and angle.
+//! Which setting decides each segment: rules by rank, written counts shared out, demands of size, chord and angle.
 
 use std::f64::consts::FRAC_PI_3;
 
@@ -9,17 +9,17 @@ use super::contacts::{self, Touch};
 use super::counts::{share, steps};
 use super::edges::{Limits, least_steps, wanted_steps};
 use super::explain::Why;
-use super::faces::Prepared;
+use super::faces::FaceMesh;
 use super::free::face::SPACING;
 use super::layout::{Face, Layout};
 use super::lost::Lost;
 use super::narrow::Narrow;
-use super::pace::{self, Ask, Pace};
 use super::plan::{Elements, Plan, Rule, Target};
-use super::reuse::{Known, recalled_if_sound};
+use super::reuse::{CacheView, cached_if_valid};
+use super::spacing::{self, BorderSpacing, SpacingInput};
 use super::strips::Stretch;
-use super::wanted::{Wanted, least_on};
-use crate::base::digest::Digester;
+use super::wanted::{SizeRequests, least_on};
+use crate::base::digest::StableHasher;
 use crate::base::fault::{Cure, Fault, MeshFault, Result, SurfaceFault, Touching};
 use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
@@ -27,13 +27,13 @@ use crate::base::par;
 use crate::base::text::article;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::model::Course;
-use crate::model::atoms::Use;
+use crate::model::segments::SegmentUse;
 use crate::network::Chain;
 
-/// Largest count of one stretch; a mesh has no more elements than that.
+/// Largest count of one segment; a mesh has no more elements than that.
 pub const MOST: u32 = MESH_ELEMENTS as u32;
 
-/// What a rule says of a stretch.
+/// What a rule says of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Division {
     Count(u32),
@@ -48,44 +48,44 @@ struct Ruled<T> {
     value: T,
 }
 
-/// The settings of one stretch.
+/// The settings of one segment.
 #[derive(Clone, Copy, Debug)]
 pub struct Decision {
     /// A written count and its rule.
     pub count: Option<(u32, usize)>,
     /// Target size, and the rule unless it is the mesh's own.
     pub size: (f64, Option<usize>),
-    /// Last step over first step, along the stretch.
+    /// Last step over first step, along the segment.
     pub bias: f64,
-    /// The least count for chord and angle on the stretch itself.
+    /// The least count for chord and angle on the segment itself.
     pub least: u32,
     /// The wanted count.
-    pub wish: u32,
+    pub demand: u32,
 }
 
-/// Decisions for all stretches, and which rules have decided something so far.
+/// Decisions for all segments, and which rules have decided something so far.
 #[derive(Clone, Debug, Default)]
 pub struct Sizing {
-    /// One a stretch.
+    /// One a segment.
     pub decisions: Vec<Decision>,
     /// One a rule, then one a `near` or `in` clause, then one a setting of free faces: whether it was taken anywhere.
     pub taken: Vec<bool>,
     /// Why a rule cannot be taken at all, in words.
     pub homeless: Vec<Option<String>>,
-    /// Steps of stretches that follow the bends of the faces beside them.
-    pub paces: Vec<Option<Pace>>,
-    /// Steps that stretches of mapped faces would have to take for the free faces beside them.
-    pub strained: Vec<Option<Pace>>,
-    /// The bias rule of each stretch.
+    /// Steps of segments that follow the bends of the faces beside them.
+    pub spacings: Vec<Option<BorderSpacing>>,
+    /// Steps that segments of mapped faces would have to take for the free faces beside them.
+    pub required_on_mapped: Vec<Option<BorderSpacing>>,
+    /// The bias rule of each segment.
     pub bias_rule: Vec<Option<usize>>,
     /// What `near`, `in` and `min_size` ask for.
-    pub wanted: Wanted,
+    pub wanted: SizeRequests,
     /// What is to be said of sharp angles.
     pub sharp: Option<Remark>,
     overridden: Vec<(usize, usize, &'static str)>,
 }
 
-/// One step more than a stretch may have: enough to refuse it.
+/// One step more than a segment may have: enough to refuse it.
 const STEPS: u32 = MESH_STEPS + 1;
 
 /// Steps under a bias that are looked at one by one.
@@ -110,13 +110,13 @@ fn settle<T>(slot: &mut Option<Ruled<T>>, new: Ruled<T>, key: &'static str, over
 }
 
 impl Sizing {
-    /// Decides every stretch of a layout; faces get their size, elements and method. `narrow` are places where the borders of
+    /// Decides every segment of a layout; faces get their size, elements and method. `narrow` are places where the borders of
     /// free faces, divided before, were found too near to each other.
-    pub fn new(input: &Input, layout: &mut Layout, size: f64, (known, narrow): (Option<&Known>, &[Narrow])) -> Result<Self> {
-        let n = layout.pieces.atoms.len();
+    pub fn new(input: &Input, layout: &mut Layout, size: f64, (known, narrow): (Option<&CacheView>, &[Narrow])) -> Result<Self> {
+        let n = layout.pieces.segments.len();
         let rules = &input.plan.rules;
         let clauses = rules.len() + input.plan.refines.len() + FREE_ONLY.len();
-        let wanted = Wanted::new(input, size)?;
+        let wanted = SizeRequests::new(input, size)?;
         let mut sizing = Self { taken: vec![false; clauses], homeless: vec![None; clauses], wanted, ..Self::default() };
         sizing.faces(input, layout, size);
         super::faces::choose(input, layout)?;
@@ -127,7 +127,7 @@ impl Sizing {
         for (index, rule) in rules.iter().enumerate() {
             match &rule.target {
                 Target::Chain(chain) => {
-                    let (uses, links) = stretches_of(input, layout, chain);
+                    let (uses, links) = segments_of(input, layout, chain);
                     let rank = if links.len() == 1 && chain.whole_curve().is_none() { LINK } else { CURVE };
                     let lines = [Lines { uses, links, rank, length: chain.length() }];
                     sizing.line_rule((index, rule, "curve"), input.tolerance.point, &lines, &mut division, &mut bias)?;
@@ -154,7 +154,7 @@ impl Sizing {
             _ => own[k],
         };
         for (face, clause) in layout.faces.iter().zip(refined) {
-            let open = face.sides.iter().flat_map(|s| s.stretches()).any(|k| count_of(k).is_none());
+            let open = face.sides.iter().flat_map(|s| s.segments()).any(|k| count_of(k).is_none());
             if let Some(clause) = clause.filter(|_| open) {
                 sizing.taken[clause] = true;
             }
@@ -164,11 +164,11 @@ impl Sizing {
             let free = bias[k].is_some() && count_of(k).is_none();
             free.then(|| sizing.biased_steps(layout, (k, near), size_of(k).0, bias_of(k)))
         });
-        let written_steps = |k: usize| Some(Pace::of_count(layout.length(k), count_of(k).map(|c| c.0).or(biased[k])?, bias_of(k)));
-        let written: Vec<Option<Pace>> = (0..n).map(written_steps).collect();
+        let written_steps = |k: usize| Some(BorderSpacing::of_count(layout.length(k), count_of(k).map(|c| c.0).or(biased[k])?, bias_of(k)));
+        let written: Vec<Option<BorderSpacing>> = (0..n).map(written_steps).collect();
         let sizes: Vec<f64> = (0..n).map(|k| size_of(k).0).collect();
-        let ask = Ask { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow, rows: &rows };
-        (sizing.paces, sizing.strained) = pace::along(input, layout, &ask)?;
+        let ask = SpacingInput { wanted: &sizing.wanted, limits: &limits, size: &sizes, written: &written, narrow, rows: &rows };
+        (sizing.spacings, sizing.required_on_mapped) = spacing::along(input, layout, &ask)?;
         drop(rows);
         sizing.mark_refined(input, layout, &sizes);
         let sparing = sparing_borders(input, layout, &limits);
@@ -176,29 +176,29 @@ impl Sizing {
         let most = STEPS.min(u32::try_from(input.plan.most_elements).unwrap_or(STEPS).saturating_mul(4).saturating_add(1));
         let least = par::try_map(n, |k| {
             let bias = bias_of(k);
-            let divided = |count: u32| sizing.paces[k].as_ref().map_or_else(|| steps(count, bias), |pace| pace.steps(count));
+            let divided = |count: u32| sizing.spacings[k].as_ref().map_or_else(|| steps(count, bias), |spacing| spacing.steps(count));
             let limits = if sparing[k] { limits.turning(TURN) } else { limits };
-            let atom = &layout.pieces.atoms[k];
-            let key = |_: &Known| {
-                let track = &layout.parts[atom.track].track;
-                Digester::new("steps").with(&(track, atom.s, (bias, &limits, u64::from(most)))).finish()
+            let segment = &layout.pieces.segments[k];
+            let key = |_: &CacheView| {
+                let track = &layout.parts[segment.track].track;
+                StableHasher::new("steps").with(&(track, segment.s, (bias, &limits, u64::from(most)))).finish()
             };
-            // Without a limit there is nothing to find out, and a failure is found out again; a pace is not in the key.
-            let known = known.filter(|_| (limits.chord.is_some() || limits.angle.is_some()) && sizing.paces[k].is_none());
-            recalled_if_sound(known, key, || least_steps(layout, k, &divided, &limits, most)).map(|least| least.max(shape[k]))
+            // Without a limit there is nothing to find out, and a failure is found out again; a spacing is not in the key.
+            let known = known.filter(|_| (limits.chord.is_some() || limits.angle.is_some()) && sizing.spacings[k].is_none());
+            cached_if_valid(known, key, || least_steps(layout, k, &divided, &limits, most)).map(|least| least.max(shape[k]))
         })?;
         for k in 0..n {
             let (count, size, bias) = (count_of(k), size_of(k), bias_of(k));
-            let wish = match (&sizing.paces[k], biased[k]) {
-                (Some(pace), _) => pace.wish((layout.length(k) - near).max(0.0), size.0, STEPS),
+            let demand = match (&sizing.spacings[k], biased[k]) {
+                (Some(spacing), _) => spacing.demand((layout.length(k) - near).max(0.0), size.0, STEPS),
                 (None, Some(steps)) => steps,
                 (None, None) => wanted_steps((layout.length(k), near), size.0, bias, STEPS),
             };
             if count.is_none() && least[k] <= MESH_STEPS {
                 sizing.refuse_below_floor(input, layout, k, (least[k], shape[k]))?;
             }
-            let wish = wish.max(least[k]);
-            sizing.decisions.push(Decision { count, size, bias, least: least[k], wish });
+            let demand = demand.max(least[k]);
+            sizing.decisions.push(Decision { count, size, bias, least: least[k], demand });
         }
         sizing.bias_rule = bias.iter().map(|b| b.map(|b| b.rule)).collect();
         super::ahead::refuse_steps(input, layout, &sizing)?;
@@ -217,16 +217,16 @@ impl Sizing {
         }
     }
 
-    /// The stretches as unknowns of the solver.
-    pub fn stretches(&self, layout: &Layout) -> Vec<Stretch> {
+    /// The segments as unknowns of the solver.
+    pub fn segments(&self, layout: &Layout) -> Vec<Stretch> {
         let mut even = vec![false; self.decisions.len()];
-        layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| even[s] = true);
+        layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.segments()).for_each(|s| even[s] = true);
         // A written count may be odd where another one of the face is.
         let sides = layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| &s.uses);
-        sides.filter(|u| self.decisions[u.atom].count.is_some()).for_each(|u| even[u.atom] = false);
+        sides.filter(|u| self.decisions[u.segment].count.is_some()).for_each(|u| even[u.segment] = false);
         let one = |(k, d): (usize, &Decision)| Stretch {
             least: d.least,
-            wish: d.wish,
+            demand: d.demand,
             written: d.count.map(|c| c.0),
             length: layout.length(k),
             even: even[k],
@@ -254,7 +254,7 @@ impl Sizing {
         layout.faces.iter().map(|face| face.size.1.filter(|clause| *clause >= first && !face.free)).collect()
     }
 
-    /// Steps of a stretch under a bias, none of them longer than the size or what is wanted along it.
+    /// Steps of a segment under a bias, none of them longer than the size or what is wanted along it.
     fn biased_steps(&self, layout: &Layout, (k, near): (usize, f64), size: f64, bias: f64) -> u32 {
         let length = (layout.length(k) - near).max(0.0);
         let mut count = wanted_steps((layout.length(k), near), size, bias, STEPS);
@@ -271,11 +271,11 @@ impl Sizing {
         count
     }
 
-    /// Marks the clauses that make steps of stretches shorter.
+    /// Marks the clauses that make steps of segments shorter.
     fn mark_refined(&mut self, input: &Input, layout: &Layout, sizes: &[f64]) {
         let first = input.plan.rules.len();
-        for (k, pace) in self.paces.iter().enumerate() {
-            let places = pace.iter().flat_map(|pace| pace.places()).map(|f| layout.point(k, f));
+        for (k, spacing) in self.spacings.iter().enumerate() {
+            let places = spacing.iter().flat_map(|spacing| spacing.places()).map(|f| layout.point(k, f));
             for p in places {
                 if let Some(least) = self.wanted.sources.who(p, sizes[k]) {
                     self.taken[first + self.wanted.sources.items()[least.item as usize].tag as usize] = true;
@@ -372,11 +372,16 @@ impl Sizing {
                 let shares = count_shares(uses, links, (count, near))
                     .map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
                 for (u, n) in uses.iter().zip(shares) {
-                    settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
+                    settle(&mut division[u.segment], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
                 }
             } else if let Some((size, _)) = rule.size {
                 for u in uses {
-                    settle(&mut division[u.atom], Ruled { rank, rule: index, value: Division::Size(size) }, "size", &mut self.overridden);
+                    settle(
+                        &mut division[u.segment],
+                        Ruled { rank, rule: index, value: Division::Size(size) },
+                        "size",
+                        &mut self.overridden,
+                    );
                 }
             }
             if let Some((b, _)) = rule.bias {
@@ -385,7 +390,7 @@ impl Sizing {
                     let grown = |s: f64| 1.0 + (b - 1.0) * (s / length).clamp(0.0, 1.0);
                     let local = grown(u.s.1) / grown(u.s.0);
                     let value = if u.against { 1.0 / local } else { local };
-                    settle(&mut bias[u.atom], Ruled { rank, rule: index, value }, "bias", &mut self.overridden);
+                    settle(&mut bias[u.segment], Ruled { rank, rule: index, value }, "bias", &mut self.overridden);
                 }
             }
         }
@@ -407,20 +412,20 @@ impl Sizing {
         for side in 0..sides {
             let on: Vec<_> = faces.iter().filter(|f| f.sides.len() == sides).collect();
             // A side of the whole surface is the run of those patch sides that no other patch of it continues.
-            let inner = |stretch: usize| {
-                let uses = on.iter().flat_map(|f| f.sides.iter().flat_map(|s| s.stretches())).filter(|s| *s == stretch).count();
+            let inner = |segment: usize| {
+                let uses = on.iter().flat_map(|f| f.sides.iter().flat_map(|s| s.segments())).filter(|s| *s == segment).count();
                 uses > 1
             };
-            let mut stretches: Vec<usize> = on.iter().flat_map(|f| f.sides[side].stretches()).filter(|s| !inner(*s)).collect();
-            stretches.dedup();
-            if stretches.is_empty() {
+            let mut segments: Vec<usize> = on.iter().flat_map(|f| f.sides[side].segments()).filter(|s| !inner(*s)).collect();
+            segments.dedup();
+            if segments.is_empty() {
                 continue;
             }
-            let weights: Vec<f64> = stretches.iter().map(|s| layout.length(*s)).collect();
-            let least = vec![1; stretches.len()];
+            let weights: Vec<f64> = segments.iter().map(|s| layout.length(*s)).collect();
+            let least = vec![1; segments.len()];
             let shares = share(count, (&weights, near), &least)
-                .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: stretches.len() as u32 })?;
-            for (s, n) in stretches.iter().zip(shares) {
+                .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: segments.len() as u32 })?;
+            for (s, n) in segments.iter().zip(shares) {
                 let rank = if matches!(rule.target, Target::Patches(_)) { PATCH } else { FACE };
                 settle(&mut division[*s], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
             }
@@ -428,15 +433,15 @@ impl Sizing {
         Ok(())
     }
 
-    /// Notes which rules the final counts go back to; `counts` are of the stretches.
+    /// Notes which rules the final counts go back to; `counts` are of the segments.
     pub fn take(&mut self, counts: &[u32]) {
         for (k, d) in self.decisions.iter().enumerate() {
             match d.count {
                 Some((_, rule)) => self.taken[rule] = true,
                 None => {
                     if let (_, Some(rule)) = d.size
-                        && d.wish == counts[k]
-                        && d.wish > d.least
+                        && d.demand == counts[k]
+                        && d.demand > d.least
                     {
                         self.taken[rule] = true;
                     }
@@ -452,7 +457,7 @@ impl Sizing {
     }
 
     /// Notes which clauses decide sizes inside free faces.
-    pub fn take_refined(&mut self, input: &Input, prepared: &[Prepared]) {
+    pub fn take_refined(&mut self, input: &Input, prepared: &[FaceMesh]) {
         for decider in prepared.iter().flat_map(|ready| &ready.deciders) {
             if let Why::Refined(clause) = decider.why {
                 self.taken[input.plan.rules.len() + clause] = true;
@@ -604,14 +609,14 @@ impl Remark {
     }
 }
 
-/// The size of each stretch by its faces: the least of theirs, `size` where it has none. Steps on borders of freely grown
+/// The size of each segment by its faces: the least of theirs, `size` where it has none. Steps on borders of freely grown
 /// triangles alone are as long as distances of nodes inside: triangles between rows of one length are the best ones.
 fn own_sizes(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
-    let mut grown = vec![true; layout.pieces.atoms.len()];
-    layout.faces.iter().filter(|f| !f.is_grown()).flat_map(Face::stretches).for_each(|k| grown[k] = false);
+    let mut grown = vec![true; layout.pieces.segments.len()];
+    layout.faces.iter().filter(|f| !f.is_grown()).flat_map(Face::segments).for_each(|k| grown[k] = false);
     let mut own: Vec<Option<(f64, Option<usize>)>> = vec![None; grown.len()];
     for face in &layout.faces {
-        for k in face.stretches() {
+        for k in face.segments() {
             let step = (if grown[k] { face.size.0 * SPACING } else { face.size.0 }, face.size.1);
             if own[k].is_none_or(|least| step.0 < least.0) {
                 own[k] = Some(step);
@@ -628,11 +633,11 @@ const TURN: f64 = FRAC_PI_3;
 /// Stretches whose steps a chord error alone may make so long that triangles beside them lean: those of bent faces made with
 /// as few triangles as may be.
 fn sparing_borders(input: &Input, layout: &Layout, limits: &Limits) -> Vec<bool> {
-    let mut found = vec![false; layout.pieces.atoms.len()];
+    let mut found = vec![false; layout.pieces.segments.len()];
     let bent = |face: &&Face| !input.model.surfaces[face.surface.index()].surface.is_flat();
     if limits.chord.is_some() {
-        let faces = layout.faces.iter().filter(|face| face.method.is_sparing()).filter(bent);
-        faces.flat_map(|face| face.stretches()).for_each(|k| found[k] = true);
+        let faces = layout.faces.iter().filter(|face| face.method.is_coarse()).filter(bent);
+        faces.flat_map(|face| face.segments()).for_each(|k| found[k] = true);
     }
     found
 }
@@ -641,22 +646,22 @@ fn sparing_borders(input: &Input, layout: &Layout, limits: &Limits) -> Vec<bool>
 /// nothing inside.
 const CLOSED: u32 = 4;
 
-/// Least counts that keep stretches from falling on each other: 3 for a ring; of several with the same ends the shortest may
+/// Least counts that keep segments from falling on each other: 3 for a ring; of several with the same ends the shortest may
 /// be one step, as a blunt trailing edge is, and the others take 2.
 fn shapes(layout: &Layout, near: f64) -> Vec<u32> {
     let ends = |k: usize| {
-        let (a, b) = layout.pieces.atoms[k].ends;
+        let (a, b) = layout.pieces.segments[k].ends;
         (a.min(b), a.max(b))
     };
-    let n = layout.pieces.atoms.len();
+    let n = layout.pieces.segments.len();
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by_key(|k| (ends(*k), *k));
     // Free quads come from cells whose sides are two steps, or one where a count is odd; those may not fall together either.
     let mut halved = vec![false; n];
-    layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.stretches()).for_each(|s| halved[s] = true);
+    layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.segments()).for_each(|s| halved[s] = true);
     let mut least = vec![1; n];
     for group in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
-        let length = |k: &usize| layout.pieces.atoms[*k].length();
+        let length = |k: &usize| layout.pieces.segments[*k].length();
         let shortest = group.iter().map(length).fold(f64::INFINITY, f64::min);
         let alike = group.iter().filter(|k| length(k) <= shortest * (1.0 + WHOLE_NUMBER) + near).count();
         for k in group {
@@ -672,7 +677,7 @@ fn shapes(layout: &Layout, near: f64) -> Vec<u32> {
     for face in layout.faces.iter().filter(|face| face.free) {
         let poles = face.sides.iter().filter(|side| side.uses.is_empty()).count();
         if face.halved > 0 || poles == 2 && face.sides.len() == 4 {
-            face.stretches().for_each(|k| least[k] = least[k].max(CLOSED << face.halved));
+            face.segments().for_each(|k| least[k] = least[k].max(CLOSED << face.halved));
         }
     }
     least
@@ -680,23 +685,23 @@ fn shapes(layout: &Layout, near: f64) -> Vec<u32> {
 
 /// A line that a rule speaks of, as it is in the mesh.
 struct Lines {
-    /// Its stretches along it.
-    uses: Vec<Use>,
-    /// Its links with their stretches; what is no run of links is one.
+    /// Its segments along it.
+    uses: Vec<SegmentUse>,
+    /// Its links with their segments; what is no run of links is one.
     links: Vec<LinkRange>,
     rank: u8,
     /// Arc length, model units.
     length: f64,
 }
 
-/// The borders that an edge is in the mesh, each stretch once.
+/// The borders that an edge is in the mesh, each segment once.
 fn along_courses(layout: &Layout, courses: &[Course]) -> Vec<Lines> {
     let mut known: Vec<usize> = Vec::new();
     let mut lines = Vec::new();
     for course in courses {
         let mut uses = layout.along_course(course);
-        uses.retain(|u| !known.contains(&u.atom));
-        known.extend(uses.iter().map(|u| u.atom));
+        uses.retain(|u| !known.contains(&u.segment));
+        known.extend(uses.iter().map(|u| u.segment));
         let length: f64 = course.iter().map(|part| part.s.1 - part.s.0).sum();
         if !uses.is_empty() {
             let links = vec![LinkRange { length, uses: 0..uses.len() }];
@@ -707,7 +712,7 @@ fn along_courses(layout: &Layout, courses: &[Course]) -> Vec<Lines> {
 }
 
 /// Stretches of a chain and of its links, which hold all of them.
-fn stretches_of(input: &Input, layout: &Layout, chain: &Chain) -> (Vec<Use>, Vec<LinkRange>) {
+fn segments_of(input: &Input, layout: &Layout, chain: &Chain) -> (Vec<SegmentUse>, Vec<LinkRange>) {
     let uses = layout.along(input, chain);
     let Some(links) = links_of(input, chain) else {
         let all = 0..uses.len();
@@ -729,14 +734,14 @@ pub fn links_of(input: &Input, chain: &Chain) -> Option<Vec<(f64, f64)>> {
     Some(links.into_iter().map(|(link, _)| input.network.links[link.index()].s).collect())
 }
 
-/// One link of a chain with its stretches.
+/// One link of a chain with its segments.
 struct LinkRange {
     length: f64,
     uses: std::ops::Range<usize>,
 }
 
-/// A count shared out to links by length, then to the stretches of each link; `Err`: how many stretches there are.
-fn count_shares(uses: &[Use], links: &[LinkRange], (count, near): (u32, f64)) -> std::result::Result<Vec<u32>, u32> {
+/// A count shared out to links by length, then to the segments of each link; `Err`: how many segments there are.
+fn count_shares(uses: &[SegmentUse], links: &[LinkRange], (count, near): (u32, f64)) -> std::result::Result<Vec<u32>, u32> {
     let least: Vec<u32> = links.iter().map(|l| (l.uses.len() as u32).max(1)).collect();
     let weights: Vec<f64> = links.iter().map(|l| l.length).collect();
     let by_link = share(count, (&weights, near), &least).ok_or(least.iter().sum::<u32>())?;

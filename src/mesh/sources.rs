@@ -237,7 +237,7 @@ fn split(items: &mut [Source], first: u32, nodes: &mut Vec<Node>) {
 }
 
 /// Halvings of a curve's fraction.
-const DEEPEST: u32 = 40;
+const MAX_DEPTH: u32 = 40;
 
 /// A chain as straight pieces that it is nowhere farther from than `off`, by the bound of its second derivative.
 pub fn pieces(chain: &Chain, off: f64) -> Vec<(DVec3, DVec3)> {
@@ -246,13 +246,13 @@ pub fn pieces(chain: &Chain, off: f64) -> Vec<(DVec3, DVec3)> {
     stops.push(1.0);
     let mut all = Vec::new();
     for w in stops.windows(2) {
-        let mut open = vec![(w[0], w[1], DEEPEST)];
+        let mut open = vec![(w[0], w[1], MAX_DEPTH)];
         while let Some((a, b, left)) = open.pop() {
             let width = b - a;
             let fine = || {
-                let spread = chain.spread(a, b);
+                let enclosure = chain.enclosure(a, b);
                 // Half the length is the most that a curve without known derivatives strays.
-                let bend = width * width / 8.0 * spread.d2.reach() + 0.25 * width * spread.jumps.length();
+                let bend = width * width / 8.0 * enclosure.d2.reach() + 0.25 * width * enclosure.jumps.length();
                 bend.min(0.5 * width * chain.length()) <= off
             };
             if left == 0 || fine() {

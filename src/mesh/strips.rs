@@ -1,6 +1,6 @@
-//! How many steps each stretch gets: strips of opposite sides, written counts, sums of several stretches.
+//! How many steps each segment gets: strips of opposite sides, written counts, sums of several segments.
 //!
-//! Unknown are whole numbers, one a stretch. Opposite sides of a mapped face are equal sums of them. Written counts are
+//! Unknown are whole numbers, one a segment. Opposite sides of a mapped face are equal sums of them. Written counts are
 //! kept to the letter; all else is raised, never lowered below what limits ask, until every face is satisfied.
 
 use std::collections::BTreeMap;
@@ -10,13 +10,13 @@ use super::parity::{self, Sum};
 use crate::base::{job, work};
 use crate::model::glue::root;
 
-/// One stretch (or one inner direction of a face without a side that could tell).
+/// One segment (or one inner direction of a face without a side that could tell).
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// Least count that limits (chord, angle, shape) allow, with at least 1.
     pub least: u32,
-    /// Wanted count: the largest of size and limits.
-    pub wish: u32,
+    /// SizeRequests count: the largest of size and limits.
+    pub demand: u32,
     /// A written count.
     pub written: Option<u32>,
     /// Length, model units; the longest step is the first to be halved.
@@ -36,23 +36,23 @@ pub enum Relation {
     ThreeSides([Vec<usize>; 3]),
 }
 
-/// Why there is no solution. Indices are of stretches and relations.
+/// Why there is no solution. Indices are of segments and relations.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Conflict {
-    /// Two written counts meet: sums of both sides and a written stretch behind each (`None` where only size speaks).
+    /// Two written counts meet: sums of both sides and a written segment behind each (`None` where only size speaks).
     Differ {
         /// The face's relation.
         relation: usize,
-        /// Sum along one side and the written stretch behind it.
+        /// Sum along one side and the written segment behind it.
         a: (u32, Option<usize>),
         /// Sum along the other.
         b: (u32, Option<usize>),
     },
-    /// A written count makes a stretch too coarse.
+    /// A written count makes a segment too coarse.
     TooCoarse {
-        /// The written stretch.
+        /// The written segment.
         written: usize,
-        /// The stretch that needs more.
+        /// The segment that needs more.
         needs: usize,
         /// What it needs.
         least: u32,
@@ -63,14 +63,14 @@ pub enum Conflict {
         relation: usize,
         /// Sums of the sides.
         counts: [u32; 3],
-        /// Written stretches behind them.
+        /// Written segments behind them.
         written: Vec<usize>,
     },
     /// A written count is odd where quads that no map gives need an even one, or makes such a count odd.
     Odd {
-        /// The written stretch, where there is one.
+        /// The written segment, where there is one.
         written: Option<usize>,
-        /// The stretch that needs an even count.
+        /// The segment that needs an even count.
         needs: usize,
     },
     /// Counts would grow without end: a side is opposite to a part of itself.
@@ -80,14 +80,14 @@ pub enum Conflict {
     },
 }
 
-/// Strips: stretches joined because each is the whole of one of two opposite sides.
+/// Strips: segments joined because each is the whole of one of two opposite sides.
 struct Strip {
     least: (u32, usize),
-    wish: u32,
+    demand: u32,
     length: f64,
-    /// The count, once it follows from a written one, and the written stretch it follows from.
+    /// The count, once it follows from a written one, and the written segment it follows from.
     fixed: Option<(u32, usize)>,
-    /// A stretch that needs an even count.
+    /// A segment that needs an even count.
     even: Option<usize>,
     /// Whether the count is odd, where that is settled ahead.
     odd: Option<bool>,
@@ -115,22 +115,22 @@ struct Solver<'a> {
     near: f64,
 }
 
-/// Least counts that satisfy all relations, and the strip of each stretch. Sums stay below `limit`; of steps whose lengths differ
+/// Least counts that satisfy all relations, and the strip of each segment. Sums stay below `limit`; of steps whose lengths differ
 /// by no more than `near` the first is raised.
-pub fn solve(stretches: &[Stretch], relations: &[Relation], (limit, near): (u32, f64)) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
-    let mut solver = Solver::new(stretches, relations, (limit, near))?;
+pub fn solve(segments: &[Stretch], relations: &[Relation], (limit, near): (u32, f64)) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
+    let mut solver = Solver::new(segments, relations, (limit, near))?;
     solver.parities()?;
     solver.pass_on()?;
     for (n, strip) in solver.strips.iter().enumerate() {
-        solver.count[n] = strip.fixed.map_or(strip.from(strip.wish.max(strip.least.0)), |f| f.0);
+        solver.count[n] = strip.fixed.map_or(strip.from(strip.demand.max(strip.least.0)), |f| f.0);
     }
     solver.raise()?;
     Ok((solver.strip_of.iter().map(|s| solver.count[*s]).collect(), solver.strip_of))
 }
 
 impl<'a> Solver<'a> {
-    fn new(stretches: &[Stretch], relations: &'a [Relation], (limit, near): (u32, f64)) -> Result<Self, Conflict> {
-        let mut parent: Vec<usize> = (0..stretches.len()).collect();
+    fn new(segments: &[Stretch], relations: &'a [Relation], (limit, near): (u32, f64)) -> Result<Self, Conflict> {
+        let mut parent: Vec<usize> = (0..segments.len()).collect();
         for relation in relations {
             if let Relation::Equal(a, b) = relation
                 && let ([a], [b]) = (a.as_slice(), b.as_slice())
@@ -139,23 +139,23 @@ impl<'a> Solver<'a> {
                 parent[ra.max(rb)] = ra.min(rb);
             }
         }
-        let (mut strip_of, mut strips): (Vec<usize>, Vec<Strip>) = (vec![0; stretches.len()], Vec::new());
-        for (n, stretch) in stretches.iter().enumerate() {
+        let (mut strip_of, mut strips): (Vec<usize>, Vec<Strip>) = (vec![0; segments.len()], Vec::new());
+        for (n, segment) in segments.iter().enumerate() {
             let r = root(&mut parent, n);
             if r == n {
                 strip_of[n] = strips.len();
-                strips.push(Strip { least: (0, n), wish: 0, length: 0.0, fixed: None, even: None, odd: None });
+                strips.push(Strip { least: (0, n), demand: 0, length: 0.0, fixed: None, even: None, odd: None });
             } else {
                 strip_of[n] = strip_of[r];
             }
             let strip = &mut strips[strip_of[n]];
-            strip.wish = strip.wish.max(stretch.wish);
-            strip.length = strip.length.max(stretch.length);
-            strip.even = strip.even.or(stretch.even.then_some(n));
-            if stretch.least > strip.least.0 {
-                strip.least = (stretch.least, n);
+            strip.demand = strip.demand.max(segment.demand);
+            strip.length = strip.length.max(segment.length);
+            strip.even = strip.even.or(segment.even.then_some(n));
+            if segment.least > strip.least.0 {
+                strip.least = (segment.least, n);
             }
-            match (stretch.written, strip.fixed) {
+            match (segment.written, strip.fixed) {
                 (Some(count), None) => strip.fixed = Some((count, n)),
                 (Some(count), Some((other, by))) if other != count => {
                     let joins = |r: &Relation| matches!(r, Relation::Equal(a, b) if a.contains(&n) || b.contains(&n));
@@ -212,7 +212,7 @@ impl<'a> Solver<'a> {
         sum
     }
 
-    /// What to say where a sum cannot be even: a written stretch in it and one that needs to be even, of it or of any.
+    /// What to say where a sum cannot be even: a written segment in it and one that needs to be even, of it or of any.
     fn odd(&self, sum: &Sum) -> Conflict {
         let strips = || sum.iter().map(|s| &self.strips[*s]).chain(&self.strips);
         let written = strips().find_map(|s| s.fixed.filter(|f| f.0 % 2 == 1).map(|f| f.1));
@@ -289,7 +289,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// A written stretch behind the strips on one side (the sign) of an equality.
+    /// A written segment behind the strips on one side (the sign) of an equality.
     fn cause(&self, balance: &BTreeMap<usize, i64>, sign: i64) -> Option<usize> {
         balance.iter().filter(|(_, c)| **c * sign > 0).find_map(|(s, _)| self.strips[*s].fixed.map(|f| f.1))
     }
@@ -303,12 +303,12 @@ impl<'a> Solver<'a> {
         Conflict::Differ { relation, a: (sum(a), self.cause(&balance, 1)), b: (sum(b), self.cause(&balance, -1)) }
     }
 
-    /// Gives strips counts whose weighted sum is `target`, by their wishes.
+    /// Gives strips counts whose weighted sum is `target`, by their demands.
     fn settle(&mut self, open: &[(usize, i64)], target: u32, by: usize) -> Option<()> {
         if open.iter().any(|(s, _)| self.strips[*s].odd.is_some()) {
             return self.settle_by_two(open, target, by);
         }
-        let weights: Vec<f64> = open.iter().map(|(s, c)| c.abs() as f64 * f64::from(self.strips[*s].wish)).collect();
+        let weights: Vec<f64> = open.iter().map(|(s, c)| c.abs() as f64 * f64::from(self.strips[*s].demand)).collect();
         let least: Vec<u32> = open.iter().map(|(s, c)| c.unsigned_abs() as u32 * self.strips[*s].least.0).collect();
         let shares = share(target, (&weights, 0.0), &least)?;
         let mut counts: Vec<u32> = shares.iter().zip(open).map(|(n, (_, c))| n / c.unsigned_abs() as u32).collect();
@@ -336,7 +336,7 @@ impl<'a> Solver<'a> {
         while left > 0 {
             work::spend(open.len() as u64);
             let more = |i: usize| open[i].1.unsigned_abs() as u32 * self.strips[open[i].0].step();
-            let room = |i: &usize| f64::from(self.strips[open[*i].0].wish) / f64::from(counts[*i]);
+            let room = |i: &usize| f64::from(self.strips[open[*i].0].demand) / f64::from(counts[*i]);
             let fits = (0..open.len()).filter(|i| more(*i) <= left);
             let i = fits.max_by(|x, y| room(x).total_cmp(&room(y)).then(y.cmp(x)))?;
             left -= more(i);
@@ -361,10 +361,10 @@ impl<'a> Solver<'a> {
         let fixed: i64 = maps[*k].iter().filter_map(|(s, c)| self.strips[*s].fixed.map(|f| i64::from(f.0) * c)).sum();
         let free: Vec<(usize, i64)> = maps[*k].iter().filter(|(s, _)| self.strips[**s].fixed.is_none()).map(|(s, c)| (*s, *c)).collect();
         let sum = |f: &dyn Fn(&Strip) -> u32| fixed + free.iter().map(|(s, c)| c * i64::from(f(&self.strips[*s]))).sum::<i64>();
-        let (wish, least) = (sum(&|s| s.wish.max(s.least.0)), sum(&|s| s.least.0));
+        let (demand, least) = (sum(&|s| s.demand.max(s.least.0)), sum(&|s| s.least.0));
         let (low, high) = (i64::from(others[0].abs_diff(others[1])) + 2, i64::from(others[0] + others[1]) - 2);
         let even = |n: i64| n + (n + i64::from(others[0] + others[1])).rem_euclid(2);
-        let target = if even(wish.max(low)) <= high { even(wish.max(low)) } else { high };
+        let target = if even(demand.max(low)) <= high { even(demand.max(low)) } else { high };
         let by: Vec<usize> = (0..3).flat_map(|o| maps[o].keys()).filter_map(|s| self.strips[*s].fixed.map(|f| f.1)).collect();
         let fail =
             Conflict::ThreeSides { relation, counts: [0, 1, 2].map(|o| known[o].unwrap_or(least.max(0) as u32)), written: by.clone() };
@@ -464,16 +464,16 @@ impl<'a> Solver<'a> {
 mod tests {
     use super::*;
 
-    fn soft(wish: u32) -> Stretch {
-        Stretch { least: 1, wish, written: None, length: f64::from(wish), even: false }
+    fn soft(demand: u32) -> Stretch {
+        Stretch { least: 1, demand, written: None, length: f64::from(demand), even: false }
     }
 
     fn written(count: u32) -> Stretch {
         Stretch { written: Some(count), ..soft(3) }
     }
 
-    fn check(stretches: &[Stretch], relations: &[Relation], expected: Result<&[u32], Conflict>) {
-        let found = solve(stretches, relations, (10_000, 0.0)).map(|r| r.0);
+    fn check(segments: &[Stretch], relations: &[Relation], expected: Result<&[u32], Conflict>) {
+        let found = solve(segments, relations, (10_000, 0.0)).map(|r| r.0);
         assert_eq!(found, expected.map(<[u32]>::to_vec));
         if let Ok(n) = found {
             let sum = |side: &Vec<usize>| side.iter().map(|k| n[*k]).sum::<u32>();
@@ -517,7 +517,7 @@ mod tests {
     }
 
     #[test]
-    fn several_stretches_add_up() {
+    fn several_segments_add_up() {
         check(&[soft(9), soft(4), soft(3)], &[equal(&[0], &[1, 2])], Ok(&[9, 5, 4]));
         check(&[soft(5), soft(4), soft(3)], &[equal(&[0], &[1, 2])], Ok(&[7, 4, 3]));
         check(&[written(5), soft(4), soft(4)], &[equal(&[0], &[1, 2])], Ok(&[5, 3, 2]));
@@ -537,8 +537,8 @@ mod tests {
         check(&[soft(3), soft(2)], &[equal(&[0], &[0, 1])], Err(Conflict::Endless { relation: 0 }));
     }
 
-    fn even(wish: u32) -> Stretch {
-        Stretch { even: true, ..soft(wish) }
+    fn even(demand: u32) -> Stretch {
+        Stretch { even: true, ..soft(demand) }
     }
 
     #[test]

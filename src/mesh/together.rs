@@ -7,11 +7,11 @@
 use std::collections::BTreeMap;
 
 use super::build::Input;
-use super::chart::Shape;
 use super::data::Mesh;
 use super::edges::Limits;
-use super::faces::{Frame, Prepared, element_ranges};
-use super::free::face::Made;
+use super::face_geometry::Shape;
+use super::faces::{FaceMesh, Frame, element_ranges};
+use super::free::face::FaceInput;
 use super::free::twins::{Edge, is_upright, ordered, twins};
 use super::inside;
 use super::layout::Layout;
@@ -26,7 +26,7 @@ use crate::surface::{Nearest, Surface};
 pub type Together = (Edge, Vec<usize>);
 
 /// Takes other diagonals where two faces have one edge between them, and finds what falls together all the same.
-pub fn part(made: &Made, prepared: &[Prepared], (mesh, limits): (&mut Mesh, &Limits)) -> Vec<Together> {
+pub fn part(made: &FaceInput, prepared: &[FaceMesh], (mesh, limits): (&mut Mesh, &Limits)) -> Vec<Together> {
     let mut left = twins(made, prepared, mesh);
     for (edge, faces) in &mut left {
         let mut kept = faces.len();
@@ -43,7 +43,7 @@ pub fn part(made: &Made, prepared: &[Prepared], (mesh, limits): (&mut Mesh, &Lim
 }
 
 /// Elements of two faces with the same nodes.
-fn same_elements(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<Together> {
+fn same_elements(made: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Together> {
     let (border, places) = (made.nodes.total, element_ranges(prepared));
     let found = par::map(prepared.len(), |f| {
         let (triangles, quads) = places[f].clone();
@@ -60,8 +60,9 @@ fn same_elements(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<Togethe
 }
 
 /// Turns the diagonal of a cell of a mapped face that is this edge; whether it is one, and the other one does.
-fn take_other(made: &Made, ready: &Prepared, of: &std::ops::Range<usize>, (mesh, limits): (&mut Mesh, &Limits), edge: Edge) -> bool {
-    let (Shape::Grid(grid), Frame::Grid(frame), Elements::Triangles) = (&ready.chart.shape, &ready.chart.frame, ready.elements) else {
+fn take_other(made: &FaceInput, ready: &FaceMesh, of: &std::ops::Range<usize>, (mesh, limits): (&mut Mesh, &Limits), edge: Edge) -> bool {
+    let (Shape::Grid(grid), Frame::Grid(frame), Elements::Triangles) = (&ready.geometry.shape, &ready.geometry.frame, ready.elements)
+    else {
         return false;
     };
     let (nu, nv) = frame.size();
@@ -85,7 +86,7 @@ fn take_other(made: &Made, ready: &Prepared, of: &std::ops::Range<usize>, (mesh,
     let parts = [[x, a, y], [y, b, x]];
     let upright = |corners: &[u32; 3]| {
         let [p, q, r] = corners.map(uv);
-        is_upright(surface, if ready.chart.flipped { [p, r, q] } else { [p, q, r] })
+        is_upright(surface, if ready.geometry.flipped { [p, r, q] } else { [p, q, r] })
     };
     if !parts.iter().all(upright) || !keeps(surface, [uv(x), uv(y)], limits) {
         return false;
@@ -106,7 +107,7 @@ const TIMES: u32 = 3;
 
 /// What faces that fall together ask for: rows of mapped ones as verdicts; the others are changed in the layout. `None` where nothing
 /// is left to ask for.
-pub fn ask(layout: &mut Layout, prepared: &[Prepared], together: &[Together], asked: &mut BTreeMap<usize, u32>) -> Option<Asked> {
+pub fn ask(layout: &mut Layout, prepared: &[FaceMesh], together: &[Together], asked: &mut BTreeMap<usize, u32>) -> Option<Asked> {
     let mut rows = vec![Verdict::FINE; layout.faces.len()];
     let (mut any, mut anew) = (false, false);
     for f in together.iter().flat_map(|(_, faces)| faces.iter().copied()) {
@@ -115,7 +116,7 @@ pub fn ask(layout: &mut Layout, prepared: &[Prepared], together: &[Together], as
         if rows[f].size != [1.0; 2] || *times == TIMES {
             continue;
         }
-        match &prepared[f].chart.frame {
+        match &prepared[f].geometry.frame {
             Frame::Grid(frame) => {
                 let (nu, nv) = frame.size();
                 rows[f].size = [nu, nv].map(|n| if n == 1 { MORE } else { 1.0 });

@@ -1,6 +1,6 @@
 //! Mapped faces with three true sides: a lattice of triangles, or three blocks of quads.
 
-use super::chart::Lattice;
+use super::face_geometry::Lattice;
 
 /// Node ids of a lattice: its three sides ascending, and its first inner node.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,17 +23,17 @@ pub enum Uneven {
 }
 
 /// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.
-pub fn look(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> Vec<(usize, Uneven)> {
-    let mut strained: Vec<Option<f64>> = vec![None; layout.pieces.atoms.len()];
-    for (k, pace) in sizing.strained.iter().enumerate() {
-        let least = pace.as_ref().map_or(f64::INFINITY, |pace| pace.least());
-        strained[k] = (least + near < SHARE * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
+pub fn find(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> Vec<(usize, Uneven)> {
+    let mut required_on_mapped: Vec<Option<f64>> = vec![None; layout.pieces.segments.len()];
+    for (k, spacing) in sizing.required_on_mapped.iter().enumerate() {
+        let least = spacing.as_ref().map_or(f64::INFINITY, |spacing| spacing.least());
+        required_on_mapped[k] = (least + near < SHARE * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
     }
     let of = |face: &Face| {
         if face.free || face.method != Method::Auto || face.elements != Elements::Triangles || counted(face, sizing) {
             return None;
         }
-        let beside = face.stretches().filter_map(|k| strained[k]).reduce(f64::min);
+        let beside = face.segments().filter_map(|k| required_on_mapped[k]).reduce(f64::min);
         row(face, (nodes, near)).map(Uneven::Row).or(beside.map(Uneven::Beside))
     };
     layout.faces.iter().enumerate().filter_map(|(f, face)| Some((f, of(face)?))).collect()
@@ -41,14 +41,14 @@ pub fn look(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> V
 
 /// Whether all steps of a side are written: rows are what is meant.
 fn counted(face: &Face, sizing: &Sizing) -> bool {
-    let all = |side: &Border| !side.uses.is_empty() && side.uses.iter().all(|u| sizing.decisions[u.atom].count.is_some());
+    let all = |side: &Border| !side.uses.is_empty() && side.uses.iter().all(|u| sizing.decisions[u.segment].count.is_some());
     face.sides.iter().any(all)
 }
 
 /// The shortest step of a side next to much longer ones.
 fn row(face: &Face, (nodes, near): (&Nodes, f64)) -> Option<f64> {
     let n = face.sides.len();
-    let steps = |side: &Border| -> Vec<f64> { side.uses.iter().map(|u| (u.s.1 - u.s.0) / f64::from(nodes.count(u.atom))).collect() };
+    let steps = |side: &Border| -> Vec<f64> { side.uses.iter().map(|u| (u.s.1 - u.s.0) / f64::from(nodes.count(u.segment))).collect() };
     let all: Vec<Vec<f64>> = face.sides.iter().map(steps).collect();
     let longest = |k: usize| all[k].iter().copied().fold(0.0, f64::max);
     let mut found: Option<f64> = None;

@@ -11,10 +11,10 @@ use glam::DVec2;
 
 use super::assemble::closes;
 use super::build::Input;
-use super::chart::{Chart, Shape};
 use super::data::Mesh;
 use super::extent::{self, Extent};
-use super::faces::{Frame, Prepared, element_ranges};
+use super::face_geometry::{FaceGeometry, Shape};
+use super::faces::{FaceMesh, Frame, element_ranges};
 use super::layout::{Face, Layout};
 use super::nodes::Nodes;
 use super::plan::{Elements, Method};
@@ -241,7 +241,7 @@ impl Border {
             for k in side..(side + sides).min(face.sides.len()) {
                 for used in &face.sides[k].uses {
                     let back = input.model.runs_back(record, k) != face.flipped;
-                    let ids = nodes.of_stretch(layout, used.atom, used.against);
+                    let ids = nodes.of_segment(layout, used.segment, used.against);
                     own.edges.extend(ids.windows(2).map(|w| if back { [w[1], w[0]] } else { [w[0], w[1]] }));
                 }
             }
@@ -252,7 +252,7 @@ impl Border {
             own.euler = euler(starts.windows(2).map(|w| &own.edges[w[0]..w[1]]));
         }
         for line in &face.lines {
-            own.lines.extend(nodes.of_stretch(layout, *line, false).windows(2).map(|w| [w[0], w[1]]));
+            own.lines.extend(nodes.of_segment(layout, *line, false).windows(2).map(|w| [w[0], w[1]]));
         }
         own.points = face.points.iter().map(|k| nodes.points[*k]).collect();
         own
@@ -284,8 +284,8 @@ const SHARP: f64 = WHOLE_NUMBER;
 
 /// What the elements of a face cover in the parameter plane, if they lie side by side: over rows by their places, and others by their
 /// side where they are turned over in the parameter plane, which alone tells nothing beside a pole.
-fn unfolded(ready: &Prepared, mesh: &Mesh) -> Option<Extent> {
-    let Chart { shape, frame, surface, .. } = &ready.chart;
+fn unfolded(ready: &FaceMesh, mesh: &Mesh) -> Option<Extent> {
+    let FaceGeometry { shape, frame, surface, .. } = &ready.geometry;
     let ascends = |side: &Vec<f64>| side.windows(2).all(|w| w[1] > w[0]);
     let mut covered = Extent::default();
     match (shape, frame) {
@@ -339,9 +339,9 @@ fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), 
 }
 
 /// What is wrong with where the elements of a face lie on its surface.
-fn off_surface(input: &Input, (layout, nodes): (&Layout, &Nodes), (face, ready): (&Face, &Prepared), mesh: &Mesh) -> Option<Defect> {
+fn off_surface(input: &Input, (layout, nodes): (&Layout, &Nodes), (face, ready): (&Face, &FaceMesh), mesh: &Mesh) -> Option<Defect> {
     let Some(covered) = unfolded(ready, mesh) else { return Some(Defect::Folded) };
-    let left_out = match (&ready.chart.shape, &ready.chart.frame) {
+    let left_out = match (&ready.geometry.shape, &ready.geometry.frame) {
         (Shape::Free(free), Frame::Free(ids)) if closes(face) => {
             let triangles = free.triangles.iter().map(|t| t.as_slice());
             let elements = triangles.chain(free.quads.iter().map(|q| q.as_slice()));
@@ -357,7 +357,7 @@ fn off_surface(input: &Input, (layout, nodes): (&Layout, &Nodes), (face, ready):
 }
 
 /// The first face whose elements are not what it asks for, and what is wrong.
-pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepared: &[Prepared], mesh: &Mesh) -> Option<(usize, Defect)> {
+pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepared: &[FaceMesh], mesh: &Mesh) -> Option<(usize, Defect)> {
     let places = element_ranges(prepared);
     let found = par::map(prepared.len(), |f| {
         let (face, ready, (triangles, quads)) = (&layout.faces[f], &prepared[f], places[f].clone());
@@ -382,7 +382,7 @@ pub(super) fn unsound(input: &Input, (layout, nodes): (&Layout, &Nodes), prepare
 pub(super) fn fault(
     input: &Input,
     (layout, nodes, face): (&Layout, &Nodes, &Face),
-    (ready, defect): (&Prepared, Defect),
+    (ready, defect): (&FaceMesh, Defect),
     mesh: &Mesh,
 ) -> Fault {
     let at = defect.node().and_then(|n| mesh.nodes.get(n as usize).copied());
@@ -390,7 +390,7 @@ pub(super) fn fault(
     let surface = input.model.surfaces[face.surface.index()].surface.origin();
     let method = if face.free { word(face.method) } else { "mapped" };
     if let Some(turn) = face.turns().next() {
-        let at = layout.point(turn.atom, if turn.against { 0.0 } else { 1.0 });
+        let at = layout.point(turn.segment, if turn.against { 0.0 } else { 1.0 });
         return MeshFault::ClosesTooNear { surface, method, at, close: Close::Turn }.into();
     }
     if face.halved > 0 {
@@ -437,13 +437,13 @@ fn crowded(input: &Input, (layout, nodes, face): (&Layout, &Nodes, &Face), defec
     let Defect::Edge([a, b], ..) = defect else { return None };
     let is_edge = |w: &[u32]| w == [a, b] || w == [b, a];
     let place = |line: &usize| {
-        let k = nodes.of_stretch(layout, *line, false).windows(2).position(is_edge)?;
+        let k = nodes.of_segment(layout, *line, false).windows(2).position(is_edge)?;
         let at = nodes.fractions(*line, false);
         Some((*line, layout.point(*line, 0.5 * (at[k] + at[k + 1]))))
     };
     let (line, at) = face.lines.iter().find_map(place)?;
     let near = TOLD_APART * input.tolerance.point;
-    let others = face.stretches().filter(|other| *other != line).map(|other| layout.distance(other, at));
+    let others = face.segments().filter(|other| *other != line).map(|other| layout.distance(other, at));
     let apart = others.min_by(f64::total_cmp).filter(|apart| *apart <= near)?;
     let surface = input.model.surfaces[face.surface.index()].surface.origin();
     Some(CutFault::CutsTooNear { surface, cuts: [surface; 2], at, apart, tolerance: input.tolerance.point }.into())

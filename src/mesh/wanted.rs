@@ -15,7 +15,7 @@ const FLOOR: f64 = 0.01;
 
 /// Lengths wanted at places, and their floor.
 #[derive(Clone, Debug, Default)]
-pub struct Wanted {
+pub struct SizeRequests {
     /// Sources of `near` and `in`; tags are places in the plan's list.
     pub sources: Sources,
     /// What short edges of the model are taken for when sizes grow from them, model units.
@@ -24,7 +24,7 @@ pub struct Wanted {
     pub written: f64,
 }
 
-impl Wanted {
+impl SizeRequests {
     /// Of a plan whose size is `size` where no rule says another.
     ///
     /// Fails with E707 where a size is below a written `min_size`.
@@ -86,7 +86,7 @@ pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &S
         if triangle && u.0 + v.0 >= 1.0 {
             continue;
         }
-        let bounds = surface.spread(u, v).p.bounds();
+        let bounds = surface.enclosure(u, v).p.bounds();
         let (x, y) = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
         let p = if triangle && x + y > 1.0 { surface.point(u.0, v.0) } else { surface.point(x, y) };
         let reach = (p - bounds.min).max(bounds.max - p).length();

@@ -80,9 +80,9 @@ impl Model {
         let (edges, joins) = self.joins(&members, shell.near, network, tolerance);
         let slivers = self.slivers(&members, (&edges, &joins.pieces), shell.near);
         let mut body = Body { vertices: joins.pieces.junctions.clone(), ..Body::default() };
-        body.edges.extend(joins.pieces.atoms.iter().map(|atom| BodyEdge {
-            part: EdgePart { edge: edges[atom.track], s: atom.s, against: false },
-            ends: atom.ends,
+        body.edges.extend(joins.pieces.segments.iter().map(|segment| BodyEdge {
+            part: EdgePart { edge: edges[segment.track], s: segment.s, against: false },
+            ends: segment.ends,
             seam: None,
         }));
         for (surface, other) in &shell.surfaces {
@@ -94,7 +94,7 @@ impl Model {
                     for (edge, against) in sides {
                         let Ok(track) = edges.binary_search(&edge) else { continue };
                         let uses = &joins.pieces.of_track[track];
-                        let step = |u: &super::atoms::Use| (u.atom, u.against != against);
+                        let step = |u: &super::segments::SegmentUse| (u.segment, u.against != against);
                         if against { around.extend(uses.iter().rev().map(step)) } else { around.extend(uses.iter().map(step)) }
                     }
                     if *other {

@@ -16,7 +16,7 @@ use crate::base::par;
 use crate::base::solve::lowest;
 use crate::base::tolerance::{NEAREST, Tolerance};
 use crate::network::Network;
-use crate::surface::{Lean, Surface};
+use crate::surface::{OneSided, Surface};
 
 /// Steps of a stretch, at the least.
 const STEPS: usize = 200;
@@ -68,12 +68,12 @@ struct Border<'a> {
     edge: EdgeId,
     around: &'a Loop,
     piece: usize,
-    /// Arc lengths on the piece at the atom's start and end.
+    /// Arc lengths on the piece at the segment's start and end.
     ends: (f64, f64),
 }
 
 impl Border<'_> {
-    /// Arc length on the piece at a share of the atom.
+    /// Arc length on the piece at a share of the segment.
     fn station(&self, f: f64) -> f64 {
         self.ends.0 + (self.ends.1 - self.ends.0) * f
     }
@@ -89,7 +89,7 @@ impl Border<'_> {
 
     /// The face's unit normal at (u, v) on its border, from inside.
     fn normal(&self, (u, v): (f64, f64)) -> DVec3 {
-        let lean = |x: f64, (low, high): (f64, f64)| if x - low > high - x { Lean::Before } else { Lean::After };
+        let lean = |x: f64, (low, high): (f64, f64)| if x - low > high - x { OneSided::Before } else { OneSided::After };
         self.surface.normal_lean(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
     }
 
@@ -113,7 +113,7 @@ impl Model {
         wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
     ) -> Vec<Contact> {
         let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
-        let one = |a: &Border, b: &Border, atom| wanted((a.face, a.edge), (b.face, b.edge)).then(|| contact(a, b, &joins, atom));
+        let one = |a: &Border, b: &Border, segment| wanted((a.face, a.edge), (b.face, b.edge)).then(|| contact(a, b, &joins, segment));
         self.across(members, (&edges, &joins), one)
     }
 
@@ -121,9 +121,9 @@ impl Model {
     /// of their surfaces: an edge of each with where on it the middle of the stretch is. Otherwise as [`Model::contacts`].
     pub fn turns(&self, (members, near): (&[SurfaceId], f64), (network, tolerance): (&Network, &Tolerance)) -> Vec<Turn> {
         let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
-        let one = |a: &Border, b: &Border, atom| {
+        let one = |a: &Border, b: &Border, segment| {
             most_turn(a, b, STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()))).map(|turn| {
-                let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.atom == atom));
+                let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.segment == segment));
                 Turn { edge: a.edge, s: place.map_or(0.0, |u| 0.5 * (u.s.0 + u.s.1)), turn }
             })
         };
@@ -142,8 +142,8 @@ impl Model {
         let borders = self.borders((&faces, &loops), (edges, joins));
         let pairs = pairs_in_order(&borders);
         let found = par::map(pairs.len(), |n| {
-            let (atom, a, b) = pairs[n];
-            one(&borders[atom][a], &borders[atom][b], atom)
+            let (segment, a, b) = pairs[n];
+            one(&borders[segment][a], &borders[segment][b], segment)
         });
         found.into_iter().flatten().collect()
     }
@@ -154,7 +154,7 @@ impl Model {
         let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
         let borders = self.borders((&faces, &loops), (edges, joins));
-        par::map(borders.len(), |atom| match borders[atom].as_slice() {
+        par::map(borders.len(), |segment| match borders[segment].as_slice() {
             [a, b] => most_turn(a, b, SEEN),
             _ => None,
         })
@@ -166,9 +166,9 @@ impl Model {
         members.iter().filter(|s| seen.insert(**s)).flat_map(|s| self.patches_of(*s)).collect()
     }
 
-    /// The borders on each atom.
+    /// The borders on each segment.
     fn borders<'a>(&'a self, (faces, loops): (&[PatchId], &'a [Loop]), (edges, joins): (&[EdgeId], &Joins)) -> Vec<Vec<Border<'a>>> {
-        let mut borders: Vec<Vec<Border>> = joins.pieces.atoms.iter().map(|_| Vec::new()).collect();
+        let mut borders: Vec<Vec<Border>> = joins.pieces.segments.iter().map(|_| Vec::new()).collect();
         for (rank, (face, around)) in faces.iter().zip(loops).enumerate() {
             let patch = &self.patches[face.index()];
             let surface = &self.surfaces[patch.surface.index()].surface;
@@ -179,7 +179,7 @@ impl Model {
                 for part in &joins.pieces.of_track[place] {
                     let on = |s: f64| if against { entry.length() - s * share } else { s * share };
                     let ends = if part.against { (on(part.s.1), on(part.s.0)) } else { (on(part.s.0), on(part.s.1)) };
-                    borders[part.atom].push(Border { surface, patch, face: *face, rank, edge, around, piece, ends });
+                    borders[part.segment].push(Border { surface, patch, face: *face, rank, edge, around, piece, ends });
                 }
             }
         }
@@ -198,14 +198,16 @@ pub struct Turn {
     pub turn: f64,
 }
 
-/// Each two borders on one atom, with the atom: by the first one's face, then along its border.
+/// Each two borders on one segment, with the segment: by the first one's face, then along its border.
 fn pairs_in_order(borders: &[Vec<Border>]) -> Vec<(usize, usize, usize)> {
-    let of_atom = |atom: usize| {
-        let count = borders[atom].len();
-        (0..count).flat_map(move |a| (a + 1..count).map(move |b| (atom, a, b)))
+    let of_atom = |segment: usize| {
+        let count = borders[segment].len();
+        (0..count).flat_map(move |a| (a + 1..count).map(move |b| (segment, a, b)))
     };
     let mut order: Vec<(usize, usize, usize)> = (0..borders.len()).flat_map(of_atom).collect();
-    let key = |(atom, a, _): &(usize, usize, usize)| (borders[*atom][*a].rank, borders[*atom][*a].piece, borders[*atom][*a].station(0.5));
+    let key = |(segment, a, _): &(usize, usize, usize)| {
+        (borders[*segment][*a].rank, borders[*segment][*a].piece, borders[*segment][*a].station(0.5))
+    };
     order.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
@@ -282,7 +284,7 @@ fn foot(jet: impl Fn(f64) -> Place, p: DVec3, near: f64, range: (f64, f64)) -> (
 }
 
 /// Walks the stretch that two borders share.
-fn contact(a: &Border, b: &Border, joins: &Joins, atom: usize) -> Contact {
+fn contact(a: &Border, b: &Border, joins: &Joins, segment: usize) -> Contact {
     let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
     let at = |f: f64| {
         let (uv, p, _) = a.jet(a.station(f));
@@ -305,8 +307,8 @@ fn contact(a: &Border, b: &Border, joins: &Joins, atom: usize) -> Contact {
     Contact {
         faces: (a.face, b.face),
         edges: (a.edge, b.edge),
-        length: joins.pieces.atoms[atom].length(),
-        middle: joins.middle(atom),
+        length: joins.pieces.segments[segment].length(),
+        middle: joins.middle(segment),
         gap: spread(steps, gap, point).unwrap_or(Spread { min: 0.0, max: 0.0, mean: 0.0, at: point(0.5) }),
         angle: spread(steps, angle, point),
     }

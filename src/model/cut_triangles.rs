@@ -208,7 +208,7 @@ fn kept_sides(crossings: &[Crossing]) -> Option<Vec<(Place, Place)>> {
 /// Halvings until a crossing is settled.
 const HALVINGS: usize = 50;
 /// Places of a step at which it is looked whether it is still in a triangle.
-const LOOKS: usize = 4;
+const MAX_SAMPLES: usize = 4;
 
 /// Follows a loop, steps of borders between places where they are less than smooth, through the triangles.
 fn follow(tiles: &Tiles, border: &Border, steps: &[(usize, (f64, f64))], ways: &mut Ways) -> Option<()> {
@@ -262,8 +262,8 @@ const MOST: usize = 64;
 /// Where a border leaves a triangle, and over which side; `None` where it stays.
 fn leaves(tiles: &Tiles, border: &Border, n: usize, which: usize, (t, end): (f64, f64)) -> Option<(f64, usize)> {
     let mut inside = t;
-    for k in 1..=LOOKS {
-        let there = if k == LOOKS { end } else { t + (end - t) * k as f64 / LOOKS as f64 };
+    for k in 1..=MAX_SAMPLES {
+        let there = if k == MAX_SAMPLES { end } else { t + (end - t) * k as f64 / MAX_SAMPLES as f64 };
         if tiles.out(n, border.at(which, there)).is_none() {
             inside = there;
             continue;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::atoms::Part;
 use super::gather::Station;
+use super::segments::Part;
 use super::trace::Track;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;

@@ -13,7 +13,7 @@ use crate::surface::{Jet2, Surface};
 /// Points a direction of the rules compared.
 const ORDERS: [usize; 2] = [7, 10];
 /// Halvings of a part of a border at most.
-const DEEPEST: u32 = 14;
+const MAX_DEPTH: u32 = 14;
 
 /// The integral of N functions of the jet over the kept part, with estimated errors: `accuracy` is relative to the sum of absolute
 /// values. `None` where the border could not be followed from triangle to triangle.
@@ -62,7 +62,7 @@ pub(super) fn cut_triangles_integral<const N: usize>(
     while let Some((arc, rough, depth)) = open.pop() {
         let fine = cone(&arc, &rules[1]).0;
         let apart: Sums<N> = std::array::from_fn(|k| (fine[k] - rough[k]).abs());
-        if depth == DEEPEST || (0..N).all(|k| apart[k] <= share * scale[k]) {
+        if depth == MAX_DEPTH || (0..N).all(|k| apart[k] <= share * scale[k]) {
             (0..N).for_each(|k| {
                 sum.0[k] += fine[k];
                 sum.1[k] += apart[k];

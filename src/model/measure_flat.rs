@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::measure_quadrature::{DEEPEST, ORDERS, Sums, small};
+use super::measure_quadrature::{MAX_DEPTH, ORDERS, Sums, small};
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::network::Chain;
@@ -110,7 +110,7 @@ pub fn flat_integral<const N: usize>(
         job::look();
         let (rough, value) = (round(&rules[0], run, false), round(&rules[1], run, false));
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
-        if depth == DEEPEST || small(&apart, &scale.map(|s| share * s)) {
+        if depth == MAX_DEPTH || small(&apart, &scale.map(|s| share * s)) {
             for i in 0..N {
                 sum[i] += value[i];
                 error[i] += apart[i];

@@ -11,7 +11,7 @@ pub(super) const ORDERS: [usize; 4] = [4, 7, 11, 16];
 /// The same where the first division has many cells, each of which is little.
 const ORDERS_OF_MANY: [usize; 5] = [3, 5, 7, 11, 16];
 /// A cell is halved at most so often in each direction.
-pub(super) const DEEPEST: u32 = 12;
+pub(super) const MAX_DEPTH: u32 = 12;
 /// Cells examined in all.
 const MOST_CELLS: usize = 1 << 14;
 /// A rule that differs from the one before by more than this share of what that differed by shows that the function is not smooth.
@@ -93,7 +93,7 @@ pub fn integral<const N: usize>(
         for (cell, start, limit) in open {
             job::look();
             let (value, apart) = measured(&rules, &start, &limit, |k| product(surface, &cell, &rules[k], f));
-            if small(&apart, &limit) || cell.depth >= DEEPEST {
+            if small(&apart, &limit) || cell.depth >= MAX_DEPTH {
                 add(&mut sum, &value);
                 add(&mut error, &apart);
             } else {

@@ -10,7 +10,7 @@ use crate::surface::{Jet2, Surface};
 /// Points a direction of the rules compared.
 const ORDERS: [usize; 2] = [7, 10];
 /// Halvings of both directions at most.
-const DEEPEST: u32 = 12;
+const MAX_DEPTH: u32 = 12;
 
 /// The integral of N functions of the jet over the triangles, with estimated errors: `accuracy` is relative to the sum of absolute
 /// values. A triangle whose rules differ is cut in four.
@@ -47,7 +47,7 @@ pub fn triangles_integral<const N: usize>(
     while let Some((t, rough, depth)) = open.pop() {
         let fine = over(&t, &rules[1]).0;
         let apart: Sums<N> = std::array::from_fn(|k| (fine[k] - rough[k]).abs());
-        if depth == DEEPEST || (0..N).all(|k| apart[k] <= share * scale[k]) {
+        if depth == MAX_DEPTH || (0..N).all(|k| apart[k] <= share * scale[k]) {
             (0..N).for_each(|k| {
                 sum[k] += fine[k];
                 error[k] += apart[k];

@@ -8,7 +8,7 @@ use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
 use crate::network::Chain;
-use crate::surface::quick::Quick;
+use crate::surface::quick::PowerForm;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
 
 /// Points of the rules along a border, the first pair for runs between breaks only, and across the surface.
@@ -19,7 +19,7 @@ const SIZED: [f64; 3] = [0.13, 0.46, 0.89];
 /// Units of work that a place of a scattered surface takes beside the one of a curve: the triangle that holds it has to be found.
 const DEAR: u64 = 3;
 /// A run of a border is halved at most so often.
-const DEEPEST: u32 = 14;
+const MAX_DEPTH: u32 = 14;
 
 /// Sums of N functions.
 pub(super) type Sums<const N: usize> = [f64; N];
@@ -76,7 +76,7 @@ pub fn trimmed_integral<const N: usize>(
     let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
     let closed_v = surface.closed().1;
-    let quick = surface.quick();
+    let quick = surface.power_form();
     let dear = if surface.is_scattered() { DEAR } else { 0 };
     let jet = |u, v| {
         work::spend(dear);
@@ -174,7 +174,7 @@ pub fn trimmed_integral<const N: usize>(
             let value = run(&next, &rules[1][1], false).sum;
             (value, apart(&value, &run(&next, &rules[1][0], false).sum))
         });
-        if next.depth == DEEPEST || settled(&off) {
+        if next.depth == MAX_DEPTH || settled(&off) {
             for i in 0..N {
                 sum[i] += value[i];
                 error[i] += off[i];
@@ -209,7 +209,7 @@ impl Way {
     }
 
     /// (u, v) at a share of the way, and dv by the share.
-    fn at(&self, (surface, quick): (&Surface, Option<&Quick>), jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
+    fn at(&self, (surface, quick): (&Surface, Option<&PowerForm>), jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
         match self {
             Self::Line(a, b) => (DVec2::new(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t), b.1 - a.1),
             Self::Chain(side, chain, from, to) => {

@@ -1,7 +1,6 @@
 //! Floor 4: patches, edges, vertices, loops and shells cut and glued from surfaces.
 
 pub mod apart;
-pub mod atoms;
 pub mod body;
 pub mod carry;
 pub mod contact;
@@ -27,6 +26,7 @@ pub mod moments;
 mod nearest;
 mod outwards;
 mod patches;
+pub mod segments;
 mod sew;
 pub mod shared;
 pub mod shells;

@@ -106,9 +106,9 @@ impl Moments {
         let mut sum = [0.0; N];
         while let Some((part, depth)) = open.pop() {
             job::look();
-            const DEEPEST: u32 = 20;
+            const MAX_DEPTH: u32 = 20;
             let (rough, fine) = (rule_on(&rules[0], part), rule_on(&rules[1], part));
-            if depth == DEEPEST || rough.iter().zip(&fine).all(|(a, b)| (a - b).abs() <= share) {
+            if depth == MAX_DEPTH || rough.iter().zip(&fine).all(|(a, b)| (a - b).abs() <= share) {
                 add(&mut sum, 1.0, &fine);
             } else {
                 let (curve, a, b) = part;

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::atoms::Atoms;
 use super::feet::Piece;
 use super::measure;
+use super::segments::Segments;
 use super::shells::{Joins, ShellRequest};
 use super::topology::{EdgeId, Model, Patch, PatchId, SurfaceId};
 use crate::base::fault::{Fault, MeshFault, Result, SurfaceFault};
@@ -45,9 +45,9 @@ impl Model {
 const SAMPLES: usize = 8;
 
 impl Model {
-    /// Whether a patch is thinner than what was glued: its loop runs along every atom there and back, and it has no more area than
+    /// Whether a patch is thinner than what was glued: its loop runs along every segment there and back, and it has no more area than
     /// a strip as wide as `near` along half its border. A tube or a torus runs there and back along its seam, too, but has area.
-    pub fn is_sliver(&self, id: PatchId, (edges, pieces): (&[EdgeId], &Atoms), near: f64) -> bool {
+    pub fn is_sliver(&self, id: PatchId, (edges, pieces): (&[EdgeId], &Segments), near: f64) -> bool {
         let patch = &self.patches[id.index()];
         let mut net: BTreeMap<usize, i32> = BTreeMap::new();
         let mut around = 0.0;
@@ -57,7 +57,7 @@ impl Model {
                 around += self.edges[edge.index()].length;
                 let Ok(part) = edges.binary_search(edge) else { return false };
                 for u in &pieces.of_track[part] {
-                    *net.entry(u.atom).or_default() += if (*against != backwards) == u.against { 1 } else { -1 };
+                    *net.entry(u.segment).or_default() += if (*against != backwards) == u.against { 1 } else { -1 };
                 }
             }
         }
@@ -88,19 +88,19 @@ impl Seams<'_> {
         Piece { track: &self.joins.parts[part].track, s }
     }
 
-    /// Where the borders of an atom are furthest from the one that gives its geometry.
+    /// Where the borders of an segment are furthest from the one that gives its geometry.
     fn widest(&self) -> Option<Gap> {
         let mut found: Option<Gap> = None;
         for (part, uses) in self.joins.pieces.of_track.iter().enumerate() {
             for u in uses {
-                let atom = &self.joins.pieces.atoms[u.atom];
-                if atom.track == part {
+                let segment = &self.joins.pieces.segments[u.segment];
+                if segment.track == part {
                     continue;
                 }
-                let (here, there) = (self.piece(part, u.s), self.piece(atom.track, atom.s));
+                let (here, there) = (self.piece(part, u.s), self.piece(segment.track, segment.s));
                 let (width, at) = here.off(&there, u.against);
                 if found.as_ref().is_none_or(|f| width > f.width) {
-                    found = Some(Gap { width, at, surfaces: (self.surface(atom.track), self.surface(part)) });
+                    found = Some(Gap { width, at, surfaces: (self.surface(segment.track), self.surface(part)) });
                 }
             }
         }
@@ -135,11 +135,11 @@ impl Seams<'_> {
     /// E711 for two free pieces that run along each other just beyond a stated reach: they were meant to be one.
     pub fn refuse_gaps(&self, request: &ShellRequest, free: &[usize]) -> Result<()> {
         let Some((stated, says)) = request.snap else { return Ok(()) };
-        let atoms = &self.joins.pieces.atoms;
+        let segments = &self.joins.pieces.segments;
         let mut worst: Option<Gap> = None;
         for (n, a) in free.iter().enumerate() {
             for b in &free[n + 1..] {
-                let (a, b) = (&atoms[*a], &atoms[*b]);
+                let (a, b) = (&segments[*a], &segments[*b]);
                 let (long, short) = if a.length() >= b.length() { (a, b) } else { (b, a) };
                 let (here, there) = (self.piece(short.track, short.s), self.piece(long.track, long.s));
                 let (width, at) = here.from(&there);

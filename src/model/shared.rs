@@ -196,7 +196,7 @@ struct Sharing<'a> {
     model: &'a Model,
     edges: &'a [EdgeId],
     joins: &'a Joins,
-    /// Tracks with a face, ascending, on each atom.
+    /// Tracks with a face, ascending, on each segment.
     on: Vec<Vec<usize>>,
     /// Faces on each edge.
     users: Vec<Vec<PatchId>>,
@@ -207,7 +207,7 @@ struct Sharing<'a> {
     corners: BTreeMap<usize, VertexId>,
 }
 
-/// Atoms one after the other that the same tracks run along, each with whether it is run against.
+/// Segments one after the other that the same tracks run along, each with whether it is run against.
 type Run = Vec<(usize, bool)>;
 
 impl<'a> Sharing<'a> {
@@ -215,9 +215,9 @@ impl<'a> Sharing<'a> {
         let order: BTreeMap<PatchId, usize> = faces.iter().enumerate().map(|(n, face)| (*face, n)).collect();
         let of_edge = |edge: &EdgeId| model.edges[edge.index()].users.iter().map(|u| u.0).filter(|p| order.contains_key(p)).collect();
         let users: Vec<Vec<PatchId>> = edges.iter().map(of_edge).collect();
-        let mut on = vec![Vec::new(); joins.pieces.atoms.len()];
+        let mut on = vec![Vec::new(); joins.pieces.segments.len()];
         for (track, uses) in joins.pieces.of_track.iter().enumerate().filter(|(track, _)| !users[*track].is_empty()) {
-            uses.iter().for_each(|u| on[u.atom].push(track));
+            uses.iter().for_each(|u| on[u.segment].push(track));
         }
         on.iter_mut().for_each(|tracks: &mut Vec<usize>| tracks.dedup());
         let mut corners: BTreeMap<usize, VertexId> = BTreeMap::new();
@@ -260,24 +260,26 @@ impl<'a> Sharing<'a> {
     fn runs(&self, track: usize, against: bool) -> Vec<Run> {
         let uses = &self.joins.pieces.of_track[track];
         let steps: Run = if against {
-            uses.iter().rev().map(|u| (u.atom, !u.against)).collect()
+            uses.iter().rev().map(|u| (u.segment, !u.against)).collect()
         } else {
-            uses.iter().map(|u| (u.atom, u.against)).collect()
+            uses.iter().map(|u| (u.segment, u.against)).collect()
         };
         steps.chunk_by(|a, b| self.on[a.0] == self.on[b.0]).map(<[_]>::to_vec).collect()
     }
 
     /// The edge that a run along a track is.
     fn edge(&self, track: usize, run: &[(usize, bool)]) -> SharedEdge {
-        let atoms = &self.joins.pieces.atoms;
+        let segments = &self.joins.pieces.segments;
         let tracks = &self.on[run[0].0];
         // As in meshes: the border that gives the geometry of the stretches, where one gives that of all.
-        let giver = atoms[run[0].0].track;
-        let one = tracks.contains(&giver) && run.iter().all(|(atom, _)| atoms[*atom].track == giver);
+        let giver = segments[run[0].0].track;
+        let one = tracks.contains(&giver) && run.iter().all(|(segment, _)| segments[*segment].track == giver);
         let giver = if one && self.course(giver, run).len() == 1 { giver } else { track };
         let mut courses = vec![self.course(giver, run)];
         courses.extend(tracks.iter().filter(|t| **t != giver).map(|t| self.course(*t, run)));
-        let ends = |(atom, against): (usize, bool)| if against { (atoms[atom].ends.1, atoms[atom].ends.0) } else { atoms[atom].ends };
+        let ends = |(segment, against): (usize, bool)| {
+            if against { (segments[segment].ends.1, segments[segment].ends.0) } else { segments[segment].ends }
+        };
         let own = self.model.edges[self.edges[track].index()].vertices;
         let corner = |junction: usize, other: VertexId| self.corners.get(&junction).copied().unwrap_or(other);
         let mut ends = (corner(ends(run[0]).0, own.0), corner(ends(run[run.len() - 1]).1, own.1));
@@ -301,8 +303,8 @@ impl<'a> Sharing<'a> {
     fn course(&self, track: usize, run: &[(usize, bool)]) -> Course {
         let (edge, uses) = (self.edges[track], &self.joins.pieces.of_track[track]);
         let mut course = Course::new();
-        for (atom, backwards) in run {
-            let Some(place) = uses.iter().find(|u| u.atom == *atom) else { continue };
+        for (segment, backwards) in run {
+            let Some(place) = uses.iter().find(|u| u.segment == *segment) else { continue };
             let against = place.against != *backwards;
             match course.last_mut() {
                 Some(part) if part.against == against && !against && part.s.1 == place.s.0 => part.s.1 = place.s.1,

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::atoms::{Atoms, Part, atoms};
 use super::gather::Station;
 use super::glue::preference;
+use super::segments::{Part, Segments, segments};
 use super::sew::Seams;
 use super::sides::{Component, Usage, components, usages};
 use super::topology::{EdgeId, Model, PatchId, Shell, SurfaceId};
@@ -16,10 +16,10 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 
-/// Edges of a shell as tracks, and their atoms.
+/// Edges of a shell as tracks, and their segments.
 pub(super) struct Joins {
     pub parts: Vec<Part>,
-    pub pieces: Atoms,
+    pub pieces: Segments,
 }
 
 /// Surfaces with their edges joined.
@@ -31,15 +31,15 @@ pub(super) struct Sewn {
     pub joins: Joins,
     /// Patches thinner than that, ascending.
     pub slivers: Vec<PatchId>,
-    /// Who uses each atom of the edges; slivers do not.
+    /// Who uses each segment of the edges; slivers do not.
     pub usages: Vec<Vec<Usage>>,
 }
 
 impl Joins {
-    /// The point in the middle of an atom.
-    pub fn middle(&self, atom: usize) -> DVec3 {
-        let atom = &self.pieces.atoms[atom];
-        self.parts[atom.track].track.point(0.5 * (atom.s.0 + atom.s.1))
+    /// The point in the middle of an segment.
+    pub fn middle(&self, segment: usize) -> DVec3 {
+        let segment = &self.pieces.segments[segment];
+        self.parts[segment.track].track.point(0.5 * (segment.s.0 + segment.s.1))
     }
 }
 
@@ -61,13 +61,13 @@ impl Model {
         }
         let sides = self.orient(request, &joins, (&usages, &slivers), tolerance, sink)?;
         seams.tell(request, &slivers, tolerance, sink);
-        if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.atoms[*a].length().total_cmp(&pieces.atoms[*b].length())) {
-            let length = free.iter().map(|a| pieces.atoms[*a].length()).sum();
+        if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.segments[*a].length().total_cmp(&pieces.segments[*b].length())) {
+            let length = free.iter().map(|a| pieces.segments[*a].length()).sum();
             let at = joins.middle(longest);
             sink.push(SurfaceFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
         }
         let mut free: Vec<_> =
-            free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.atoms[*a].length()))).collect();
+            free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.segments[*a].length()))).collect();
         free.sort_by(|a, b| b.2.total_cmp(&a.2));
         Ok(Shell {
             name: request.name.clone(),
@@ -101,7 +101,7 @@ impl Model {
         Sewn { near, edges, joins, slivers, usages }
     }
 
-    /// Edges of some surfaces, cut into atoms; borders up to `near` apart are one.
+    /// Edges of some surfaces, cut into segments; borders up to `near` apart are one.
     pub(super) fn joins(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
         let edges: Vec<EdgeId> = (0..self.edges.len())
             .map(EdgeId::at)
@@ -122,12 +122,12 @@ impl Model {
                 [ends.0, ends.1].map(|v| Station { point: self.vertices[v.index()].point, reach: near })
             })
             .collect();
-        let pieces = atoms(&parts, &anchors, tolerance);
+        let pieces = segments(&parts, &anchors, tolerance);
         (edges, Joins { parts, pieces })
     }
 
     /// Patches of some surfaces that are thinner than what was glued, ascending.
-    pub(super) fn slivers(&self, members: &BTreeSet<SurfaceId>, (edges, pieces): (&[EdgeId], &Atoms), near: f64) -> Vec<PatchId> {
+    pub(super) fn slivers(&self, members: &BTreeSet<SurfaceId>, (edges, pieces): (&[EdgeId], &Segments), near: f64) -> Vec<PatchId> {
         let mut found: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
         found.retain(|p| self.is_sliver(*p, (edges, pieces), near));
         found.sort_unstable();
@@ -140,9 +140,9 @@ impl Model {
 
     /// E617 where more than two faces share a stretch.
     fn manifold(&self, request: &ShellRequest, joins: &Joins, usages: &[Vec<Usage>]) -> Result<()> {
-        for (atom, users) in usages.iter().enumerate() {
+        for (segment, users) in usages.iter().enumerate() {
             if users.len() > 2 {
-                let at = joins.middle(atom);
+                let at = joins.middle(segment);
                 let users = users.iter().map(|(s, _)| self.origin_of(*s)).collect();
                 return Err(SurfaceFault::ShellNonManifold { shell: request.origin, users, at }.into());
             }
@@ -163,7 +163,7 @@ impl Model {
         let mut components = components(&whole, usages);
         if let Some(one_sided) = components.iter().find_map(|c| c.one_sided.as_ref()) {
             let (a, b) = (self.origin_of(one_sided.faces.0), self.origin_of(one_sided.faces.1));
-            let at = joins.middle(one_sided.atom);
+            let at = joins.middle(one_sided.segment);
             return Err(SurfaceFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
         }
         match components.as_slice() {

@@ -2,20 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use super::atoms::Atoms;
 use super::glue::root;
+use super::segments::Segments;
 use super::topology::{EdgeId, Model, PatchId, SurfaceId};
 use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 
-/// One use of an atom by a surface: `true` where the surface's loop runs against the atom.
+/// One use of an segment by a surface: `true` where the surface's loop runs against the segment.
 pub(super) type Usage = (SurfaceId, bool);
 
-/// Two faces that cannot agree on a side, and the atom between them.
+/// Two faces that cannot agree on a side, and the segment between them.
 pub(super) struct OneSided {
     pub faces: (SurfaceId, SurfaceId),
-    pub atom: usize,
+    pub segment: usize,
 }
 
 /// Faces that hang together by edges that two of them share.
@@ -28,36 +28,36 @@ pub(super) struct Component {
     pub one_sided: Option<OneSided>,
 }
 
-/// The uses of each atom, in the order of the edges.
+/// The uses of each segment, in the order of the edges.
 pub(super) fn usages(
     model: &Model,
-    (edges, pieces): (&[EdgeId], &Atoms),
+    (edges, pieces): (&[EdgeId], &Segments),
     is_member: impl Fn(SurfaceId, PatchId) -> bool,
 ) -> Vec<Vec<Usage>> {
-    let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.atoms.len()];
+    let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.segments.len()];
     for (edge, uses) in edges.iter().zip(&pieces.of_track) {
         for (patch, against) in &model.edges[edge.index()].users {
             let surface = model.patches[patch.index()].surface;
             if is_member(surface, *patch) {
-                uses.iter().for_each(|u| usages[u.atom].push((surface, *against != u.against)));
+                uses.iter().for_each(|u| usages[u.segment].push((surface, *against != u.against)));
             }
         }
     }
     usages
 }
 
-/// Components of some faces, in the order of their first ones. An atom that more than two faces use joins none of them.
+/// Components of some faces, in the order of their first ones. An segment that more than two faces use joins none of them.
 pub(super) fn components(listed: &[SurfaceId], usages: &[Vec<Usage>]) -> Vec<Component> {
     let count = listed.iter().map(|s| s.index() + 1).max().unwrap_or(0);
     let mut neighbours: Vec<Vec<(SurfaceId, bool, usize)>> = vec![Vec::new(); count];
     let mut parent: Vec<usize> = (0..count).collect();
     let mut open = vec![false; count];
-    for (atom, users) in usages.iter().enumerate() {
+    for (segment, users) in usages.iter().enumerate() {
         if let [a, b] = users.as_slice() {
             // Used in the same sense, one of the two must be turned.
             let turned = a.1 == b.1;
-            neighbours[a.0.index()].push((b.0, turned, atom));
-            neighbours[b.0.index()].push((a.0, turned, atom));
+            neighbours[a.0.index()].push((b.0, turned, segment));
+            neighbours[b.0.index()].push((a.0, turned, segment));
             let (ra, rb) = (root(&mut parent, a.0.index()), root(&mut parent, b.0.index()));
             parent[ra.max(rb)] = ra.min(rb);
         } else {
@@ -86,14 +86,14 @@ fn spread(first: SurfaceId, neighbours: &[Vec<(SurfaceId, bool, usize)>], sides:
     let (mut open, mut one_sided) = (vec![first], None);
     while let Some(surface) = open.pop() {
         let own = sides[surface.index()].unwrap_or(false);
-        for &(other, turned, atom) in &neighbours[surface.index()] {
+        for &(other, turned, segment) in &neighbours[surface.index()] {
             match sides[other.index()] {
                 None => {
                     sides[other.index()] = Some(own != turned);
                     open.push(other);
                 }
                 Some(side) if side != (own != turned) => {
-                    one_sided.get_or_insert(OneSided { faces: (surface, other), atom });
+                    one_sided.get_or_insert(OneSided { faces: (surface, other), segment });
                 }
                 Some(_) => {}
             }

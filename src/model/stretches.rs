@@ -45,37 +45,37 @@ impl Model {
     /// shared.
     pub fn stretches(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Vec<Stretch> {
         let (edges, joins) = self.joins(members, near, network, tolerance);
-        let n = joins.pieces.atoms.len();
+        let n = joins.pieces.segments.len();
         let mut users: Vec<Vec<SurfaceId>> = vec![Vec::new(); n];
         let mut inside = vec![false; n];
         for (edge, uses) in edges.iter().zip(&joins.pieces.of_track) {
             for (patch, _) in &self.edges[edge.index()].users {
                 let patch = &self.patches[patch.index()];
                 if members.contains(&patch.surface) {
-                    for atom in uses.iter().map(|u| u.atom) {
-                        users[atom].push(patch.surface);
-                        inside[atom] |= self.is_inside(patch, *edge);
+                    for segment in uses.iter().map(|u| u.segment) {
+                        users[segment].push(patch.surface);
+                        inside[segment] |= self.is_inside(patch, *edge);
                     }
                 }
             }
         }
-        let meeting = |atom: usize| match users[atom].as_slice() {
+        let meeting = |segment: usize| match users[segment].as_slice() {
             [_] => Meeting::Free,
             [a, b] if a != b => Meeting::Joined,
-            [_, _] if inside[atom] => Meeting::Kink,
+            [_, _] if inside[segment] => Meeting::Kink,
             [_, _] => Meeting::Seam,
             _ => Meeting::Crowded,
         };
         let members: Vec<SurfaceId> = members.iter().copied().collect();
         let turns = self.turns_across(&members, (&edges, &joins));
-        let stretch = |(k, atom): (usize, &super::atoms::Atom)| Stretch {
-            track: joins.parts[atom.track].track.clone(),
-            s: atom.s,
+        let stretch = |(k, segment): (usize, &super::segments::Segment)| Stretch {
+            track: joins.parts[segment.track].track.clone(),
+            s: segment.s,
             meeting: meeting(k),
             surfaces: users[k].clone(),
             turn: turns[k],
         };
-        joins.pieces.atoms.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()).map(stretch).collect()
+        joins.pieces.segments.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()).map(stretch).collect()
     }
 
     /// Whether an edge is on a side of its patch that is not a side of the whole surface.

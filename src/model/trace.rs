@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use super::nearest::nearest;
 use super::topology::EdgeCurve;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::job;
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::quick::Quick;
-use crate::surface::{Lean, Surface};
+use crate::surface::quick::PowerForm;
+use crate::surface::{OneSided, Surface};
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
@@ -23,7 +23,7 @@ const STEPS: usize = 60;
 #[derive(Clone, Debug)]
 pub struct Trace {
     surface: Surface,
-    quick: Option<Quick>,
+    quick: Option<PowerForm>,
     from: (f64, f64),
     to: (f64, f64),
     panels: Vec<Panel>,
@@ -48,7 +48,7 @@ impl Trace {
     }
 
     /// The same with the surface made ready, where it is.
-    pub fn by((surface, quick): (&Surface, Option<Quick>), from: (f64, f64), to: (f64, f64)) -> Self {
+    pub fn by((surface, quick): (&Surface, Option<PowerForm>), from: (f64, f64), to: (f64, f64)) -> Self {
         let mut trace = Self { surface: surface.clone(), quick, from, to, panels: Vec::new(), length: 0.0 };
         let (start, end) = (trace.surface.point(from.0, from.1), trace.surface.point(to.0, to.1));
         // Along a pole all is rounding.
@@ -88,8 +88,8 @@ impl Trace {
         let (along_u, along_v) = (self.to.0 - self.from.0, self.to.1 - self.from.1);
         let [p, du, dv] = if t == 0.0 || t == 1.0 {
             // A line may end at a kink: its own direction there is that of what it comes from.
-            let lean = |way: f64| if way != 0.0 && (t == 0.0) != (way > 0.0) { Lean::Before } else { Lean::After };
-            let jet = self.surface.jet_lean(u, v, (lean(along_u), lean(along_v)));
+            let lean = |way: f64| if way != 0.0 && (t == 0.0) != (way > 0.0) { OneSided::Before } else { OneSided::After };
+            let jet = self.surface.jet_one_sided(u, v, (lean(along_u), lean(along_v)));
             [jet.p, jet.du, jet.dv]
         } else {
             self.surface.tangents_by(self.quick.as_ref(), u, v)
@@ -161,8 +161,8 @@ pub enum Track {
     Iso(Trace),
 }
 
-impl Content for Track {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Track {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Links { chains, starts, span } => (0u8, (chains, starts, *span)).tell(to),
             Self::Iso(trace) => (1u8, trace).tell(to),

@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::enclosure::{self, ChainEnclosure};
 use super::slice;
-use super::spread::{self, ChainSpread};
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::{NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -82,8 +82,8 @@ struct Inner {
 
 crate::content!(Inner { runs, joints, length } but { rates, straight, origin });
 
-impl Content for Chain {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Chain {
+    fn tell(&self, to: &mut StableHasher) {
         self.0.tell(to);
     }
 }
@@ -334,8 +334,8 @@ impl Chain {
     }
 
     /// Bounds of the derivatives by the fraction between two fractions, `f0 < f1`.
-    pub fn spread(&self, f0: f64, f1: f64) -> ChainSpread {
-        spread::of_chain(self, f0, f1)
+    pub fn enclosure(&self, f0: f64, f1: f64) -> ChainEnclosure {
+        enclosure::of_chain(self, f0, f1)
     }
 
     /// A box that holds the chain (of the whole curves it runs on where they are cut).

@@ -16,7 +16,7 @@ use std::time::SystemTime;
 
 use super::staging::Staging;
 use crate::base::bytes::{self, bytes_of};
-use crate::base::digest::{Digest, Digester};
+use crate::base::digest::{Digest, StableHasher};
 use crate::base::limits::CACHE_BYTES;
 use crate::mesh::reuse::Shelf;
 
@@ -180,7 +180,7 @@ impl Shelf for Cache {
 
 /// The checksum of a body of a kind, so that a file of one kind does not pass for another.
 fn checksum_of(kind: &str) -> impl Fn(&[u8]) -> u128 {
-    move |body| Digester::new(kind).bytes(body).finish().0
+    move |body| StableHasher::new(kind).bytes(body).finish().0
 }
 
 /// Whether a file has a name of ours.

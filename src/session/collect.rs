@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Say, Severity};
 use crate::base::tolerance::{GAP_ROOM, Tolerance};
-use crate::lang::cx::{Cx, Parts, Stop};
+use crate::lang::cx::{Cx, Halt, Parts};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::plans::{CheckResult, ReportTable};
 use crate::lang::unmade::{Unmade, Why};
@@ -146,7 +146,7 @@ pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
 }
 
 /// A shell: how it is closed, and what it measures; how its faces join only when `full`. What is said of it goes to `said`.
-pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bool), said: &mut Vec<Fault>) -> Result<ShellRow, Stop> {
+pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bool), said: &mut Vec<Fault>) -> Result<ShellRow, Halt> {
     let glued = cx.glued(ModuleId::MAIN, shell)?;
     let (scene, built) = (&glued.scene, &glued.shell);
     said.extend(glued.said.iter().cloned());

@@ -2,7 +2,7 @@
 //! lies on mesh lines.
 
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::mesh::Plan;
 use crate::mesh::plan::Target;
@@ -15,7 +15,7 @@ use crate::surface::{Domain, IsoLine, Nearest, Surface, chain_breaks};
 const EACH: usize = 24;
 
 /// The scene with its faces cut along the curves of a plan that follow their lines; the rules of the plan speak of the pieces.
-pub fn along_curves(cx: &Cx, scene: Scene, plan: &mut Plan) -> Result<Scene, Stop> {
+pub fn along_curves(cx: &Cx, scene: Scene, plan: &mut Plan) -> Result<Scene, Halt> {
     let tolerance = cx.tolerance()?;
     let mut cuts: Vec<(SurfaceId, Lines)> = Vec::new();
     for (id, _) in &plan.surfaces {

@@ -14,7 +14,7 @@ use crate::io::endings::{IGES, STEP, Sort, misfit};
 use crate::io::json::{self, Json};
 use crate::io::table::{self, Cell, Table};
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::ExportSpec;
 use crate::lang::scene::side_of;
 use crate::lang::value::{Dim, MeshValue, ModuleId, Record, Value};
@@ -24,15 +24,15 @@ use crate::surface::Surface;
 /// Largest turn between two points of an exported curve, radians.
 const TURN: f64 = std::f64::consts::PI / 36.0;
 /// Looks at a smooth piece to find how far it turns.
-const LOOKS: usize = 64;
+const MAX_SAMPLES: usize = 64;
 
 /// Writes one output; gives its row, and warnings about what the format cannot hold go to the sink of `cx`.
-pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
+pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Halt> {
     let within = Budget::new(FILE_WORK).within(|| written(cx, spec, files));
     within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.path_origin, path: spec.path.clone() }.into()))
 }
 
-fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Stop> {
+fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Halt> {
     let Some((first, origin)) = spec.things.first() else {
         return Err(unsupported(spec.origin, "there is nothing to export".to_owned()));
     };
@@ -62,7 +62,7 @@ fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRo
 }
 
 /// E904 where what is written lacks faces of a file, unless the export says that it may.
-fn complete(cx: &Cx, spec: &ExportSpec) -> Result<(), Stop> {
+fn complete(cx: &Cx, spec: &ExportSpec) -> Result<(), Halt> {
     if spec.incomplete {
         return Ok(());
     }
@@ -109,7 +109,7 @@ fn sort_of(value: &Value) -> Option<Sort> {
 /// Size of a file and what it could not hold.
 pub(super) type Written = (u64, Vec<Loss>);
 
-fn unsupported(of: Origin, what: String) -> Stop {
+fn unsupported(of: Origin, what: String) -> Halt {
     let help = Some("export meshes, curves, or a list of records".to_owned());
     FileFault::Unsupported { of, what, help, edits: Vec::new() }.into()
 }
@@ -148,7 +148,7 @@ pub(super) fn put(
     spec: &ExportSpec,
     files: &dyn Files,
     fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<Vec<Loss>>,
-) -> Result<Written, Stop> {
+) -> Result<Written, Halt> {
     let mut losses = Vec::new();
     let written = files.write(&spec.path, &mut |out| fill(out).map(|found| losses = found));
     match written {
@@ -173,7 +173,7 @@ pub(super) fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>)
     }
 }
 
-fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Halt> {
     let format = format_for(spec.path_origin, &spec.path)?;
     let [(Value::Mesh(value), _)] = spec.things.as_slice() else {
         return Err(one_thing(spec));
@@ -189,14 +189,14 @@ fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, St
     put(spec, files, &mut |out| (format.write)(&deck, out))
 }
 
-fn one_thing(spec: &ExportSpec) -> Stop {
+fn one_thing(spec: &ExportSpec) -> Halt {
     let second = spec.things.get(1).map_or(spec.origin, |thing| thing.1);
     let help = Some("one `export` for each, or one mesh of both".to_owned());
     FileFault::Unsupported { of: second, what: "a file holds one mesh".to_owned(), help, edits: Vec::new() }.into()
 }
 
 /// Settings that mean something for meshes only.
-pub(super) fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
+pub(super) fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Halt> {
     let said = spec.encoding.as_ref().map(|s| ("encoding", s.1)).or(spec.elements.first().map(|s| ("element", s.1)));
     match said {
         Some((key, of)) => {
@@ -208,7 +208,7 @@ pub(super) fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Stop> {
 }
 
 /// Settings that mean something for one format only.
-fn no_misplaced(spec: &ExportSpec) -> Result<(), Stop> {
+fn no_misplaced(spec: &ExportSpec) -> Result<(), Halt> {
     let cases = [("schema", &spec.schema, STEP, "STEP"), ("shells", &spec.shells, IGES, "IGES")];
     for (key, said, endings, format) in cases {
         if let Some((_, of)) = said
@@ -222,7 +222,7 @@ fn no_misplaced(spec: &ExportSpec) -> Result<(), Stop> {
     Ok(())
 }
 
-fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+fn curves(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Halt> {
     let format = curve_format_for(spec.path_origin, &spec.path)?;
     no_mesh_settings(spec)?;
     let (unit, scale) = unit_of(cx, spec);
@@ -265,17 +265,17 @@ fn points_along(chain: &Chain, tolerance: &crate::base::tolerance::Tolerance) ->
     let mut points = vec![chain.start()];
     for piece in corners.windows(2) {
         let at = |k: usize, n: usize| piece[0] + (piece[1] - piece[0]) * k as f64 / n as f64;
-        let tangents: Vec<DVec3> = (0..LOOKS).map(|k| chain.jet(0.5 * (at(k, LOOKS) + at(k + 1, LOOKS))).d1).collect();
+        let tangents: Vec<DVec3> = (0..MAX_SAMPLES).map(|k| chain.jet(0.5 * (at(k, MAX_SAMPLES) + at(k + 1, MAX_SAMPLES))).d1).collect();
         let turn: f64 = tangents.windows(2).map(|t| crate::base::math::angle_between(t[0], t[1])).sum();
         // The looks stand in the middle of their parts: half a part at each end is not seen.
-        let steps = (turn * (LOOKS as f64 / (LOOKS - 1) as f64) / TURN).ceil().max(1.0) as usize;
+        let steps = (turn * (MAX_SAMPLES as f64 / (MAX_SAMPLES - 1) as f64) / TURN).ceil().max(1.0) as usize;
         points.extend((1..steps).map(|k| chain.point(at(k, steps))));
         points.push(chain.point(piece[1]));
     }
     points
 }
 
-fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Halt> {
     no_mesh_settings(spec)?;
     if let Some((_, of)) = spec.units {
         let what = "`units:` is for meshes and curves; records carry their units".to_owned();

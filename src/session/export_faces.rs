@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::export::Colors;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::bodies::Faces;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::{Scene, side_of};
 use crate::lang::value::{ModuleId, ShellValue, Value};
 use crate::model::Shell;
@@ -21,8 +21,8 @@ pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 /// A surface by itself: its patches share their edges with each other only.
-pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, (tolerance, colors): (&Tolerance, &Colors)) -> Result<Faces, Stop> {
-    let (id, other) = scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
+pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, (tolerance, colors): (&Tolerance, &Colors)) -> Result<Faces, Halt> {
+    let (id, other) = scene.find(surface).ok_or(Halt::Bug("a surface is not in its scene"))?;
     let near = scene.model.reach([id], None, tolerance);
     let shell = Shell { name: String::new(), origin: surface.origin(), surfaces: vec![(id, other)], near, closed: false, free: Vec::new() };
     let colors = colors.of_surface(surface).map(|rgb| (id, rgb)).into_iter().collect();
@@ -32,7 +32,7 @@ pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, (tolerance, colors
 }
 
 /// A shell: a solid where it closes.
-pub(super) fn whole(cx: &Cx, scene: &Scene, shell: &ShellValue, (tolerance, colors): (&Tolerance, &Colors)) -> Result<Faces, Stop> {
+pub(super) fn whole(cx: &Cx, scene: &Scene, shell: &ShellValue, (tolerance, colors): (&Tolerance, &Colors)) -> Result<Faces, Halt> {
     // What is to be said of it was said where it is declared.
     let built = scene.shell(shell, tolerance, &mut Vec::new())?;
     let solid = built.closed;
@@ -73,7 +73,7 @@ fn file_layers<'s>(cx: &Cx, surfaces: impl Iterator<Item = &'s Surface>) -> Vec<
 }
 
 /// The groups of the script that a value belongs to, and the layers that it was on in the file that it comes from.
-pub(super) fn layers(cx: &mut Cx, value: &Value) -> Result<Vec<String>, Stop> {
+pub(super) fn layers(cx: &mut Cx, value: &Value) -> Result<Vec<String>, Halt> {
     let same = |a: &Value, b: &Value| match (a, b) {
         (Value::Surface(a), Value::Surface(b)) => side_of(a, b).is_some(),
         (Value::Curve(a), Value::Curve(b)) => a.is(b),

@@ -6,14 +6,14 @@ use crate::base::fault::{FileFault, Say};
 use crate::base::origin::Origin;
 use crate::io::Files;
 use crate::io::iges::write::{self, Scale, Shown, Thing};
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::ExportSpec;
 use crate::lang::scene::Scene;
 use crate::lang::value::{Dim, ModuleId, Value};
 use crate::surface::Surface;
 
 /// Points, curves, surfaces and shells as an IGES file.
-pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Halt> {
     no_mesh_settings(spec)?;
     let (unit, scale) = unit_of(cx, spec);
     let tolerance = cx.tolerance()?;

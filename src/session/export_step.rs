@@ -10,7 +10,7 @@ use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
 use crate::io::step::write::{self, Measured, Scale, Schema, Setup, Shown, Thing};
 use crate::io::{Files, Loss};
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::part::PartFile;
 use crate::lang::plans::ExportSpec;
 use crate::lang::scene::Scene;
@@ -19,7 +19,7 @@ use crate::model::{SurfaceId, measure};
 use crate::surface::Surface;
 
 /// Points, curves, surfaces and shells as a STEP file.
-pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Stop> {
+pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Halt> {
     no_mesh_settings(spec)?;
     let (unit, scale) = unit_of(cx, spec);
     let tolerance = cx.tolerance()?;
@@ -64,7 +64,7 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     })
 }
 
-fn unsupported(of: Origin, what: String) -> Stop {
+fn unsupported(of: Origin, what: String) -> Halt {
     FileFault::Unsupported { of, what, help: None, edits: Vec::new() }.into()
 }
 

@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::cache::Cache;
 use super::report::MeshRow;
 use crate::base::bytes;
-use crate::base::digest::{Digest, Digester};
+use crate::base::digest::{Digest, StableHasher};
 use crate::base::fault::Fault;
 use crate::base::tolerance::Tolerance;
 use crate::lang::memory::Memory;
@@ -74,7 +74,7 @@ impl KeptStages {
             return row.clone();
         }
         let key = self.meshes.iter().find(|(_, kept)| Arc::ptr_eq(&kept.mesh, mesh)).map(|(key, _)| *key);
-        let key = key.map(|key| Digester::new("row").digest(key).text(name).number(u64::from(full)).finish());
+        let key = key.map(|key| StableHasher::new("row").digest(key).text(name).number(u64::from(full)).finish());
         let cache = self.cache.clone().zip(key);
         let row = cache.as_ref().and_then(|(cache, key)| cache.get("row", *key, bytes::read)).unwrap_or_else(|| {
             let row = measure(&self.reuse);

@@ -23,7 +23,7 @@ use crate::draw::picture::{FORMATS, Format, Picture, Settings};
 use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
 use crate::geometry::Curve;
 use crate::io::{FileError, Files, Sort, ending_for};
-use crate::lang::cx::{Cx, Sound, Stop};
+use crate::lang::cx::{Cx, Halt, Sound};
 use crate::lang::diag::Diagnostic;
 use crate::lang::plans::{PictureSpec, Show};
 use crate::lang::scene::Scene;
@@ -37,7 +37,7 @@ use crate::surface::{Domain, Surface};
 /// How far lines and triangles may be from what they show, pixels.
 const FINE: f64 = 0.25;
 /// Places of a curve that its box is taken from.
-const LOOKS: usize = 33;
+const MAX_SAMPLES: usize = 33;
 /// Share of the model around a point that `zoom:` shows.
 const AROUND: f64 = 0.05;
 
@@ -84,12 +84,12 @@ impl Stage<'_> {
 }
 
 /// Writes one picture; gives its row. `model` is the name of the script without its ending.
-pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, to: (&dyn Files, Outputs)) -> Result<OutputRow, Stop> {
+pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, to: (&dyn Files, Outputs)) -> Result<OutputRow, Halt> {
     let within = Budget::new(FILE_WORK).within(|| written(cx, spec, model, to));
     within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.origin, path: spec.path.clone() }.into()))
 }
 
-fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn Files, Outputs)) -> Result<OutputRow, Stop> {
+fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn Files, Outputs)) -> Result<OutputRow, Halt> {
     let format = format_of(spec)?;
     let tolerance = cx.tolerance()?;
     let sound = cx.sound(ModuleId::MAIN)?;
@@ -121,14 +121,14 @@ fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn
     put(spec, &mut |out| picture.write(format, out), files)
 }
 
-fn unsupported(of: Origin, what: &str, help: &str) -> Stop {
+fn unsupported(of: Origin, what: &str, help: &str) -> Halt {
     FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()
 }
 
-fn format_of(spec: &PictureSpec) -> Result<Format, Stop> {
+fn format_of(spec: &PictureSpec) -> Result<Format, Halt> {
     let ending = ending_for(spec.path_origin, &spec.path, Sort::Pictures)?;
     let known = FORMATS.iter().find(|(name, _)| *name == ending);
-    Ok(known.ok_or(Stop::Bug("an ending of pictures without a format"))?.1)
+    Ok(known.ok_or(Halt::Bug("an ending of pictures without a format"))?.1)
 }
 
 fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
@@ -151,7 +151,7 @@ fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
     }
 }
 
-fn put(spec: &PictureSpec, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>, files: &dyn Files) -> Result<OutputRow, Stop> {
+fn put(spec: &PictureSpec, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>, files: &dyn Files) -> Result<OutputRow, Halt> {
     let (of, path) = (spec.path_origin, spec.path.clone());
     match files.write(&spec.path, fill) {
         Ok(bytes) => Ok(OutputRow { path, bytes, ..OutputRow::default() }),
@@ -170,7 +170,7 @@ fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 /// The surface model with everything that is drawn or zoomed to in it.
-fn scene_of(cx: &mut Cx, spec: &PictureSpec, sound: &Sound) -> Result<Scene, Stop> {
+fn scene_of(cx: &mut Cx, spec: &PictureSpec, sound: &Sound) -> Result<Scene, Halt> {
     let base = Scene { model: sound.model.clone(), network: sound.network.clone() };
     let values = spec.things.iter().chain(&spec.zoom);
     let surfaces: Vec<&Surface> = values.flat_map(|(value, _)| surfaces_of(value)).collect();
@@ -178,7 +178,7 @@ fn scene_of(cx: &mut Cx, spec: &PictureSpec, sound: &Sound) -> Result<Scene, Sto
 }
 
 /// Sorts values out by what they are.
-fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Tolerance) -> Result<Things, Stop> {
+fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Tolerance) -> Result<Things, Halt> {
     let (mut things, mut imported) = (Things::default(), names::Imported::default());
     for (value, origin) in values {
         match value {
@@ -217,7 +217,7 @@ fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, tolerance: Toler
 }
 
 /// The surface model that edges and patches of a script are numbered in.
-fn own(cx: &mut Cx, home: &Home) -> Result<Scene, Stop> {
+fn own(cx: &mut Cx, home: &Home) -> Result<Scene, Halt> {
     Ok(Scene { model: cx.model(home)?, network: cx.network_of(home)? })
 }
 
@@ -233,14 +233,14 @@ fn outline(things: &Things, scene: &Scene) -> Vec<DVec3> {
         out.extend((0..81).map(|k| surface.point(at(patch.u, k % 9), at(patch.v, k / 9))));
     }
     things.meshes.iter().for_each(|(mesh, _)| out.extend(corners(&Box3::of(mesh.nodes.iter().copied()))));
-    let mut along = |chain: &Chain| out.extend((0..LOOKS).map(|k| chain.point(k as f64 / (LOOKS - 1) as f64)));
+    let mut along = |chain: &Chain| out.extend((0..MAX_SAMPLES).map(|k| chain.point(k as f64 / (MAX_SAMPLES - 1) as f64)));
     things.curves.iter().for_each(|(_, chain)| along(chain));
     if let Some(network) = &things.network {
         network.curves.iter().for_each(|c| along(&Chain::of_curve(&c.curve)));
     }
     for (scene, edge) in &things.edges {
         let Some(track) = scene.model.shared_track(edge, &scene.network) else { continue };
-        out.extend((0..LOOKS).map(|k| track.point(track.length() * k as f64 / (LOOKS - 1) as f64)));
+        out.extend((0..MAX_SAMPLES).map(|k| track.point(track.length() * k as f64 / (MAX_SAMPLES - 1) as f64)));
     }
     out.extend(things.points.iter().map(|p| p.1));
     out
@@ -265,7 +265,7 @@ fn around(focus: &[DVec3], everything: &Box3) -> Box3 {
 }
 
 /// The scene of a picture.
-fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Result<Drawing, Stop> {
+fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Result<Drawing, Halt> {
     let mut drawing = Drawing::default();
     let (model, fine) = (&stage.scene.model, stage.fine);
     let covered: BTreeSet<&str> = things.meshes.iter().flat_map(|(m, _)| &m.faces).map(|f| f.name.as_str()).collect();

@@ -6,7 +6,7 @@ use super::consumed::is_part;
 use crate::base::fault::{Fault, MeshFault, Say, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::Scene;
 use crate::lang::value::{BodyKind, Home, ModuleId, Value};
@@ -38,7 +38,7 @@ struct Faces {
 }
 
 /// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
-pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(Plan, Scene), Stop> {
+pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(Plan, Scene), Halt> {
     let tolerance = cx.tolerance()?;
     let rules = spec.rules.iter().flat_map(|rule| &rule.things);
     let values = spec.things.iter().chain(rules).map(|(value, _)| value);
@@ -183,7 +183,7 @@ pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
 
 impl Finder<'_> {
     /// Gives faces that are of no closed shell the sides of the shell that they would make, and turns all where that is asked.
-    fn turn(&self, plan: &mut Plan, faces: &Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(), Stop> {
+    fn turn(&self, plan: &mut Plan, faces: &Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(), Halt> {
         let mut loose = faces.loose.clone();
         loose.retain(|(s, _)| !faces.closed.contains(s));
         let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
@@ -200,7 +200,7 @@ impl Finder<'_> {
     }
 
     /// Adds a thing of the `of` list.
-    fn add(&self, cx: &mut Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Stop> {
+    fn add(&self, cx: &mut Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Halt> {
         match value {
             Value::Surface(surface) => {
                 let found = self.scene.find_all([surface])?;
@@ -250,10 +250,10 @@ impl Finder<'_> {
     }
 
     /// Surfaces as targets, and pieces of them that the scene holds: what `split` and `imprint` cut from them.
-    fn faces<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<Target>, Stop> {
+    fn faces<'s>(&self, surfaces: impl IntoIterator<Item = &'s Surface>) -> Result<Vec<Target>, Halt> {
         let mut found = Vec::new();
         for surface in surfaces {
-            let (own, _) = self.scene.find(surface).ok_or(Stop::Bug("a surface is not in its scene"))?;
+            let (own, _) = self.scene.find(surface).ok_or(Halt::Bug("a surface is not in its scene"))?;
             let all = self.scene.model.surfaces.iter().enumerate();
             let pieces = all.filter(|(n, named)| *n != own.index() && is_part(&named.surface, surface));
             found.extend(std::iter::once(own).chain(pieces.map(|(n, _)| SurfaceId::at(n))).map(Target::Surface));
@@ -262,7 +262,7 @@ impl Finder<'_> {
     }
 
     /// What a rule or a group speaks of.
-    fn targets(&self, cx: &mut Cx, value: &Value) -> Result<Vec<Target>, Stop> {
+    fn targets(&self, cx: &mut Cx, value: &Value) -> Result<Vec<Target>, Halt> {
         Ok(match value {
             // Links are numbered in the network of their own script.
             Value::Link(of, _) if *of != self.module => {
@@ -304,14 +304,14 @@ pub(super) fn edge_name(cx: &Cx, chain: &Chain, edge: &SharedEdge) -> String {
 }
 
 /// The curve along an edge.
-pub(super) fn chain_of(cx: &mut Cx, home: &Home, edge: &SharedEdge) -> Result<Chain, Stop> {
+pub(super) fn chain_of(cx: &mut Cx, home: &Home, edge: &SharedEdge) -> Result<Chain, Halt> {
     let tolerance = cx.tolerance()?;
     let scene = Scene { model: cx.model(home)?, network: cx.network_of(home)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
     Ok(scene.shared_chain(edge, &tolerance)?.ok_or_else(later)?)
 }
 
-fn wrong(value: &Value) -> Stop {
+fn wrong(value: &Value) -> Halt {
     let wanted = "surfaces, shells, curves and points";
     ValueFault::WrongKind { argument: "of", wanted, found: value.ty().words() }.into()
 }

@@ -17,7 +17,7 @@ use crate::base::fault::{Fault, Severity, ValueFault};
 use crate::base::job::{Job, TooMuchWork};
 use crate::base::tolerance::Tolerance;
 use crate::base::work;
-use crate::lang::cx::{Cx, Sound, Stop};
+use crate::lang::cx::{Cx, Halt, Sound};
 use crate::lang::diag::{Diagnostic, Sources};
 use crate::lang::diag_render::render_all;
 use crate::lang::memory::Memory;
@@ -248,19 +248,19 @@ impl<'r> Run<'r> {
     }
 
     /// The result, or `None` when it was reported why there is none.
-    fn take<T>(&mut self, result: Result<T, Stop>) -> Option<T> {
+    fn take<T>(&mut self, result: Result<T, Halt>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
-            Err(Stop::Fault(Fault::Interrupted) | Stop::Failed | Stop::Skipped(..) | Stop::Broken) => None,
-            Err(Stop::Fault(fault)) => {
+            Err(Halt::Fault(Fault::Interrupted) | Halt::Failed | Halt::Skipped(..) | Halt::Broken) => None,
+            Err(Halt::Fault(fault)) => {
                 self.cx.say(&fault);
                 None
             }
-            Err(Stop::NotYet) => {
+            Err(Halt::NotYet) => {
                 self.bug = Some("the tolerance was asked for after the evaluation and not known");
                 None
             }
-            Err(Stop::Bug(what)) => {
+            Err(Halt::Bug(what)) => {
                 self.bug = Some(what);
                 None
             }
@@ -404,7 +404,7 @@ impl<'r> Run<'r> {
         !self.barred.is_empty() && self.disk.file_of(path).is_some_and(|file| self.barred.contains(&file))
     }
 
-    fn written(&mut self, row: Result<OutputRow, Stop>) {
+    fn written(&mut self, row: Result<OutputRow, Halt>) {
         let Some(mut row) = self.take(row) else { return };
         self.report.renamed.append(&mut row.renamed);
         self.unnamed.extend(row.unnamed.drain(..).map(|what| format!("\"{}\" does without {what}", row.path)));

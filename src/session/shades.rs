@@ -8,7 +8,7 @@ use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUC
 use crate::draw::faces::Show;
 use crate::draw::meshes::{self, Measure};
 use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::PictureSpec;
 use crate::mesh::Mesh;
 
@@ -47,7 +47,7 @@ pub(super) fn mesh_sheets(spec: &PictureSpec, mesh: &Arc<Mesh>) -> Vec<Sheet> {
 /// Paints the sheets of a scene and says what the colours mean.
 ///
 /// Fails with E805 where a shade speaks of something that is not drawn.
-pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Result<(), Stop> {
+pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Result<(), Halt> {
     let of = spec.shade.as_ref().map_or(Origin::NONE, |s| s.1);
     let unit = cx.unit().name;
     match word(spec) {
@@ -93,7 +93,7 @@ fn values(drawing: &Drawing) -> impl Iterator<Item = f64> + '_ {
     drawing.sheets.iter().flat_map(of).map(f64::from).filter(|x| x.is_finite())
 }
 
-fn needs(drawing: &Drawing, of: Origin, what: &str, help: &str) -> Result<(), Stop> {
+fn needs(drawing: &Drawing, of: Origin, what: &str, help: &str) -> Result<(), Halt> {
     match values(drawing).next() {
         Some(_) => Ok(()),
         None => Err(FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()),

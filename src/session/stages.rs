@@ -11,7 +11,7 @@ use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::geometry::Curve;
-use crate::lang::cx::{Cx, Parts, Pipeline, Snapping, Stop, Turn};
+use crate::lang::cx::{Cx, Halt, Parts, Pipeline, Snapping, Turn};
 use crate::lang::plans::MeshSpec;
 use crate::lang::scene::Scene;
 use crate::lang::value::ModuleId;
@@ -113,7 +113,7 @@ impl Stages<'_> {
 }
 
 impl Pipeline for Stages<'_> {
-    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Stop> {
+    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Halt> {
         let tolerance = cx.tolerance()?;
         let (mut ends, mut owners) = (Vec::new(), Vec::new());
         for (k, (declared, turn)) in snapping.curves.iter().enumerate() {
@@ -149,7 +149,7 @@ impl Pipeline for Stages<'_> {
         Ok(())
     }
 
-    fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Stop> {
+    fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt> {
         let tolerance = cx.tolerance()?;
         let inputs = inputs(cx, parts, &tolerance);
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
@@ -177,7 +177,7 @@ impl Pipeline for Stages<'_> {
         Ok(network)
     }
 
-    fn model(&self, cx: &mut Cx, module: ModuleId, (parts, network): (&Parts, Arc<Network>)) -> Result<Arc<Model>, Stop> {
+    fn model(&self, cx: &mut Cx, module: ModuleId, (parts, network): (&Parts, Arc<Network>)) -> Result<Arc<Model>, Halt> {
         let tolerance = cx.tolerance()?;
         let named = |s: &crate::lang::cx::Declared<crate::surface::Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
         let mut surfaces: Vec<Named> = parts.surfaces.iter().map(named).collect();
@@ -198,7 +198,7 @@ impl Pipeline for Stages<'_> {
         Ok(model)
     }
 
-    fn mesh(&self, cx: &mut Cx, module: ModuleId, spec: &MeshSpec) -> Result<Arc<Mesh>, Stop> {
+    fn mesh(&self, cx: &mut Cx, module: ModuleId, spec: &MeshSpec) -> Result<Arc<Mesh>, Halt> {
         let (tolerance, start) = (cx.tolerance()?, (self.clock)());
         let mut sink = Vec::new();
         let (plan, Scene { model, network }) = plan::of(cx, module, spec, &mut sink)?;

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::Jet2;
 use super::breaks::tidy;
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use super::weights::{Axis, Weights};
 use crate::base::bbox::Box3;
 use crate::base::par;
@@ -87,7 +87,7 @@ impl Blend {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         let (a, b) = (self.u.weights(u, lean.0), self.v.weights(v, lean.1));
         let mut row = Row::default();
         let along_v = |i: usize| self.along_v[i].jet(v, lean.1);
@@ -131,7 +131,7 @@ impl Blend {
 
     /// Points of the tensor grid `us × vs`, u fastest. Every curve is evaluated once per row or column.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        let rows: Vec<Weights> = vs.iter().map(|&v| self.v.weights(v, Lean::After)).collect();
+        let rows: Vec<Weights> = vs.iter().map(|&v| self.v.weights(v, OneSided::After)).collect();
         let columns = Columns::new(self, us, &rows);
         let rows = RowPoints::new(self, vs, rows);
         let width = us.len().max(1);
@@ -170,7 +170,7 @@ impl Blend {
     }
 
     /// Jets of the tensor grid `us × vs`, u fastest, each with its own lean (see [`Blend::jet`]).
-    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+    pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
         let a: Vec<Weights> = us.iter().map(|&(u, lean)| self.u.weights(u, lean)).collect();
         let rows: Vec<Weights> = vs.iter().map(|&(v, lean)| self.v.weights(v, lean)).collect();
         let curve = |j: usize| us.iter().map(|&(u, lean)| self.along_u[j].jet(u, lean)).collect();
@@ -370,7 +370,7 @@ impl Columns {
         let active = blend.u.active();
         let (mut weights, mut second, mut runs) = (Vec::new(), Vec::new(), Vec::<ColumnRun>::new());
         for (c, &u) in us.iter().enumerate() {
-            let a = blend.u.weights(u, Lean::After);
+            let a = blend.u.weights(u, OneSided::After);
             if active == 2 {
                 second.push(a.values()[1][0]);
                 match runs.last_mut() {
@@ -416,7 +416,7 @@ mod tests {
     fn check(f: Formula, samples: &[(f64, f64, [f64; 3], f64)]) {
         let blend = grid_of(f, &[0.0, 0.4, 1.0], &[0.0, 0.5, 1.0], Rule::Lagrange);
         for &(u, v, point, error) in samples {
-            let p = blend.jet(u, v, (Lean::After, Lean::After)).p;
+            let p = blend.jet(u, v, (OneSided::After, OneSided::After)).p;
             assert!(p.distance(point.into()) < 1e-12, "{u} {v}: {p}");
             assert!((p.distance(f(u, v)) - error).abs() < 1e-12, "{u} {v}");
             let mut grid = [DVec3::ZERO];
@@ -485,7 +485,7 @@ mod tests {
         let blend = grid_of(f, &[0.0, 0.3, 0.7, 1.0], &[0.0, 0.5, 1.0], Rule::Spline);
         let samples = [(0.15, 0.25, 0.004427734374999997), (0.5, 0.75, 0.09960937499999992), (0.85, 0.4, -0.47469599999999995)];
         for (u, v, z) in samples {
-            let p = blend.jet(u, v, (Lean::After, Lean::After)).p;
+            let p = blend.jet(u, v, (OneSided::After, OneSided::After)).p;
             assert!(p.distance(DVec3::new(u, v, z)) < 1e-14, "{p}");
             let mut grid = [DVec3::ZERO];
             blend.grid(&[u], &[v], &mut grid);
@@ -498,7 +498,7 @@ mod tests {
         let f: Formula = |u, v| DVec3::new(u, v, math::sin(2.0 * u) * math::cos(1.5 * v));
         let (us, vs) = ([0.0, 0.3, 0.7, 1.0], [0.0, 0.5, 1.0]);
         let blend = grid_of(f, &us, &vs, Rule::Spline);
-        let at = |u: f64, v: f64| blend.jet(u, v, (Lean::After, Lean::After)).p;
+        let at = |u: f64, v: f64| blend.jet(u, v, (OneSided::After, OneSided::After)).p;
         for k in 0..=100 {
             let x = f64::from(k) / 100.0;
             us.iter().for_each(|&u| assert!(at(u, x).distance(f(u, x)) < 1e-15));

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Domain, Surface};
 use super::faces::{Edge, Half, components, followers, is_plane, loops};
-use super::pull::Course;
+use super::pcurve::TrimCurve;
 use super::strands::Piece;
 use super::trim::shifts;
 use crate::base::fault::{CutFault, Fault, Result};
@@ -25,7 +25,7 @@ pub(super) type Face = Vec<Vec<(Half, DVec2)>>;
 const NEAR: f64 = 0.1;
 
 /// Places along a piece at which others are looked for beside it, and how many times as far from its ends.
-const LOOKS: usize = 16;
+const MAX_SAMPLES: usize = 16;
 const BESIDE: f64 = 4.0;
 
 /// The cells between pieces.
@@ -155,11 +155,12 @@ impl<'a> Cells<'a> {
         for k in row.iter().map(|h| h.0) {
             let Some(own) = chain(k) else { continue };
             let piece = &self.pieces[k];
-            let Course::Pull(pull) = &piece.course else { continue };
-            let places = (1..LOOKS).map(|n| pull.fraction(n as f64 / LOOKS as f64)).map(|f| (own.point(f), pull.guess(f)));
+            let TrimCurve::Pcurve(pcurve) = &piece.course else { continue };
+            let places = (1..MAX_SAMPLES).map(|n| pcurve.fraction(n as f64 / MAX_SAMPLES as f64)).map(|f| (own.point(f), pcurve.guess(f)));
             // Where pieces part they are near to each other in any case.
             for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > beside * near) {
-                let passes = |course: &Course| course.places().windows(2).any(|w| Course::Line(w[0].into(), w[1].into()).touches(uv, NEAR));
+                let passes =
+                    |course: &TrimCurve| course.places().windows(2).any(|w| TrimCurve::Line(w[0].into(), w[1].into()).touches(uv, NEAR));
                 for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].course)) {
                     let apart = chain(other).map_or(f64::INFINITY, |chain| chain.closest(at).2);
                     if apart <= near && least.as_ref().is_none_or(|least| apart < least.0) {

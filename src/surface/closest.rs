@@ -14,7 +14,7 @@ use super::Jet2;
 use super::closest_swept::SweptProfile;
 use super::core::{Domain, Side, Surface};
 use super::descent::{Local, descend_within};
-use super::quick::Quick;
+use super::quick::PowerForm;
 use super::samples::{Samples, Start};
 use crate::base::job;
 use crate::base::tolerance::EPSILON;
@@ -47,7 +47,7 @@ pub struct Nearest {
 /// A surface sampled, and made ready for many evaluations where that can be.
 #[derive(Clone, Debug, Default)]
 struct Sampled {
-    quick: Option<Quick>,
+    quick: Option<PowerForm>,
     samples: Samples,
 }
 
@@ -66,7 +66,7 @@ impl Nearest {
 
     fn sampled(&self) -> &Sampled {
         self.sampled.get_or_init(|| match self.whole.domain() {
-            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), quick: self.whole.quick() },
+            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), quick: self.whole.power_form() },
             _ => Sampled::default(),
         })
     }
@@ -210,13 +210,13 @@ pub fn closest(surface: &Surface, p: DVec3) -> Closest {
 ///
 /// A run shorter than the way from its start to the point and on to its end turns as its chord does; longer ones are halved.
 fn winding(chain: &Chain, whole: (f64, f64), about: DVec3, normal: DVec3) -> f64 {
-    const DEEPEST: u32 = 48;
+    const MAX_DEPTH: u32 = 48;
     let mut open = vec![(whole, 0)];
     let mut turn = 0.0;
     while let Some(((f0, f1), depth)) = open.pop() {
         job::look();
         let (a, b) = (chain.point(f0) - about, chain.point(f1) - about);
-        if (f1 - f0) * chain.length() < a.length() + b.length() || depth == DEEPEST {
+        if (f1 - f0) * chain.length() < a.length() + b.length() || depth == MAX_DEPTH {
             turn += crate::base::math::atan2(a.cross(b).dot(normal), a.dot(b));
         } else {
             let middle = 0.5 * (f0 + f1);

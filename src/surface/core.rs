@@ -6,12 +6,12 @@ use glam::{DVec2, DVec3};
 
 use super::evened::Evened;
 use super::quick::Ready;
-use super::rail::Lean;
+use super::rail::OneSided;
 use super::rail::Rail;
 use super::reparam::Map;
 use super::shape::Shape;
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::Construction;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, POLE_STEP, SINGULAR, SLIVER, Tolerance};
@@ -187,7 +187,7 @@ impl Border {
 /// A surface over its domain. Cheap to clone.
 ///
 /// Where derivatives jump (kink lines), [`Surface::jet`] takes those of the piece that follows in u and v;
-/// [`Surface::jet_lean`] chooses.
+/// [`Surface::jet_one_sided`] chooses.
 #[derive(Clone, Debug)]
 pub struct Surface(Arc<Whole>);
 
@@ -226,8 +226,8 @@ crate::content_of_word!(SurfaceKind, Domain);
 crate::content!(Border { side, map, turned });
 crate::content!(Parts { kind, flow, domain, closed, shape, borders, kinks, chains, generated, trim, flipped } but { origin });
 
-impl Content for Side {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Side {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Chain { chain, from, to: end } => (0u8, (chain, *from, *end)).tell(to),
             Self::Pole(p) => (1u8, *p).tell(to),
@@ -237,8 +237,8 @@ impl Content for Side {
     }
 }
 
-impl Content for Surface {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Surface {
+    fn tell(&self, to: &mut StableHasher) {
         self.0.parts.tell(to);
     }
 }
@@ -357,12 +357,12 @@ impl Surface {
 
     /// Point and derivatives.
     pub fn jet(&self, u: f64, v: f64) -> Jet2 {
-        self.jet_lean(u, v, (Lean::After, Lean::After))
+        self.jet_one_sided(u, v, (OneSided::After, OneSided::After))
     }
 
     /// Point and derivatives of the smooth piece on the given side in u (first) and v (second): on the border of a
     /// patch the side where the patch lies.
-    pub fn jet_lean(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    pub fn jet_one_sided(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         let (u, v) = self.wrapped(u, v);
         let (u, v, lean) = self.inner(u, v, lean);
         self.outer(self.0.parts.shape.jet(u, v, lean))
@@ -375,7 +375,7 @@ impl Surface {
     }
 
     /// From this surface's parameters to the shape's.
-    pub(super) fn inner(&self, u: f64, v: f64, lean: (Lean, Lean)) -> (f64, f64, (Lean, Lean)) {
+    pub(super) fn inner(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> (f64, f64, (OneSided, OneSided)) {
         match (self.0.parts.flipped, self.ground()) {
             (false, _) => (u, v, lean),
             (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
@@ -399,12 +399,12 @@ impl Surface {
 
     /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
     pub fn normal(&self, u: f64, v: f64) -> DVec3 {
-        self.normal_lean(u, v, (Lean::After, Lean::After))
+        self.normal_lean(u, v, (OneSided::After, OneSided::After))
     }
 
-    /// Unit normal of the smooth piece on the given side, see [`Surface::jet_lean`].
-    pub fn normal_lean(&self, u: f64, v: f64, lean: (Lean, Lean)) -> DVec3 {
-        let jet = self.jet_lean(u, v, lean);
+    /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
+    pub fn normal_lean(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> DVec3 {
+        let jet = self.jet_one_sided(u, v, lean);
         if let Some(normal) = unit_normal(&jet) {
             return normal;
         }
@@ -425,8 +425,9 @@ impl Surface {
         };
         let inward = |along: f64| {
             let (u, v) = place(along, 0.0);
-            let lean = (if u == 1.0 { Lean::Before } else { Lean::After }, if v == 1.0 { Lean::Before } else { Lean::After });
-            let jet = self.jet_lean(u, v, lean);
+            let lean =
+                (if u == 1.0 { OneSided::Before } else { OneSided::After }, if v == 1.0 { OneSided::Before } else { OneSided::After });
+            let jet = self.jet_one_sided(u, v, lean);
             [jet.dv, -jet.du, -jet.dv, jet.du][k]
         };
         const SAMPLES: u32 = 16;
@@ -465,14 +466,14 @@ impl Surface {
     }
 
     /// Jets of the tensor grid `us × vs`, each parameter with its side, u fastest; curves evaluated once per row.
-    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)]) -> Vec<Jet2> {
+    pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)]) -> Vec<Jet2> {
         let mut out = Vec::with_capacity(us.len() * vs.len());
         if self.0.parts.flipped && self.ground() == Domain::Triangle {
             for &(v, lean_v) in vs {
-                out.extend(us.iter().map(|&(u, lean_u)| self.jet_lean(u, v, (lean_u, lean_v))));
+                out.extend(us.iter().map(|&(u, lean_u)| self.jet_one_sided(u, v, (lean_u, lean_v))));
             }
         } else if self.0.parts.flipped {
-            let turned: Vec<(f64, Lean)> = vs.iter().map(|(v, lean)| (1.0 - v, lean.turned())).collect();
+            let turned: Vec<(f64, OneSided)> = vs.iter().map(|(v, lean)| (1.0 - v, lean.turned())).collect();
             self.0.parts.shape.jets(us, &turned, &mut out);
             out.iter_mut().for_each(|jet| *jet = self.outer(*jet));
         } else {

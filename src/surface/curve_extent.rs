@@ -50,13 +50,13 @@ fn proved(chain: &Chain, stops: &[f64], mut bounds: Box3) -> Box3 {
     while let Some((from, to)) = open.pop_front() {
         let ends = Box3::of([chain.point(from), chain.point(to)]);
         bounds = bounds.union(ends);
-        let (h, spread) = (to - from, chain.spread(from, to));
+        let (h, enclosure) = (to - from, chain.enclosure(from, to));
         let mut hull = ends;
         for k in 0..3 {
-            let (d1, d2) = (spread.d1.coordinate(k), spread.d2.coordinate(k));
+            let (d1, d2) = (enclosure.d1.coordinate(k), enclosure.d2.coordinate(k));
             if d1.low < 0.0 && d1.high > 0.0 {
                 // Off the line between its ends by the slope alone, or by the second derivative and the jumps of the slope.
-                let reach = (0.5 * h * d1.reach()).min(0.125 * h * h * d2.reach() + 0.25 * h * spread.jumps[k]);
+                let reach = (0.5 * h * d1.reach()).min(0.125 * h * h * d2.reach() + 0.25 * h * enclosure.jumps[k]);
                 hull.min[k] -= reach;
                 hull.max[k] += reach;
             }

@@ -8,10 +8,10 @@ use super::cells::{Cells, Face};
 use super::closest::closest;
 use super::core::{Border, Domain, Side, Surface};
 use super::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
+use super::pcurve::{TrimCurve, is_pole};
 use super::plane;
-use super::pull::{Course, is_pole};
-use super::strands::{Meets, Piece, Strand, bounded, pieces, strands, within};
-use super::trim::{Walk, assembled, natural};
+use super::strands::{Cutter, Meets, Piece, bounded, pieces, strands, within};
+use super::trim::{TrimLoop, assembled, natural};
 use crate::base::fault::{CutFault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
@@ -118,7 +118,7 @@ fn foot_of(base: &Surface, cutters: &[Chain], keep: DVec3, tolerance: &Tolerance
 }
 
 /// The ends of a cutter that are on nothing that divides the surface.
-fn open_ends(cutter: &Chain, strands: &[Strand], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
+fn open_ends(cutter: &Chain, strands: &[Cutter], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
     let held = |p: DVec3| {
         let near = |piece: &Piece| match (&strands[piece.strand].chain, piece.own_chain()) {
             (_, Some(run)) | (Some(run), None) => run.closest(p).2 <= 2.0 * tolerance.point,
@@ -139,7 +139,7 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
     let (ends, places) = vertices(base, all, tolerance);
     // Curves that touch leave a vertex in one direction: at one distance from it they have parted, at one share of each perhaps not.
     let length = |piece: &Piece| match (&piece.course, piece.own_chain()) {
-        (Course::Pull(pull), Some(chain)) => chain.length() * (pull.fraction(1.0) - pull.fraction(0.0)).abs(),
+        (TrimCurve::Pcurve(pcurve), Some(chain)) => chain.length() * (pcurve.fraction(1.0) - pcurve.fraction(0.0)).abs(),
         _ => f64::INFINITY,
     };
     let mut fans: BTreeMap<usize, Vec<(usize, bool)>> = BTreeMap::new();
@@ -150,9 +150,9 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
     let away: BTreeMap<usize, f64> = fans.iter().map(|(vertex, fan)| (*vertex, apart_at(all, fan, &length, tolerance))).collect();
     let out = |piece: &Piece, ends: &(usize, usize)| {
         let place = |f: f64| match (&piece.course, piece.own_chain()) {
-            (Course::Pull(pull), Some(chain)) => {
-                let f = pull.fraction(f);
-                super::pull::foot((base, None), chain.point(f), pull.guess(f)).0
+            (TrimCurve::Pcurve(pcurve), Some(chain)) => {
+                let f = pcurve.fraction(f);
+                super::pcurve::foot((base, None), chain.point(f), pcurve.guess(f)).0
             }
             (course, _) => {
                 let places = course.places();
@@ -179,7 +179,7 @@ fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f6
     let place = |(k, last): &(usize, bool), away: f64| {
         let (piece, share) = (&all[*k], away / length(&all[*k]));
         match (&piece.course, piece.own_chain()) {
-            (Course::Pull(pull), Some(chain)) => Some(chain.point(pull.fraction(if *last { 1.0 - share } else { share }))),
+            (TrimCurve::Pcurve(pcurve), Some(chain)) => Some(chain.point(pcurve.fraction(if *last { 1.0 - share } else { share }))),
             _ => None,
         }
     };
@@ -255,17 +255,17 @@ const FARTHEST: f64 = 0.45;
 const NEAR: (f64, f64) = (NUDGE, 0.1);
 
 /// The loops of a face as walks, the outer one first.
-pub(super) fn walks(pieces: &[Piece], face: &Face) -> Vec<Walk> {
-    let mut walks: Vec<Walk> = face.iter().map(|row| walk(pieces, row)).collect();
+pub(super) fn walks(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
+    let mut walks: Vec<TrimLoop> = face.iter().map(|row| walk(pieces, row)).collect();
     walks.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
     walks
 }
 
-fn walk(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> Walk {
-    let mut walk = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+fn walk(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
+    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
     for ((k, backwards), by) in row {
         let piece = &pieces[*k];
-        let (border, course): (Border, Course) =
+        let (border, course): (Border, TrimCurve) =
             if *backwards { (piece.border.turned(), piece.course.turned()) } else { (piece.border.clone(), piece.course.clone()) };
         if let Side::Chain { chain, .. } = &border.side {
             walk.chains.push(chain.clone());

@@ -10,8 +10,8 @@ use glam::DVec4;
 
 use super::core::{Domain, Parts, Surface};
 use super::nurbs::NurbsSurface;
-use super::pull::Course;
-use super::rail::Lean;
+use super::pcurve::TrimCurve;
+use super::rail::OneSided;
 use super::shape::Shape;
 use crate::geometry::bounds::binomial;
 use crate::geometry::nurbs::{MAX_DEGREE, projected};
@@ -99,7 +99,7 @@ impl Evened {
         }
         let pace = |in_u: bool, closed: bool| if closed { None } else { net.pace(in_u) };
         let paces = [pace(true, parts.closed.0), pace(false, parts.closed.1)];
-        if paces.iter().all(Option::is_none) || !trim.courses.iter().all(Course::is_upright) {
+        if paces.iter().all(Option::is_none) || !trim.courses.iter().all(TrimCurve::is_upright) {
             return None;
         }
         let mut shape = net.clone();
@@ -151,7 +151,7 @@ impl NurbsSurface {
         let speed = |x: f64| {
             let one = |j: usize| {
                 let y = (j as f64 + 0.5) / ACROSS as f64;
-                let lean = (Lean::After, Lean::After);
+                let lean = (OneSided::After, OneSided::After);
                 if in_u { self.jet(x, y, lean).du.length() } else { self.jet(y, x, lean).dv.length() }
             };
             (0..ACROSS).map(one).sum::<f64>() / ACROSS as f64
@@ -220,7 +220,7 @@ mod tests {
         assert!(net.pace(true).is_none());
         let pace = net.pace(false).expect("runs unevenly");
         let evened = net.composed(false, &pace);
-        let lean = (Lean::After, Lean::After);
+        let lean = (OneSided::After, OneSided::After);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for k in 0..=1000 {
             let (u, v) = (0.37, f64::from(k) / 1000.0 * if k % 2 == 0 { 1.0 } else { 0.01 });

@@ -116,10 +116,10 @@ const SLANT: usize = 1;
 fn below_slant(surface: &Surface, corner: (f64, f64), slant: Box3) -> Box3 {
     let step = 1.0 - corner.0 - corner.1;
     // All ways there stay in the square over the corner.
-    let spread = surface.spread((corner.0, 1.0 - corner.1), (corner.1, 1.0 - corner.0));
+    let enclosure = surface.enclosure((corner.0, 1.0 - corner.1), (corner.1, 1.0 - corner.0));
     let at = surface.point(corner.0, corner.1);
     let none = DVec3::ZERO;
-    let (up, down) = ((spread.du.high.max(none), spread.dv.high.max(none)), (spread.du.low.min(none), spread.dv.low.min(none)));
+    let (up, down) = ((enclosure.du.high.max(none), enclosure.dv.high.max(none)), (enclosure.du.low.min(none), enclosure.dv.low.min(none)));
     let high = (slant.max - down.0 * step).min(slant.max - down.1 * step).min(at + up.0.max(up.1) * step);
     let low = (slant.min - up.0 * step).max(slant.min - up.1 * step).max(at + down.0.min(down.1) * step);
     Box3 { min: low, max: high }
@@ -144,12 +144,12 @@ fn proved(surface: &Surface, bounds: Box3) -> Boxed {
         if triangle && u.0 + v.0 >= 1.0 {
             continue;
         }
-        let spread = surface.spread(u, v);
+        let enclosure = surface.enclosure(u, v);
         // Points reached count at once; the middle of a rectangle over the slant is none.
         if !triangle || u.1 + v.1 <= 1.0 {
-            grown = grown.with(spread.mid.p);
+            grown = grown.with(enclosure.mid.p);
         }
-        let mut hull = spread.p.bounds();
+        let mut hull = enclosure.p.bounds();
         if let Some(slant) = slant.filter(|_| u.1 + v.1 > 1.0) {
             let within = below_slant(surface, (u.0, v.0), slant);
             hull = Box3 { min: hull.min.max(within.min), max: hull.max.min(within.max) };
@@ -166,7 +166,7 @@ fn proved(surface: &Surface, bounds: Box3) -> Boxed {
         }
         // In the direction in which the coordinate that stands out most runs most.
         let k = (0..3).max_by(|x, y| over[*x].total_cmp(&over[*y])).unwrap_or(0);
-        open.extend(halves((u, v), spread.du.coordinate(k).reach() * a >= spread.dv.coordinate(k).reach() * b));
+        open.extend(halves((u, v), enclosure.du.coordinate(k).reach() * a >= enclosure.dv.coordinate(k).reach() * b));
     }
     grown
 }

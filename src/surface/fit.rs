@@ -8,7 +8,7 @@ use glam::{DVec3, DVec4};
 use super::core::{Surface, SurfaceKind};
 use super::interpolate::{Spans, Tangents, fitted, mean_spans};
 use super::nurbs::NurbsSurface;
-use super::rail::Lean;
+use super::rail::OneSided;
 use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
@@ -153,7 +153,7 @@ impl<'a> Search<'a> {
     }
 
     fn at(net: &NurbsSurface, u: f64, v: f64) -> DVec3 {
-        net.jet(u, v, (Lean::After, Lean::After)).p
+        net.jet(u, v, (OneSided::After, OneSided::After)).p
     }
 
     /// Largest distance of a point from its own place on the net: no less than from the surface.

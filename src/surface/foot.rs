@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::quick::Quick;
+use super::quick::PowerForm;
 use super::{Domain, Jet2, Surface};
 use crate::base::job;
 use crate::base::tolerance::EPSILON;
@@ -78,7 +78,7 @@ pub(super) trait Footing {
 /// A surface held inside ranges of u and v, with its second derivatives.
 struct Within<'a> {
     surface: &'a Surface,
-    quick: Option<&'a Quick>,
+    quick: Option<&'a PowerForm>,
     u: (f64, f64),
     v: (f64, f64),
 }
@@ -126,7 +126,7 @@ impl Footing for Within<'_> {
 /// Distance of a point from a surface near (u, v), model units, with the place of the foot: Newton steps with second
 /// derivatives where they help, held inside the ranges of u and v; with the surface made ready, where it can be.
 pub fn foot_within(
-    (surface, quick): (&Surface, Option<&Quick>),
+    (surface, quick): (&Surface, Option<&PowerForm>),
     p: DVec3,
     guess: (f64, f64),
     u: (f64, f64),

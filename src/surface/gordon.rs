@@ -6,7 +6,7 @@
 //!
 //! a and b are the cardinal functions of C2 cubic splines (`cardinal.rs`), the same in all three parts, so the surface
 //! contains every curve to rounding. It is evaluated as this sum: nothing is fitted. Given end slopes would change
-//! nothing but a and b: fields of end slopes that come from the net itself, spread by the same splines, cancel between
+//! nothing but a and b: fields of end slopes that come from the net itself, enclosure by the same splines, cancel between
 //! the parts. So the ends are "not a knot", which reproduces cubics, and closed directions are periodic.
 //!
 //! The error for a net of lines of a surface F is (I − P_u)(I − P_v) F: zero where F is a cubic in one direction, and of
@@ -15,7 +15,7 @@
 use super::blend::Blend;
 use super::coons::{Made, finish};
 use super::core::{Surface, SurfaceKind, unit_normal};
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use super::shape::Shape;
 use super::weights::{Axis, Rule};
 use crate::base::fault::Fault;
@@ -105,7 +105,7 @@ impl Surface {
                 }
             }
         }
-        let lean = (Lean::After, Lean::After);
+        let lean = (OneSided::After, OneSided::After);
         for x in (0..=COMPARED).map(|k| k as f64 / COMPARED as f64) {
             for (rail, &y) in blend.along_u().iter().zip(&v.nodes) {
                 check.residual = check.residual.max(blend.jet(x, y, lean).p.distance(rail.point(x)));
@@ -121,17 +121,17 @@ impl Surface {
                     false => (v, blend.along_v(), &self.parts().kinks.1, self.parts().closed.1),
                 };
                 let smooth = axis.nodes[1..axis.nodes.len() - 1].iter().filter(|x| kinks.iter().all(|k| (k - **x).abs() > NUDGE));
-                let corner = |rail: &Rail| tolerance.is_kink(rail.jet(1.0, Lean::Before).d1, rail.jet(0.0, Lean::After).d1);
+                let corner = |rail: &Rail| tolerance.is_kink(rail.jet(1.0, OneSided::Before).d1, rail.jet(0.0, OneSided::After).d1);
                 let chained = || rails.iter().filter(|rail| rail.chain().is_some());
                 let seam = (closed && !chained().any(corner)).then_some((1.0, 0.0));
                 for (a, b) in smooth.map(|x| (*x, *x)).chain(seam) {
-                    let normal = |at: f64, lean: Lean| {
+                    let normal = |at: f64, lean: OneSided| {
                         unit_normal(&match across_u {
-                            true => blend.jet(at, inner, (lean, Lean::After)),
-                            false => blend.jet(inner, at, (Lean::After, lean)),
+                            true => blend.jet(at, inner, (lean, OneSided::After)),
+                            false => blend.jet(inner, at, (OneSided::After, lean)),
                         })
                     };
-                    if let (Some(before), Some(after)) = (normal(a, Lean::Before), normal(b, Lean::After)) {
+                    if let (Some(before), Some(after)) = (normal(a, OneSided::Before), normal(b, OneSided::After)) {
                         check.turn = check.turn.max(math::angle_between(before, after));
                     }
                 }

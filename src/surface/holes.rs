@@ -6,9 +6,9 @@ use super::closest::closest;
 use super::core::{Domain, Surface};
 use super::lone::{Keep, lone};
 use super::loops::{Ring, crossing, nested, touches};
+use super::pcurve::TrimCurve;
 use super::plane;
-use super::pull::Course;
-use super::trim::{Walk, around, assembled, natural, shifts};
+use super::trim::{TrimLoop, around, assembled, natural, shifts};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, LoopFault, LoopRole, Result, SurfaceFault};
 use crate::base::origin::Origin;
@@ -79,7 +79,7 @@ struct Holes<'a> {
 
 impl Holes<'_> {
     /// The face with these loops, the outer one first, without what the holes bound.
-    fn cut(&self, mut walks: Vec<Walk>, mut rings: Vec<Ring>, holes: &[Vec<Chain>]) -> Result<Surface> {
+    fn cut(&self, mut walks: Vec<TrimLoop>, mut rings: Vec<Ring>, holes: &[Vec<Chain>]) -> Result<Surface> {
         let (base, origin, tolerance) = (self.base, self.origin, self.tolerance);
         let new = rings.len();
         let mut cutting = Vec::with_capacity(holes.len());
@@ -94,7 +94,7 @@ impl Holes<'_> {
         let touched = |a: usize, b: usize| touches.get(&(a.min(b), a.max(b))).and_then(|t| t.places.first().copied());
         // Numbers of the loops that lie in (u, v) as they are, and of those that divide a closed surface.
         let (mut plain, mut apart): (Vec<usize>, Vec<usize>) = ((1..new).collect(), Vec::new());
-        let outline = walks.first().map(Walk::copied);
+        let outline = walks.first().map(TrimLoop::copied);
         for (k, walk) in cutting.into_iter().enumerate() {
             let ring = &rings[new + k];
             let (place, at) = walk.place_off(base, touched(0, new + k));
@@ -113,7 +113,7 @@ impl Holes<'_> {
                 return Err(LoopFault::Outside { hole: ring.of, outer: rings[0].of, trimming: origin, at }.into());
             }
         }
-        let numbered: Vec<(usize, &Walk)> = plain.iter().copied().zip(walks.iter().skip(1)).collect();
+        let numbered: Vec<(usize, &TrimLoop)> = plain.iter().copied().zip(walks.iter().skip(1)).collect();
         let found = nested(base, &numbered, touched);
         let nested = |(inner, around, at): (usize, usize, DVec3)| -> Fault {
             LoopFault::Nested { inner: rings[inner].of, around: rings[around].of, trimming: origin, at }.into()
@@ -121,7 +121,7 @@ impl Holes<'_> {
         if let Some(found) = found {
             return Err(nested(found));
         }
-        let whole = assembled(base, walks.iter().take(1).map(Walk::copied).collect(), origin)?;
+        let whole = assembled(base, walks.iter().take(1).map(TrimLoop::copied).collect(), origin)?;
         for k in &apart {
             let within = lone(&whole, &holes[*k], Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(base, &holes[*k], origin))?;
             for other in (1..rings.len()).filter(|r| *r != new + *k) {
@@ -140,14 +140,14 @@ impl Holes<'_> {
     }
 
     /// How far a loop on a closed surface must be moved in (u, v) to lie inside the outer one, if it does without crossing a seam.
-    fn moved_inside(&self, outer: &Walk, border: &Ring, (ring, walk): (&Ring, &Walk), place: DVec2) -> Result<Option<DVec2>> {
+    fn moved_inside(&self, outer: &TrimLoop, border: &Ring, (ring, walk): (&Ring, &TrimLoop), place: DVec2) -> Result<Option<DVec2>> {
         if ring.crosses_seam(border, self.tolerance)? {
             return Ok(None);
         }
         let offsets = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let all = |by: &DVec2| {
             let inside = |p: DVec2| offsets.iter().any(|off| outer.goes_round(self.base, p + *by + *off));
-            inside(place) && walk.courses.iter().flat_map(Course::places).all(inside)
+            inside(place) && walk.courses.iter().flat_map(TrimCurve::places).all(inside)
         };
         Ok(outer.copies(self.base, place).into_iter().map(|at| at - place).find(all))
     }
@@ -173,7 +173,7 @@ fn together(fault: Fault, holes: &[Vec<Chain>], tolerance: &Tolerance) -> Fault 
 }
 
 /// Where an outer loop lies on a surface that has loops already: E613 where it leaves it, else the holes that lie inside it.
-fn kept_holes(base: &Surface, (ring, walk): (&Ring, &Walk), origin: Origin, tolerance: &Tolerance) -> Result<Vec<(Ring, Walk)>> {
+fn kept_holes(base: &Surface, (ring, walk): (&Ring, &TrimLoop), origin: Origin, tolerance: &Tolerance) -> Result<Vec<(Ring, TrimLoop)>> {
     if base.parts().trim.is_none() && base.domain() != Domain::Loop {
         return Ok(Vec::new());
     }
@@ -186,7 +186,7 @@ fn kept_holes(base: &Surface, (ring, walk): (&Ring, &Walk), origin: Origin, tole
     rings.rotate_left(1);
     let last = rings.len() - 1;
     let touches = touches(&rings, last, tolerance)?;
-    let face = assembled(base, own.iter().map(Walk::copied).collect(), base.origin())?;
+    let face = assembled(base, own.iter().map(TrimLoop::copied).collect(), base.origin())?;
     let below = face.untrimmed();
     let foot = |p: DVec3| DVec2::from(closest(&below, p).uv);
     let cuts = touches.values().flat_map(|t| &t.cuts.1).copied().collect();

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::core::{Side, Surface};
-use super::pull::{Course, foot};
+use super::pcurve::{TrimCurve, foot};
 use crate::base::math;
 use crate::base::tolerance::NUDGE;
 use crate::network::Chain;
@@ -17,8 +17,8 @@ pub(super) fn within(x: f64, (low, high): (f64, f64)) -> Vec<f64> {
 }
 
 /// Halvings of a stretch of a border, one after the other and in all: where a damaged border jumps to and fro each half may be as long.
-const DEEPEST: u32 = 40;
-const MOST: u32 = 16 * DEEPEST;
+const MAX_DEPTH: u32 = 40;
+const MOST: u32 = 16 * MAX_DEPTH;
 
 /// A fraction of a chain and its place.
 type Foot = (f64, DVec2);
@@ -60,7 +60,7 @@ impl Surface {
     }
 
     /// The angle by which border `k` turns about a place.
-    fn turning(&self, k: usize, course: &Course, p: DVec2) -> f64 {
+    fn turning(&self, k: usize, course: &TrimCurve, p: DVec2) -> f64 {
         match self.side(k) {
             Side::Chain { chain, .. } => self.turn_along(course, Some(&chain), p),
             _ => self.turn_along(course, None, p),
@@ -68,19 +68,19 @@ impl Surface {
     }
 
     /// The angle by which a way over the surface turns about a place; the chain is the one whose feet it has.
-    pub(super) fn turn_along(&self, course: &Course, chain: Option<&Chain>, p: DVec2) -> f64 {
+    pub(super) fn turn_along(&self, course: &TrimCurve, chain: Option<&Chain>, p: DVec2) -> f64 {
         match course {
-            Course::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
-            Course::Pull(pull) => {
+            TrimCurve::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
+            TrimCurve::Pcurve(pcurve) => {
                 let Some(chain) = chain else { return 0.0 };
                 let turned = |(at, (low, high)): (&[(f64, DVec2)], (DVec2, DVec2))| {
                     // About a place outside the box that holds a way, the way turns as its chord does.
                     if p.cmplt(low).any() || p.cmpgt(high).any() {
                         return angle(at[0].1, at[at.len() - 1].1, p);
                     }
-                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, (DEEPEST, &mut { MOST }))).sum()
+                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, (MAX_DEPTH, &mut { MOST }))).sum()
                 };
-                pull.stretches().map(turned).sum()
+                pcurve.stretches().map(turned).sum()
             }
         }
     }

@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 use super::core::{Domain, Surface};
 use super::iso::IsoLine;
-use super::rail::Lean;
+use super::rail::OneSided;
 use crate::base::fault::{CurveFault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Jet, Kind, Nurbs};
@@ -50,7 +50,7 @@ pub(super) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
             if fit.holds(&cubic, a, b) {
                 pieces.push(cubic);
             } else if pieces.len() + open.len() > MOST_PIECES || b - a < NUDGE * (w[1] - w[0]) {
-                let at = fit.jet(a, Lean::After).p;
+                let at = fit.jet(a, OneSided::After).p;
                 return Err(CurveFault::NotConverged { of: origin, what: "the line on the surface".to_owned(), at }.into());
             } else {
                 let middle = 0.5 * (a + b);
@@ -70,15 +70,15 @@ pub(super) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
 
 impl Fit<'_> {
     /// Point and derivatives of the line, from the given side.
-    fn jet(&self, t: f64, lean: Lean) -> Jet {
+    fn jet(&self, t: f64, lean: OneSided) -> Jet {
         let (u, v) = self.line.at(t);
         match self.line {
             IsoLine::U(_) => {
-                let jet = self.surface.jet_lean(u, v, (Lean::After, lean));
+                let jet = self.surface.jet_one_sided(u, v, (OneSided::After, lean));
                 Jet { p: jet.p, d1: jet.dv, d2: jet.dvv }
             }
             IsoLine::V(_) => {
-                let jet = self.surface.jet_lean(u, v, (lean, Lean::After));
+                let jet = self.surface.jet_one_sided(u, v, (lean, OneSided::After));
                 Jet { p: jet.p, d1: jet.du, d2: jet.duu }
             }
         }
@@ -86,7 +86,7 @@ impl Fit<'_> {
 
     /// The cubic with the line's ends and derivatives.
     fn cubic(&self, a: f64, b: f64) -> Nurbs {
-        let (from, to, h) = (self.jet(a, Lean::After), self.jet(b, Lean::Before), b - a);
+        let (from, to, h) = (self.jet(a, OneSided::After), self.jet(b, OneSided::Before), b - a);
         let poles = [from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
         Nurbs::bezier(a, b, poles.iter().map(|p| p.extend(1.0)).collect())
     }
@@ -98,11 +98,11 @@ impl Fit<'_> {
         while let Some((a, b)) = open.pop() {
             job::look();
             let (middle, h) = (0.5 * (a + b), 0.5 * (b - a));
-            let (f, c) = (self.jet(middle, Lean::After), cubic.jet(middle));
+            let (f, c) = (self.jet(middle, OneSided::After), cubic.jet(middle));
             let (off, slope) = (f.p.distance(c.p), f.d1.distance(c.d1));
             // The second derivative of a cubic lies between those at the ends.
-            let bend = self.bend(a, b) - Ranges::of([cubic.jet(a).d2, cubic.jet(b).d2]);
-            let most = if bend.is_vast() { f64::INFINITY } else { off + h * slope + 0.5 * h * h * bend.reach() };
+            let bend = self.bend(a, b) - Interval3::of([cubic.jet(a).d2, cubic.jet(b).d2]);
+            let most = if bend.is_unbounded() { f64::INFINITY } else { off + h * slope + 0.5 * h * h * bend.reach() };
             if most <= self.allowed {
                 continue;
             }
@@ -117,10 +117,10 @@ impl Fit<'_> {
     }
 
     /// The range of the line's second derivative.
-    fn bend(&self, a: f64, b: f64) -> Ranges {
+    fn bend(&self, a: f64, b: f64) -> Interval3 {
         match self.line {
-            IsoLine::U(u) => self.surface.spread((u, u), (a, b)).dvv,
-            IsoLine::V(v) => self.surface.spread((a, b), (v, v)).duu,
+            IsoLine::U(u) => self.surface.enclosure((u, u), (a, b)).dvv,
+            IsoLine::V(v) => self.surface.enclosure((a, b), (v, v)).duu,
         }
     }
 }

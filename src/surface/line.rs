@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::rail::{Lean, Rail};
-use crate::base::range::{Range, Ranges};
+use super::rail::{OneSided, Rail};
+use crate::base::range::{Interval, Interval3};
 use crate::geometry::Jet;
 
 /// Taylor's formula about the middle, with what the derivatives may be over the whole stretch.
@@ -14,29 +14,29 @@ pub struct Line {
     /// Value and derivatives in the middle.
     pub mid: Jet,
     /// First derivative.
-    pub d1: Ranges,
+    pub d1: Interval3,
     /// Second derivative; vast where there is a cusp. Jumps of the first derivative count as what bends as far.
-    pub d2: Ranges,
+    pub d2: Interval3,
 }
 
 impl Line {
     /// From the middle and the second derivative; `d1` is what else is known of the first.
-    pub fn new(half: f64, mid: Jet, d1: Option<Ranges>, d2: Ranges) -> Self {
-        let taylor = d2 * Range::around_zero(half) + mid.d1;
+    pub fn new(half: f64, mid: Jet, d1: Option<Interval3>, d2: Interval3) -> Self {
+        let taylor = d2 * Interval::around_zero(half) + mid.d1;
         Self { half, mid, d1: d1.map_or(taylor, |known| taylor.intersection(known)), d2 }
     }
 
     /// The value.
-    pub fn p(&self) -> Ranges {
-        let steps = Range::around_zero(self.half);
+    pub fn p(&self) -> Interval3 {
+        let steps = Interval::around_zero(self.half);
         let by_slope = self.d1 * steps + self.mid.p;
-        let by_bend = steps * self.mid.d1 + self.d2 * Range { low: 0.0, high: 0.5 * self.half * self.half } + self.mid.p;
+        let by_bend = steps * self.mid.d1 + self.d2 * Interval { low: 0.0, high: 0.5 * self.half * self.half } + self.mid.p;
         by_bend.intersection(by_slope)
     }
 
     /// Σ of fixed multiples of lines over the same stretch.
     pub fn sum(terms: impl Iterator<Item = (f64, Self)>) -> Self {
-        let zero = Self { half: 0.0, mid: Jet::default(), d1: Ranges::default(), d2: Ranges::default() };
+        let zero = Self { half: 0.0, mid: Jet::default(), d1: Interval3::default(), d2: Interval3::default() };
         let whole = terms.fold(zero, |s, (w, l)| Self {
             half: l.half,
             mid: Jet { p: s.mid.p + l.mid.p * w, d1: s.mid.d1 + l.mid.d1 * w, d2: s.mid.d2 + l.mid.d2 * w },
@@ -47,7 +47,7 @@ impl Line {
     }
 
     /// This order of derivative.
-    pub fn order(&self, k: usize) -> Ranges {
+    pub fn order(&self, k: usize) -> Interval3 {
         match k {
             0 => self.p(),
             1 => self.d1,
@@ -65,7 +65,7 @@ impl Line {
 #[derive(Clone, Copy, Debug)]
 pub struct Shares<'a> {
     /// Value and derivatives of each.
-    pub weights: &'a [([f64; 3], [Range; 3])],
+    pub weights: &'a [([f64; 3], [Interval; 3])],
     /// How many of them, from the first on, have the same sum everywhere.
     pub shares: usize,
     /// Their third derivatives, where these are numbers: the weights are cubics.
@@ -75,12 +75,12 @@ pub struct Shares<'a> {
 }
 
 /// (tⁿ / n!) for −`half` ≤ t ≤ `half`.
-pub fn taylor(half: f64, n: usize) -> Range {
+pub fn taylor(half: f64, n: usize) -> Interval {
     match n {
-        0 => Range::at(1.0),
-        1 => Range::around_zero(half),
-        2 => Range { low: 0.0, high: 0.5 * half * half },
-        _ => Range::around_zero(half * half * half / 6.0),
+        0 => Interval::at(1.0),
+        1 => Interval::around_zero(half),
+        2 => Interval { low: 0.0, high: 0.5 * half * half },
+        _ => Interval::around_zero(half * half * half / 6.0),
     }
 }
 
@@ -89,7 +89,7 @@ pub fn taylor(half: f64, n: usize) -> Range {
 /// Cubic weights are their Taylor sums about the middle, whose derivatives are mixed before they meet ranges: what of nodes and slopes
 /// cancels does so exactly. What the shares of others vary by sums to 0, so it multiplies differences of the l_k only: constants cost
 /// nothing.
-pub fn blended(of: Shares, derivative: usize, order: usize, mixed: &dyn Fn(&[f64]) -> Line) -> Ranges {
+pub fn blended(of: Shares, derivative: usize, order: usize, mixed: &dyn Fn(&[f64]) -> Line) -> Interval3 {
     if let Some(thirds) = of.thirds {
         let at = |d: usize| if d == 3 { thirds.to_vec() } else { of.weights.iter().map(|w| w.0[d]).collect() };
         let term = |n: usize| mixed(&at(derivative + n)).order(order) * taylor(of.half, n);
@@ -103,7 +103,7 @@ pub fn blended(of: Shares, derivative: usize, order: usize, mixed: &dyn Fn(&[f64
             by[0] = -1.0;
         }
         by[k] = 1.0;
-        sum = sum + mixed(&by).order(order) * (range[derivative] - Range::at(middle[derivative]));
+        sum = sum + mixed(&by).order(order) * (range[derivative] - Interval::at(middle[derivative]));
     }
     sum
 }
@@ -115,22 +115,22 @@ impl Rail {
             return sum.line(x0, x1);
         }
         let half = 0.5 * (x1 - x0);
-        let mid = self.jet(0.5 * (x0 + x1), Lean::After);
+        let mid = self.jet(0.5 * (x0 + x1), OneSided::After);
         let Self::Chain { chain, map, .. } = self else {
-            return Line::new(half, mid, None, Ranges::default());
+            return Line::new(half, mid, None, Interval3::default());
         };
         let ([value, m1, m2], jumps) = map.ranges(x0, x1);
         // It stands still.
         if value.low == value.high {
-            return Line::new(half, mid, None, Ranges::default());
+            return Line::new(half, mid, None, Interval3::default());
         }
-        let spread = chain.spread(value.low.clamp(0.0, 1.0), value.high.clamp(0.0, 1.0));
+        let enclosure = chain.enclosure(value.low.clamp(0.0, 1.0), value.high.clamp(0.0, 1.0));
         // A jump J of the slope moves values by at most J·half and slopes by J: a bend of 2J/half does as much.
-        let jump = spread.jumps * m1.reach() + spread.d1.low.abs().max(spread.d1.high.abs()) * jumps;
-        let mut d2 = spread.d2 * m1.square() + spread.d1 * m2;
+        let jump = enclosure.jumps * m1.reach() + enclosure.d1.low.abs().max(enclosure.d1.high.abs()) * jumps;
+        let mut d2 = enclosure.d2 * m1.square() + enclosure.d1 * m2;
         if jump != DVec3::ZERO {
-            d2 = d2 + Ranges::around_zero(jump * (2.0 / half));
+            d2 = d2 + Interval3::around_zero(jump * (2.0 / half));
         }
-        Line::new(half, mid, Some(spread.d1 * m1), d2)
+        Line::new(half, mid, Some(enclosure.d1 * m1), d2)
     }
 }

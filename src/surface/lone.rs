@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use super::closest::closest;
 use super::core::{Side, Surface};
 use super::divide::divide;
-use super::pull::Course;
-use super::trim::{Walk, inside, natural};
+use super::pcurve::TrimCurve;
+use super::trim::{TrimLoop, inside, natural};
 use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -33,10 +33,10 @@ const INWARD: f64 = 100.0;
 /// Cells along u and v by which areas are compared.
 const CELLS: usize = 48;
 
-impl Walk {
+impl TrimLoop {
     /// Whether it comes back to its first place by a whole turn round the surface.
     pub fn winds(&self, base: &Surface) -> bool {
-        let ends = |c: &Course| -> Option<(DVec2, DVec2)> { Some((*c.places().first()?, *c.places().last()?)) };
+        let ends = |c: &TrimCurve| -> Option<(DVec2, DVec2)> { Some((*c.places().first()?, *c.places().last()?)) };
         let (Some(first), Some(last)) = (self.courses.first().and_then(ends), self.courses.last().and_then(ends)) else { return false };
         let turns = (last.1 - first.0).round();
         let closed = base.closed();
@@ -44,11 +44,11 @@ impl Walk {
     }
 
     /// Whether every place of it is inside another one, each moved by turns of its own; a place on a seam is.
-    pub fn lies_within(&self, base: &Surface, bounds: &Walk) -> bool {
+    pub fn lies_within(&self, base: &Surface, bounds: &TrimLoop) -> bool {
         let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let outline = bounds.polygon();
         let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| hairs.iter().any(|hair| inside(&outline, at + *hair)));
-        self.courses.iter().flat_map(Course::places).all(place)
+        self.courses.iter().flat_map(TrimCurve::places).all(place)
     }
 }
 

@@ -9,9 +9,9 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Side, Surface};
 use super::inside::within;
-use super::pull::Course;
+use super::pcurve::TrimCurve;
 use super::strands::of_border;
-use super::trim::{Walk, reach};
+use super::trim::{TrimLoop, reach};
 use crate::base::bbox::Box3;
 use crate::base::fault::{LoopFault, Result};
 use crate::base::job;
@@ -44,7 +44,7 @@ impl Ring {
     }
 
     /// A loop that a surface has.
-    pub fn of_walk(base: &Surface, walk: &Walk, outer: bool, tolerance: &Tolerance) -> Result<Self> {
+    pub fn of_walk(base: &Surface, walk: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
         let (mut chains, mut seams) = (Vec::new(), Vec::new());
         let sides = walk.borders.len();
         for (k, (border, course)) in walk.borders.iter().zip(&walk.courses).enumerate() {
@@ -164,10 +164,10 @@ pub(super) fn crossing((a, b): (&Ring, &Ring), touch: &Touch, trimming: Origin, 
     LoopFault::Meet { a: later.of, b: old.of, outer: old.outer, trimming, places, run, apart, tolerance: tolerance.point }
 }
 
-impl Walk {
+impl TrimLoop {
     /// A place of it and its point in space: the farthest from a point at which it touches another loop.
     pub fn place_off(&self, base: &Surface, touched: Option<DVec3>) -> (DVec2, DVec3) {
-        let places = self.courses.iter().flat_map(Course::places).map(|uv| (uv, base.point(uv.x, uv.y)));
+        let places = self.courses.iter().flat_map(TrimCurve::places).map(|uv| (uv, base.point(uv.x, uv.y)));
         let far = |p: &(DVec2, DVec3)| touched.map_or(0.0, |t| t.distance_squared(p.1));
         let first = |best: Option<(DVec2, DVec3)>, p: (DVec2, DVec3)| match best {
             Some(q) if far(&p) <= far(&q) => Some(q),
@@ -207,7 +207,7 @@ impl Walk {
 /// Two of some loops in (u, v), by their numbers, of which the first lies inside the second; both are holes that do not cross.
 pub(super) fn nested(
     base: &Surface,
-    holes: &[(usize, &Walk)],
+    holes: &[(usize, &TrimLoop)],
     touched: impl Fn(usize, usize) -> Option<DVec3>,
 ) -> Option<(usize, usize, DVec3)> {
     let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| reach(&walk.courses)).collect();

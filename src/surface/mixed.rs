@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::line::Line;
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use crate::base::bbox::Box3;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::{Jet, Motion};
 
@@ -30,7 +30,7 @@ crate::content!(Mixed { parts });
 crate::content!(Part { by, rail, onto });
 
 impl Part {
-    fn jet(&self, x: f64, lean: Lean) -> Jet {
+    fn jet(&self, x: f64, lean: OneSided) -> Jet {
         let jet = self.rail.jet(x, lean);
         let Some((at, n)) = self.onto else { return jet };
         let flat = |v: DVec3| v - n * n.dot(v);
@@ -40,8 +40,8 @@ impl Part {
     fn line(&self, x0: f64, x1: f64) -> Line {
         let line = self.rail.line(x0, x1);
         let Some((_, n)) = self.onto else { return line };
-        let flat = |r: Ranges| r + -(r.along(n) * n);
-        Line::new(line.half, self.jet(0.5 * (x0 + x1), Lean::After), Some(flat(line.d1)), flat(line.d2))
+        let flat = |r: Interval3| r + -(r.along(n) * n);
+        Line::new(line.half, self.jet(0.5 * (x0 + x1), OneSided::After), Some(flat(line.d1)), flat(line.d2))
     }
 }
 
@@ -56,7 +56,7 @@ impl Mixed {
     }
 
     /// Point and derivatives.
-    pub fn jet(&self, x: f64, lean: Lean) -> Jet {
+    pub fn jet(&self, x: f64, lean: OneSided) -> Jet {
         self.parts.iter().fold(Jet::default(), |sum, part| {
             let jet = part.jet(x, lean);
             Jet { p: sum.p + jet.p * part.by, d1: sum.d1 + jet.d1 * part.by, d2: sum.d2 + jet.d2 * part.by }

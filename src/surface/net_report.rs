@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::blend::Blend;
 use super::closest::Nearest;
 use super::core::{Surface, SurfaceKind};
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use super::shape::Shape;
 use crate::base::fault::{Fault, NetFault};
 use crate::base::origin::Origin;
@@ -84,7 +84,7 @@ impl Surface {
     pub fn net_curves(&self) -> Vec<NetCurve> {
         let Some(blend) = self.blend() else { return Vec::new() };
         let (u, v) = blend.axes();
-        let lean = (Lean::After, Lean::After);
+        let lean = (OneSided::After, OneSided::After);
         let place = |k: usize| k as f64 / PLACES as f64;
         let row = |rail: &Rail, at: f64, along_u: bool| {
             let chain = rail.chain();
@@ -131,14 +131,14 @@ impl Surface {
 impl Surface {
     /// A section that it passes at a distance, with the v of its middle.
     fn beside(&self, chain: &Chain) -> NetCurve {
-        const LOOKS: usize = 32;
+        const MAX_SAMPLES: usize = 32;
         let nearest = Nearest::new(self);
-        let feet: Vec<_> = (0..=LOOKS).map(|k| nearest.at(chain.point(k as f64 / LOOKS as f64))).collect();
+        let feet: Vec<_> = (0..=MAX_SAMPLES).map(|k| nearest.at(chain.point(k as f64 / MAX_SAMPLES as f64))).collect();
         NetCurve {
             origin: chain.origin(),
             given: true,
             along_u: true,
-            at: feet[LOOKS / 2].uv.1,
+            at: feet[MAX_SAMPLES / 2].uv.1,
             segments: super::chain_breaks(chain).len() + 1,
             scale: None,
             residual: feet.iter().map(|foot| foot.distance).fold(0.0, f64::max),
@@ -152,7 +152,7 @@ fn scales(blend: &Blend, stations: &mut [NetCurve], (guides, round): (usize, boo
     if anchors.is_empty() || stations.iter().all(|s| s.given) {
         return;
     }
-    let spread = |i: usize| {
+    let enclosure = |i: usize| {
         let points: Vec<DVec3> = anchors.iter().map(|j| blend.corner(i, *j)).collect();
         let n = points.len() as f64;
         let middle = points.iter().sum::<DVec3>() / n;
@@ -163,7 +163,7 @@ fn scales(blend: &Blend, stations: &mut [NetCurve], (guides, round): (usize, boo
         // Where the sections go round, the first one comes again after the last.
         let before = given.iter().rev().find(|k| **k < i).or(given.last().filter(|_| round));
         let after = given.iter().find(|k| **k > i).or(given.first().filter(|_| round));
-        let scale = |k: &usize| if anchors.len() == 1 || spread(*k) == 0.0 { 1.0 } else { spread(i) / spread(*k) };
+        let scale = |k: &usize| if anchors.len() == 1 || enclosure(*k) == 0.0 { 1.0 } else { enclosure(i) / enclosure(*k) };
         let off = |x: f64| if x > 1.0 { x } else { 1.0 / x };
         let both = before.into_iter().chain(after).map(scale);
         station.scale = both.max_by(|a, b| off(*a).total_cmp(&off(*b)));

@@ -6,7 +6,7 @@ use super::Jet2;
 use super::breaks::{distinct_inner, tidy};
 use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
 use super::flow_words::phrase;
-use super::rail::Lean;
+use super::rail::OneSided;
 use super::shape::Shape;
 use crate::base::bbox::Box3;
 use crate::base::fault::{CurveFault, Result, ValueFault};
@@ -57,10 +57,10 @@ pub(super) fn multiplicity(knots: &[f64], knot: f64) -> usize {
 }
 
 /// The basis at a parameter [Piegl & Tiller 1997, A2.2 and eq. 2.9].
-fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, lean: Lean) -> Basis<N> {
+fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, lean: OneSided) -> Basis<N> {
     let (low, high) = (degree, knots.len() - degree - 2);
     let inner = &knots[low + 1..=high];
-    let reached = |k: &f64| if lean == Lean::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
+    let reached = |k: &f64| if lean == OneSided::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
     let span = low + inner.partition_point(reached);
     let mut values = [[0.0; 3]; N];
     let round = &knots[span + 1 - degree..=span + degree];
@@ -156,7 +156,7 @@ impl NurbsSurface {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         if self.is_common() { self.jet_on::<COMMON>(u, v, lean) } else { self.jet_on::<MOST>(u, v, lean) }
     }
 
@@ -165,7 +165,7 @@ impl NurbsSurface {
         self.degree.0.max(self.degree.1) <= COMMON_DEGREE
     }
 
-    fn jet_on<const N: usize>(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    fn jet_on<const N: usize>(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         let a: Basis<N> = basis(&self.knots.0, self.degree.0, u, lean.0);
         let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, lean.1);
         let mut sums = [DVec4::ZERO; 6];
@@ -188,11 +188,11 @@ impl NurbsSurface {
             a.values().iter().enumerate().fold(DVec4::ZERO, |sum, (k, x)| sum + pole(a.first + k) * x[0])
         };
         if at_u {
-            let a = basis(&self.knots.0, self.degree.0, at, Lean::After);
+            let a = basis(&self.knots.0, self.degree.0, at, OneSided::After);
             let poles = (0..self.counts.1).map(|j| sum(&a, &|i| self.pole(i, j))).collect();
             Nurbs::new(self.degree.1, self.knots.1.clone(), poles)
         } else {
-            let b = basis(&self.knots.1, self.degree.1, at, Lean::After);
+            let b = basis(&self.knots.1, self.degree.1, at, OneSided::After);
             let poles = (0..self.counts.0).map(|i| sum(&b, &|j| self.pole(i, j))).collect();
             Nurbs::new(self.degree.0, self.knots.0.clone(), poles)
         }
@@ -204,12 +204,12 @@ impl NurbsSurface {
     }
 
     fn grid_on<const N: usize>(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        let columns: Vec<Basis<N>> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, Lean::After)).collect();
+        let columns: Vec<Basis<N>> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, OneSided::After)).collect();
         let width = us.len().max(1);
         par::chunks_mut(out, width * ROWS, |chunk, part| {
             let mut row = vec![DVec4::ZERO; self.counts.0];
             for (line, &v) in part.chunks_exact_mut(width).zip(&vs[(chunk * ROWS).min(vs.len())..]) {
-                let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, Lean::After);
+                let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, OneSided::After);
                 for (i, q) in row.iter_mut().enumerate() {
                     *q = b.values().iter().enumerate().fold(DVec4::ZERO, |sum, (j, y)| sum + self.pole(i, b.first + j) * y[0]);
                 }
@@ -254,15 +254,15 @@ impl NurbsSurface {
         let kink_u = us.iter().copied().filter(|&u| {
             multiplicity(&self.knots.0, u) >= self.degree.0
                 && along_v.iter().any(|&v| {
-                    let side = |lean| self.jet(u, v, (lean, Lean::After)).du;
-                    turns(side(Lean::Before), side(Lean::After))
+                    let side = |lean| self.jet(u, v, (lean, OneSided::After)).du;
+                    turns(side(OneSided::Before), side(OneSided::After))
                 })
         });
         let kink_v = vs.iter().copied().filter(|&v| {
             multiplicity(&self.knots.1, v) >= self.degree.1
                 && along_u.iter().any(|&u| {
-                    let side = |lean| self.jet(u, v, (Lean::After, lean)).dv;
-                    turns(side(Lean::Before), side(Lean::After))
+                    let side = |lean| self.jet(u, v, (OneSided::After, lean)).dv;
+                    turns(side(OneSided::Before), side(OneSided::After))
                 })
         });
         (kink_u.collect(), kink_v.collect())

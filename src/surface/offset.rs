@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::Jet2;
 use super::core::{Domain, Side, Surface, SurfaceKind, unit_normal};
 use super::extrude::extrude;
-use super::rail::Lean;
+use super::rail::OneSided;
 use super::revolve::{Axis, revolve};
 use super::shape::Shape;
 use super::sweep::Path;
@@ -87,9 +87,9 @@ fn crease(surface: &Surface, tolerance: &Tolerance) -> Option<(DVec3, f64)> {
     let in_u = us.iter().flat_map(|u| places().map(move |v| (*u, v, true)));
     let in_v = vs.iter().flat_map(|v| places().map(move |u| (u, *v, false)));
     let jump = |(u, v, across_u): (f64, f64, bool)| {
-        let lean = |side: Lean| if across_u { (side, Lean::After) } else { (Lean::After, side) };
-        let normal = |side: Lean| surface.normal_lean(u, v, lean(side));
-        (surface.point(u, v), math::angle_between(normal(Lean::Before), normal(Lean::After)))
+        let lean = |side: OneSided| if across_u { (side, OneSided::After) } else { (OneSided::After, side) };
+        let normal = |side: OneSided| surface.normal_lean(u, v, lean(side));
+        (surface.point(u, v), math::angle_between(normal(OneSided::Before), normal(OneSided::After)))
     };
     let most = in_u.chain(in_v).map(jump).fold((DVec3::ZERO, 0.0), |most, next| if next.1 > most.1 { next } else { most });
     (most.1 > tolerance.angle).then_some(most)
@@ -110,16 +110,16 @@ fn tip(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     };
     (0..4).find_map(|k| {
         let Side::Pole(p) = surface.side(k) else { return None };
-        let ((u, v), lean) = (place(k, 0.5, 0.0), (Lean::After, Lean::After));
+        let ((u, v), lean) = (place(k, 0.5, 0.0), (OneSided::After, OneSided::After));
         let upright = surface.normal_lean(u, v, lean);
-        let spread = |inward: f64| {
+        let enclosure = |inward: f64| {
             let normal = |i: usize| {
                 let (u, v) = place(k, (i as f64 + 0.5) / AROUND as f64, inward);
                 math::angle_between(surface.normal(u, v), upright)
             };
             (0..AROUND).map(normal).fold(0.0, f64::max)
         };
-        let (far, near) = (spread(POLE_STEP), spread(NEARER * POLE_STEP));
+        let (far, near) = (enclosure(POLE_STEP), enclosure(NEARER * POLE_STEP));
         (near > tolerance.angle && near > 0.5 * far).then_some(p)
     })
 }
@@ -272,7 +272,7 @@ pub(super) fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault>
         let stops = [&[0.0], inner, &[1.0]].concat();
         let within = stops.windows(2).flat_map(|w| {
             let at = |k: usize| w[0] + (w[1] - w[0]) * k as f64 / SAMPLES as f64;
-            (0..=SAMPLES).map(move |k| if k == SAMPLES { (w[1], Lean::Before) } else { (at(k), Lean::After) }).collect::<Vec<_>>()
+            (0..=SAMPLES).map(move |k| if k == SAMPLES { (w[1], OneSided::Before) } else { (at(k), OneSided::After) }).collect::<Vec<_>>()
         });
         within.collect::<Vec<_>>()
     };
@@ -290,16 +290,16 @@ pub(super) fn folds(base: &Surface, distance: f64, origin: Origin) -> Vec<Fault>
 }
 
 /// The jet at a distance: point, ∂u, ∂v and ∂uv; zero where a surface has no normal.
-pub(super) fn beside(surface: &Surface, (u, v): ((f64, Lean), (f64, Lean)), distance: f64) -> Jet2 {
+pub(super) fn beside(surface: &Surface, (u, v): ((f64, OneSided), (f64, OneSided)), distance: f64) -> Jet2 {
     let lean = (u.1, v.1);
-    let step = |x: (f64, Lean)| if x.1 == Lean::After && x.0 + NUDGE <= 1.0 || x.0 < NUDGE { NUDGE } else { -NUDGE };
+    let step = |x: (f64, OneSided)| if x.1 == OneSided::After && x.0 + NUDGE <= 1.0 || x.0 < NUDGE { NUDGE } else { -NUDGE };
     let (du, dv) = (step(u), step(v));
-    let jet = surface.jet_lean(u.0, v.0, lean);
+    let jet = surface.jet_one_sided(u.0, v.0, lean);
     let normal = |u: f64, v: f64| surface.normal_lean(u, v, lean);
     let n = normal(u.0, v.0);
     let differences = || ((normal(u.0 + du, v.0) - n) / du, (normal(u.0, v.0 + dv) - n) / dv);
     let (nu, nv) = slopes(&jet).unwrap_or_else(differences);
-    let beyond = slopes(&surface.jet_lean(u.0, v.0 + dv, lean)).map_or(nu, |next| next.0);
+    let beyond = slopes(&surface.jet_one_sided(u.0, v.0 + dv, lean)).map_or(nu, |next| next.0);
     Jet2 {
         p: jet.p + n * distance,
         du: jet.du + nu * distance,

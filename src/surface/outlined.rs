@@ -13,8 +13,8 @@ use super::cells::Cells;
 use super::closest::Nearest;
 use super::core::{Domain, Side, Surface};
 use super::divide::{dividing, walks};
+use super::pcurve::TrimCurve;
 use super::plane;
-use super::pull::Course;
 use super::strands::{Meets, Piece};
 use super::trim::{assembled, shifts};
 use crate::base::bbox::Box3;
@@ -279,15 +279,15 @@ impl Sides<'_> {
 /// A place of a piece with its direction there.
 fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
     match (&piece.course, piece.own_chain()) {
-        (Course::Line(a, b), _) => {
+        (TrimCurve::Line(a, b), _) => {
             let (a, b) = (DVec2::from(*a), DVec2::from(*b));
             let at = a.lerp(b, MIDDLE);
             let jet = base.jet(at.x, at.y);
             Some((jet.p, jet.du * (b - a).x + jet.dv * (b - a).y))
         }
-        (Course::Pull(pull), Some(chain)) => {
-            let jet = chain.jet(pull.fraction(MIDDLE));
-            Some((jet.p, jet.d1 * (pull.fraction(1.0) - pull.fraction(0.0)).signum()))
+        (TrimCurve::Pcurve(pcurve), Some(chain)) => {
+            let jet = chain.jet(pcurve.fraction(MIDDLE));
+            Some((jet.p, jet.d1 * (pcurve.fraction(1.0) - pcurve.fraction(0.0)).signum()))
         }
         _ => None,
     }
@@ -297,11 +297,11 @@ fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
 fn near(base: &Surface, piece: &Piece, (p, foot): (DVec3, DVec2), room: f64) -> bool {
     match (piece.own_chain(), &piece.course) {
         (Some(chain), _) => chain.closest(p).2 <= room,
-        (None, Course::Line(a, b)) => {
+        (None, TrimCurve::Line(a, b)) => {
             let (a, along) = (DVec2::from(*a), DVec2::from(*b) - DVec2::from(*a));
             let on_line = |uv: DVec2| a + along * ((uv - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
             shifts(base).into_iter().map(|by| on_line(foot + by)).any(|uv| base.point(uv.x, uv.y).distance(p) <= room)
         }
-        (None, Course::Pull(_)) => false,
+        (None, TrimCurve::Pcurve(_)) => false,
     }
 }

@@ -10,9 +10,9 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::Jet2;
 use super::core::Surface;
-use super::net_spread::NetStrip;
+use super::net_enclosure::NetStrip;
 use super::nurbs::{NurbsSurface, multiplicity, quotient};
-use super::rail::Lean;
+use super::rail::OneSided;
 use super::shape::Shape;
 use super::thirds::Thirds;
 use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
@@ -25,7 +25,7 @@ const HIGHEST: usize = 14;
 
 /// A net, ready.
 #[derive(Clone, Debug)]
-pub struct Quick {
+pub struct PowerForm {
     surface: Surface,
     net: Arc<Powers>,
 }
@@ -123,10 +123,10 @@ impl Bends {
 
 impl Surface {
     /// The net made ready; `None` for surfaces that are none.
-    pub fn quick(&self) -> Option<Quick> {
+    pub fn power_form(&self) -> Option<PowerForm> {
         match &self.parts().shape {
             Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= HIGHEST => {
-                Some(Quick { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) })
+                Some(PowerForm { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) })
             }
             _ => None,
         }
@@ -136,12 +136,12 @@ impl Surface {
 /// Evaluation by the net made ready, where it is.
 impl Surface {
     /// The point.
-    pub fn point_by(&self, quick: Option<&Quick>, u: f64, v: f64) -> DVec3 {
+    pub fn point_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> DVec3 {
         quick.map_or_else(|| self.point(u, v), |quick| quick.point(u, v))
     }
 
     /// Point, ∂/∂u and ∂/∂v.
-    pub fn tangents_by(&self, quick: Option<&Quick>, u: f64, v: f64) -> [DVec3; 3] {
+    pub fn tangents_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> [DVec3; 3] {
         let plain = || {
             let jet = self.jet(u, v);
             [jet.p, jet.du, jet.dv]
@@ -150,7 +150,7 @@ impl Surface {
     }
 
     /// Point and all derivatives.
-    pub fn jet_by(&self, quick: Option<&Quick>, u: f64, v: f64) -> Jet2 {
+    pub fn jet_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> Jet2 {
         quick.map_or_else(|| self.jet(u, v), |quick| quick.jet(u, v))
     }
 }
@@ -181,7 +181,7 @@ impl Powers {
     }
 }
 
-impl Quick {
+impl PowerForm {
     /// Bounds of the third derivatives along a unit vector over a box of the net's own parameters: ∂uuu, ∂uuv, ∂uvv, ∂vvv.
     fn most_thirds(&self, area: (DVec2, DVec2), along: DVec3) -> [f64; 4] {
         let made = || {
@@ -201,7 +201,7 @@ impl Quick {
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         work::spend(1);
         let (u, v) = self.surface.wrapped(u, v);
-        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
         let ((i, s, _), (j, t, _)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
         let mut sum = DVec4::ZERO;
         for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
@@ -215,7 +215,7 @@ impl Quick {
     pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 3] {
         work::spend(1);
         let (u, v) = self.surface.wrapped(u, v);
-        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
         let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
         let mut sums = [DVec4::ZERO; 3];
         for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
@@ -239,7 +239,7 @@ impl Quick {
     /// Point and all derivatives.
     pub fn jet(&self, u: f64, v: f64) -> Jet2 {
         let (u, v) = self.surface.wrapped(u, v);
-        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
         self.surface.outer(self.own_jet(u, v))
     }
 
@@ -276,7 +276,7 @@ impl Quick {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // Round the middle: a box over a seam leaves the parameters at one side and is not answered.
         let (u, v) = self.surface.wrapped(middle.x, middle.y);
-        let (u, v, _) = self.surface.inner(u, v, (Lean::After, Lean::After));
+        let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
         let (low, high) = (DVec2::new(u, v) - half, DVec2::new(u, v) + half);
         if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
             return None;

@@ -5,21 +5,21 @@ use glam::DVec3;
 use super::mixed::Mixed;
 use super::reparam::Map;
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::{Jet, Motion};
 use crate::network::Chain;
 
 /// From which side a value is approached where derivatives jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lean {
+pub enum OneSided {
     /// The piece that follows (at the last parameter the one before).
     After,
     /// The piece before (at the first parameter the one that follows).
     Before,
 }
 
-impl Lean {
+impl OneSided {
     /// The other side.
     pub fn turned(self) -> Self {
         if self == Self::After { Self::Before } else { Self::After }
@@ -54,8 +54,8 @@ pub enum Rail {
     },
 }
 
-impl Content for Rail {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Rail {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Chain { chain, map, kinks } => (0u8, (chain, map, kinks)).tell(to),
             Self::Point(p) => (1u8, *p).tell(to),
@@ -73,19 +73,19 @@ impl Rail {
     }
 
     /// Point and derivatives with respect to the surface parameter.
-    pub fn jet(&self, x: f64, lean: Lean) -> Jet {
+    pub fn jet(&self, x: f64, lean: OneSided) -> Jet {
         match self {
             Self::Point(p) => Jet { p: *p, ..Jet::default() },
             Self::Mixed(sum) => sum.jet(x, lean),
             #[cfg(test)]
             Self::Formula { .. } => Jet { p: self.point(x), ..Jet::default() },
             Self::Chain { chain, map, kinks } => {
-                let [mut f, d1, d2] = map.at(x, lean == Lean::Before);
+                let [mut f, d1, d2] = map.at(x, lean == OneSided::Before);
                 // A kink line is the image of the kink up to rounding: hit the kink itself, or the side would be chance.
                 if let Some((_, at)) = kinks.iter().find(|(line, _)| (*line - x).abs() <= EPSILON) {
                     f = *at;
                 }
-                let before = (lean == Lean::Before) != map.falls();
+                let before = (lean == OneSided::Before) != map.falls();
                 let jet = if before { chain.jet_before(f) } else { chain.jet(f) };
                 Jet { p: jet.p, d1: jet.d1 * d1, d2: jet.d2 * (d1 * d1) + jet.d1 * d2 }
             }
@@ -96,7 +96,7 @@ impl Rail {
     pub fn point(&self, x: f64) -> DVec3 {
         match self {
             Self::Point(p) => *p,
-            Self::Mixed(sum) => sum.jet(x, Lean::After).p,
+            Self::Mixed(sum) => sum.jet(x, OneSided::After).p,
             Self::Chain { chain, map, .. } => chain.point(map.value(x)),
             #[cfg(test)]
             Self::Formula { f, at, along_u } => {

@@ -3,7 +3,7 @@
 //! `u_i ↦ s_i` at the nodes. Piecewise linear maps, as in [Koh & Park 1990, eq. 4.8], leave a turn of the normal across
 //! `u_i`; a C1 monotone cubic does not.
 
-use crate::base::range::Range;
+use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 
 /// How the map runs between the nodes.
@@ -93,9 +93,9 @@ impl Map {
     }
 
     /// Bounds over `x0 < x1`: value, first and second derivative, and the sum of the jumps of the slope inside.
-    pub fn ranges(&self, x0: f64, x1: f64) -> ([Range; 3], f64) {
-        let value = Range::between(self.at(x0, false)[0], self.at(x1, true)[0]);
-        let mut out = [value, Range::at(self.at(x0, false)[1]), Range::at(self.at(x0, false)[2])];
+    pub fn ranges(&self, x0: f64, x1: f64) -> ([Interval; 3], f64) {
+        let value = Interval::between(self.at(x0, false)[0], self.at(x1, true)[0]);
+        let mut out = [value, Interval::at(self.at(x0, false)[1]), Interval::at(self.at(x0, false)[2])];
         let mut jumps = 0.0;
         let inner = self.breaks().iter().copied().filter(|x| *x > x0 + EPSILON && *x < x1 - EPSILON);
         let stops: Vec<f64> = std::iter::once(x0).chain(inner).chain(std::iter::once(x1)).collect();
@@ -103,8 +103,8 @@ impl Map {
             let (first, last) = (self.at(w[0], false), self.at(w[1], true));
             let middle = self.at(0.5 * (w[0] + w[1]), false);
             // On one cubic the second derivative is linear, so the first lies within its steps about the middle.
-            let second = Range::between(first[2], last[2]);
-            let slope = Range::at(middle[1]) + second * Range::around_zero(0.5 * (w[1] - w[0]));
+            let second = Interval::between(first[2], last[2]);
+            let slope = Interval::at(middle[1]) + second * Interval::around_zero(0.5 * (w[1] - w[0]));
             (out[1], out[2]) = (out[1].union(slope), out[2].union(second));
             if w[0] > x0 {
                 jumps += (first[1] - self.at(w[0], true)[1]).abs();

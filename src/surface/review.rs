@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::core::{Domain, Jet2, Surface, unit_normal};
-use super::rail::Lean;
+use super::rail::OneSided;
 use crate::base::fault::{Fault, SurfaceFault};
 use crate::base::job;
 use crate::base::math;
@@ -30,7 +30,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
         // The square (x, y) ↦ (x (1 − y), y) covers the triangle and its inside stays inside.
         vs.iter().flat_map(|&y| us.iter().map(move |&x| (x * (1.0 - y), y))).map(|(u, v)| surface.jet(u, v)).collect()
     } else {
-        let leaning = |list: &[f64]| list.iter().map(|&x| (x, Lean::After)).collect::<Vec<_>>();
+        let leaning = |list: &[f64]| list.iter().map(|&x| (x, OneSided::After)).collect::<Vec<_>>();
         surface.jets(&leaning(&us), &leaning(&vs))
     };
     let place = |k: usize| {

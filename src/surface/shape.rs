@@ -8,13 +8,13 @@ use super::breaks::tidy;
 use super::joined::Joined;
 use super::nurbs::NurbsSurface;
 use super::plane::Frame;
-use super::rail::Lean;
+use super::rail::OneSided;
 use super::scatter::Field;
 use super::sweep::Sweep;
 use super::sweeps::Framed;
 use super::trilateral::Trilateral;
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
 use crate::geometry::Motion;
@@ -41,8 +41,8 @@ pub enum Shape {
     Joined(Joined),
 }
 
-impl Content for Shape {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Shape {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Blend(blend) => (0u8, blend).tell(to),
             Self::Trilateral(trilateral) => (1u8, trilateral).tell(to),
@@ -58,7 +58,7 @@ impl Content for Shape {
 
 impl Shape {
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         work::spend(1);
         match self {
             Self::Blend(s) => s.jet(u, v, lean),
@@ -83,7 +83,7 @@ impl Shape {
             _ => {
                 for (row, &v) in out.chunks_exact_mut(us.len().max(1)).zip(vs) {
                     for (p, &u) in row.iter_mut().zip(us) {
-                        *p = self.jet(u, v, (Lean::After, Lean::After)).p;
+                        *p = self.jet(u, v, (OneSided::After, OneSided::After)).p;
                     }
                 }
             }
@@ -99,7 +99,7 @@ impl Shape {
     }
 
     /// Jets of the tensor grid, u fastest.
-    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+    pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
         work::spend((us.len() * vs.len()) as u64 * self.weight());
         match self {
             Self::Blend(s) => s.jets(us, vs, out),

@@ -6,7 +6,7 @@ use super::coons::evenly;
 use super::core::{Border, Side, Surface, SurfaceKind};
 use super::flow_words::phrase;
 use super::gordon::{CurveNet, Named, blended};
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use super::skin_align::{Read, aligned, distances, runs_back};
 use super::skin_ends::{Spanned, ended};
 use super::skin_fit::fitted;
@@ -115,7 +115,7 @@ fn turned_back(surface: &Surface) -> Option<Fault> {
     const PLACES: usize = 8;
     let (_, vs) = surface.kinks();
     let turn = |v: f64, u: f64| {
-        let [a, b] = [Lean::Before, Lean::After].map(|lean| surface.jet_lean(u, v, (Lean::After, lean)).dv);
+        let [a, b] = [OneSided::Before, OneSided::After].map(|lean| surface.jet_one_sided(u, v, (OneSided::After, lean)).dv);
         math::angle_between(a, b)
     };
     vs.iter().find_map(|&v| {

@@ -12,7 +12,7 @@ use crate::base::math;
 use crate::base::tolerance::Tolerance;
 
 /// Places along a section at which its distance from a pole is looked at.
-const LOOKS: usize = 32;
+const MAX_SAMPLES: usize = 32;
 
 /// What a skin does at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,14 +89,14 @@ fn slope(rails: &[Rail], nodes: &[f64], last: bool, leaving: Leaving, length: f6
     };
     // Away from the point, flat, as fast as an arc that leaves it so and passes the next section.
     let mut speed = 0.0;
-    for k in 0..LOOKS {
-        let chord = rails[next].point(k as f64 / LOOKS as f64) - *pole;
+    for k in 0..MAX_SAMPLES {
+        let chord = rails[next].point(k as f64 / MAX_SAMPLES as f64) - *pole;
         let flat = chord.reject_from_normalized(direction).length();
         let angle = math::atan2(chord.dot(direction).abs(), flat);
         let arc = if angle > 0.0 { chord.length() * angle / math::sin(angle) } else { chord.length() };
         speed += if flat > 0.0 { arc / flat } else { 0.0 };
     }
     let span = if last { nodes[n - 1] - nodes[n - 2] } else { nodes[1] - nodes[0] };
-    let by = speed / LOOKS as f64 / span * if last { -1.0 } else { 1.0 };
+    let by = speed / MAX_SAMPLES as f64 / span * if last { -1.0 } else { 1.0 };
     vec![part(by, rails[next].clone(), Some((*pole, direction))), part(-by, rails[end].clone(), None)]
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::coons::evenly;
 use super::mixed::{Mixed, Part};
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use super::skin_ends::Spanned;
 use super::weights::{Axis, Rule};
 use crate::base::job;
@@ -103,7 +103,7 @@ impl Fit<'_> {
         let axis = Axis::new(nodes, if self.closed { Rule::Periodic } else { Rule::Spline });
         let m = chosen.len();
         let row = |k: usize| {
-            let weights = axis.weights(self.nodes[k], Lean::After);
+            let weights = axis.weights(self.nodes[k], OneSided::After);
             // Where it closes the last node is the first one.
             let own = |i: usize| axis.whole(&weights, i)[0];
             (0..m).map(|i| own(i) + if self.closed && i == 0 { own(m) } else { 0.0 }).collect()

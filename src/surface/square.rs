@@ -2,7 +2,7 @@
 
 use super::Jet2;
 use super::core::{Domain, Surface};
-use super::rail::Lean;
+use super::rail::OneSided;
 
 impl Surface {
     /// Surface parameters of a place in the unit square.
@@ -24,7 +24,7 @@ impl Surface {
         if self.domain() == Domain::Triangle {
             return ys.iter().flat_map(|&y| xs.iter().map(move |&x| (x, y))).map(|(x, y)| self.square_jet(x, y)).collect();
         }
-        let after = |list: &[f64]| list.iter().map(|&x| (x, Lean::After)).collect::<Vec<_>>();
+        let after = |list: &[f64]| list.iter().map(|&x| (x, OneSided::After)).collect::<Vec<_>>();
         self.jets(&after(xs), &after(ys))
     }
 }

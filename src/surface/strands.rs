@@ -7,9 +7,9 @@ use glam::{DVec2, DVec3};
 
 use super::carry::{Way, carried};
 use super::core::{Border, Domain, Side, Surface};
-use super::pull::{Course, Off, Pull, is_pole};
+use super::pcurve::{Off, Pcurve, TrimCurve, is_pole};
 use super::shared_runs;
-use super::trim::{Walk, natural};
+use super::trim::{TrimLoop, natural};
 use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -18,11 +18,11 @@ use crate::network::Chain;
 
 /// A border of the surface or a cutter, whole.
 #[derive(Clone, Debug)]
-pub(super) struct Strand {
+pub(super) struct Cutter {
     /// In the direction of the loop; `None` at a pole.
     pub chain: Option<Chain>,
     /// The border of the surface; `None` for a cutter.
-    pub border: Option<(Border, Course)>,
+    pub border: Option<(Border, TrimCurve)>,
     /// Both sides of it are one place of a closed surface.
     pub seam: bool,
     /// Which cutter.
@@ -37,7 +37,7 @@ pub(super) struct Strand {
 pub(super) struct Piece {
     pub strand: usize,
     pub border: Border,
-    pub course: Course,
+    pub course: TrimCurve,
     /// Ends in (u, v).
     pub uv: (DVec2, DVec2),
     /// Ends and a point between.
@@ -61,8 +61,8 @@ impl Piece {
         } else {
             self.uv.0 = place
         }
-        if let Course::Pull(pull) = &self.course {
-            self.course = Course::Pull(Arc::new(pull.as_ref().clone().ending(last, place)));
+        if let TrimCurve::Pcurve(pcurve) = &self.course {
+            self.course = TrimCurve::Pcurve(Arc::new(pcurve.as_ref().clone().ending(last, place)));
         }
     }
 }
@@ -77,7 +77,7 @@ pub(super) enum Meets {
 }
 
 /// Borders and cutters with the places where they part each other.
-pub(super) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<Strand>> {
+pub(super) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<Cutter>> {
     let mut all = Vec::new();
     for walk in natural(base, tolerance)? {
         let sides = walk.borders.len();
@@ -88,7 +88,7 @@ pub(super) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance
         }
     }
     for (k, chain) in cutters.iter().enumerate() {
-        let strand = Strand { chain: Some(chain.clone()), border: None, seam: false, cutter: Some(k), drawn: false, cuts: Vec::new() };
+        let strand = Cutter { chain: Some(chain.clone()), border: None, seam: false, cutter: Some(k), drawn: false, cuts: Vec::new() };
         all.push(strand);
     }
     part(&mut all, meets, tolerance)?;
@@ -96,7 +96,7 @@ pub(super) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance
 }
 
 /// Both sides of a seam are cut at the same places.
-fn mirror_cuts(all: &mut [Strand], tolerance: &Tolerance) {
+fn mirror_cuts(all: &mut [Cutter], tolerance: &Tolerance) {
     let seams: Vec<usize> = (0..all.len()).filter(|k| all[*k].seam && all[*k].chain.is_some()).collect();
     for &i in &seams {
         let Some(own) = all[i].chain.clone() else { continue };
@@ -116,10 +116,10 @@ fn mirror_cuts(all: &mut [Strand], tolerance: &Tolerance) {
 
 pub(super) fn of_border(
     base: &Surface,
-    (border, course): (Border, Course),
+    (border, course): (Border, TrimCurve),
     opposite: Option<Border>,
     tolerance: &Tolerance,
-) -> Result<Strand> {
+) -> Result<Cutter> {
     let along = |side: &Side| match side {
         Side::Chain { chain, from, to } => super::iso::between(chain, *from, *to, tolerance).map(Some),
         _ => Ok(None),
@@ -132,17 +132,17 @@ pub(super) fn of_border(
     let mut drawn = false;
     if chain.is_none()
         && !matches!(border.side, Side::Pole(_))
-        && let Course::Line(a, b) = &course
+        && let TrimCurve::Line(a, b) = &course
     {
         let line = build::line(DVec3::new(a.0, a.1, 0.0), DVec3::new(b.0, b.1, 0.0), Origin::NONE)?;
         chain = carried(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
         drawn = true;
     }
-    Ok(Strand { chain, border: Some((border, course)), seam: is_seam, cutter: None, drawn, cuts: Vec::new() })
+    Ok(Cutter { chain, border: Some((border, course)), seam: is_seam, cutter: None, drawn, cuts: Vec::new() })
 }
 
 /// Cuts strands where cutters meet them and each other.
-fn part(all: &mut [Strand], meets: Meets, tolerance: &Tolerance) -> Result<()> {
+fn part(all: &mut [Cutter], meets: Meets, tolerance: &Tolerance) -> Result<()> {
     for j in 0..all.len() {
         let Some(b) = all[j].chain.clone() else { continue };
         if all[j].cutter.is_none() {
@@ -191,7 +191,7 @@ fn part(all: &mut [Strand], meets: Meets, tolerance: &Tolerance) -> Result<()> {
 
 /// The parts of all strands; cutters that run along a border or an earlier cutter count once, those beyond the border not at
 /// all. With the numbers of the cutters of which a part runs along something else.
-pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) -> Result<(Vec<Piece>, BTreeSet<usize>)> {
+pub(super) fn pieces(base: &Surface, strands: &[Cutter], tolerance: &Tolerance) -> Result<(Vec<Piece>, BTreeSet<usize>)> {
     let (mut out, mut along): (Vec<Piece>, BTreeSet<usize>) = (Vec::new(), BTreeSet::new());
     let loops = if bounded(base) { natural(base, tolerance)? } else { Vec::new() };
     for (k, strand) in strands.iter().enumerate() {
@@ -202,7 +202,7 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
             let middle = run.point(MIDDLE);
             let places = ALONG.map(|f| run.point(f));
             let is_along = |c: &Chain| places.iter().all(|p| c.closest(*p).2 <= 2.0 * tolerance.point);
-            let lies_on = |other: &Strand| other.chain.as_ref().is_some_and(is_along);
+            let lies_on = |other: &Cutter| other.chain.as_ref().is_some_and(is_along);
             if let Some(cutter) = strand.cutter
                 && strands[..k].iter().any(lies_on)
             {
@@ -224,7 +224,7 @@ pub(super) fn pieces(base: &Surface, strands: &[Strand], tolerance: &Tolerance) 
     }
     for (k, strand) in strands.iter().enumerate() {
         if strand.chain.is_none()
-            && let Some((border, Course::Line(a, b))) = &strand.border
+            && let Some((border, TrimCurve::Line(a, b))) = &strand.border
         {
             let added = at_pole(base, (k, border), (DVec2::from(*a), DVec2::from(*b)), &mut out, tolerance);
             out.extend(added);
@@ -239,7 +239,7 @@ pub(super) fn bounded(base: &Surface) -> bool {
 }
 
 /// Where in (u, v) a point of a surface lies inside its loops; `None` beyond them.
-pub(super) fn within(base: &Surface, loops: &[Walk], p: DVec3) -> Option<DVec2> {
+pub(super) fn within(base: &Surface, loops: &[TrimLoop], p: DVec3) -> Option<DVec2> {
     let near = base.flat_uv(p).unwrap_or_else(|| super::closest::closest(&base.untrimmed(), p).uv);
     if !bounded(base) {
         return Some(near.into());
@@ -253,7 +253,7 @@ const MIDDLE: f64 = 0.4873;
 /// Where a piece is compared with another strand; it runs along one that is near at all of them.
 const ALONG: [f64; 3] = [MIDDLE, 0.2327, 0.7719];
 
-fn of_whole(strand: usize, border: &Border, course: &Course, run: Chain, seam: bool) -> Piece {
+fn of_whole(strand: usize, border: &Border, course: &TrimCurve, run: Chain, seam: bool) -> Piece {
     let places = course.places();
     let p = (run.start(), run.point(MIDDLE), run.end());
     let uv = (places[0], places[places.len() - 1]);
@@ -263,27 +263,27 @@ fn of_whole(strand: usize, border: &Border, course: &Course, run: Chain, seam: b
 fn of_part(
     base: &Surface,
     (strand, drawn): (usize, bool),
-    (border, course): (&Border, &Course),
+    (border, course): (&Border, &TrimCurve),
     (run, (from, to)): (Chain, (f64, f64)),
     tolerance: &Tolerance,
     seam: bool,
 ) -> Result<Piece> {
     let about = |f: f64| match course {
-        Course::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
-        Course::Pull(pull) => pull.share(f),
+        TrimCurve::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
+        TrimCurve::Pcurve(pcurve) => pcurve.share(f),
     };
     let p = (run.start(), run.point(MIDDLE), run.end());
     let off = |off: Off| outside(base, &run, off, tolerance);
     // From a pole the other end tells on which side of a seam the border runs.
-    let pull = if is_pole(base, about(from)) {
-        Pull::follow(base, (&run, 1.0, 0.0), about(to), tolerance.point).map(|pull| pull.turned())
+    let pcurve = if is_pole(base, about(from)) {
+        Pcurve::follow(base, (&run, 1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
     } else {
-        Pull::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point)
+        Pcurve::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point)
     }
     .map_err(off)?
     .into_poles(base, &run);
     if !drawn {
-        let (uv, course) = (pull.ends(), Course::Pull(Arc::new(pull)));
+        let (uv, course) = (pcurve.ends(), TrimCurve::Pcurve(Arc::new(pcurve)));
         return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam, rim: true });
     }
     // The border is straight in (u, v): its parts are.
@@ -292,20 +292,20 @@ fn of_part(
         let share = if f <= 0.0 || f >= 1.0 { f } else { (q - a).dot(b - a) / (b - a).length_squared() };
         a.lerp(b, share)
     };
-    let uv = (onto(pull.ends().0, from), onto(pull.ends().1, to));
-    let course = Course::Line(uv.0.into(), uv.1.into());
+    let uv = (onto(pcurve.ends().0, from), onto(pcurve.ends().1, to));
+    let course = TrimCurve::Line(uv.0.into(), uv.1.into());
     Ok(Piece { strand, border: Border::straight(border.side.clone()), course, uv, p, seam, rim: true })
 }
 
 /// A piece of a cutter, with the place of its middle.
 fn of_cutter(base: &Surface, strand: usize, run: Chain, start: DVec2, tolerance: &Tolerance) -> Result<Piece> {
     let off = |off: Off| outside(base, &run, off, tolerance);
-    let before = Pull::follow(base, (&run, MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
-    let after = Pull::follow(base, (&run, MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
-    let pull = before.turned().then(&after).into_poles(base, &run);
+    let before = Pcurve::follow(base, (&run, MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
+    let after = Pcurve::follow(base, (&run, MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
+    let pcurve = before.turned().then(&after).into_poles(base, &run);
     let p = (run.start(), run.point(MIDDLE), run.end());
-    let (uv, border) = (pull.ends(), Border::chain(run.clone(), false));
-    Ok(Piece { strand, border, course: Course::Pull(Arc::new(pull)), uv, p, seam: false, rim: false })
+    let (uv, border) = (pcurve.ends(), Border::chain(run.clone(), false));
+    Ok(Piece { strand, border, course: TrimCurve::Pcurve(Arc::new(pcurve)), uv, p, seam: false, rim: false })
 }
 
 fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Fault {
@@ -343,7 +343,7 @@ fn at_pole(
         let at = |share: f64| a.lerp(b, share);
         let p = [w[0], 0.5 * (w[0] + w[1]), w[1]].map(|share| base.point(at(share).x, at(share).y));
         let uv = (at(w[0]), at(w[1]));
-        let course = Course::Line(uv.0.into(), uv.1.into());
+        let course = TrimCurve::Line(uv.0.into(), uv.1.into());
         Piece { strand, border: border.clone(), course, uv, p: p.into(), seam: false, rim: true }
     };
     cuts.windows(2).map(piece).collect()

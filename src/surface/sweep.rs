@@ -6,28 +6,28 @@ use glam::DVec3;
 
 use super::Jet2;
 use super::breaks::{chain_breaks, tidy};
+use super::enclosure::Enclosure;
 use super::line::Line;
-use super::rail::{Lean, Rail};
-use super::spread::Spread;
+use super::rail::{OneSided, Rail};
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::{CurveFault, Result};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::par;
-use crate::base::range::{Range, Ranges};
+use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::build::{arc_center, line};
 use crate::geometry::{Curve, Jet, Motion};
 use crate::network::Chain;
 
 /// A vector turned about an axis by up to ±`reach` radians.
-fn turn_range(w: DVec3, axis: DVec3, reach: f64) -> Ranges {
+fn turn_range(w: DVec3, axis: DVec3, reach: f64) -> Interval3 {
     let still = axis * axis.dot(w);
     let (out_of, across) = (w - still, axis.cross(w));
     let (sin, cos) = math::sin_cos(reach.min(std::f64::consts::PI));
-    let sides = Range::around_zero(if reach < std::f64::consts::FRAC_PI_2 { sin } else { 1.0 });
-    Range { low: cos, high: 1.0 } * out_of + sides * across + still
+    let sides = Interval::around_zero(if reach < std::f64::consts::FRAC_PI_2 { sin } else { 1.0 });
+    Interval { low: cos, high: 1.0 } * out_of + sides * across + still
 }
 
 /// Rows of points made by one thread at a time.
@@ -61,8 +61,8 @@ pub struct Sweep {
 
 crate::content!(Sweep { profile, path });
 
-impl Content for Path {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Path {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Straight { by } => (0u8, *by).tell(to),
             Self::Turn { about, axis, angle } => (1u8, (*about, *axis, *angle)).tell(to),
@@ -127,7 +127,7 @@ impl Sweep {
     }
 
     /// Point and derivatives, from the given side in v where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         self.carried(&self.profile.jet(v, lean.1), u)
     }
 
@@ -157,7 +157,7 @@ impl Sweep {
     }
 
     /// Jets of the tensor grid, u fastest.
-    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+    pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
         for &(v, lean) in vs {
             let g = self.profile.jet(v, lean);
             out.extend(us.iter().map(|&(u, _)| self.carried(&g, u)));
@@ -170,25 +170,25 @@ impl Sweep {
     }
 
     /// Bounds over a rectangle about `u`, the profile known over its stretch.
-    pub fn spread(&self, u: f64, half: (f64, f64), line: &Line) -> Spread {
+    pub fn enclosure(&self, u: f64, half: (f64, f64), line: &Line) -> Enclosure {
         let mid = self.carried(&line.mid, u);
         let Path::Turn { about, axis, angle } = self.path else {
-            return Spread::new(mid, half, [Ranges::default(), Ranges::default(), line.d2], None);
+            return Enclosure::new(mid, half, [Interval3::default(), Interval3::default(), line.d2], None);
         };
         let reach = (half.0 * angle).abs();
         // W turned by up to ±reach: the middle one exactly, what the others differ by stays as long as it is.
-        let turned = |middle: DVec3, others: Ranges, wanted: DVec3| {
+        let turned = |middle: DVec3, others: Interval3, wanted: DVec3| {
             let off = (others + -middle).reach().max(0.0);
-            let off = if middle == DVec3::ZERO && others == Ranges::default() { 0.0 } else { off };
-            turn_range(wanted, axis, reach) + Ranges::around_zero(DVec3::splat(off))
+            let off = if middle == DVec3::ZERO && others == Interval3::default() { 0.0 } else { off };
+            turn_range(wanted, axis, reach) + Interval3::around_zero(DVec3::splat(off))
         };
         let arms = line.p() + -about;
-        let across = |w: Ranges| Ranges::at(axis).cross(&w);
+        let across = |w: Interval3| Interval3::at(axis).cross(&w);
         let middle = line.mid.p - about;
         let duu = turned(axis.cross(axis.cross(middle)), across(across(arms)), mid.duu / (angle * angle)) * (angle * angle);
         let duv = turned(axis.cross(line.mid.d1), across(line.d1), mid.duv / angle) * angle;
         let dvv = turned(line.mid.d2, line.d2, mid.dvv);
-        Spread::new(mid, half, [duu, duv, dvv], Some([Ranges::ANY, turned(line.mid.d1, line.d1, mid.dv)]))
+        Enclosure::new(mid, half, [duu, duv, dvv], Some([Interval3::ANY, turned(line.mid.d1, line.d1, mid.dv)]))
     }
 
     /// Interior parameters where the profile is less than analytic.

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::net_spread::NetStrip;
+use super::net_enclosure::NetStrip;
 use super::nurbs::NurbsSurface;
 use crate::geometry::bounds::binomial;
 use crate::geometry::nurbs::projected;
@@ -17,11 +17,11 @@ const BOXES: usize = 3;
 /// Degree up to which bounds over those of a net of one weight are near enough.
 const PLAIN: usize = 3;
 /// Bounds over smaller boxes as a share of those over larger ones, from which on boxes are small enough.
-const WORTH: f64 = 0.75;
+const MIN_GAIN: f64 = 0.75;
 /// What bounds in any direction weigh beside those along the normal: triangles hardly lean.
 const LEANING: f64 = 0.1;
 /// Halvings of a box along each direction.
-const DEEPEST: u8 = 6;
+const MAX_DEPTH: u8 = 6;
 /// Boxes of a net that are halved at most.
 const MOST: usize = 2048;
 
@@ -106,7 +106,7 @@ impl Thirds {
                 let inner: Vec<(usize, usize)> = (0..BOXES * BOXES).map(|k| (i * BOXES + k % BOXES, j * BOXES + k / BOXES)).collect();
                 let of_parts: f64 = inner.iter().map(|(i, j)| self.nodes[j * n + i].third.weight(high - low)).sum();
                 // What is one over the whole span and over its boxes will be over smaller ones.
-                if of_parts < WORTH * (BOXES * BOXES) as f64 * over((low, high)).weight(high - low) {
+                if of_parts < MIN_GAIN * (BOXES * BOXES) as f64 * over((low, high)).weight(high - low) {
                     open.extend(inner.into_iter().map(|(i, j)| (j * n + i, self.area((i, j)), [0; 2])));
                 }
             }
@@ -115,12 +115,12 @@ impl Thirds {
         while let Some((node, area, deep)) = open.pop_front().filter(|_| halved < MOST) {
             let wide = area.1 - area.0;
             let whole = self.nodes[node].third.weight(wide);
-            let tries = (0..2).filter(|axis| deep[*axis] < DEEPEST).map(|axis| {
+            let tries = (0..2).filter(|axis| deep[*axis] < MAX_DEPTH).map(|axis| {
                 let parts = halves(area, axis).map(|part| (part, over(part)));
                 (0.5 * (parts[0].1.weight(wide) + parts[1].1.weight(wide)), axis, parts)
             });
             let Some((weight, axis, parts)) = tries.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-            if weight < WORTH * whole {
+            if weight < MIN_GAIN * whole {
                 halved += 1;
                 let first = self.nodes.len();
                 self.nodes[node].halves = Some((axis, first as u32));

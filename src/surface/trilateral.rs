@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::Jet2;
-use super::rail::{Lean, Rail};
+use super::rail::{OneSided, Rail};
 use crate::base::bbox::Box3;
 use crate::base::tolerance::POLE_REACH;
 use crate::geometry::{Jet, Motion};
@@ -51,9 +51,9 @@ impl Trilateral {
         let l = [1.0 - u - v, u, v];
         // Towards the other corner, t runs from 0 at V_a: sides that end at V_a are read backwards.
         let [bottom, slant, left] = &self.sides;
-        let away = |rail: &Rail, t: f64| rail.jet(t, Lean::After);
+        let away = |rail: &Rail, t: f64| rail.jet(t, OneSided::After);
         let back = |rail: &Rail, t: f64| {
-            let jet = rail.jet(1.0 - t, Lean::Before);
+            let jet = rail.jet(1.0 - t, OneSided::Before);
             Jet { p: jet.p, d1: -jet.d1, d2: jet.d2 }
         };
         let (t0, t1, t2) = (l[1] + l[2], l[0] + l[2], l[0] + l[1]);

@@ -6,9 +6,9 @@ use glam::{DVec2, DVec3};
 
 use super::closest::closest;
 use super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
+use super::pcurve::{Pcurve, TrimCurve, foot};
 use super::plane;
-use super::pull::{Course, Pull, foot};
-use super::quick::Quick;
+use super::quick::PowerForm;
 use super::shape::Shape;
 use crate::base::fault::{Fault, LoopRole, Result, SurfaceFault};
 use crate::base::origin::Origin;
@@ -24,7 +24,7 @@ pub(super) struct Trim {
     /// Number of borders of each loop, the outer one first.
     pub loops: Vec<usize>,
     /// One a border.
-    pub courses: Vec<Course>,
+    pub courses: Vec<TrimCurve>,
     /// Corners of a box in (u, v) that holds the loops; where a surface closes they may lie whole turns away.
     pub reach: (DVec2, DVec2),
 }
@@ -33,11 +33,11 @@ pub(super) struct Trim {
 crate::content!(Trim { loops } but { ground, courses, reach });
 
 /// A box in (u, v) that holds some courses: between two places a curve is nowhere farther from its chord than the chord is long.
-pub(super) fn reach(courses: &[Course]) -> (DVec2, DVec2) {
+pub(super) fn reach(courses: &[TrimCurve]) -> (DVec2, DVec2) {
     let (mut low, mut high, mut longest) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0_f64);
     for course in courses {
         let places = course.places();
-        if matches!(course, Course::Pull(_)) {
+        if matches!(course, TrimCurve::Pcurve(_)) {
             longest = places.windows(2).map(|w| w[0].distance(w[1])).fold(longest, f64::max);
         }
         for p in places {
@@ -60,19 +60,19 @@ impl Trim {
     }
 
     /// The same by other courses.
-    pub fn with_courses(&self, courses: Vec<Course>) -> Self {
+    pub fn with_courses(&self, courses: Vec<TrimCurve>) -> Self {
         Self { reach: reach(&courses), courses, ..self.clone() }
     }
 }
 
 /// A closed walk over a surface.
-pub(super) struct Walk {
+pub(super) struct TrimLoop {
     pub borders: Vec<Border>,
-    pub courses: Vec<Course>,
+    pub courses: Vec<TrimCurve>,
     pub chains: Vec<Chain>,
 }
 
-impl Walk {
+impl TrimLoop {
     /// Its corners in (u, v), all on its curves.
     pub fn polygon(&self) -> Vec<DVec2> {
         self.courses
@@ -92,7 +92,7 @@ impl Walk {
 
     fn turned(self) -> Self {
         let borders = self.borders.iter().rev().map(Border::turned).collect();
-        let courses = self.courses.iter().rev().map(Course::turned).collect();
+        let courses = self.courses.iter().rev().map(TrimCurve::turned).collect();
         Self { borders, courses, ..self }
     }
 
@@ -119,7 +119,7 @@ pub(super) fn inside(polygon: &[DVec2], p: DVec2) -> bool {
 }
 
 /// A surface with these loops, the outer one first.
-pub(super) fn assembled(base: &Surface, walks: Vec<Walk>, origin: Origin) -> Result<Surface> {
+pub(super) fn assembled(base: &Surface, walks: Vec<TrimLoop>, origin: Origin) -> Result<Surface> {
     let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
     (parts.borders, parts.chains) = (Vec::new(), Vec::new());
     let mut trim = Trim { ground: base.ground(), loops: Vec::new(), courses: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE) };
@@ -145,7 +145,7 @@ pub(super) fn shifts(base: &Surface) -> Vec<DVec2> {
 }
 
 /// The loops that a surface has by itself.
-pub(super) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>> {
+pub(super) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<TrimLoop>> {
     let parts = base.parts();
     if let Some(trim) = &parts.trim {
         let mut first = 0;
@@ -154,7 +154,7 @@ pub(super) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>
             first += n;
             let borders = parts.borders[range.clone()].to_vec();
             let chains = borders.iter().filter_map(|b| if let Side::Chain { chain, .. } = &b.side { Some(chain.clone()) } else { None });
-            Walk { chains: chains.collect(), courses: trim.courses[range].to_vec(), borders }
+            TrimLoop { chains: chains.collect(), courses: trim.courses[range].to_vec(), borders }
         };
         return Ok(trim.loops.iter().map(walk).collect());
     }
@@ -174,31 +174,31 @@ pub(super) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<Walk>
     let n = corners.len();
     // Sides run with ascending u or v; the far ones against the loop.
     let borders = (0..n).map(|k| if k >= 2 { parts.borders[k].turned() } else { parts.borders[k].clone() }).collect();
-    let courses = (0..n).map(|k| Course::Line(corners[k], corners[(k + 1) % n])).collect();
-    Ok(vec![Walk { borders, courses, chains: parts.chains.clone() }])
+    let courses = (0..n).map(|k| TrimCurve::Line(corners[k], corners[(k + 1) % n])).collect();
+    Ok(vec![TrimLoop { borders, courses, chains: parts.chains.clone() }])
 }
 
 /// A loop of curves on the surface.
-pub(super) fn around(base: &Surface, chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<Walk> {
+pub(super) fn around(base: &Surface, chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<TrimLoop> {
     let steps = plane::walked(chains, role, tolerance)?;
     plane::simple(&steps, tolerance)?;
     followed(base, &steps, tolerance)
 }
 
 /// The same in (u, v).
-fn followed(base: &Surface, steps: &[plane::Step], tolerance: &Tolerance) -> Result<Walk> {
+fn followed(base: &Surface, steps: &[plane::Step], tolerance: &Tolerance) -> Result<TrimLoop> {
     let first = closest(base, plane::start(&steps[0]));
     let mut place = DVec2::new(first.uv.0, first.uv.1);
-    let mut walk = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
     for (chain, against) in steps {
         let (from, to) = if *against { (1.0, 0.0) } else { (0.0, 1.0) };
-        let pull = Pull::follow(base, (chain, from, to), place, tolerance.point).map_err(|off| {
+        let pcurve = Pcurve::follow(base, (chain, from, to), place, tolerance.point).map_err(|off| {
             let (of, at) = (chain.origin(), off.at);
             Fault::from(SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point })
         })?;
-        place = pull.ends().1;
+        place = pcurve.ends().1;
         walk.chains.push(chain.clone());
-        walk.courses.push(Course::Pull(Arc::new(pull)));
+        walk.courses.push(TrimCurve::Pcurve(Arc::new(pcurve)));
         walk.borders.push(Border::chain(chain.clone(), *against));
     }
     Ok(walk)
@@ -233,8 +233,8 @@ impl Surface {
     /// curve there.
     pub fn border_line(&self, k: usize) -> Option<((f64, f64), (f64, f64))> {
         match self.parts().trim.as_ref()?.courses.get(k)? {
-            Course::Line(a, b) => Some((*a, *b)),
-            Course::Pull(_) => None,
+            TrimCurve::Line(a, b) => Some((*a, *b)),
+            TrimCurve::Pcurve(_) => None,
         }
     }
 
@@ -246,18 +246,18 @@ impl Surface {
     }
 
     /// The same with the surface made ready, where it is.
-    pub fn border_place_by(&self, quick: Option<&Quick>, k: usize, fraction: f64) -> Option<(f64, f64)> {
+    pub fn border_place_by(&self, quick: Option<&PowerForm>, k: usize, fraction: f64) -> Option<(f64, f64)> {
         let Side::Chain { chain, .. } = self.side(k) else { return None };
         let p = chain.point(fraction);
         let course = self.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
         match course {
             _ if self.is_flat() => self.flat_uv(p),
-            Some(Course::Line(a, b)) => {
+            Some(TrimCurve::Line(a, b)) => {
                 let t = self.side_parameter(k, fraction);
                 Some((a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t))
             }
-            Some(Course::Pull(pull)) => {
-                let uv = foot((self, quick), p, pull.guess(fraction)).0;
+            Some(TrimCurve::Pcurve(pcurve)) => {
+                let uv = foot((self, quick), p, pcurve.guess(fraction)).0;
                 Some((uv.x, uv.y))
             }
             None => None,
@@ -272,8 +272,8 @@ impl Surface {
             (Side::Chain { chain, from, to }, _) if self.is_flat() => {
                 Some((self.flat_uv(chain.point(from + (to - from) * share))?.into(), 0.0))
             }
-            (_, Some(Course::Line(a, b))) => Some((DVec2::from(*a).lerp(DVec2::from(*b), share), 0.0)),
-            (Side::Chain { from, to, .. }, Some(Course::Pull(pull))) => Some(pull.about(from + (to - from) * share)),
+            (_, Some(TrimCurve::Line(a, b))) => Some((DVec2::from(*a).lerp(DVec2::from(*b), share), 0.0)),
+            (Side::Chain { from, to, .. }, Some(TrimCurve::Pcurve(pcurve))) => Some(pcurve.about(from + (to - from) * share)),
             _ => None,
         }
     }
@@ -282,7 +282,7 @@ impl Surface {
     /// units; 0 for others. Along a border it is measured where it was followed.
     pub fn gap(&self) -> f64 {
         let Some(trim) = &self.parts().trim else { return 0.0 };
-        let off = trim.courses.iter().map(|c| if let Course::Pull(pull) = c { pull.off } else { 0.0 }).fold(0.0, f64::max);
+        let off = trim.courses.iter().map(|c| if let TrimCurve::Pcurve(pcurve) = c { pcurve.off } else { 0.0 }).fold(0.0, f64::max);
         let end = |k: usize| match self.side(k) {
             Side::Chain { chain, to, .. } => Some(chain.point(to)),
             _ => self.border_line(k).map(|(_, b)| self.point(b.0, b.1)),

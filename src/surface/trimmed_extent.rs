@@ -10,12 +10,12 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Domain, Side, Surface};
 use super::curve_extent::curve_bbox_between;
+use super::enclosure::Enclosure;
 use super::extent::{Boxed, Cell, MOST, Sample, extremes, halves};
 use super::samples::stations;
-use super::spread::Spread;
 use crate::base::bbox::Box3;
 use crate::base::job;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::{BOX, EPSILON, SLIVER};
 use crate::base::work;
 use crate::network::Chain;
@@ -115,13 +115,13 @@ fn seams(a: f64, b: f64) -> Vec<f64> {
 }
 
 /// Bounds over the rectangle about a straight line in (u, v) that crosses no seam.
-fn spread_between(surface: &Surface, a: DVec2, b: DVec2) -> Spread {
+fn spread_between(surface: &Surface, a: DVec2, b: DVec2) -> Enclosure {
     let ends = |a: f64, b: f64| {
         let middle = 0.5 * (a + b);
         let turn = if (0.0..=1.0).contains(&middle) { 0.0 } else { middle.floor() };
         ((a.min(b) - SLIVER - turn).clamp(0.0, 1.0), (a.max(b) + SLIVER - turn).clamp(0.0, 1.0))
     };
-    surface.spread(ends(a.x, b.x), ends(a.y, b.y))
+    surface.enclosure(ends(a.x, b.x), ends(a.y, b.y))
 }
 
 struct Search<'a> {
@@ -156,15 +156,15 @@ impl Search<'_> {
             if triangle && u.0 + v.0 >= 1.0 {
                 continue;
             }
-            let spread = self.base.spread(u, v);
-            let hull = spread.p.bounds();
+            let enclosure = self.base.enclosure(u, v);
+            let hull = enclosure.p.bounds();
             let out = |grown: &Boxed| (hull.max - grown.bounds.max).max(grown.bounds.min - hull.min);
-            let turns = |d: &Spread, k: usize| {
+            let turns = |d: &Enclosure, k: usize| {
                 let (du, dv) = (d.du.coordinate(k), d.dv.coordinate(k));
                 (du.low <= 0.0 && du.high >= 0.0 || u.1 - u.0 <= 2.0 * SLIVER)
                     && (dv.low <= 0.0 && dv.high >= 0.0 || v.1 - v.0 <= 2.0 * SLIVER)
             };
-            let stands = |over: DVec3| (0..3).any(|k| over[k] > room && turns(&spread, k));
+            let stands = |over: DVec3| (0..3).any(|k| over[k] > room && turns(&enclosure, k));
             if !stands(out(&bounds)) {
                 continue;
             }
@@ -175,13 +175,13 @@ impl Search<'_> {
             let mid = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
             let (held, units) = work::measured(|| clear || self.surface.holds(mid.0, mid.1));
             spent += units;
-            let clear = clear || self.is_clear((u, v), &spread, gap);
+            let clear = clear || self.is_clear((u, v), &enclosure, gap);
             // What of so small a rectangle lies inside is as near to a border.
             if !held && (clear || hull.diagonal() <= room) {
                 continue;
             }
             if held {
-                bounds = bounds.with(spread.mid.p);
+                bounds = bounds.with(enclosure.mid.p);
             }
             let over = out(&bounds);
             if !stands(over) {
@@ -194,8 +194,8 @@ impl Search<'_> {
             }
             // Inside, where the coordinate that stands out most runs most; else the longer way, to see whether a border runs over it.
             let k = (0..3).max_by(|x, y| over[*x].total_cmp(&over[*y])).unwrap_or(0);
-            let reach = |d: &Ranges| if clear { d.coordinate(k).reach() } else { d.reach() };
-            let along_u = reach(&spread.du) * (u.1 - u.0) >= reach(&spread.dv) * (v.1 - v.0);
+            let reach = |d: &Interval3| if clear { d.coordinate(k).reach() } else { d.reach() };
+            let along_u = reach(&enclosure.du) * (u.1 - u.0) >= reach(&enclosure.dv) * (v.1 - v.0);
             open.extend(halves((u, v), along_u).map(|half| (half, clear)));
         }
         bounds
@@ -206,8 +206,8 @@ impl Search<'_> {
     }
 
     /// Whether no border runs over a rectangle: of curves, by their distance from its middle; they lie within `gap` of the surface.
-    fn is_clear(&self, (u, v): Cell, spread: &Spread, gap: f64) -> bool {
-        let (mid, hull) = (spread.mid.p, spread.p.bounds());
+    fn is_clear(&self, (u, v): Cell, enclosure: &Enclosure, gap: f64) -> bool {
+        let (mid, hull) = (enclosure.mid.p, enclosure.p.bounds());
         let reach = (hull.max - mid).max(mid - hull.min).length() + gap;
         let (low, high) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
         let center = 0.5 * (low + high);

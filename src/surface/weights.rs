@@ -5,8 +5,8 @@
 //! differ from 0 at any parameter, whatever the number of curves.
 
 use super::cardinal;
-use super::rail::Lean;
-use crate::base::range::Range;
+use super::rail::OneSided;
+use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 
 /// How curves are blended across one direction.
@@ -166,13 +166,13 @@ impl Axis {
     }
 
     /// The cell that holds a parameter.
-    pub fn cell(&self, x: f64, lean: Lean) -> usize {
+    pub fn cell(&self, x: f64, lean: OneSided) -> usize {
         let inner = &self.nodes[1..self.nodes.len() - 1];
-        inner.partition_point(|&node| if lean == Lean::Before { node < x - EPSILON } else { node <= x + EPSILON })
+        inner.partition_point(|&node| if lean == OneSided::Before { node < x - EPSILON } else { node <= x + EPSILON })
     }
 
     /// Blending values at a parameter.
-    pub fn weights(&self, x: f64, lean: Lean) -> Weights {
+    pub fn weights(&self, x: f64, lean: OneSided) -> Weights {
         match self.rule {
             Rule::Linear | Rule::Cubic => {
                 let k = self.cell(x, lean);
@@ -236,46 +236,46 @@ impl Axis {
     }
 
     /// Bounds of the active blending values with their derivatives over `x0 < x1` inside one cell.
-    pub fn ranges(&self, x0: f64, x1: f64) -> Vec<[Range; 3]> {
+    pub fn ranges(&self, x0: f64, x1: f64) -> Vec<[Interval; 3]> {
         let (middle, half) = (0.5 * (x0 + x1), 0.5 * (x1 - x0));
-        let at = self.weights(middle, Lean::After);
-        let steps = Range::around_zero(half);
+        let at = self.weights(middle, OneSided::After);
+        let steps = Interval::around_zero(half);
         let third = self.thirds(x0, x1);
         let one = |(k, w): (usize, &[f64; 3])| {
             // Down from the third derivative by Taylor's formula about the middle.
             let d3 = third[k];
-            let d2 = Range::at(w[2]) + d3 * steps;
-            let d1 = Range::at(w[1]) + steps * w[2] + d3 * Range { low: 0.0, high: 0.5 * half * half };
-            let d0 = Range::at(w[0]) + steps * w[1] + d2 * Range { low: 0.0, high: 0.5 * half * half };
+            let d2 = Interval::at(w[2]) + d3 * steps;
+            let d1 = Interval::at(w[1]) + steps * w[2] + d3 * Interval { low: 0.0, high: 0.5 * half * half };
+            let d0 = Interval::at(w[0]) + steps * w[1] + d2 * Interval { low: 0.0, high: 0.5 * half * half };
             [d0, d1, d2]
         };
         at.values().iter().enumerate().map(one).collect()
     }
 
     /// Bounds of the third derivatives of the active blending values over `x0 < x1` inside one cell: numbers but for the polynomial.
-    pub fn thirds(&self, x0: f64, x1: f64) -> Vec<Range> {
-        let at = self.weights(0.5 * (x0 + x1), Lean::After);
+    pub fn thirds(&self, x0: f64, x1: f64) -> Vec<Interval> {
+        let at = self.weights(0.5 * (x0 + x1), OneSided::After);
         let cube = || {
             let h = self.nodes[at.first + 1] - self.nodes[at.first];
             (12.0 / (h * h * h), 6.0 / (h * h))
         };
         let third = |k: usize| match self.rule {
-            Rule::Linear => Range::at(0.0),
-            Rule::Cubic => Range::at(if k == 1 { -cube().0 } else { cube().0 }),
-            Rule::Spline | Rule::Periodic => Range::at([cube().0, -cube().0, cube().1, cube().1][k]),
-            Rule::Lagrange => self.lagrange_third(k, Range { low: x0, high: x1 }),
+            Rule::Linear => Interval::at(0.0),
+            Rule::Cubic => Interval::at(if k == 1 { -cube().0 } else { cube().0 }),
+            Rule::Spline | Rule::Periodic => Interval::at([cube().0, -cube().0, cube().1, cube().1][k]),
+            Rule::Lagrange => self.lagrange_third(k, Interval { low: x0, high: x1 }),
         };
         (0..at.values().len()).map(third).collect()
     }
 
     /// Bounds of L_i‴ by the product rule over intervals.
-    fn lagrange_third(&self, i: usize, x: Range) -> Range {
+    fn lagrange_third(&self, i: usize, x: Interval) -> Interval {
         let own = self.nodes[i];
-        let mut p = [Range::at(1.0), Range::at(0.0), Range::at(0.0), Range::at(0.0)];
+        let mut p = [Interval::at(1.0), Interval::at(0.0), Interval::at(0.0), Interval::at(0.0)];
         for (k, &node) in self.nodes.iter().enumerate() {
             if k != i {
                 let d = 1.0 / (own - node);
-                let f = (x - Range::at(node)) * d;
+                let f = (x - Interval::at(node)) * d;
                 p = [p[0] * f, p[1] * f + p[0] * d, p[2] * f + p[1] * (2.0 * d), p[3] * f + p[2] * (3.0 * d)];
             }
         }
@@ -323,7 +323,7 @@ mod tests {
         for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
             let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             for i in 0..=100 {
-                for lean in [Lean::After, Lean::Before] {
+                for lean in [OneSided::After, OneSided::Before] {
                     let x = f64::from(i) / 100.0;
                     let w = axis.weights(x, lean);
                     let sums = w.values()[..axis.shares()].iter().fold([0.0; 3], |s, v| [s[0] + v[0], s[1] + v[1], s[2] + v[2]]);
@@ -331,7 +331,7 @@ mod tests {
                 }
             }
             for (i, &node) in axis.nodes.iter().enumerate() {
-                let w = axis.weights(node, Lean::After);
+                let w = axis.weights(node, OneSided::After);
                 for (term, v) in w.iter() {
                     assert_eq!(v[0], if term == i { 1.0 } else { 0.0 });
                 }
@@ -345,7 +345,8 @@ mod tests {
             let axis = Axis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
             let h = 1e-5;
             for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {
-                let (a, b, c) = (axis.weights(x - h, Lean::After), axis.weights(x, Lean::After), axis.weights(x + h, Lean::After));
+                let (a, b, c) =
+                    (axis.weights(x - h, OneSided::After), axis.weights(x, OneSided::After), axis.weights(x + h, OneSided::After));
                 for k in 0..b.values().len() {
                     let (p, q, r) = (a.values()[k], b.values()[k], c.values()[k]);
                     assert!(((r[0] - p[0]) / (2.0 * h) - q[1]).abs() < 1e-7);
@@ -362,21 +363,21 @@ mod tests {
             let last = axis.nodes.len() - 1;
             // The curve at a seam is counted at both of its nodes.
             let round = rule == Rule::Periodic;
-            let of = |x: f64, lean: Lean, i: usize, d: usize| {
+            let of = |x: f64, lean: OneSided, i: usize, d: usize| {
                 let w = axis.weights(x, lean);
                 axis.whole(&w, i)[d] + if i == 0 && round { axis.whole(&w, last)[d] } else { 0.0 }
             };
             let seam = round.then_some((1.0, 0.0));
             for (x, y) in axis.nodes[1..last].iter().map(|x| (*x, *x)).chain(seam) {
                 for (i, d) in (0..last).flat_map(|i| [(i, 0), (i, 1), (i, 2)]) {
-                    let (a, b) = (of(x, Lean::Before, i, d), of(y, Lean::After, i, d));
+                    let (a, b) = (of(x, OneSided::Before, i, d), of(y, OneSided::After, i, d));
                     assert!((a - b).abs() < 1e-10 * (1.0 + a.abs()), "{rule:?} {i} {x} {d}: {a} {b}");
                 }
             }
             let (x0, x1) = (0.43, 0.52);
             let ranges = axis.ranges(x0, x1);
             for i in 0..=20 {
-                let w = axis.weights(x0 + (x1 - x0) * f64::from(i) / 20.0, Lean::After);
+                let w = axis.weights(x0 + (x1 - x0) * f64::from(i) / 20.0, OneSided::After);
                 for (range, value) in ranges.iter().zip(w.values()) {
                     (0..3).for_each(|d| assert!(range[d].low <= value[d] + 1e-12 && value[d] <= range[d].high + 1e-12));
                 }

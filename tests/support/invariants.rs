@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use lofting::geometry::Kind;
 use lofting::mesh::Mesh;
-use lofting::mesh::chart::Chart;
 use lofting::mesh::data::FaceRange;
+use lofting::mesh::face_geometry::FaceGeometry;
 use lofting::session::run::Outcome;
 use lofting::surface::{Domain, Nearest, Side, Surface, SurfaceKind};
 
@@ -28,7 +28,7 @@ fn some<T: Clone>(all: &[T]) -> Vec<T> {
 /// A mesh with its elements as triangles, quads by their shorter diagonal, and the face of each.
 struct Seen<'a> {
     mesh: &'a Mesh,
-    /// Those with a chart: no curves.
+    /// Those with a geometry: no curves.
     faces: Vec<&'a FaceRange>,
     /// Settings as the script writes them.
     said: String,
@@ -45,7 +45,7 @@ impl<'a> Seen<'a> {
         let said = rest.split("\nmesh ").next().unwrap_or_default().split("\ncheck ").next().unwrap_or_default().to_owned();
         let p = |n: u32| mesh.nodes[n as usize];
         let faces: Vec<&FaceRange> = mesh.faces.iter().filter(|f| f.lines.is_empty()).collect();
-        assert_eq!(faces.len(), mesh.charts.0.len(), "{}", mesh.name);
+        assert_eq!(faces.len(), mesh.geometries.0.len(), "{}", mesh.name);
         let mut triangles = Vec::new();
         for (f, face) in faces.iter().enumerate() {
             triangles.extend(mesh.triangles[face.triangles.start as usize..face.triangles.end as usize].iter().map(|t| (*t, f)));
@@ -140,11 +140,11 @@ impl<'a> Seen<'a> {
             }
         }
         for (t, f) in some(&self.triangles) {
-            let chart = &self.mesh.charts.0[f];
+            let geometry = &self.mesh.geometries.0[f];
             let [a, b, c] = t.map(|n| self.p(n));
             let at = near[f].at((a + b + c) / 3.0).uv;
-            let normal = (b - a).cross(c - a).normalize().dot(chart.surface.normal(at.0, at.1));
-            if if chart.flipped { -normal } else { normal } <= 0.0 {
+            let normal = (b - a).cross(c - a).normalize().dot(geometry.surface.normal(at.0, at.1));
+            if if geometry.flipped { -normal } else { normal } <= 0.0 {
                 found.push(format!("a triangle upside down at {a}"));
             }
         }
@@ -161,7 +161,8 @@ impl<'a> Seen<'a> {
             }
         }
         for (f, face) in self.faces.iter().enumerate().filter(|(_, face)| face.triangles.len() + face.quads.len() > 0) {
-            let Some(wanted) = euler_of(&self.mesh.charts.0[f], self.faces.iter().filter(|other| other.name == face.name).count()) else {
+            let Some(wanted) = euler_of(&self.mesh.geometries.0[f], self.faces.iter().filter(|other| other.name == face.name).count())
+            else {
                 continue;
             };
             let made = nodes[f].len() as i64 - edges[f] + face.triangles.len() as i64 + face.quads.len() as i64;
@@ -182,7 +183,7 @@ impl<'a> Seen<'a> {
         };
         // Rims of walls are fitted to the borders of their faces.
         let is_rim = |s: &Surface| s.kind() == SurfaceKind::Ruled && (0..s.n_sides()).all(|k| matches!(s.side(k), Side::Free));
-        let mut surfaces = self.mesh.charts.0.iter().map(|c| &c.surface);
+        let mut surfaces = self.mesh.geometries.0.iter().map(|c| &c.surface);
         let fits = surfaces.any(|s| is_rim(s) || (0..s.n_sides()).any(|k| is_fit(&s.side(k))));
         let room = if fits { 0.25 * tolerance } else { ON * self.size };
         let mut rims: BTreeMap<(&str, u32), usize> = BTreeMap::new();
@@ -198,7 +199,7 @@ impl<'a> Seen<'a> {
         let all: Vec<(u32, usize)> = rims.into_iter().map(|((_, n), f)| (n, f)).collect();
         let sides = |surface: &Surface| (0..surface.n_sides()).map(|k| surface.side(k)).collect::<Vec<_>>();
         let on = |p: DVec3, f: usize, own: bool| {
-            let surface = &self.mesh.charts.0[f].surface;
+            let surface = &self.mesh.geometries.0[f].surface;
             let on_side = |side: Side| match side {
                 Side::Chain { chain, .. } => chain.closest(p).2 <= room,
                 Side::Pole(pole) => pole.distance(p) <= room,
@@ -230,7 +231,7 @@ impl<'a> Seen<'a> {
                 let p = a + (b - a) * i + (c - a) * j;
                 // Beyond the border of a face its surface goes on along its tangents.
                 let foot = near[f].at(p);
-                let normal = self.mesh.charts.0[f].surface.normal(foot.uv.0, foot.uv.1);
+                let normal = self.mesh.geometries.0[f].surface.normal(foot.uv.0, foot.uv.1);
                 let off = (p - foot.point).dot(normal).abs();
                 worst = if off > worst.0 { (off, p) } else { worst };
             }
@@ -273,8 +274,8 @@ impl<'a> Seen<'a> {
 
 /// The Euler number of a face: 2 less its loops, more where seams and poles of its surface close it. `None` where its patches or
 /// its loops on a closed surface leave it open.
-fn euler_of(chart: &Chart, patches: usize) -> Option<i64> {
-    let surface = &chart.surface;
+fn euler_of(geometry: &FaceGeometry, patches: usize) -> Option<i64> {
+    let surface = &geometry.surface;
     let closed = surface.closed();
     if patches > 1 {
         return None;
@@ -295,7 +296,7 @@ pub fn look(text: &str, outcome: &Outcome, tally: &mut [usize; 5]) -> Vec<String
     let millimetres = if text.contains("units m\n") { 1e-3 } else { 1.0 };
     let mut all = Vec::new();
     for ((name, mesh), row) in outcome.meshes.iter().zip(&outcome.report.meshes) {
-        if mesh.charts.0.is_empty() {
+        if mesh.geometries.0.is_empty() {
             continue;
         }
         let mut seen = Seen::new(mesh, text);
@@ -303,7 +304,7 @@ pub fn look(text: &str, outcome: &Outcome, tally: &mut [usize; 5]) -> Vec<String
             // Written lengths are read in millimetres.
             seen.said = seen.said.replace("mm", "e-3m");
         }
-        let near: Vec<Nearest> = mesh.charts.0.iter().map(|c| Nearest::new(&c.surface)).collect();
+        let near: Vec<Nearest> = mesh.geometries.0.iter().map(|c| Nearest::new(&c.surface)).collect();
         let mut found = Vec::new();
         let of =
             seen.said.trim_start().strip_prefix("of ").and_then(|rest| rest.split([' ', '\n', ',']).next()).unwrap_or_default().to_owned();

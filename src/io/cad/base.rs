@@ -234,11 +234,11 @@ impl Base {
 
     /// The point at the file's (u, v).
     pub fn point(&self, u: f64, v: f64) -> Option<DVec3> {
-        use crate::surface::Lean;
+        use crate::surface::OneSided;
         let share = |x: f64, a: f64, b: f64| ((x - a) / (b - a)).clamp(0.0, 1.0);
         match self {
             Self::Net(net, [u0, u1, v0, v1]) if u0.is_finite() => {
-                Some(net.jet(share(u, *u0, *u1), share(v, *v0, *v1), (Lean::After, Lean::After)).p)
+                Some(net.jet(share(u, *u0, *u1), share(v, *v0, *v1), (OneSided::After, OneSided::After)).p)
             }
             Self::Net(..) | Self::Unbounded { .. } | Self::Round { .. } => None,
             Self::Plane(at, a, b) => Some(*at + *a * u + *b * v),

@@ -184,7 +184,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::surface::Lean;
+    use crate::surface::OneSided;
 
     #[test]
     fn a_ruled_net_joins_equal_parameters() {
@@ -194,7 +194,7 @@ mod tests {
         let net = ruled_net(&line, &curve);
         for k in 0..=10 {
             let x = f64::from(k) / 10.0;
-            let at = |v: f64| net.jet(x, v, (Lean::After, Lean::After)).p;
+            let at = |v: f64| net.jet(x, v, (OneSided::After, OneSided::After)).p;
             assert!(at(0.0).distance(line.jet(x).p) < 1e-15 && at(1.0).distance(curve.jet(1.0 + 2.0 * x).p) < 1e-14);
         }
     }
@@ -208,7 +208,7 @@ mod tests {
         let cut = trimmed_net(net, [0.25, 1.5, 0.5, 2.0]).expect("a net");
         let rows: Vec<Nurbs> = poles.chunks_exact(4).map(|row| Nurbs::new(2, knots.clone(), row.to_vec())).collect();
         for (u, v) in [(0.0, 0.0), (0.4, 0.3), (0.9, 1.0), (1.0, 0.0)] {
-            let found = cut.jet(u, v, (Lean::After, Lean::After)).p;
+            let found = cut.jet(u, v, (OneSided::After, OneSided::After)).p;
             let share = (0.5 + 1.5 * v) / 2.0;
             let row = |k: usize| rows[k].blossom(rows[k].span(0.25 + 1.25 * u), &[0.25 + 1.25 * u; 2]);
             let q = row(0) * (1.0 - share) + row(1) * share;

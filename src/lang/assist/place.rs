@@ -170,7 +170,7 @@ impl Reader<'_> {
     /// What an item of a bracket must be.
     fn wanted(&mut self, frame: usize) -> Option<Ty> {
         let here = &self.open[frame];
-        if frame > DEEPEST {
+        if frame > MAX_DEPTH {
             return None;
         }
         let outer = |reader: &mut Self| frame.checked_sub(1).and_then(|outer| reader.wanted(outer));
@@ -352,7 +352,7 @@ impl Reader<'_> {
 }
 
 /// Brackets inside brackets up to which it is known what is wanted there.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// What groups and pictures are made of.
 const GEOMETRY: &[Ty] = &[Ty::Surface, Ty::Shell, Ty::Curve, Ty::Point, Ty::Mesh, Ty::Edge, Ty::Link, Ty::Patch, Ty::Vertex, Ty::Network];

@@ -9,7 +9,7 @@ use super::kinds::{Carrier, EdgeKey, EdgeOf};
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::lang::value::Value;
 use crate::model::{SharedEdge, SharedTrack};
@@ -41,7 +41,7 @@ struct Geometry<'a> {
 
 impl Geometry<'_> {
     /// Whether all of the edge is wanted: each of some places, and then the curve as a whole.
-    fn all(&self, place: impl Fn(DVec3) -> bool, whole: impl Fn(&Chain) -> Result<bool, Stop>) -> Result<bool, Stop> {
+    fn all(&self, place: impl Fn(DVec3) -> bool, whole: impl Fn(&Chain) -> Result<bool, Halt>) -> Result<bool, Halt> {
         if !places(&self.track, PLACES).all(&place) {
             return Ok(false);
         }
@@ -51,7 +51,7 @@ impl Geometry<'_> {
         }
     }
 
-    fn lies_on(&self, feet: &Feet) -> Result<bool, Stop> {
+    fn lies_on(&self, feet: &Feet) -> Result<bool, Halt> {
         let on = |p: DVec3| feet.distance(p) <= self.tolerance.point;
         self.all(on, |chain| {
             let mut stops = vec![0.0];
@@ -63,7 +63,7 @@ impl Geometry<'_> {
         })
     }
 
-    fn lies_inside(&self, around: &Box3) -> Result<bool, Stop> {
+    fn lies_inside(&self, around: &Box3) -> Result<bool, Halt> {
         let near = self.tolerance.point;
         let inside = |own: Box3| own.min.cmpge(around.min - near).all() && own.max.cmple(around.max + near).all();
         self.all(|p| inside(Box3::of([p])), |chain| Ok(inside(curve_bbox(chain))))
@@ -97,7 +97,7 @@ impl Feet {
 
 impl Carrier {
     /// Ready for many points.
-    pub fn feet(&self, cx: &mut Cx) -> Result<Feet, Stop> {
+    pub fn feet(&self, cx: &mut Cx) -> Result<Feet, Halt> {
         let of = |surfaces: &[Surface]| Feet::Surfaces(surfaces.to_vec(), surfaces.iter().map(Nearest::new).collect());
         Ok(match self {
             Self::Curve(chain) => Feet::Curve(chain.clone()),
@@ -109,7 +109,7 @@ impl Carrier {
 }
 
 /// Those of some edges that are wanted, told the geometry of each; lists of edges flatten.
-fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&Geometry) -> Result<bool, Stop>) -> Result<Vec<EdgeOf>, Stop> {
+fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&Geometry) -> Result<bool, Halt>) -> Result<Vec<EdgeOf>, Halt> {
     let tolerance = cx.tolerance()?;
     let (mut found, mut open) = (Vec::new(), edges);
     open.reverse();
@@ -132,23 +132,23 @@ fn chosen(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(&Geometry) -> Result<b
 }
 
 /// Edges all of which lies on something, within the tolerance.
-pub fn on(cx: &mut Cx, edges: Vec<Value>, carrier: &Carrier) -> Result<Vec<EdgeOf>, Stop> {
+pub fn on(cx: &mut Cx, edges: Vec<Value>, carrier: &Carrier) -> Result<Vec<EdgeOf>, Halt> {
     let feet = carrier.feet(cx)?;
     chosen(cx, edges, |edge| edge.lies_on(&feet))
 }
 
 /// Edges all of which lies in a box, its border and the tolerance included.
-pub fn inside(cx: &mut Cx, edges: Vec<Value>, around: &Box3) -> Result<Vec<EdgeOf>, Stop> {
+pub fn inside(cx: &mut Cx, edges: Vec<Value>, around: &Box3) -> Result<Vec<EdgeOf>, Halt> {
     chosen(cx, edges, |edge| edge.lies_inside(around))
 }
 
 /// Edges whose length is one of the wanted.
-pub fn by_length(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(f64) -> bool) -> Result<Vec<EdgeOf>, Stop> {
+pub fn by_length(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(f64) -> bool) -> Result<Vec<EdgeOf>, Halt> {
     chosen(cx, edges, |edge| Ok(wanted(edge.track.length())))
 }
 
 /// Whether an edge lies on a curve, or a point on it.
-pub fn lies(cx: &mut Cx, scene: &Scene, edge: &SharedEdge, key: &EdgeKey) -> Result<bool, Stop> {
+pub fn lies(cx: &mut Cx, scene: &Scene, edge: &SharedEdge, key: &EdgeKey) -> Result<bool, Halt> {
     let tolerance = cx.tolerance()?;
     let Some(track) = scene.model.shared_track(edge, &scene.network) else { return Ok(false) };
     match key {

@@ -10,7 +10,7 @@ use crate::base::math;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::builtins;
 use crate::geometry::{Curve, Ends, Kind, Spline, build, fillet, polynomial};
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Direction, FromValue, Length, Point, Ty};
 use crate::lang::units::number_text;
 use crate::lang::value::Value;
@@ -23,7 +23,7 @@ pub(super) fn whole(curve: Curve) -> Chain {
 }
 
 /// The direction at length one; the zero vector has none.
-pub(super) fn unit(direction: DVec3, argument: &'static str) -> Result<DVec3, Stop> {
+pub(super) fn unit(direction: DVec3, argument: &'static str) -> Result<DVec3, Halt> {
     // Scaling by the largest coordinate keeps tiny and huge directions apart from zero.
     let largest = direction.abs().max_element();
     match (largest > 0.0).then(|| math::unit(direction / largest, PARALLEL)).flatten() {
@@ -53,16 +53,16 @@ struct ArcSaid {
 }
 
 impl ArcSaid {
-    fn exclusive(arguments: Vec<&'static str>) -> Stop {
+    fn exclusive(arguments: Vec<&'static str>) -> Halt {
         let what = "a third point or a centre, not both";
         ValueFault::Exclusive { function: "arc", what, arguments, example: ARC_EXAMPLE }.into()
     }
 
-    fn missing(what: &'static str) -> Stop {
+    fn missing(what: &'static str) -> Halt {
         ValueFault::Missing { function: "arc", what, example: ARC_EXAMPLE }.into()
     }
 
-    fn build(self, normal: DVec3, origin: crate::base::origin::Origin) -> Result<Curve, Stop> {
+    fn build(self, normal: DVec3, origin: crate::base::origin::Origin) -> Result<Curve, Halt> {
         let given = |name, there: bool| there.then_some(name);
         let by_points = [given("from", self.from.is_some()), given("to", self.to.is_some()), given("through", self.through.is_some())];
         let by_center =
@@ -82,7 +82,7 @@ impl ArcSaid {
     }
 }
 
-fn ends(tangent: Option<Direction>, argument: &'static str) -> Result<Ends, Stop> {
+fn ends(tangent: Option<Direction>, argument: &'static str) -> Result<Ends, Halt> {
     tangent.map_or(Ok(Ends::Natural), |t| unit(t.0, argument).map(Ends::Clamped))
 }
 

@@ -5,19 +5,19 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::fault::ValueFault;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::table::Table;
 use crate::lang::value::{Dim, Value};
 use crate::{builtins, fields};
 
 /// What a row lacks to be a point.
-fn not_a_point(row: usize, what: &str) -> Stop {
+fn not_a_point(row: usize, what: &str) -> Halt {
     let found = format!("{what} in row {row}");
     ValueFault::OutsideRange { argument: "of", found, range: "a table of two or three columns of numbers".into() }.into()
 }
 
 /// Rows of two or three numbers as points; one length among them makes them lengths.
-fn points(cx: &mut Cx, table: &Table) -> Result<Vec<Value>, Stop> {
+fn points(cx: &mut Cx, table: &Table) -> Result<Vec<Value>, Halt> {
     let bare = cx.bare_unit(cx.module());
     let mut out = Vec::with_capacity(table.rows.len());
     for (i, row) in table.rows.iter().enumerate() {
@@ -46,7 +46,7 @@ fn points(cx: &mut Cx, table: &Table) -> Result<Vec<Value>, Stop> {
 }
 
 /// The filled cells of a grid: rows begin with their place, the header has that of the columns.
-fn cells(cx: &mut Cx, table: &Table) -> Result<Vec<Value>, Stop> {
+fn cells(cx: &mut Cx, table: &Table) -> Result<Vec<Value>, Halt> {
     let Some(header) = &table.header else {
         let example = "import \"offsets.csv\" (header: true) as offsets";
         return Err(ValueFault::Missing { function: "cells", what: "a table with a header", example }.into());

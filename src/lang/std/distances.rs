@@ -9,7 +9,7 @@ use crate::base::math;
 use crate::base::par;
 use crate::builtins;
 use crate::geometry::closest;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Point, Vector};
 use crate::lang::value::{Dim, Quantity, Value};
@@ -26,7 +26,7 @@ enum Figure {
 }
 
 /// A value as a figure; edges are the curves they lie on.
-fn figure(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Figure, Stop> {
+fn figure(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Figure, Halt> {
     Ok(match value {
         Value::Vector(..) | Value::Node(_) | Value::Vertex(..) => Figure::Point(vector(cx, value, argument)?),
         Value::Curve(_) | Value::Link(..) => Figure::Curve(cx.as_chain(value)?),
@@ -52,7 +52,7 @@ fn least(distances: impl Iterator<Item = f64>) -> Quantity {
 }
 
 /// Shortest distance of two things.
-fn distance(cx: &mut Cx, a: Value, b: Value) -> Result<Quantity, Stop> {
+fn distance(cx: &mut Cx, a: Value, b: Value) -> Result<Quantity, Halt> {
     let (a, b) = (figure(cx, a, "a")?, figure(cx, b, "b")?);
     // A tuple without a unit is a point beside anything with a place.
     let place = |cx: &Cx, p: Vector| together(cx, p, Vector(DVec3::ZERO, Dim::LENGTH)).map(|(p, _)| p.0);
@@ -81,7 +81,7 @@ enum Way {
     Across(DVec3),
 }
 
-fn way(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Way, Stop> {
+fn way(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Way, Halt> {
     if let Value::Plane(p) = &value {
         return Ok(Way::Across(p.normal));
     }
@@ -96,7 +96,7 @@ fn way(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Way, Stop> {
             let tolerance = cx.tolerance()?;
             match figure(cx, value, argument)? {
                 Figure::Curve(c) => Ok(Way::Along(axis_of(&c, &tolerance)?.direction)),
-                _ => Err(Stop::Bug("a curve is a curve")),
+                _ => Err(Halt::Bug("a curve is a curve")),
             }
         }
         other => {

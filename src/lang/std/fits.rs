@@ -5,7 +5,7 @@ use super::surfaces::{finished, rows};
 use crate::base::fault::ValueFault;
 use crate::builtins;
 use crate::geometry::fit::{Fit, fit};
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Direction, FromValue, Length, Point, Ty};
 use crate::lang::value::Value;
 use crate::surface;
@@ -41,7 +41,7 @@ struct Said {
 
 impl Said {
     /// E305 where two of these were given.
-    fn check(self, surface: bool) -> Result<(), Stop> {
+    fn check(self, surface: bool) -> Result<(), Halt> {
         let tangent = self.start.map(|_| "start").or(self.end.map(|_| "end"));
         let near = self.tolerance.map(|_| "tolerance");
         let whole = self.closed.then_some("closed");
@@ -57,7 +57,7 @@ impl Said {
         Err(ValueFault::Exclusive { function: "fit", what, arguments: pair.to_vec(), example: EXAMPLE }.into())
     }
 
-    fn within(self) -> Result<Option<f64>, Stop> {
+    fn within(self) -> Result<Option<f64>, Halt> {
         match self.tolerance {
             Some(t) if t.0 <= 0.0 => {
                 let (found, range) = (t.0.to_string(), "above 0; left out, all points are met".to_owned());
@@ -68,7 +68,7 @@ impl Said {
     }
 }
 
-fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Stop> {
+fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Halt> {
     let within = said.within()?;
     match data {
         Data::Row(points) => {

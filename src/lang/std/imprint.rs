@@ -3,7 +3,7 @@
 use super::kinds::SurfaceOrShell;
 use crate::base::origin::Origin;
 use crate::builtins;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::Rest;
 use crate::model::topology::Named;
 use crate::model::{Model, SurfaceId};
@@ -11,7 +11,7 @@ use crate::network::Network;
 use crate::surface::Surface;
 
 /// Surfaces cut by each other; `origin` is given to the curves of cuts.
-pub(in crate::lang) fn pieces(cx: &mut Cx, surfaces: Vec<Surface>, origin: Origin) -> Result<Vec<Surface>, Stop> {
+pub(in crate::lang) fn pieces(cx: &mut Cx, surfaces: Vec<Surface>, origin: Origin) -> Result<Vec<Surface>, Halt> {
     let tolerance = cx.tolerance()?;
     let mut named: Vec<Named> = Vec::new();
     for surface in surfaces {

@@ -4,7 +4,7 @@ use super::kinds::{EdgeOf, EdgeOrSurface, Faces};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Say, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Length};
 use crate::lang::value::Value;
@@ -13,8 +13,8 @@ use crate::surface::Surface;
 use crate::{builtins, fields};
 
 /// The stretches that faces of two lists share; without a second list all that the first one's share.
-fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolerance): (f64, &Tolerance)) -> Result<Vec<Contact>, Stop> {
-    let places = |list: &[Surface]| Ok::<_, Stop>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
+fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolerance): (f64, &Tolerance)) -> Result<Vec<Contact>, Halt> {
+    let places = |list: &[Surface]| Ok::<_, Halt>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
     let ours = places(a)?;
     let theirs = b.map(places).transpose()?;
     let members: Vec<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
@@ -65,7 +65,7 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
 }
 
 /// The stretches along which an edge of the model joins two faces.
-fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Stop> {
+fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Halt> {
     let tolerance = cx.tolerance()?;
     let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
     const SAMPLES: u32 = 32;

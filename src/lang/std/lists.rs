@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::operators::same;
 use crate::lang::types::{Rest, dim_words};
 use crate::lang::value::Value;
@@ -38,7 +38,7 @@ fn of_some(cx: &mut Cx, function: &'static str, conditions: &[bool], result: boo
 }
 
 /// What the members are sorted by: themselves, a field, or a list of the same length.
-fn keys(cx: &mut Cx, list: &[Value], key: &Value) -> Result<Vec<Value>, Stop> {
+fn keys(cx: &mut Cx, list: &[Value], key: &Value) -> Result<Vec<Value>, Halt> {
     match key {
         Value::None => Ok(list.to_vec()),
         Value::Text(name) | Value::Word(name) => {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kinds::PatchOf;
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Area, Point, Volume};
 use crate::lang::value::{MeshValue, ShellValue, Value};
 use crate::model::measure;
@@ -78,7 +78,7 @@ fields! {
     /// Centre of the volume of a closed shell, of the area of an open one.
     fn centroid(of: Arc<ShellValue>) -> Point = |cx, of| match cx.solid(&of) {
         Ok(solid) => Ok(Point(solid.centroid)),
-        Err(Stop::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
+        Err(Halt::Fault(_)) => Ok(Point(measure::sheet(&of.surfaces).centroid)),
         Err(other) => Err(other),
     };
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::base::fault::ValueFault;
 use crate::base::job;
 use crate::geometry::build;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Length, Point};
 use crate::lang::value::{MeshValue, Plane, Value};
 use crate::mesh::Mesh;
@@ -15,7 +15,7 @@ use crate::network::Chain;
 use crate::{builtins, fields};
 
 /// Shape of the elements; a mesh without faces has none.
-fn quality(cx: &mut Cx, mesh: &MeshValue) -> Result<Quality, Stop> {
+fn quality(cx: &mut Cx, mesh: &MeshValue) -> Result<Quality, Halt> {
     let mesh = cx.mesh(mesh)?;
     mesh.quality().ok_or_else(|| ValueFault::NoFaces { mesh: mesh.name.clone() }.into())
 }
@@ -49,7 +49,7 @@ builtins! {
 }
 
 /// The sections of a mesh as curves.
-pub(in crate::lang) fn sections(cx: &mut Cx, of: &MeshValue, by: &Plane) -> Result<Vec<Chain>, Stop> {
+pub(in crate::lang) fn sections(cx: &mut Cx, of: &MeshValue, by: &Plane) -> Result<Vec<Chain>, Halt> {
     let tolerance = cx.tolerance()?;
     let mesh = cx.mesh(of)?;
     let rows = section(&mesh, (by.at, by.normal), tolerance.rounding, tolerance.point);

@@ -3,7 +3,7 @@
 //! A function is an entry of a `BUILTINS` table, a field (`c.start`, also written `start(c)`) one of a `FIELDS`
 //! table; help, reference, signatures and suggestions are read from these.
 
-use super::cx::{Cx, Stop};
+use super::cx::{Cx, Halt};
 use super::types::Ty;
 use super::value::Value;
 
@@ -71,7 +71,7 @@ pub struct Builtin {
     /// What it gives.
     pub returns: Ty,
     /// Does it.
-    pub call: fn(&mut Cx, Args) -> Result<Value, Stop>,
+    pub call: fn(&mut Cx, Args) -> Result<Value, Halt>,
 }
 
 impl Builtin {
@@ -148,7 +148,7 @@ pub fn fields() -> impl Iterator<Item = &'static Builtin> {
 
 /// Declares functions: docs, name, typed parameters with docs and defaults (loft text), result and body.
 ///
-/// The body is a closure without captures `|cx, a, b| -> Result<_, Stop>`; kernel faults convert with `?`.
+/// The body is a closure without captures `|cx, a, b| -> Result<_, Halt>`; kernel faults convert with `?`.
 #[macro_export]
 macro_rules! builtins {
     ($($body:tt)+) => { $crate::builtin_table! { BUILTINS $($body)+ } };
@@ -184,7 +184,7 @@ macro_rules! builtin_table {
                 let mut args = args.into_iter();
                 $( let $p = $crate::lang::std::take::<$ty>(&mut args)?; )*
                 let _ = args;
-                let run: fn(&mut $crate::lang::cx::Cx, $($ty),*) -> Result<$ret, $crate::lang::cx::Stop> = $body;
+                let run: fn(&mut $crate::lang::cx::Cx, $($ty),*) -> Result<$ret, $crate::lang::cx::Halt> = $body;
                 run(cx, $($p),*).map($crate::lang::types::IntoValue::into_value)
             },
         } ),+ ];
@@ -203,6 +203,6 @@ macro_rules! optional_default {
 }
 
 /// The next argument as its Rust type; `bind` has made sure that it fits.
-pub fn take<T: super::types::FromValue>(args: &mut impl Iterator<Item = Value>) -> Result<T, Stop> {
-    args.next().and_then(T::from_value).ok_or(Stop::Bug("an argument was not coerced to its type"))
+pub fn take<T: super::types::FromValue>(args: &mut impl Iterator<Item = Value>) -> Result<T, Halt> {
+    args.next().and_then(T::from_value).ok_or(Halt::Bug("an argument was not coerced to its type"))
 }

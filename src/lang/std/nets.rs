@@ -3,7 +3,7 @@
 use crate::base::fault::{Say, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
-use crate::lang::cx::Stop;
+use crate::lang::cx::Halt;
 use crate::lang::std::curves::unit;
 use crate::lang::std::kinds::{EndKind, SectionKind};
 use crate::lang::std::surfaces::finished;
@@ -15,7 +15,7 @@ use crate::surface::skin::{self, Across, Leaving, Section};
 use crate::surface::{Reparam, Surface};
 
 /// The model's tolerance, with another distance at which curves meet.
-fn meeting(tolerance: &Tolerance, gap: Option<Length>) -> Result<Tolerance, Stop> {
+fn meeting(tolerance: &Tolerance, gap: Option<Length>) -> Result<Tolerance, Halt> {
     match gap {
         None => Ok(*tolerance),
         Some(gap) if gap.0 > 0.0 && gap.0.is_finite() => Ok(Tolerance { point: gap.0, ..*tolerance }),
@@ -126,14 +126,14 @@ builtins! {
     };
 }
 
-fn exclusive<T>(what: &'static str, arguments: Vec<&'static str>) -> Result<T, Stop> {
+fn exclusive<T>(what: &'static str, arguments: Vec<&'static str>) -> Result<T, Halt> {
     Err(ValueFault::Exclusive { function: "skin", what, arguments, example: SKIN }.into())
 }
 
 const SKIN: &str = "skin([a, b, c], start: (0, 0, 1), end: natural), or skin([a, b, c], closed: true)";
 
 /// How a skin leaves a section.
-fn leaving(said: Option<EndKind>, argument: &'static str) -> Result<Leaving, Stop> {
+fn leaving(said: Option<EndKind>, argument: &'static str) -> Result<Leaving, Halt> {
     match said {
         None => Ok(Leaving::Plain),
         Some(EndKind::Natural()) => Ok(Leaving::Natural),
@@ -142,8 +142,8 @@ fn leaving(said: Option<EndKind>, argument: &'static str) -> Result<Leaving, Sto
 }
 
 /// E304 unless there are enough sections, all open or all closed, and points only where they may be.
-fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> Result<(), Stop> {
-    let wrong = |found: String, range: &str| -> Result<(), Stop> {
+fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> Result<(), Halt> {
+    let wrong = |found: String, range: &str| -> Result<(), Halt> {
         Err(ValueFault::OutsideRange { argument: "sections", found, range: range.to_owned() }.into())
     };
     let least = if closed { 3 } else { 2 };

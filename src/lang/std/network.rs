@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
 use crate::base::fault::ValueFault;
 use crate::base::tolerance::WHOLE_NUMBER;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Length, Node, Point, Station};
 use crate::lang::value::Value;
 use crate::network::{Chain, LinkId};
@@ -13,7 +13,7 @@ use crate::surface::Nearest;
 use crate::{builtins, fields};
 
 /// Fraction of a curve at a fraction or length; both must lie on the curve.
-fn fraction_of(cx: &Cx, chain: &Chain, station: Station, argument: &'static str) -> Result<f64, Stop> {
+fn fraction_of(cx: &Cx, chain: &Chain, station: Station, argument: &'static str) -> Result<f64, Halt> {
     let (fraction, found) = match station {
         Station::Fraction(f) => (f, format!("{}%", shown(f * 100.0))),
         Station::Length(s) => (s / chain.length(), format!("{}{}", shown(s), cx.unit().name)),
@@ -32,14 +32,14 @@ fn shown(x: f64) -> String {
 }
 
 /// The links a curve runs over, in its direction.
-fn links(cx: &mut Cx, chain: &Chain) -> Result<Vec<(LinkId, bool)>, Stop> {
+fn links(cx: &mut Cx, chain: &Chain) -> Result<Vec<(LinkId, bool)>, Halt> {
     let module = cx.module();
     let tolerance = cx.tolerance()?;
     let graph = cx.network(module)?;
     graph.links_of(chain, &tolerance).ok_or_else(|| ValueFault::NoLinks { of: chain.origin() }.into())
 }
 
-fn nodes(cx: &mut Cx, chain: &Chain) -> Result<Vec<DVec3>, Stop> {
+fn nodes(cx: &mut Cx, chain: &Chain) -> Result<Vec<DVec3>, Halt> {
     let links = links(cx, chain)?;
     let module = cx.module();
     let graph = cx.network(module)?;

@@ -3,13 +3,13 @@
 use crate::base::fault::ValueFault;
 use crate::base::math;
 use crate::builtins;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Degrees, Rest, dim_words};
 use crate::lang::units::{number_text, radians};
 use crate::lang::value::{Dim, Quantity, Value};
 
 /// All of one dimension, with it; a 0 fits any.
-fn one_dim(of: &[Quantity], argument: &'static str) -> Result<Dim, Stop> {
+fn one_dim(of: &[Quantity], argument: &'static str) -> Result<Dim, Halt> {
     let dim = of.iter().map(|q| q.dim).find(|d| !d.is_none()).unwrap_or(Dim::NONE);
     match of.iter().find(|q| q.dim != dim && q.value != 0.0) {
         None => Ok(dim),
@@ -17,19 +17,19 @@ fn one_dim(of: &[Quantity], argument: &'static str) -> Result<Dim, Stop> {
     }
 }
 
-fn not_empty(of: &[Quantity], function: &'static str) -> Result<(), Stop> {
+fn not_empty(of: &[Quantity], function: &'static str) -> Result<(), Halt> {
     if of.is_empty() {
         return Err(ValueFault::Missing { function, what: "at least one number", example: "max(1mm, 2mm)" }.into());
     }
     Ok(())
 }
 
-fn outside(argument: &'static str, x: f64, range: &str) -> Stop {
+fn outside(argument: &'static str, x: f64, range: &str) -> Halt {
     ValueFault::OutsideRange { argument, found: number_text(x), range: range.to_owned() }.into()
 }
 
 /// The same of a quantity, with its unit.
-fn outside_of(cx: &Cx, argument: &'static str, x: Quantity, range: &str) -> Stop {
+fn outside_of(cx: &Cx, argument: &'static str, x: Quantity, range: &str) -> Halt {
     ValueFault::OutsideRange { argument, found: cx.quantity(x), range: range.to_owned() }.into()
 }
 
@@ -49,7 +49,7 @@ fn sin_cos_degrees(x: f64) -> (f64, f64) {
 }
 
 /// The result of rounding, which asks for whole numbers: bare ones, or whole multiples of a step.
-fn rounded(cx: &Cx, x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) -> Result<Quantity, Stop> {
+fn rounded(cx: &Cx, x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) -> Result<Quantity, Halt> {
     match to {
         None if x.dim.is_none() => Ok(Quantity::bare(round(x.value))),
         None => {
@@ -70,7 +70,7 @@ fn rounded(cx: &Cx, x: Quantity, to: Option<Quantity>, round: fn(f64) -> f64) ->
     }
 }
 
-fn dot_root(cx: &mut Cx, x: Quantity) -> Result<Quantity, Stop> {
+fn dot_root(cx: &mut Cx, x: Quantity) -> Result<Quantity, Halt> {
     if x.value < 0.0 {
         return Err(outside_of(cx, "x", x, "0 or more"));
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::measures::box_of;
 use crate::base::fault::ValueFault;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::part::PartValue;
 use crate::lang::types::{Area, Length, Point, Volume};
 use crate::lang::value::Value;
@@ -16,7 +16,7 @@ use crate::surface::looks::Looks;
 use crate::{builtins, fields};
 
 /// Those of some faces whose form is wanted.
-fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<Looks>) -> bool) -> Result<Vec<Surface>, Stop> {
+fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<Looks>) -> bool) -> Result<Vec<Surface>, Halt> {
     let tolerance = cx.tolerance()?;
     let mut found = Vec::new();
     for face in faces {
@@ -29,7 +29,7 @@ fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<Looks>) -> b
 }
 
 /// Whether a radius is the wanted one, within the tolerance; every one is where none is said.
-fn fits(cx: &Cx, wanted: Option<Length>) -> Result<impl Fn(f64) -> bool + use<>, Stop> {
+fn fits(cx: &Cx, wanted: Option<Length>) -> Result<impl Fn(f64) -> bool + use<>, Halt> {
     let near = cx.tolerance()?.point;
     Ok(move |radius: f64| wanted.as_ref().is_none_or(|wanted| (wanted.0 - radius).abs() <= near))
 }
@@ -45,7 +45,7 @@ fn hex(text: &str) -> Option<[f64; 3]> {
 }
 
 /// What the volume of a part, or its centre, is of.
-fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Stop> {
+fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Halt> {
     let (mut volume, mut moment) = (0.0, DVec3::ZERO);
     for body in part.solids() {
         let Value::Shell(shell) = body else { continue };
@@ -56,7 +56,7 @@ fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Stop> {
     if volume > 0.0 { Ok((volume, moment / volume)) } else { Err(nothing()) }
 }
 
-fn nothing() -> Stop {
+fn nothing() -> Halt {
     ValueFault::OutsideRange { argument: "of", found: "a part without faces".to_owned(), range: "a part with faces".to_owned() }.into()
 }
 
@@ -210,7 +210,7 @@ fields! {
     /// Centre of the volume of the solids of a part. Where they enclose none it is that of the area of its faces.
     fn centroid(of: Arc<PartValue>) -> Point = |cx, of| match volumes(cx, &of) {
         Ok((_, centroid)) => Ok(Point(centroid)),
-        Err(Stop::Fault(_)) if !of.faces.is_empty() => Ok(Point(measure::sheet(&of.faces).centroid)),
+        Err(Halt::Fault(_)) if !of.faces.is_empty() => Ok(Point(measure::sheet(&of.faces).centroid)),
         Err(other) => Err(other),
     };
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
@@ -225,6 +225,6 @@ fields! {
     fn area(of: Vec<Surface>) -> Area = |_, of| Ok(Area(measure::sheet(&of).area));
 }
 
-fn boxed(cx: &mut Cx, faces: &[Surface]) -> Result<Value, Stop> {
+fn boxed(cx: &mut Cx, faces: &[Surface]) -> Result<Value, Halt> {
     if faces.is_empty() { Err(nothing()) } else { Ok(box_of(cx, faces)) }
 }

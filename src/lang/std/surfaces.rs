@@ -10,7 +10,7 @@ use super::transforms::axis_line;
 use crate::base::fault::{Fault, LoopFault, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Axis, Direction, Length, Point, Rest};
 use crate::lang::value::{Plane, Value};
 use crate::model::measure;
@@ -21,7 +21,7 @@ use crate::surface::nurbs::{self, Net};
 use crate::surface::{Domain, Reparam, Surface, Way, carried, extrude, interpolate, plane, revolve, ruled as surface_between};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
-pub(super) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Stop> {
+pub(super) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Halt> {
     for (value, argument) in [u, v] {
         if !(0.0..=1.0).contains(&value) {
             let (found, range) = (value.to_string(), "between 0 and 1".to_owned());
@@ -66,7 +66,7 @@ struct Curves {
 
 impl Curves {
     /// E663 for a curve that stands twice in one of the lists.
-    fn each_once(&self, tolerance: &Tolerance) -> Result<(), Stop> {
+    fn each_once(&self, tolerance: &Tolerance) -> Result<(), Halt> {
         let lists = [("curves", Some(&self.row.0)), ("u", self.u.as_ref()), ("v", self.v.as_ref())];
         for (argument, list) in lists {
             let Some(list) = list else { continue };
@@ -107,7 +107,7 @@ struct Said {
 }
 
 /// A surface over a grid of curves, its flow found.
-fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> {
+fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> {
     let tolerance = cx.tolerance()?;
     curves.each_once(&tolerance)?;
     let (chains, along_u, along_v) = curves.listed();
@@ -133,7 +133,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Stop> 
 }
 
 /// Says the notes of a surface and what a look at it finds.
-pub(super) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Stop> {
+pub(super) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Halt> {
     notes.iter().for_each(|note| cx.say(note));
     let tolerance = cx.tolerance()?;
     let found = surface.review(&tolerance);

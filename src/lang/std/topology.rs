@@ -11,7 +11,7 @@ use super::surfaces::checked_uv;
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
 use crate::base::origin::Origin;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::lang::types::{Angle, Direction, Length, Point};
 use crate::lang::value::{Home, ShellValue, Value};
@@ -22,7 +22,7 @@ use crate::surface::{IsoLine, Surface, SurfaceKind};
 use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
-fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Stop> {
+fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Halt> {
     let module = cx.module();
     let (scene, home) = Scene::at_home(cx, module, surfaces)?;
     let places = scene.find_all(surfaces)?;
@@ -36,25 +36,25 @@ fn whole(home: &Home, model: &Model, edge: EdgeId) -> EdgeOf {
 }
 
 /// Edges of some surfaces, along the border of each patch.
-fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Stop> {
+fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     Ok(model.edges_along(&patches).into_iter().map(|edge| whole(&home, &model, edge)).collect())
 }
 
-fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Stop> {
+fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     Ok(model.vertices_of(&patches).into_iter().map(|vertex| VertexOf(home.clone(), vertex)).collect())
 }
 
 /// Edges of each patch's loop in order.
-fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Stop> {
+fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     let of_patch = |patch: &PatchId| model.border_of(*patch).into_iter().map(|(e, _)| whole(&home, &model, e)).collect();
     Ok(patches.iter().map(of_patch).collect())
 }
 
 /// The edges of a shell, as values in the order of its skin, and the skin.
-fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Stop> {
+fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> {
     let (surfaces, stated) = (faces.surfaces(), faces.snap());
     let (home, model, _) = patches(cx, &surfaces)?;
     let (tolerance, network) = (cx.tolerance()?, cx.network_of(&home)?);
@@ -71,7 +71,7 @@ fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
 }
 
 /// Edges at which faces turn by more than an angle, radians.
-fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Stop> {
+fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Halt> {
     let (all, _) = skin(cx, faces)?;
     let Some(home) = all.first().map(|edge| edge.0.clone()) else { return Ok(all) };
     let (model, network, tolerance) = (cx.model(&home)?, cx.network_of(&home)?, cx.tolerance()?);
@@ -88,7 +88,7 @@ fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Stop> 
 }
 
 /// The box that a record with the points `min` and `max` is.
-fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Stop> {
+fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Halt> {
     let (min, max) = (cx.names.intern("min"), cx.names.intern("max"));
     let point = |value: Option<&Value>| match value {
         Some(Value::Vector(p, _) | Value::Node(p)) => Some(*p),
@@ -102,14 +102,14 @@ fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Stop> {
 }
 
 /// The geometry of an edge at the middle of its length.
-fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Stop> {
+fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Halt> {
     let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
-    let track = model.shared_track(&edge.1, &network).ok_or(Stop::Bug("an edge without geometry"))?;
+    let track = model.shared_track(&edge.1, &network).ok_or(Halt::Bug("an edge without geometry"))?;
     Ok(track.point(0.5 * track.length()))
 }
 
 /// The one edge of some surfaces that lies on a curve or at a point.
-fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Stop> {
+fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     let scene = Scene { model: model.clone(), network: cx.network_of(&home)? };
     let mut found: Vec<EdgeId> = Vec::new();
@@ -142,7 +142,7 @@ fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
 }
 
 /// The modeling curve along an edge.
-pub(in crate::lang) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop> {
+pub(in crate::lang) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Halt> {
     let tolerance = cx.tolerance()?;
     let scene = Scene { model: cx.model(&edge.0)?, network: cx.network_of(&edge.0)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
@@ -150,7 +150,7 @@ pub(in crate::lang) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Stop
 }
 
 /// The line of constant u or v.
-fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> Result<Chain, Stop> {
+fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> Result<Chain, Halt> {
     let tolerance = cx.tolerance()?;
     if !(0.0..=1.0).contains(&at.value()) {
         let (found, range) = (at.value().to_string(), "between 0 and 1".to_owned());

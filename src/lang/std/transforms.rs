@@ -8,7 +8,7 @@ use super::curves::unit;
 use crate::base::fault::ValueFault;
 use crate::builtins;
 use crate::geometry::Motion;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Axis, Direction, FromValue, Point, Ty};
 use crate::lang::value::{Dim, MeshValue, Plane, ShellValue, Value};
 use crate::network::Chain;
@@ -28,7 +28,7 @@ impl FromValue for Movable {
 }
 
 /// The thing carried; what it was made from stays where it is.
-fn carried(cx: &mut Cx, value: &Value, motion: &Motion) -> Result<Value, Stop> {
+fn carried(cx: &mut Cx, value: &Value, motion: &Motion) -> Result<Value, Halt> {
     let origin = cx.origin();
     Ok(match value {
         Value::Node(p) | Value::Vector(p, Dim::LENGTH | Dim::NONE) => Value::point(motion.point(*p)),
@@ -67,7 +67,7 @@ fn carried(cx: &mut Cx, value: &Value, motion: &Motion) -> Result<Value, Stop> {
 }
 
 /// Direction and a point of an axis; a straight curve gives both.
-pub(super) fn axis_line(cx: &Cx, axis: &Axis) -> Result<(DVec3, Option<DVec3>), Stop> {
+pub(super) fn axis_line(cx: &Cx, axis: &Axis) -> Result<(DVec3, Option<DVec3>), Halt> {
     match axis {
         Axis::Direction(v) => Ok((unit(*v, "axis")?, None)),
         Axis::Curve(chain) => {

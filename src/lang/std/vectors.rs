@@ -1,13 +1,13 @@
 //! Functions and fields of points and directions.
 
 use crate::base::fault::ValueFault;
-use crate::lang::cx::{Cx, Stop};
+use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Vector, dim_words};
 use crate::lang::value::{Dim, Quantity, Value};
 use crate::{builtins, fields};
 
 /// Both in one dimension: a bare one beside a length is in model units.
-pub(super) fn together(cx: &Cx, a: Vector, b: Vector) -> Result<(Vector, Vector), Stop> {
+pub(super) fn together(cx: &Cx, a: Vector, b: Vector) -> Result<(Vector, Vector), Halt> {
     let bare = cx.bare_unit(cx.module());
     match (a.1, b.1) {
         (x, y) if x == y => Ok((a, b)),
@@ -17,11 +17,11 @@ pub(super) fn together(cx: &Cx, a: Vector, b: Vector) -> Result<(Vector, Vector)
     }
 }
 
-fn product(a: Dim, b: Dim) -> Result<Dim, Stop> {
+fn product(a: Dim, b: Dim) -> Result<Dim, Halt> {
     a.times(b).ok_or_else(|| ValueFault::WrongKind { argument: "b", wanted: "a smaller power", found: dim_words(b) }.into())
 }
 
-pub(super) fn not_zero(v: Vector, argument: &'static str) -> Result<(), Stop> {
+pub(super) fn not_zero(v: Vector, argument: &'static str) -> Result<(), Halt> {
     if v.0 == glam::DVec3::ZERO {
         return Err(ValueFault::OutsideRange { argument, found: "(0, 0, 0)".into(), range: "a vector of some length".into() }.into());
     }
@@ -29,7 +29,7 @@ pub(super) fn not_zero(v: Vector, argument: &'static str) -> Result<(), Stop> {
 }
 
 /// A point, node, vertex or tuple.
-pub(super) fn vector(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Vector, Stop> {
+pub(super) fn vector(cx: &mut Cx, value: Value, argument: &'static str) -> Result<Vector, Halt> {
     match value {
         Value::Vector(..) | Value::Node(_) | Value::Vertex(..) => cx.as_vector(value).map(|(v, dim)| Vector(v, dim)),
         other => Err(ValueFault::WrongKind { argument, wanted: "a point", found: cx.kind(&other) }.into()),

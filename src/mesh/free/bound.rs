@@ -10,22 +10,22 @@ use glam::{DVec2, DVec3};
 use super::ground::Spot;
 use super::grow::TALL;
 use super::poles;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::NUDGE;
-use crate::surface::quick::{Bends, Quick};
+use crate::surface::quick::{Bends, PowerForm};
 use crate::surface::{Domain, Jet2, Surface};
 
 /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).
 const WIDER: f64 = 0.05;
 
 /// Bounds over a box of (u, v) inside the surface's own; `None` where nothing is known.
-fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
+fn bent(surface: &Surface, quick: Option<&PowerForm>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
     if let Some(bends) = quick.and_then(|quick| quick.bends((low, high), normal)) {
         return Some(bends);
     }
-    let spread = surface.spread((low.x, high.x), (low.y, high.y));
-    let all = [spread.duu, spread.duv, spread.dvv];
-    if all.iter().any(Ranges::is_vast) {
+    let enclosure = surface.enclosure((low.x, high.x), (low.y, high.y));
+    let all = [enclosure.duu, enclosure.duv, enclosure.dvv];
+    if all.iter().any(Interval3::is_unbounded) {
         return None;
     }
     let along = all.map(|r| r.along(normal));
@@ -33,7 +33,7 @@ fn bent(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), n
 }
 
 /// Bounds over any box: where the surface closes, parameters go on over the seam.
-pub fn bent_over(surface: &Surface, quick: Option<&Quick>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
+pub fn bent_over(surface: &Surface, quick: Option<&PowerForm>, (low, high): (DVec2, DVec2), normal: DVec3) -> Option<Bends> {
     let closed = turning(surface);
     if surface.is_flat() || low.cmpge(DVec2::ZERO).all() && high.cmple(DVec2::ONE).all() {
         return bent(surface, quick, (low, high), normal);
@@ -74,7 +74,7 @@ const PARTS: u32 = 3;
 /// Of a triangle with a corner at a pole a second one in (u, v) belongs to it, with two corners there: each is looked at. A bound above
 /// `wanted` is found by parts, with the heights at their corners: of a part half as wide what is not known of the
 /// bend weighs an eighth. Nearly what there is, for some five times the work.
-pub fn chord(of: (&Surface, Option<&Quick>), (uv, second): ([DVec2; 3], Option<[DVec2; 3]>), p: [DVec3; 3], wanted: f64) -> f64 {
+pub fn chord(of: (&Surface, Option<&PowerForm>), (uv, second): ([DVec2; 3], Option<[DVec2; 3]>), p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
         return in_any_direction(of.0, uv);
@@ -92,7 +92,7 @@ pub fn chord(of: (&Surface, Option<&Quick>), (uv, second): ([DVec2; 3], Option<[
 
 /// Whether a triangle goes a good part of the way round a tip: bounds of third derivatives are those of a whole box, and do not get less
 /// with the distance from it.
-fn goes_round_tip(of: (&Surface, Option<&Quick>), uv: [DVec2; 3]) -> bool {
+fn goes_round_tip(of: (&Surface, Option<&PowerForm>), uv: [DVec2; 3]) -> bool {
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
     let middle = 0.5 * (low + high);
     let tangents = |at: DVec2| of.0.tangents_by(of.1, at.x, at.y);
@@ -104,7 +104,7 @@ fn goes_round_tip(of: (&Surface, Option<&Quick>), uv: [DVec2; 3]) -> bool {
 const ROUND: f64 = 0.03;
 
 /// The most that the surface over a triangle of (u, v) is off a plane in which its corners are.
-fn above_plane(of: (&Surface, Option<&Quick>), uv: [DVec2; 3], (on, normal): (DVec3, DVec3), wanted: f64) -> f64 {
+fn above_plane(of: (&Surface, Option<&PowerForm>), uv: [DVec2; 3], (on, normal): (DVec3, DVec3), wanted: f64) -> f64 {
     let first = part(of, uv, normal, None);
     if first <= wanted || first > TOO_FAR * wanted {
         return first;
@@ -156,9 +156,9 @@ pub fn in_any_direction(surface: &Surface, uv: [DVec2; 3]) -> f64 {
     }
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
     let hold = |x: f64| x.clamp(0.0, 1.0);
-    let spread = surface.spread((hold(low.x), hold(high.x)), (hold(low.y), hold(high.y)));
-    let all = [spread.duu, spread.duv, spread.dvv];
-    if all.iter().any(Ranges::is_vast) {
+    let enclosure = surface.enclosure((hold(low.x), hold(high.x)), (hold(low.y), hold(high.y)));
+    let all = [enclosure.duu, enclosure.duv, enclosure.dvv];
+    if all.iter().any(Interval3::is_unbounded) {
         return f64::INFINITY;
     }
     over_sides(&Bends { mid: [0.0; 3], slack: all.map(|r| r.reach()), jump: 0.0 }, uv, high - low)
@@ -166,7 +166,7 @@ pub fn in_any_direction(surface: &Surface, uv: [DVec2; 3]) -> f64 {
 
 /// How far the surface over a triangle of (u, v) is from a plane along its normal, by the heights of the corners where they
 /// are not in the plane.
-fn part((surface, quick): (&Surface, Option<&Quick>), uv: [DVec2; 3], normal: DVec3, above: Option<[f64; 3]>) -> f64 {
+fn part((surface, quick): (&Surface, Option<&PowerForm>), uv: [DVec2; 3], normal: DVec3, above: Option<[f64; 3]>) -> f64 {
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
     let width = high - low;
     let whole = beside_kinks(surface, (low, high), (low - width * WIDER, high + width * WIDER));
@@ -226,12 +226,12 @@ fn highest(a: [f64; 3], c: [f64; 3]) -> f64 {
 
 /// The longest side up to `from` of an equilateral triangle that keeps a chord error for sure: over an edge along `along`
 /// with its middle at a place, to either side of it where the surface is.
-pub fn surely(surface: (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
+pub fn surely(surface: (&Surface, Option<&PowerForm>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
     surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, shear: 0.0, held: false, tries: TRIES })
 }
 
 /// The same by samples, for a twentieth of the work: a first guess where triangles are bounded later.
-pub fn likely(surface: (&Surface, Option<&Quick>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
+pub fn likely(surface: (&Surface, Option<&PowerForm>), (at, jet): (DVec2, &Jet2), along: DVec3, (limit, from): (f64, f64)) -> f64 {
     surely_tall(surface, (at, jet), along, (limit, from), Apex { tall: TALL, shear: 0.0, held: false, tries: 0 })
 }
 
@@ -252,7 +252,7 @@ struct Apex {
 
 /// The same of other triangles.
 fn surely_tall(
-    (surface, quick): (&Surface, Option<&Quick>),
+    (surface, quick): (&Surface, Option<&PowerForm>),
     (at, jet): (DVec2, &Jet2),
     along: DVec3,
     (limit, from): (f64, f64),
@@ -354,13 +354,13 @@ pub fn stationary(c: [f64; 3]) -> Option<(f64, [f64; 3])> {
     l.iter().all(|x| *x > 0.0).then(|| (c[0] * l[1] * l[2] + c[1] * l[2] * l[0] + c[2] * l[0] * l[1], l))
 }
 
-/// Wanted edge length for limits at a place: of an equilateral triangle, however it lies.
+/// SizeRequests edge length for limits at a place: of an equilateral triangle, however it lies.
 ///
 /// On the local quadric of principal curvatures k1 ≥ |k2| it is at most k1 h² (1/8 + max(k2/k1, 0)/24) away.
 pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
     let normal = jet.du.cross(jet.dv).normalize_or_zero();
-    let (mean, spread) = jet.curvatures(normal);
-    let (k1, k2) = (mean.abs() + spread, mean.abs() - spread);
+    let (mean, enclosure) = jet.curvatures(normal);
+    let (k1, k2) = (mean.abs() + enclosure, mean.abs() - enclosure);
     if !(k1 > 0.0 && k1.is_finite()) {
         return f64::INFINITY;
     }
@@ -384,14 +384,14 @@ const MOST_TALL: f64 = 2.0;
 /// Lengths tried for them.
 const MORE_TRIES: usize = 8;
 
-/// Wanted length of an edge along a direction of a border, where triangles may be long, on a face that is nowhere wider than
+/// SizeRequests length of an edge along a direction of a border, where triangles may be long, on a face that is nowhere wider than
 /// `wide`: by the curvature along it, and by the twist; where triangles may lean along the border, `leans`, by what is left of the twist for those
 /// that lean to where there is none, as along the lines of a cylinder.
 ///
 /// Of errors A h² + B w² ≤ c along and across, the longest triangles have half in each, or all of the first where the second is
 /// small all over the face.
 pub fn wanted_along(
-    surface: (&Surface, Option<&Quick>),
+    surface: (&Surface, Option<&PowerForm>),
     (at, jet): (DVec2, &Jet2),
     along: DVec3,
     (chord, angle): (Option<f64>, Option<f64>),

@@ -4,12 +4,12 @@ use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Field, Ground};
-use super::grow::{Cell, STRAIGHT, Soil, TALL, grow};
-use super::improve::{Care, Gardener, Guard};
+use super::ground::{ParametricSurface, SizeField};
+use super::grow::{Cell, FrontInput, STRAIGHT, TALL, grow};
+use super::improve::{LimitCheck, MeshOptimizer, OptimizeSettings};
 use super::outline::Outline;
 use super::quadtree::{self, Plot};
-use super::web::Web;
+use super::triangulation::Triangulation;
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::triangulate_points::{NO_TRIANGLE, PointsFault, Triangles, points};
@@ -28,19 +28,19 @@ pub enum Lattice {
 /// What a face is made from.
 pub struct Task<'a> {
     /// The surface.
-    pub ground: &'a dyn Ground,
+    pub ground: &'a dyn ParametricSurface,
     /// The wanted lengths.
-    pub field: &'a dyn Field,
+    pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,
     /// How triangles are improved.
-    pub care: Care,
+    pub care: OptimizeSettings,
     /// Where inner nodes come from.
     pub lattice: Lattice,
     /// Most inner nodes.
     pub most: usize,
     /// Limits: what breaks one is divided.
-    pub guard: Option<&'a dyn Guard>,
+    pub guard: Option<&'a dyn LimitCheck>,
 }
 
 /// Why there is no mesh.
@@ -61,38 +61,38 @@ pub enum Trouble {
 /// The triangles of a face.
 pub struct Triangulated {
     /// They and their nodes.
-    pub web: Web,
+    pub triangulation: Triangulation,
     /// Whether none of them breaks a limit, as far as is known.
     pub keeps: bool,
 }
 
 /// Triangulates a face; the outer result is an interruption.
 pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangulated, Trouble>> {
-    let web = match plant(task, job)? {
-        Ok(web) => web,
+    let triangulation = match initial_triangulation(task, job)? {
+        Ok(triangulation) => triangulation,
         Err(trouble) => return Ok(Err(trouble)),
     };
-    let mut gardener = Gardener::new(web, task.ground, task.field, task.care);
-    gardener.settle();
+    let mut optimizer = MeshOptimizer::new(triangulation, task.ground, task.field, task.care);
+    optimizer.settle();
     job.go_on()?;
     // Where lengths were wrong, the rest of the work waits for better ones.
-    let mut bad = task.guard.map_or(Vec::new(), |guard| gardener.broken(guard, &[]));
-    if gardener.are_few(&bad) {
-        if bad.len() * FEW_BAD <= gardener.web.tri.len() {
-            gardener.improve(job)?;
+    let mut bad = task.guard.map_or(Vec::new(), |guard| optimizer.broken(guard, &[]));
+    if optimizer.are_few(&bad) {
+        if bad.len() * FEW_BAD <= optimizer.triangulation.tri.len() {
+            optimizer.improve(job)?;
         }
         if let Some(guard) = task.guard {
-            bad = gardener.divide(guard, bad, job)?;
+            bad = optimizer.divide(guard, bad, job)?;
         }
     }
-    gardener.set_upright();
-    let mut web = gardener.web;
-    web.compact();
-    Ok(Ok(Triangulated { web, keeps: bad.is_empty() }))
+    optimizer.set_upright();
+    let mut triangulation = optimizer.triangulation;
+    triangulation.compact();
+    Ok(Ok(Triangulated { triangulation, keeps: bad.is_empty() }))
 }
 
 /// The Delaunay triangles of a face in its chart, over its border and the nodes of its lattice; nothing is improved yet.
-pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>> {
+pub fn initial_triangulation(task: &Task, job: &Job) -> Result<std::result::Result<Triangulation, Trouble>> {
     let outline = task.outline;
     let edges: Vec<[u32; 2]> = outline.edges().collect();
     let coarse = match points(&outline.xy, &edges) {
@@ -110,7 +110,7 @@ pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>
         Lattice::Crystal | Lattice::Squares => {
             let seeds = seeds(&coarse, &kept, outline);
             let cell = if task.lattice == Lattice::Squares { Cell::Square } else { Cell::Triangle };
-            grow(&Soil { ground: task.ground, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
+            grow(&FrontInput { ground: task.ground, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
         }
         Lattice::Tree => match quadtree::nodes(&Plot { ground: task.ground, field: task.field, outline, most: task.most }) {
             Ok(grown) => grown,
@@ -134,7 +134,7 @@ pub fn plant(task: &Task, job: &Job) -> Result<std::result::Result<Web, Trouble>
     let mut size: Vec<f64> = job::looking(outline.p.iter().zip(&outline.xy)).map(|(p, xy)| task.field.size(*xy, *p)).collect();
     size.extend(&grown.size);
     drop(grown);
-    Ok(Ok(Web::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
+    Ok(Ok(Triangulation::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
 }
 
 /// Where more than one triangle in so many breaks a limit, dividing them mends most of the face as well.
@@ -154,7 +154,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
     let corner = |n: u32| (task.outline.xy[n as usize], task.outline.p[n as usize]);
     // Breadth first: what is left when there are too many is small.
     let mut open: VecDeque<_> = (0..kept.len()).filter(|t| kept[*t]).map(|t| coarse.corners[t].map(corner)).collect();
-    let (mut total, mut left) = (0.0, LOOKS + open.len());
+    let (mut total, mut left) = (0.0, MAX_SAMPLES + open.len());
     while let Some(c) = open.pop_front() {
         let middle = (c.iter().map(|c| c.0).sum::<DVec2>() / 3.0, c.iter().map(|c| c.1).sum::<DVec3>() / 3.0);
         let size = task.field.size(middle.0, middle.1);
@@ -162,7 +162,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
         // Half a node a triangle of side `size`, whose area is √3/4 of its square, or one a square.
         let cell = if task.lattice == Lattice::Squares { 1.0 } else { TALL };
         let nodes = 0.5 * area / (cell * size * size);
-        let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * ALIKE < size);
+        let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * SIZE_RATIO_EQUAL < size);
         if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < FEW && !varies() {
             total += nodes;
             continue;
@@ -176,11 +176,11 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
 }
 
 /// Triangles that are divided when nodes are counted ahead, beside those between border nodes.
-const LOOKS: usize = 10_000;
+const MAX_SAMPLES: usize = 10_000;
 /// Nodes up to which lengths are taken as one over a triangle.
 const FEW: f64 = 8.0;
 /// Ratio of lengths that count as one.
-const ALIKE: f64 = 1.25;
+const SIZE_RATIO_EQUAL: f64 = 1.25;
 
 /// Triangles left of an odd number of loop edges: flooded from outside, each loop edge turning in and out.
 pub(in crate::mesh) fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {

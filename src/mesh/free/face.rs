@@ -21,73 +21,73 @@ use fit::{fitting, near};
 use glam::DVec3;
 
 use super::build::Trouble;
+use super::chart::Chart;
 use super::outline::Outline;
-use super::sheet::Sheet;
-use super::taken::{self, Taken};
-use super::tree::DEEPEST;
+use super::taken::{self, CachedFace};
+use super::tree::MAX_DEPTH;
 use crate::base::fault::{Fault, MeshFault, Result};
 use crate::base::job::Job;
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
 use crate::base::work::{Budget, Exceeded};
 use crate::mesh::build::Input;
-use crate::mesh::chart::{Chart, Free, Shape};
-use crate::mesh::faces::{Frame, Prepared, middle, too_much_work, work_on};
+use crate::mesh::face_geometry::{FaceGeometry, Free, Shape};
+use crate::mesh::faces::{FaceMesh, Frame, middle, too_much_work, work_on};
 use crate::mesh::layout::{Face, Layout};
 use crate::mesh::nodes::Nodes;
 use crate::mesh::plan::Elements;
-use crate::mesh::reuse::Known;
-use crate::mesh::wanted::Wanted;
+use crate::mesh::reuse::CacheView;
+use crate::mesh::wanted::SizeRequests;
 
 /// Spacing of the crystal as a share of the size, so that hardly an edge comes out longer than the size allows.
 pub const SPACING: f64 = 0.8;
 
 /// Everything a face is made from.
-pub struct Made<'a> {
+pub struct FaceInput<'a> {
     /// The plan and the model.
     pub input: &'a Input<'a>,
-    /// Its stretches.
+    /// Its segments.
     pub layout: &'a Layout,
     /// Their nodes.
     pub nodes: &'a Nodes,
     /// Points of all border nodes.
     pub points: &'a [DVec3],
     /// What `near`, `in` and `min_size` ask for.
-    pub wanted: &'a Wanted,
+    pub wanted: &'a SizeRequests,
 }
 
 /// Times that the work of a face which is tried again is halved.
 const FEWER: u32 = 2;
 
 /// A face without anything in it, for as long as only its border matters.
-pub fn empty(made: &Made, face: &Face) -> Prepared {
+pub fn empty(made: &FaceInput, face: &Face) -> FaceMesh {
     prepared(made, face, Free::default(), (Vec::new(), Vec::new()), Vec::new())
 }
 
 /// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
-pub(in crate::mesh) fn outlined(made: &Made, face: &Face) -> Option<(Border, Sheet, Outline)> {
+pub(in crate::mesh) fn outlined(made: &FaceInput, face: &Face) -> Option<(Border, Chart, Outline)> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    // Made ready once for the border and the sheet.
-    let _ready = surface.quick();
+    // FaceInput ready once for the border and the chart.
+    let _ready = surface.power_form();
     let mut border = border(made, face);
-    let sheet = Sheet::new(surface, border.uv.iter().copied())?;
+    let chart = Chart::new(surface, border.uv.iter().copied())?;
     if face.near > made.input.tolerance.point {
-        border.close(&sheet, face.near);
+        border.close(&chart, face.near);
     }
     let outline = Outline {
-        xy: border.uv.iter().map(|uv| sheet.xy(*uv)).collect(),
+        xy: border.uv.iter().map(|uv| chart.xy(*uv)).collect(),
         p: border.ids.iter().map(|n| made.points[*n as usize]).collect(),
         loops: border.edges.clone(),
         lines: border.lines.clone(),
     };
-    Some((border, sheet, outline))
+    Some((border, chart, outline))
 }
 
 /// Makes the face, or takes it over from an earlier run.
-pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -> Result<Prepared> {
-    let (border, sheet, mut outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
+pub fn prepare(made: &FaceInput, face: &Face, (known, job): (Option<&CacheView>, &Job)) -> Result<FaceMesh> {
+    let (border, chart, mut outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
     if face.halved > 0 && face.is_grown() {
-        rings::add_rings(made, face, &border, (&sheet, &mut outline));
+        rings::add_rings(made, face, &border, (&chart, &mut outline));
     }
     let key = known.map(|known| {
         let odd = if face.takes_quads() { quads::odd(made, face) } else { Vec::new() };
@@ -96,25 +96,25 @@ pub fn prepare(made: &Made, face: &Face, (known, job): (Option<&Known>, &Job)) -
     if let Some((known, key)) = key
         && let Some((free, inner, deciders, tally)) = known.free(key).and_then(|taken| taken.parts(border.uv.len()))
     {
-        return Ok(Prepared { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) });
+        return Ok(FaceMesh { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) });
     }
-    let all = || grown(made, face, (border, sheet, outline), job);
+    let all = || grown(made, face, (border, chart, outline), job);
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     // What is tried again with shorter steps of its border, because nothing kept its limits, may take less.
-    let again = if face.method.is_sparing() { face.halved.min(FEWER) } else { 0 };
+    let again = if face.method.is_coarse() { face.halved.min(FEWER) } else { 0 };
     let most = work_on([surface].into_iter()) >> again;
     let ready = Budget::new(most).within(all).map_err(|Exceeded| too_much_work(made.input, surface.origin()))??;
-    if let (Some((known, key)), Shape::Free(free)) = (key, &ready.chart.shape) {
-        known.keep_free(key, Taken::of(&ready, free));
+    if let (Some((known, key)), Shape::Free(free)) = (key, &ready.geometry.shape) {
+        known.keep_free(key, CachedFace::of(&ready, free));
     }
     Ok(ready)
 }
 
-fn grown(made: &Made, face: &Face, (border, sheet, outline): (Border, Sheet, Outline), job: &Job) -> Result<Prepared> {
+fn grown(made: &FaceInput, face: &Face, (border, chart, outline): (Border, Chart, Outline), job: &Job) -> Result<FaceMesh> {
     if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
-        return quads::prepare(made, face, border, (&sheet, &outline), job);
+        return quads::prepare(made, face, border, (&chart, &outline), job);
     }
-    let (web, deciders, tally) = match fitting(made, face, &sheet, &outline, job)? {
+    let (triangulation, deciders, tally) = match fitting(made, face, &chart, &outline, job)? {
         Ok(fitted) => fitted,
         Err(trouble) => return Err(fault(made, face, &border, trouble)),
     };
@@ -123,22 +123,22 @@ fn grown(made: &Made, face: &Face, (border, sheet, outline): (Border, Sheet, Out
     // At a pole the chart has an edge that is a point in space.
     let node = |n: u32| border.ids.get(n as usize).copied();
     let flat = |t: &[u32; 3]| (0..3).any(|k| node(t[k]).is_some() && node(t[k]) == node(t[(k + 1) % 3]));
-    let triangles: Vec<[u32; 3]> = web.tri.iter().copied().filter(|t| !flat(t)).collect();
+    let triangles: Vec<[u32; 3]> = triangulation.tri.iter().copied().filter(|t| !flat(t)).collect();
     let mut uv = border.uv;
-    uv.extend(web.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
-    let inner = web.p[fixed..].to_vec();
+    uv.extend(triangulation.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
+    let inner = triangulation.p[fixed..].to_vec();
     let free = Free { uv, border: fixed, triangles, ..Free::default() };
-    Ok(Prepared { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) })
+    Ok(FaceMesh { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) })
 }
 
 /// A face of these places and elements; `ids` and edges of its loops.
-fn prepared(made: &Made, face: &Face, free: Free, (mut ids, around): (Vec<u32>, Vec<[u32; 2]>), inner: Vec<DVec3>) -> Prepared {
+fn prepared(made: &FaceInput, face: &Face, free: Free, (mut ids, around): (Vec<u32>, Vec<[u32; 2]>), inner: Vec<DVec3>) -> FaceMesh {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let (triangles, quads) = (free.triangles.len() as u64, free.quads.len() as u64);
     ids.resize(free.uv.len(), 0);
-    Prepared {
+    FaceMesh {
         surface: face.surface,
-        chart: Chart { surface: surface.clone(), shape: Shape::Free(free), frame: Frame::Free(ids), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), shape: Shape::Free(free), frame: Frame::Free(ids), flipped: face.flipped },
         elements: face.elements,
         first: 0,
         inner: inner.len() as u64,
@@ -151,13 +151,13 @@ fn prepared(made: &Made, face: &Face, free: Free, (mut ids, around): (Vec<u32>, 
     }
 }
 
-fn no_area(made: &Made, face: &Face) -> Fault {
+fn no_area(made: &FaceInput, face: &Face) -> Fault {
     let surface = made.input.model.surfaces[face.surface.index()].surface.origin();
     MeshFault::FaceEmpty { surface, at: middle(made.input, face) }.into()
 }
 
 /// What went wrong, in the user's words.
-fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
+fn fault(made: &FaceInput, face: &Face, border: &Border, trouble: Trouble) -> Fault {
     let surface = made.input.model.surfaces[face.surface.index()].surface.origin();
     let place = |n: u32| border.ids.get(n as usize).map_or(DVec3::ZERO, |id| made.points[*id as usize]);
     match trouble {
@@ -166,9 +166,9 @@ fn fault(made: &Made, face: &Face, border: &Border, trouble: Trouble) -> Fault {
         }
         Trouble::Border(PointsFault::Same(a, _)) => MeshFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
         Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(made, face),
-        Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: DEEPEST }.into(),
+        Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: MAX_DEPTH }.into(),
         Trouble::Odd => {
-            let odd = face.stretches().find(|s| made.nodes.count(*s) % 2 == 1).unwrap_or(0);
+            let odd = face.segments().find(|s| made.nodes.count(*s) % 2 == 1).unwrap_or(0);
             MeshFault::OddCount { count: (0, Origin::NONE), surface, at: made.layout.point(odd, 0.5) }.into()
         }
         Trouble::Full => {

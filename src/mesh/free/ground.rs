@@ -47,7 +47,7 @@ impl Near {
 }
 
 /// A surface over the plane of its chart, in which lengths are nearly those in space on average.
-pub trait Ground: Sync {
+pub trait ParametricSurface: Sync {
     /// Point and derivatives.
     fn spot(&self, xy: DVec2) -> Spot;
     /// What is beside a place; a plane where second derivatives are not known.
@@ -62,8 +62,8 @@ pub trait Ground: Sync {
     fn clamp(&self, xy: DVec2) -> DVec2;
 }
 
-/// Wanted edge length over a surface.
-pub trait Field: Sync {
+/// SizeRequests edge length over a surface.
+pub trait SizeField: Sync {
     /// Model units, positive.
     fn size(&self, xy: DVec2, p: DVec3) -> f64;
 
@@ -74,9 +74,9 @@ pub trait Field: Sync {
 }
 
 /// One length everywhere, model units.
-pub struct Even(pub f64);
+pub struct UniformSize(pub f64);
 
-impl Field for Even {
+impl SizeField for UniformSize {
     fn size(&self, _: DVec2, _: DVec3) -> f64 {
         self.0
     }
@@ -87,13 +87,13 @@ impl Field for Even {
 }
 
 /// Foot of a point near a place of the chart: one or two Gauss–Newton steps, enough where the point is near the surface.
-pub fn foot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
+pub fn foot(ground: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
     let (xy, spot) = foot_spot(ground, from, wanted);
     (xy, spot.p)
 }
 
 /// The same with the derivatives there.
-pub fn foot_spot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, Spot) {
+pub fn foot_spot(ground: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> (DVec2, Spot) {
     let mut xy = from;
     let mut spot = ground.spot(xy);
     for _ in 0..2 {
@@ -111,7 +111,7 @@ pub fn foot_spot(ground: &dyn Ground, from: DVec2, wanted: DVec3) -> (DVec2, Spo
 }
 
 /// The same by a guess that a mean of places in the chart gave, for a step so long: near a pole it is no foot.
-pub fn foot_near(ground: &dyn Ground, guess: DVec2, wanted: DVec3, step: f64) -> (DVec2, Spot) {
+pub fn foot_near(ground: &dyn ParametricSurface, guess: DVec2, wanted: DVec3, step: f64) -> (DVec2, Spot) {
     let spot = ground.spot(guess);
     let off = spot.step(wanted - spot.p).map_or(0.0, |d| (spot.dx * d.x + spot.dy * d.y).length_squared());
     if off > AMISS * AMISS * step * step { foot_spot(ground, guess, wanted) } else { (guess, spot) }

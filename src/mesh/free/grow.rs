@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 use glam::{DVec2, DVec3};
 
 use super::cells::Cells;
-use super::ground::{Field, Ground, Spot};
+use super::ground::{ParametricSurface, SizeField, Spot};
 use super::outline::{Outline, cross};
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
@@ -26,7 +26,7 @@ const APART: f64 = 0.7;
 const TAKEN: f64 = 0.5 * APART;
 /// Distance of two places, as a share of the wanted length, within which what is near to one counts as near to the other: nodes may be as
 /// much nearer to each other.
-const ALIKE: f64 = 0.02;
+const SIZE_RATIO_EQUAL: f64 = 0.02;
 /// Nearest distance of a node to an edge of the border, as a share of the wanted length.
 const CLEAR: f64 = 0.52;
 /// How far along the border its samples are apart, as a share of the wanted length.
@@ -46,11 +46,11 @@ pub enum Cell {
 }
 
 /// What growing needs.
-pub struct Soil<'a> {
+pub struct FrontInput<'a> {
     /// The surface.
-    pub ground: &'a dyn Ground,
+    pub ground: &'a dyn ParametricSurface,
     /// The wanted lengths.
-    pub field: &'a dyn Field,
+    pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,
     /// Places where a crystal may start, with a direction in space (zero: any).
@@ -63,25 +63,25 @@ pub struct Soil<'a> {
 
 /// Nodes that grew.
 #[derive(Clone, Debug, Default)]
-pub struct Grown {
+pub struct PlacedNodes {
     /// Places in the chart.
     pub xy: Vec<DVec2>,
     /// Points.
     pub p: Vec<DVec3>,
-    /// Wanted lengths there.
+    /// SizeRequests lengths there.
     pub size: Vec<f64>,
     /// There would have been more than the limit.
     pub full: bool,
 }
 
 struct Front<'a> {
-    soil: &'a Soil<'a>,
+    input: &'a FrontInput<'a>,
     /// Nodes of the border and inner nodes.
     nodes: Cells,
     /// Samples of the border's edges.
     border: Cells,
     edges: Vec<[u32; 2]>,
-    grown: Grown,
+    grown: PlacedNodes,
     along: Vec<DVec3>,
     open: VecDeque<u32>,
     /// Steps of squares along and across the crystal, over the wanted length.
@@ -95,16 +95,16 @@ struct Front<'a> {
 }
 
 /// Grows nodes from the seeds, the first ones first.
-pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
-    let outline = soil.outline;
+pub fn grow(input: &FrontInput, job: &Job) -> Result<PlacedNodes> {
+    let outline = input.outline;
     let edges: Vec<[u32; 2]> = outline.edges().collect();
     let unit = edges.iter().map(|e| outline.length(*e)).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let mut front = Front {
-        soil,
-        nodes: Cells::new(unit, !soil.field.is_even()),
-        border: Cells::new(unit, !soil.field.is_even()),
+        input,
+        nodes: Cells::new(unit, !input.field.is_even()),
+        border: Cells::new(unit, !input.field.is_even()),
         edges,
-        grown: Grown::default(),
+        grown: PlacedNodes::default(),
         along: Vec::new(),
         open: VecDeque::new(),
         steps: [1.0; 2],
@@ -113,12 +113,12 @@ pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
         arms: Vec::new(),
     };
     front.border();
-    let first = match soil.cell {
+    let first = match input.cell {
         Cell::Triangle => front.layer(),
         Cell::Square => front.layer_of_squares(),
     };
     let firsts = first.into_iter().map(|n| (None, n));
-    let seeds = soil.seeds.iter().map(|s| (Some(*s), 0));
+    let seeds = input.seeds.iter().map(|s| (Some(*s), 0));
     for (seed, node) in firsts.chain(seeds) {
         match seed {
             Some((xy, along)) => front.seed(xy, along),
@@ -126,12 +126,12 @@ pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
         }
         let mut watch = 0;
         while let Some(node) = front.open.pop_front() {
-            front.spread(node as usize);
+            front.enclosure(node as usize);
             watch += 1;
             if watch % WATCH == 0 {
                 job.go_on()?;
             }
-            if front.grown.p.len() > soil.most {
+            if front.grown.p.len() > input.most {
                 front.grown.full = true;
                 return Ok(front.grown);
             }
@@ -143,16 +143,16 @@ pub fn grow(soil: &Soil, job: &Job) -> Result<Grown> {
 impl Front<'_> {
     /// Nodes and samples of the border.
     fn border(&mut self) {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         for (p, xy) in outline.p.iter().zip(&outline.xy) {
-            self.nodes.add(*p, *xy, self.soil.field.size(*xy, *p), u32::MAX);
+            self.nodes.add(*p, *xy, self.input.field.size(*xy, *p), u32::MAX);
         }
-        self.border = samples(outline, self.soil.field);
+        self.border = samples(outline, self.input.field);
     }
 
     fn seed(&mut self, xy: DVec2, along: DVec3) {
-        let spot = self.soil.ground.spot(xy);
-        let size = self.soil.field.size(xy, spot.p);
+        let spot = self.input.ground.spot(xy);
+        let size = self.input.field.size(xy, spot.p);
         if self.near_node(spot.p, size) || self.near_border(xy, xy, spot.p, size) {
             return;
         }
@@ -172,16 +172,16 @@ impl Front<'_> {
     }
 
     /// Proposes the neighbours of a node.
-    fn spread(&mut self, node: usize) {
+    fn enclosure(&mut self, node: usize) {
         let (xy, p, size) = (self.grown.xy[node], self.grown.p[node], self.grown.size[node]);
-        let spot = self.soil.ground.spot(xy);
+        let spot = self.input.ground.spot(xy);
         let normal = spot.normal();
         let ahead = self.along[node];
         let aside = normal.cross(ahead);
-        if self.soil.cell == Cell::Square {
+        if self.input.cell == Cell::Square {
             let [along, across] = self.steps;
-            for (way, stretch) in [(ahead, along), (aside, across), (-ahead, along), (-aside, across)] {
-                self.propose((xy, p, size), &spot, (way, stretch), Some(ahead));
+            for (way, segment) in [(ahead, along), (aside, across), (-ahead, along), (-aside, across)] {
+                self.propose((xy, p, size), &spot, (way, segment), Some(ahead));
             }
             return;
         }
@@ -193,16 +193,16 @@ impl Front<'_> {
         }
     }
 
-    /// A neighbour in a direction, `stretch` times the wanted length away; it carries `ahead` on, or looks on along the arm.
-    fn propose(&mut self, (xy, p, size): (DVec2, DVec3, f64), spot: &Spot, (way, stretch): (DVec3, f64), ahead: Option<DVec3>) {
+    /// A neighbour in a direction, `segment` times the wanted length away; it carries `ahead` on, or looks on along the arm.
+    fn propose(&mut self, (xy, p, size): (DVec2, DVec3, f64), spot: &Spot, (way, segment): (DVec3, f64), ahead: Option<DVec3>) {
         let guess = p + way * size;
-        if self.soil.cell == Cell::Triangle && self.nodes.beside(guess, TAKEN * size, size) {
+        if self.input.cell == Cell::Triangle && self.nodes.beside(guess, TAKEN * size, size) {
             return;
         }
         let Some(step) = spot.step(way * size) else { return };
         // The mean of the lengths wanted here and there.
-        let there = self.soil.field.size(self.soil.ground.clamp(xy + step), guess);
-        let length = 0.5 * (size + there) * stretch;
+        let there = self.input.field.size(self.input.ground.clamp(xy + step), guess);
+        let length = 0.5 * (size + there) * segment;
         if self.near_node(p + way * length, there) {
             return;
         }
@@ -211,13 +211,13 @@ impl Front<'_> {
         if outside || self.near_border(xy, xy + step, p + way * length, there) {
             return;
         }
-        let mut to = self.soil.ground.clamp(xy + step);
-        let mut new = self.soil.ground.spot(to);
+        let mut to = self.input.ground.clamp(xy + step);
+        let mut new = self.input.ground.spot(to);
         // The surface bends away from its tangent plane: once more with the length that came out.
         let made = new.p.distance(p);
         if (made - length).abs() > BENT * length && made > 0.0 {
-            to = self.soil.ground.clamp(xy + step * (length / made));
-            new = self.soil.ground.spot(to);
+            to = self.input.ground.clamp(xy + step * (length / made));
+            new = self.input.ground.spot(to);
             if self.near_border(xy, to, new.p, there) {
                 return;
             }
@@ -226,7 +226,7 @@ impl Front<'_> {
             return;
         }
         let off = new.p.distance_squared(p + way * length);
-        if off > ALIKE * ALIKE * there * there && self.near_node(new.p, there) {
+        if off > SIZE_RATIO_EQUAL * SIZE_RATIO_EQUAL * there * there && self.near_node(new.p, there) {
             return;
         }
         let arm = ahead.unwrap_or(new.p - p);
@@ -242,7 +242,7 @@ impl Front<'_> {
     }
 
     fn near_node(&self, p: DVec3, size: f64) -> bool {
-        if self.soil.cell == Cell::Square {
+        if self.input.cell == Cell::Square {
             return self.near_square(p, size);
         }
         self.nodes.any(p, APART * size, size, |_, _| true)
@@ -256,7 +256,7 @@ impl Front<'_> {
     /// Whether a step to `p` meets an edge of the border, or ends nearer to one than `clear` of the wanted length; a step from a
     /// node of the border meets its own edges there.
     fn near_edges(&self, (from, to): (DVec2, DVec2), (p, size): (DVec3, f64), clear: f64, node: Option<u32>) -> bool {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         self.border.any(p, SIGHT * size, size, |sample, _| {
             let edge = self.edges[sample.tag as usize];
             let [a, b] = edge.map(|n| n as usize);
@@ -267,7 +267,7 @@ impl Front<'_> {
 }
 
 /// Places along the edges of a border, near enough to each other that none is overlooked from a step away; tagged by edge.
-pub(super) fn samples(outline: &Outline, field: &dyn Field) -> Cells {
+pub(super) fn samples(outline: &Outline, field: &dyn SizeField) -> Cells {
     let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
     let mut cells = Cells::new(unit, !field.is_even());
     for (k, [a, b]) in outline.edges().enumerate() {
@@ -276,7 +276,7 @@ pub(super) fn samples(outline: &Outline, field: &dyn Field) -> Cells {
         let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
         let size = |t: f64| field.size(xa.lerp(xb, t), pa.lerp(pb, t));
         // Where lengths grow along an edge, its parts have places as far apart as lengths are there.
-        let mut open = vec![(0.0, 1.0, DEEPEST)];
+        let mut open = vec![(0.0, 1.0, MAX_DEPTH)];
         while let Some((from, to, left)) = open.pop() {
             let middle = 0.5 * (from + to);
             let least = [from, middle, to].map(size).into_iter().fold(f64::INFINITY, f64::min);
@@ -300,7 +300,7 @@ const MOST_PLACES: usize = 4096;
 /// What a place costs, evaluations of a curve: it is kept three times.
 const PLACE_WORK: u64 = 8;
 /// Halvings of an edge.
-const DEEPEST: u32 = 20;
+const MAX_DEPTH: u32 = 20;
 
 /// Height of an equilateral triangle of side 1.
 pub(super) const TALL: f64 = 0.866_025_403_784_438_6;

@@ -6,24 +6,24 @@
 mod divide;
 mod flips;
 mod last;
-mod mend;
+mod repair;
 mod smooth;
 mod tried;
 mod upright;
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Field, Ground};
+use super::ground::{ParametricSurface, SizeField};
 use super::pending::Pending;
 use super::shape::{Rim, Star};
-use super::web::{Patch, Ring, Web};
+use super::triangulation::{Patch, Ring, Triangulation};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use tried::Tried;
 
 /// How the improvement is done.
 #[derive(Clone, Copy, Debug)]
-pub struct Care {
+pub struct OptimizeSettings {
     /// Rounds of smoothing.
     pub smooth: usize,
     /// Share of the way to the mean of its neighbours that a node is moved.
@@ -44,30 +44,30 @@ pub const FINEST: f64 = 0.9999;
 const ROUNDS: usize = 6;
 
 /// Limits that triangles have to keep.
-pub trait Guard {
-    /// Those of some triangles of a web that break a limit; all others are as they were when it was asked last.
-    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32>;
+pub trait LimitCheck {
+    /// Those of some triangles of a triangulation that break a limit; all others are as they were when it was asked last.
+    fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32>;
 
     /// Whether triangles are bounded one by one, so that a change can be asked about ahead.
     fn foresees(&self) -> bool;
 
     /// Whether a triangle would keep the limits, with its first corner moved to a place; that of a new node has no number below
     /// the border's. Always so where nothing is foreseen.
-    fn keeps(&self, web: &Web, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool;
+    fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool;
 }
 
-/// A web being improved.
-pub struct Gardener<'a> {
+/// A triangulation being improved.
+pub struct MeshOptimizer<'a> {
     /// The triangles.
-    pub web: Web,
+    pub triangulation: Triangulation,
     /// Their surface.
-    pub ground: &'a dyn Ground,
-    /// Wanted lengths.
-    pub field: &'a dyn Field,
+    pub ground: &'a dyn ParametricSurface,
+    /// SizeRequests lengths.
+    pub field: &'a dyn SizeField,
     /// How.
-    pub care: Care,
+    pub care: OptimizeSettings,
     /// What mended triangles have to keep.
-    pub guard: Option<&'a dyn Guard>,
+    pub guard: Option<&'a dyn LimitCheck>,
     ring: Ring,
     rim: Rim,
     patch: Patch,
@@ -85,13 +85,13 @@ pub struct Gardener<'a> {
     tried: Tried,
 }
 
-impl<'a> Gardener<'a> {
-    /// Takes a web.
-    pub fn new(web: Web, ground: &'a dyn Ground, field: &'a dyn Field, care: Care) -> Self {
-        let all = Pending::all(web.p.len());
-        let squeezed = vec![1.0; web.p.len()];
+impl<'a> MeshOptimizer<'a> {
+    /// Takes a triangulation.
+    pub fn new(triangulation: Triangulation, ground: &'a dyn ParametricSurface, field: &'a dyn SizeField, care: OptimizeSettings) -> Self {
+        let all = Pending::all(triangulation.p.len());
+        let squeezed = vec![1.0; triangulation.p.len()];
         Self {
-            web,
+            triangulation,
             ground,
             field,
             care,
@@ -121,9 +121,9 @@ impl<'a> Gardener<'a> {
 
     /// Triangles at some nodes, ascending.
     fn triangles_at(&mut self, nodes: &[u32]) -> Vec<u32> {
-        let n = self.web.tri.len() as u32;
-        if 2 * nodes.len() > self.web.p.len() {
-            return (0..n).filter(|t| self.web.alive(*t)).collect();
+        let n = self.triangulation.tri.len() as u32;
+        if 2 * nodes.len() > self.triangulation.p.len() {
+            return (0..n).filter(|t| self.triangulation.alive(*t)).collect();
         }
         self.rings_of(nodes)
     }
@@ -132,7 +132,7 @@ impl<'a> Gardener<'a> {
     fn rings_of(&mut self, nodes: &[u32]) -> Vec<u32> {
         let mut found = Vec::with_capacity(6 * nodes.len());
         for node in nodes {
-            self.web.ring(*node, &mut self.ring);
+            self.triangulation.ring(*node, &mut self.ring);
             found.extend_from_slice(&self.ring.tri);
         }
         found.sort_unstable();
@@ -140,14 +140,14 @@ impl<'a> Gardener<'a> {
         found
     }
 
-    /// Works on bad triangles, after [`Gardener::settle`].
+    /// Works on bad triangles, after [`MeshOptimizer::settle`].
     pub fn improve(&mut self, job: &Job) -> Result<()> {
         if self.care.smooth == 0 {
             return Ok(());
         }
         for _ in 0..ROUNDS {
             job.go_on()?;
-            if self.mend() == 0 {
+            if self.repair() == 0 {
                 break;
             }
             self.smooth(self.care.smooth.min(4));
@@ -164,20 +164,20 @@ impl<'a> Gardener<'a> {
     /// A patch becomes the star of a node inside it, or of a new one.
     fn restar(&mut self, patch: &Patch, node: Option<u32>, star: &Star) {
         let squeezed = self.squeezed(&patch.rim);
-        let node = self.web.restar(patch, node, star, self.field.size(star.xy, star.p) * squeezed);
+        let node = self.triangulation.restar(patch, node, star, self.field.size(star.xy, star.p) * squeezed);
         self.wake_patch(patch);
         self.squeezed[node as usize] = squeezed;
     }
 
     /// The nodes of a patch made anew may have to move.
     fn wake_patch(&mut self, patch: &Patch) {
-        self.squeezed.resize(self.web.p.len(), 1.0);
+        self.squeezed.resize(self.triangulation.p.len(), 1.0);
         patch.rim.iter().chain(&patch.inner).for_each(|n| self.touch(*n));
     }
 
     /// The nodes of a triangle may have to move.
     fn wake(&mut self, t: u32) {
-        for n in self.web.tri[t as usize] {
+        for n in self.triangulation.tri[t as usize] {
             self.tried.change(n);
             self.active.add(n);
             self.changed.add(n);

@@ -1,10 +1,10 @@
-//! Lines and points inside a face that its triangles have to hold: their nodes come from the stretches, as those of borders do.
+//! Lines and points inside a face that its triangles have to hold: their nodes come from the segments, as those of borders do.
 
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::face::{Border, Made};
+use super::face::{Border, FaceInput};
 use crate::mesh::inside::trace;
 use crate::mesh::layout::Face;
 
@@ -12,11 +12,11 @@ use crate::mesh::layout::Face;
 const BETWEEN: usize = 8;
 
 /// Adds lines and points of a face to its border; `known` are the places of each node.
-pub fn add(made: &Made, face: &Face, border: &mut Border, known: &mut BTreeMap<u32, Vec<u32>>) {
+pub fn add(made: &FaceInput, face: &Face, border: &mut Border, known: &mut BTreeMap<u32, Vec<u32>>) {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let patch = &made.input.model.patches[face.patch.index()];
     for &line in &face.lines {
-        let ids = made.nodes.of_stretch(made.layout, line, false);
+        let ids = made.nodes.of_segment(made.layout, line, false);
         let at = made.nodes.fractions(line, false);
         let mut points: Vec<DVec3> = Vec::with_capacity(BETWEEN * at.len());
         for (k, w) in at.windows(2).enumerate() {

@@ -14,14 +14,14 @@ use cut::Cut;
 use glam::{DVec2, DVec3};
 
 use super::build::Trouble;
+use super::chart::Chart;
 use super::fill::{Filling, fill};
-use super::ground::Ground;
+use super::ground::ParametricSurface;
 use super::isoline::Cells;
-use super::loads::{self, Load, Normals};
+use super::loads::{self, LimitRatio, Normals};
 use super::outline::Outline;
-use super::sheet::Sheet;
 use super::tree::Class;
-use super::web::Web;
+use super::triangulation::Triangulation;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::work;
@@ -34,9 +34,9 @@ const CELL_WORK: u64 = 20;
 const NODE_WORK: u64 = 8;
 
 /// What a face is laid out by.
-pub struct Ask<'a> {
+pub struct IsolineInput<'a> {
     /// The surface in its chart.
-    pub sheet: &'a Sheet,
+    pub chart: &'a Chart,
     /// The border.
     pub outline: &'a Outline,
     /// Chord error and angle.
@@ -61,13 +61,13 @@ pub enum Failure {
     /// A limit asks for less than the floor: the length it asks for, and where.
     Floor(f64, DVec3),
     /// A limit is not met: how often it is exceeded, and where.
-    Missed(Load, DVec3),
+    Missed(LimitRatio, DVec3),
 }
 
 /// A face laid out.
-pub struct Laid {
+pub struct IsolineMesh {
     /// Its triangles.
-    pub web: Web,
+    pub triangulation: Triangulation,
     /// Its cells.
     pub tally: Tally,
     /// What decided how small they are.
@@ -80,15 +80,15 @@ type Tried<T> = std::result::Result<T, Failure>;
 const ROUNDS: usize = 64;
 
 /// Lays a face out; the outer result is an interruption.
-pub fn lay(ask: &Ask, job: &Job) -> Result<Tried<Laid>> {
+pub fn lay(ask: &IsolineInput, job: &Job) -> Result<Tried<IsolineMesh>> {
     let outline = ask.outline;
-    let at: Vec<DVec2> = outline.xy.iter().map(|xy| DVec2::from(ask.sheet.uv(*xy))).collect();
+    let at: Vec<DVec2> = outline.xy.iter().map(|xy| DVec2::from(ask.chart.uv(*xy))).collect();
     let mut segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| at[n as usize])).collect();
     // Single nodes inside count as segments without length.
     let mut alone = vec![true; at.len()];
     outline.edges().flatten().for_each(|n| alone[n as usize] = false);
     segments.extend((0..at.len()).filter(|n| alone[*n]).map(|n| [at[n]; 2]));
-    let kinks = if ask.limits.chord.is_some() { kinks(ask.sheet) } else { Default::default() };
+    let kinks = if ask.limits.chord.is_some() { kinks(ask.chart) } else { Default::default() };
     let cells = Cells::new(&segments, outline.loops.len(), kinks);
     let mut work = Work { ask, at, cells, known: BTreeMap::new(), fillings: BTreeMap::new(), normals: Normals::default(), worst: None };
     let mut again = work.settle(vec![0]);
@@ -106,8 +106,8 @@ pub fn lay(ask: &Ask, job: &Job) -> Result<Tried<Laid>> {
 }
 
 /// Values of u and of v at which directions jump; over seams they come again.
-fn kinks(sheet: &Sheet) -> [Vec<f64>; 2] {
-    let (us, vs) = sheet.surface().kinks();
+fn kinks(chart: &Chart) -> [Vec<f64>; 2] {
+    let (us, vs) = chart.surface().kinks();
     [us, vs].map(|all| all.iter().flat_map(|x| [x - 1.0, *x, x + 1.0]).collect())
 }
 
@@ -115,7 +115,7 @@ fn kinks(sheet: &Sheet) -> [Vec<f64>; 2] {
 type Known = (Vec<DVec3>, Option<Filling>);
 
 struct Work<'a> {
-    ask: &'a Ask<'a>,
+    ask: &'a IsolineInput<'a>,
     /// Places of the border's nodes in (u, v).
     at: Vec<DVec2>,
     cells: Cells<'a>,
@@ -125,7 +125,7 @@ struct Work<'a> {
     fillings: BTreeMap<u32, Known>,
     normals: Normals,
     /// The worst triangle seen in the last round.
-    worst: Option<(Load, DVec3)>,
+    worst: Option<(LimitRatio, DVec3)>,
 }
 
 impl Work<'_> {
@@ -135,7 +135,7 @@ impl Work<'_> {
     }
 
     fn place(&self, at: DVec2) -> DVec2 {
-        self.ask.sheet.clamp(self.ask.sheet.xy(at.into()))
+        self.ask.chart.clamp(self.ask.chart.xy(at.into()))
     }
 
     fn point(&mut self, at: DVec2) -> DVec3 {
@@ -143,56 +143,56 @@ impl Work<'_> {
         if let Some(p) = self.known.get(&key) {
             return *p;
         }
-        let p = self.ask.sheet.spot(self.place(at)).p;
+        let p = self.ask.chart.spot(self.place(at)).p;
         self.known.insert(key, p);
         p
     }
 
     /// One try: the triangles, or cells cut where they do not keep the limits.
-    fn round(&mut self) -> Tried<Option<Laid>> {
+    fn round(&mut self) -> Tried<Option<IsolineMesh>> {
         let outline = self.ask.outline;
         work::spend(CELL_WORK * self.cells.all().len() as u64 + NODE_WORK * self.at.len() as u64);
         let mut corners = self.corners();
-        let mut web = Web::default();
-        (web.p, web.xy, web.fixed) = (outline.p.clone(), outline.xy.clone(), outline.p.len() as u32);
+        let mut triangulation = Triangulation::default();
+        (triangulation.p, triangulation.xy, triangulation.fixed) = (outline.p.clone(), outline.xy.clone(), outline.p.len() as u32);
         for (k, corner) in corners.all.iter().enumerate() {
             if corner.dropped {
                 continue;
             }
             corners.node[k] = corner.border;
             if corner.border.is_none() && !self.unfit(corner.at) {
-                corners.node[k] = Some(web.p.len() as u32);
-                web.p.push(self.point(corner.at));
-                web.xy.push(self.place(corner.at));
+                corners.node[k] = Some(triangulation.p.len() as u32);
+                triangulation.p.push(self.point(corner.at));
+                triangulation.xy.push(self.place(corner.at));
             }
         }
-        if web.p.len() > self.ask.most {
+        if triangulation.p.len() > self.ask.most {
             return Err(Failure::Trouble(Trouble::Full));
         }
-        let (sure, bad) = self.whole(&corners, &web);
+        let (sure, bad) = self.whole(&corners, &triangulation);
         if !bad.is_empty() {
             return self.cut(bad).map(|()| None);
         }
-        let (all, kept) = self.triangulated(&web, &sure)?;
+        let (all, kept) = self.triangulated(&triangulation, &sure)?;
         let sure: BTreeSet<[u32; 3]> = sure.into_iter().map(sorted).collect();
-        let bad = self.beside(&web, (&all, &kept), &sure);
+        let bad = self.beside(&triangulation, (&all, &kept), &sure);
         if self.worst.is_some() {
             if bad.is_empty() {
                 return Err(self.missed());
             }
             return self.cut(bad).map(|()| None);
         }
-        web.size = vec![self.ask.size; web.p.len()];
+        triangulation.size = vec![self.ask.size; triangulation.p.len()];
         let tally = self.tally(&corners);
-        let deciders = self.deciders(&corners, &web);
-        let mut web = Web::new(web.p, web.xy, web.size, web.fixed, &all, &kept);
-        lock(&mut web, outline);
-        web.lift_flat();
-        Ok(Some(Laid { web, tally, deciders }))
+        let deciders = self.deciders(&corners, &triangulation);
+        let mut triangulation = Triangulation::new(triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed, &all, &kept);
+        lock(&mut triangulation, outline);
+        triangulation.lift_flat();
+        Ok(Some(IsolineMesh { triangulation, tally, deciders }))
     }
 
     /// Triangles of the cells that no border crosses, and the cells of which some do not keep the limits.
-    fn whole(&mut self, corners: &Corners, web: &Web) -> (Vec<[u32; 3]>, Vec<(u32, Cut)>) {
+    fn whole(&mut self, corners: &Corners, triangulation: &Triangulation) -> (Vec<[u32; 3]>, Vec<(u32, Cut)>) {
         let (mut sure, mut bad) = (Vec::new(), Vec::new());
         for k in 0..self.cells.all().len() as u32 {
             let cell = &self.cells.all()[k as usize];
@@ -202,11 +202,12 @@ impl Work<'_> {
             let bounds = (cell.low, cell.high);
             let Some(round) = polygon(corners, bounds) else { continue };
             let nodes: Vec<u32> = round.iter().filter_map(|c| corners.node[*c]).collect();
-            let p: Vec<DVec3> = nodes.iter().map(|n| web.p[*n as usize]).collect();
+            let p: Vec<DVec3> = nodes.iter().map(|n| triangulation.p[*n as usize]).collect();
             if self.fillings.get(&k).is_none_or(|(known, _)| *known != p) {
                 let at: Vec<DVec2> = round.iter().map(|c| corners.all[*c].at).collect();
-                let load =
-                    |c: [usize; 3]| loads::load_of_long(self.ask.sheet, web, c.map(|i| nodes[i]), self.ask.limits, &self.normals).worst();
+                let load = |c: [usize; 3]| {
+                    loads::load_of_long(self.ask.chart, triangulation, c.map(|i| nodes[i]), self.ask.limits, &self.normals).worst()
+                };
                 let filling = fill(&at, &p, f64::INFINITY, &load);
                 self.fillings.insert(k, (p, filling));
             }
@@ -222,11 +223,11 @@ impl Work<'_> {
 }
 
 /// Only edges of borders may not change.
-fn lock(web: &mut Web, outline: &Outline) {
+fn lock(triangulation: &mut Triangulation, outline: &Outline) {
     let given: BTreeSet<[u32; 2]> = outline.edges().map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    for t in 0..web.tri.len() {
-        let c = web.tri[t];
+    for t in 0..triangulation.tri.len() {
+        let c = triangulation.tri[t];
         let edge = |k: usize| [c[(k + 1) % 3].min(c[(k + 2) % 3]), c[(k + 1) % 3].max(c[(k + 2) % 3])];
-        web.locked[t] = (0..3).filter(|k| given.contains(&edge(*k))).fold(0, |bits, k| bits | 1 << k);
+        triangulation.locked[t] = (0..3).filter(|k| given.contains(&edge(*k))).fold(0, |bits, k| bits | 1 << k);
     }
 }

@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 
 use super::build::Trouble;
 use super::cells::Cells;
-use super::ground::{Field, Ground};
-use super::grow::{Grown, SIGHT, apart, samples};
+use super::ground::{ParametricSurface, SizeField};
+use super::grow::{PlacedNodes, SIGHT, apart, samples};
 use super::outline::Outline;
 use super::tree::{Cell, Class, Halt, Tree};
 use crate::base::job;
@@ -31,14 +31,14 @@ const PLACES: u32 = 8;
 /// Roots along a side at most.
 const ROOTS: f64 = 2048.0;
 /// Places along each direction at which the largest wanted length is looked for.
-const LOOKS: usize = 16;
+const MAX_SAMPLES: usize = 16;
 
 /// What a tree is made for.
 pub struct Plot<'a> {
     /// The surface.
-    pub ground: &'a dyn Ground,
-    /// Wanted lengths.
-    pub field: &'a dyn Field,
+    pub ground: &'a dyn ParametricSurface,
+    /// SizeRequests lengths.
+    pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,
     /// Most nodes.
@@ -48,7 +48,7 @@ pub struct Plot<'a> {
 /// The nodes of a balanced tree.
 ///
 /// Fails where there are more cells than four for each node allowed, or cells had to be smaller than the deepest ones.
-pub fn nodes(task: &Plot) -> Result<Grown, Trouble> {
+pub fn nodes(task: &Plot) -> Result<PlacedNodes, Trouble> {
     let outline = task.outline;
     let segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| outline.xy[n as usize])).collect();
     // At a pole the chart has an edge that is a point in space: no cell can be as short as that.
@@ -79,16 +79,16 @@ pub fn nodes(task: &Plot) -> Result<Grown, Trouble> {
 
 /// The largest wanted length over a box of the chart, by looking.
 fn largest(task: &Plot, low: DVec2, high: DVec2) -> f64 {
-    let at = |k: usize| (k as f64 + 0.5) / LOOKS as f64;
+    let at = |k: usize| (k as f64 + 0.5) / MAX_SAMPLES as f64;
     let size = |k: usize| {
-        let xy = task.ground.clamp(low + (high - low) * DVec2::new(at(k % LOOKS), at(k / LOOKS)));
+        let xy = task.ground.clamp(low + (high - low) * DVec2::new(at(k % MAX_SAMPLES), at(k / MAX_SAMPLES)));
         task.field.size(xy, task.ground.spot(xy).p)
     };
-    (0..LOOKS * LOOKS).map(size).fold(0.0, f64::max).min((high - low).max_element())
+    (0..MAX_SAMPLES * MAX_SAMPLES).map(size).fold(0.0, f64::max).min((high - low).max_element())
 }
 
 /// Longer side of a cell in space, its middle in the chart and in space.
-fn span(ground: &dyn Ground, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
+fn span(ground: &dyn ParametricSurface, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
     let side = tree.side(cell.level);
     let middle = ground.clamp(tree.corner(cell.level, cell.at) + 0.5 * side);
     let spot = ground.spot(middle);
@@ -98,7 +98,7 @@ fn span(ground: &dyn Ground, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
 /// A corner of leaves: its place on the finest grid, and a leaf.
 type Corner = ((u32, u32), u32);
 
-fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> Grown {
+fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> PlacedNodes {
     let depth = tree.cells().iter().map(|c| c.level).max().unwrap_or(0);
     let mut found: Vec<Corner> = Vec::new();
     for (k, cell) in tree.cells().iter().enumerate().filter(|(_, c)| c.is_leaf() && c.class != Class::Exterior) {
@@ -110,7 +110,7 @@ fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> Grown {
     }
     // Row by row, as the lattice lies: neighbours in the list are neighbours on the face.
     found.sort_unstable_by_key(|((i, j), k)| (*j, *i, *k));
-    let mut taken = Taken::new(task);
+    let mut taken = PlacedCells::new(task);
     for run in found.chunk_by(|a, b| a.0 == b.0) {
         job::look();
         let leaves: Vec<&Cell> = run.iter().map(|(_, k)| &tree.cells()[*k as usize]).collect();
@@ -129,17 +129,17 @@ fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> Grown {
 }
 
 /// The nodes taken so far.
-struct Taken<'a> {
+struct PlacedCells<'a> {
     task: &'a Plot<'a>,
     /// Places along the border.
     border: Cells,
     /// Edges of the border whose chords are off the surface, in the chart.
     bent: Vec<[DVec2; 2]>,
     nodes: Cells,
-    grown: Grown,
+    grown: PlacedNodes,
 }
 
-impl<'a> Taken<'a> {
+impl<'a> PlacedCells<'a> {
     fn new(task: &'a Plot<'a>) -> Self {
         let outline = task.outline;
         let is_bent = |edge: &[u32; 2]| {
@@ -152,7 +152,7 @@ impl<'a> Taken<'a> {
         };
         let bent = outline.edges().filter(is_bent).map(|edge| edge.map(|n| outline.xy[n as usize])).collect();
         let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
-        Self { task, border: samples(outline, task.field), bent, nodes: Cells::new(unit, true), grown: Grown::default() }
+        Self { task, border: samples(outline, task.field), bent, nodes: Cells::new(unit, true), grown: PlacedNodes::default() }
     }
 
     /// Takes a corner of cells with these least sides, in space and in the chart, where nothing is too near.

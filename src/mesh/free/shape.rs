@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ground::Ground;
+use super::ground::ParametricSurface;
 use super::grow::TALL;
 use super::outline::area2;
 
@@ -146,7 +146,7 @@ impl Rim {
 
     /// Climbs from a place to one where the worst triangle is as good as it can be. On the way the surface is what its
     /// derivatives at the start say it is; where that tells too little, from there on what those at the end say.
-    pub fn best(&mut self, ground: &dyn Ground, from: DVec2, p: DVec3) -> Star {
+    pub fn best(&mut self, ground: &dyn ParametricSurface, from: DVec2, p: DVec3) -> Star {
         let mut star = Star { p, xy: from, worst: self.worst(from, p) };
         for _ in 0..STARTS {
             let seen = self.climb(ground, star);
@@ -168,15 +168,15 @@ impl Rim {
         star
     }
 
-    /// Steps towards the mean of the tips that the sides wish for, the worst ones first.
-    fn climb(&mut self, ground: &dyn Ground, mut star: Star) -> Star {
+    /// Steps towards the mean of the tips that the sides demand for, the worst ones first.
+    fn climb(&mut self, ground: &dyn ParametricSurface, mut star: Star) -> Star {
         let from = star.xy;
         let near = ground.near(from);
         let mut spot = near.spot(DVec2::ZERO);
-        let mut wish = self.wish(star.p);
+        let mut demand = self.demand(star.p);
         let mut share = 1.0;
         for _ in 0..ROUNDS {
-            let step = wish * share;
+            let step = demand * share;
             if step.length() < STILL * self.longest {
                 break;
             }
@@ -186,7 +186,7 @@ impl Rim {
             let worst = self.worst(xy, new.p);
             if worst > star.worst + GAIN {
                 star = Star { p: new.p, xy, worst };
-                (spot, wish) = (new, self.wish(new.p));
+                (spot, demand) = (new, self.demand(new.p));
                 share = f64::min(1.0, share * 1.5);
             } else {
                 share *= 0.4;
@@ -197,7 +197,7 @@ impl Rim {
 
     /// Where the sides want a place to go that was weighed just now: to the tips of their equilateral triangles, the worst
     /// sides more than others.
-    pub fn wish(&self, p: DVec3) -> DVec3 {
+    pub fn demand(&self, p: DVec3) -> DVec3 {
         let n = self.p.len();
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         for i in 0..n {

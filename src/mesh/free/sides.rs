@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::bound;
 use crate::surface::Surface;
-use crate::surface::quick::Quick;
+use crate::surface::quick::PowerForm;
 
 /// How often a side is halved where the bound over the whole of it is not enough.
 const HALVES: u32 = 5;
@@ -17,7 +17,7 @@ const HALVES: u32 = 5;
 ///
 /// `ends` are the ends of the sides in (u, v), in the order of the corners opposite ([`super::poles::sides`]); a side without them is left
 /// out. `p` are the corners. The search ends with the first distance above `wanted`, which need not be the largest.
-pub fn distance(of: (&Surface, Option<&Quick>), ends: [Option<[DVec2; 2]>; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+pub fn distance(of: (&Surface, Option<&PowerForm>), ends: [Option<[DVec2; 2]>; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let up = (p[1] - p[0]).cross(p[2] - p[0]);
     let mut worst = 0.0_f64;
     for (k, places) in ends.into_iter().enumerate().filter_map(|(k, ends)| Some((k, ends?))) {
@@ -38,7 +38,7 @@ pub fn distance(of: (&Surface, Option<&Quick>), ends: [Option<[DVec2; 2]>; 3], p
 
 /// A side with two directions across it.
 struct Side<'a> {
-    of: (&'a Surface, Option<&'a Quick>),
+    of: (&'a Surface, Option<&'a PowerForm>),
     places: [DVec2; 2],
     from: DVec3,
     across: [DVec3; 2],

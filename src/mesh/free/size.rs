@@ -1,8 +1,8 @@
-//! Wanted lengths over a face: a grid over its chart that no length grows faster across than allowed.
+//! SizeRequests lengths over a face: a grid over its chart that no length grows faster across than allowed.
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Field, Ground};
+use super::ground::{ParametricSurface, SizeField};
 use crate::base::par;
 use crate::mesh::sources::Sources;
 
@@ -29,7 +29,7 @@ impl Background {
     /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
     ///
     /// The grid is as fine as the lengths it is for: a first, coarse one tells those.
-    pub fn new(ground: &dyn Ground, (low, high): (DVec2, DVec2), growth: f64, of: &(impl Fn(DVec2) -> f64 + Sync)) -> Self {
+    pub fn new(ground: &dyn ParametricSurface, (low, high): (DVec2, DVec2), growth: f64, of: &(impl Fn(DVec2) -> f64 + Sync)) -> Self {
         let first = Self::with_lines(LINES.0, ground, (low, high), growth, of);
         let mean = first.size.iter().map(|h| 1.0 / (h * h)).sum::<f64>() / first.size.len() as f64;
         let wished = (high - low).max_element() * mean.sqrt() / APART;
@@ -39,7 +39,13 @@ impl Background {
         Self::with_lines((wished as usize).min(LINES.1), ground, (low, high), growth, of)
     }
 
-    fn with_lines(most: usize, ground: &dyn Ground, (low, high): (DVec2, DVec2), growth: f64, of: &(impl Fn(DVec2) -> f64 + Sync)) -> Self {
+    fn with_lines(
+        most: usize,
+        ground: &dyn ParametricSurface,
+        (low, high): (DVec2, DVec2),
+        growth: f64,
+        of: &(impl Fn(DVec2) -> f64 + Sync),
+    ) -> Self {
         let extent = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
         let longest = extent.max_element();
         let lines = |x: f64| ((most as f64 * x / longest).ceil() as usize).clamp(4, most) + 1;
@@ -123,7 +129,7 @@ impl Background {
 }
 
 /// Lengths by places with a size of their own, under those of a background.
-pub struct Blend<'a> {
+pub struct GradedSize<'a> {
     /// Places, in lengths of edges.
     pub sources: &'a Sources,
     /// Largest and least length of an edge.
@@ -134,7 +140,7 @@ pub struct Blend<'a> {
     pub background: Option<Background>,
 }
 
-impl Blend<'_> {
+impl GradedSize<'_> {
     /// The least distance of nodes that is asked for anywhere, or less.
     pub fn least(&self) -> f64 {
         let by_bends = self.background.as_ref().map_or(f64::INFINITY, |b| b.size.iter().copied().fold(f64::INFINITY, f64::min));
@@ -148,7 +154,7 @@ impl Blend<'_> {
     }
 }
 
-impl Field for Blend<'_> {
+impl SizeField for GradedSize<'_> {
     fn size(&self, xy: DVec2, p: DVec3) -> f64 {
         let (most, least) = self.range;
         // What bends allow is all that sources are asked about.
@@ -157,7 +163,7 @@ impl Field for Blend<'_> {
     }
 }
 
-impl Field for Background {
+impl SizeField for Background {
     fn size(&self, xy: DVec2, _: DVec3) -> f64 {
         let at = ((xy - self.low) / self.cell).max(DVec2::ZERO);
         let (i, j) = ((at.x as usize).min(self.n.0 - 2), (at.y as usize).min(self.n.1 - 2));

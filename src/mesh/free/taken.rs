@@ -2,34 +2,34 @@
 
 use glam::DVec3;
 
-use super::face::{Border, Made};
+use super::face::{Border, FaceInput};
 use super::outline::Outline;
 use crate::base::bbox::Box3;
 use crate::base::bytes::{self, Bytes, Plain, Put};
-use crate::base::digest::{Content, Digest, Digester};
-use crate::mesh::chart::Free;
+use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::mesh::explain::{Decider, Tally, Why};
-use crate::mesh::faces::{Prepared, limits_of};
+use crate::mesh::face_geometry::Free;
+use crate::mesh::faces::{FaceMesh, limits_of};
 use crate::mesh::layout::Face;
-use crate::mesh::reuse::Known;
+use crate::mesh::reuse::CacheView;
 use crate::mesh::sources::{Body, Source, Sources};
 
 /// What is inside a border.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Taken {
+pub struct CachedFace {
     free: Free,
     made: Vec<DVec3>,
     deciders: Vec<Decider>,
     tally: Option<Tally>,
 }
 
-crate::plain!(Taken { free, made, deciders, tally });
+crate::plain!(CachedFace { free, made, deciders, tally });
 crate::plain!(Decider { why, nodes, at });
 crate::plain!(Tally { whole, crossed, corners, agree });
 crate::content!(Source { body, radius, size, steep, tag });
 
-impl Content for Body {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Body {
+    fn tell(&self, to: &mut StableHasher) {
         match self {
             Self::Point(p) => (0u8, p).tell(to),
             Self::Segment(a, b) => (1u8, a, b).tell(to),
@@ -69,8 +69,8 @@ impl Plain for Why {
 /// Everything that the inside of a face follows from, by content: `odd` are the border nodes that cells of quads leave out,
 /// `rules` what of `near` and `in` reaches it.
 pub(in crate::mesh) fn key(
-    known: &Known,
-    made: &Made,
+    known: &CacheView,
+    made: &FaceInput,
     face: &Face,
     (border, outline): (&Border, &Outline),
     (odd, rules): (&[u32], &Sources),
@@ -96,9 +96,9 @@ pub(in crate::mesh) fn key(
 /// Places and elements, points of inner nodes, what decided the sizes, and the cells.
 type Parts = (Free, Vec<DVec3>, Vec<Decider>, Option<Tally>);
 
-impl Taken {
+impl CachedFace {
     /// Of a face that was made.
-    pub fn of(ready: &Prepared, free: &Free) -> Self {
+    pub fn of(ready: &FaceMesh, free: &Free) -> Self {
         Self { free: free.clone(), made: ready.made.clone(), deciders: ready.deciders.clone(), tally: ready.tally }
     }
 

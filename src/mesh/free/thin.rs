@@ -18,23 +18,23 @@ use glam::{DVec2, DVec3};
 use super::fill::{self, Filling, fill};
 use super::outline::area2;
 use super::shape::{Star, quality};
-use super::web::{Patch, Ring, Web};
+use super::triangulation::{Patch, Ring, Triangulation};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 
-/// How far three nodes of a web are from the limits as a triangle: 1 is just kept.
-pub type Bound<'a> = dyn Fn(&Web, [u32; 3]) -> f64 + 'a;
+/// How far three nodes of a triangulation are from the limits as a triangle: 1 is just kept.
+pub type Bound<'a> = dyn Fn(&Triangulation, [u32; 3]) -> f64 + 'a;
 
 /// Whether an edge between two nodes may be as long as it is.
-pub type Allowed<'a> = dyn Fn(&Web, u32, u32) -> bool + 'a;
+pub type Allowed<'a> = dyn Fn(&Triangulation, u32, u32) -> bool + 'a;
 
 /// Rounds of taking out and flipping at most.
 const ROUNDS: usize = 8;
 /// Passes in which pairs are joined whose bounds are too large before the nodes round them are moved.
 const RELAXED_ROUNDS: usize = 2;
 /// A round that takes out a smaller share of the nodes is the last one.
-const WORTH: f64 = 0.002;
+const MIN_GAIN: f64 = 0.002;
 /// Least quality of a triangle that is made: long ones are meant, needles are not.
 const LEAST: f64 = 0.01;
 /// A flip must lower the sum of the squares of two bounds to this share: none goes to and fro.
@@ -68,7 +68,7 @@ enum Known {
 /// A thinning under way.
 struct Thinning<'a> {
     ask: &'a Thinner<'a>,
-    web: &'a mut Web,
+    triangulation: &'a mut Triangulation,
     /// By node.
     known: Vec<Known>,
     /// By triangle, with its corners: bounds that were found.
@@ -109,12 +109,12 @@ impl Changes {
 
 impl Thinner<'_> {
     /// Takes out nodes until hardly one can go.
-    pub fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
-        let n = web.p.len();
-        let first = web.fixed;
+    pub fn thin(&self, triangulation: &mut Triangulation, job: &Job) -> Result<()> {
+        let n = triangulation.p.len();
+        let first = triangulation.fixed;
         let mut thinning = Thinning {
             ask: self,
-            web,
+            triangulation,
             known: vec![Known::Nothing; n],
             loads: Vec::new(),
             heap: (first..n as u32).map(|node| Reverse((0, node))).collect(),
@@ -127,7 +127,7 @@ impl Thinner<'_> {
             gone += thinning.join(job)?;
             thinning.flip();
             thinning.relax(job)?;
-            if gone as f64 <= WORTH * n as f64 {
+            if gone as f64 <= MIN_GAIN * n as f64 {
                 break;
             }
         }
@@ -148,7 +148,7 @@ impl Thinning<'_> {
         let mut gone = 0_usize;
         while let Some(Reverse((_, node))) = self.heap.pop() {
             let k = node as usize;
-            if self.web.at[k] == NO_TRIANGLE || self.known[k] == Known::Stays {
+            if self.triangulation.at[k] == NO_TRIANGLE || self.known[k] == Known::Stays {
                 continue;
             }
             let Some(filling) = self.filling(node) else {
@@ -164,7 +164,7 @@ impl Thinning<'_> {
                     continue;
                 }
             }
-            self.web.refill(&self.patch, &filling.triangles);
+            self.triangulation.refill(&self.patch, &filling.triangles);
             self.changes.mark(&self.patch.rim);
             for n in self.patch.rim.clone() {
                 // Those that stay do so for what is round them now as well, but for a flip.
@@ -182,22 +182,22 @@ impl Thinning<'_> {
 
     /// The cheapest triangles in place of those at a node; `patch` is then what they replace.
     fn filling(&mut self, node: u32) -> Option<Filling> {
-        self.web.ring(node, &mut self.ring);
+        self.triangulation.ring(node, &mut self.ring);
         if !self.ring.closed || self.ring.tri.len() > fill::MOST {
             return None;
         }
-        self.web.patch(&self.ring.tri, &mut self.patch)?;
+        self.triangulation.patch(&self.ring.tri, &mut self.patch)?;
         let rim = &self.patch.rim;
-        let web = &*self.web;
-        let at: Vec<DVec2> = rim.iter().map(|n| web.xy[*n as usize]).collect();
-        let p: Vec<DVec3> = rim.iter().map(|n| web.p[*n as usize]).collect();
+        let triangulation = &*self.triangulation;
+        let at: Vec<DVec2> = rim.iter().map(|n| triangulation.xy[*n as usize]).collect();
+        let p: Vec<DVec3> = rim.iter().map(|n| triangulation.p[*n as usize]).collect();
         let n = rim.len();
         let load = |c: [usize; 3]| {
-            let far = |i: usize, j: usize| j - i == 1 || j - i == n - 1 || (self.ask.allowed)(web, rim[i], rim[j]);
+            let far = |i: usize, j: usize| j - i == 1 || j - i == n - 1 || (self.ask.allowed)(triangulation, rim[i], rim[j]);
             if quality(p[c[0]], p[c[1]], p[c[2]]) < LEAST || !(far(c[0], c[1]) && far(c[1], c[2]) && far(c[0], c[2])) {
                 return f64::INFINITY;
             }
-            (self.ask.bound)(web, c.map(|i| rim[i]))
+            (self.ask.bound)(triangulation, c.map(|i| rim[i]))
         };
         fill(&at, &p, 1.0, &load)
     }
@@ -206,11 +206,11 @@ impl Thinning<'_> {
     fn join(&mut self, job: &Job) -> Result<usize> {
         let mut gone = 0_usize;
         let last = self.changes.joined.replace(self.changes.now);
-        for t in 0..self.web.tri.len() as u32 {
+        for t in 0..self.triangulation.tri.len() as u32 {
             for k in 0..3 {
-                let c = self.web.tri[t as usize];
+                let c = self.triangulation.tri[t as usize];
                 let (a, b) = (c[(k + 1) % 3], c[(k + 2) % 3]);
-                let is_open = self.web.alive(t) && self.web.fixed <= a && a < b && self.changes.since(last, &[a, b]);
+                let is_open = self.triangulation.alive(t) && self.triangulation.fixed <= a && a < b && self.changes.since(last, &[a, b]);
                 if is_open && self.join_one(a, b) {
                     gone += 1;
                     break;
@@ -227,10 +227,10 @@ impl Thinning<'_> {
     fn join_one(&mut self, a: u32, b: u32) -> bool {
         let Some(star) = self.star_of_both(a, b, 1.0) else { return false };
         let k = a as usize;
-        let size = self.web.size[k];
-        self.web.restar(&self.patch, Some(a), &star, size);
+        let size = self.triangulation.size[k];
+        self.triangulation.restar(&self.patch, Some(a), &star, size);
         // Places count by themselves: what was found with this node at another one is void.
-        self.web.ring(a, &mut self.ring);
+        self.triangulation.ring(a, &mut self.ring);
         for t in &self.ring.tri {
             if let Some(load) = self.loads.get_mut(*t as usize) {
                 load.0 = [0; 3];
@@ -238,7 +238,7 @@ impl Thinning<'_> {
         }
         self.changes.mark(&self.patch.rim);
         self.changes.mark(&[a]);
-        for n in self.patch.rim.iter().copied().chain([a]).filter(|n| *n >= self.web.fixed) {
+        for n in self.patch.rim.iter().copied().chain([a]).filter(|n| *n >= self.triangulation.fixed) {
             self.known[n as usize] = Known::Nothing;
             self.heap.push(Reverse((0, n)));
         }
@@ -247,22 +247,22 @@ impl Thinning<'_> {
 
     /// Where one node in place of two neighbours has the least bounds, less than a limit; `patch` is then what its star replaces.
     fn star_of_both(&mut self, a: u32, b: u32, limit: f64) -> Option<Star> {
-        self.web.ring(a, &mut self.ring);
+        self.triangulation.ring(a, &mut self.ring);
         let mut around = self.ring.tri.clone();
-        self.web.ring(b, &mut self.ring);
-        around.extend(self.ring.tri.iter().filter(|t| !self.web.tri[**t as usize].contains(&a)));
-        self.web.patch(&around, &mut self.patch)?;
+        self.triangulation.ring(b, &mut self.ring);
+        around.extend(self.ring.tri.iter().filter(|t| !self.triangulation.tri[**t as usize].contains(&a)));
+        self.triangulation.patch(&around, &mut self.patch)?;
         let (k, other) = (a as usize, b as usize);
-        let old = (self.web.xy[k], self.web.p[k]);
+        let old = (self.triangulation.xy[k], self.triangulation.p[k]);
         let mut best: Option<(f64, Star)> = None;
         for share in BETWEEN {
-            let xy = old.0.lerp(self.web.xy[other], share);
-            (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
+            let xy = old.0.lerp(self.triangulation.xy[other], share);
+            (self.triangulation.xy[k], self.triangulation.p[k]) = (xy, (self.ask.point)(xy));
             if let Some(load) = self.star(a, best.map_or(limit, |b| b.0)) {
-                best = Some((load, Star { p: self.web.p[k], xy, worst: 0.0 }));
+                best = Some((load, Star { p: self.triangulation.p[k], xy, worst: 0.0 }));
             }
         }
-        (self.web.xy[k], self.web.p[k]) = old;
+        (self.triangulation.xy[k], self.triangulation.p[k]) = old;
         best.map(|best| best.1)
     }
 
@@ -271,48 +271,48 @@ impl Thinning<'_> {
         let rim = &self.patch.rim;
         (0..rim.len()).try_fold(0.0_f64, |worst, i| {
             let c = [node, rim[i], rim[(i + 1) % rim.len()]];
-            if !(self.ask.allowed)(self.web, c[0], c[1]) {
+            if !(self.ask.allowed)(self.triangulation, c[0], c[1]) {
                 return None;
             }
             self.less(c, most).map(|load| worst.max(load))
         })
     }
 
-    /// The bound of a triangle of the web.
+    /// The bound of a triangle of the triangulation.
     fn load(&mut self, t: u32) -> f64 {
-        let c = self.web.tri[t as usize];
-        self.loads.resize(self.web.tri.len(), ([0; 3], 0.0));
+        let c = self.triangulation.tri[t as usize];
+        self.loads.resize(self.triangulation.tri.len(), ([0; 3], 0.0));
         if self.loads[t as usize].0 != c {
-            self.loads[t as usize] = (c, (self.ask.bound)(self.web, c));
+            self.loads[t as usize] = (c, (self.ask.bound)(self.triangulation, c));
         }
         self.loads[t as usize].1
     }
 
     /// The bound of a triangle that may be made, less than a limit; `None` where it may not.
     fn less(&self, c: [u32; 3], limit: f64) -> Option<f64> {
-        let [x, y, z] = c.map(|n| self.web.xy[n as usize]);
-        let [a, b, d] = c.map(|n| self.web.p[n as usize]);
+        let [x, y, z] = c.map(|n| self.triangulation.xy[n as usize]);
+        let [a, b, d] = c.map(|n| self.triangulation.p[n as usize]);
         if area2(x, y, z) <= 0.0 || quality(a, b, d) < LEAST {
             return None;
         }
-        Some((self.ask.bound)(self.web, c)).filter(|bound| *bound < limit)
+        Some((self.ask.bound)(self.triangulation, c)).filter(|bound| *bound < limit)
     }
 
     /// Flips edges where the bounds of the two triangles get smaller; nodes beside them get another try.
     fn flip(&mut self) {
-        let mut left = 4 * self.web.tri.len();
+        let mut left = 4 * self.triangulation.tri.len();
         let last = self.changes.flipped.replace(self.changes.now);
-        let mut open: Vec<u32> = (0..self.web.tri.len() as u32).filter(|t| self.web.alive(*t)).collect();
+        let mut open: Vec<u32> = (0..self.triangulation.tri.len() as u32).filter(|t| self.triangulation.alive(*t)).collect();
         while let Some(t) = open.pop() {
             for k in 0..3 {
-                let other = self.web.across[t as usize][k];
-                if left == 0 || other == NO_TRIANGLE || self.web.locked[t as usize] >> k & 1 == 1 {
+                let other = self.triangulation.across[t as usize][k];
+                if left == 0 || other == NO_TRIANGLE || self.triangulation.locked[t as usize] >> k & 1 == 1 {
                     continue;
                 }
-                let c = self.web.tri[t as usize];
+                let c = self.triangulation.tri[t as usize];
                 let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
-                let Some(tip) = self.web.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { continue };
-                if !self.changes.since(last, &[a, b, d, tip]) || !(self.ask.allowed)(self.web, a, tip) {
+                let Some(tip) = self.triangulation.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { continue };
+                if !self.changes.since(last, &[a, b, d, tip]) || !(self.ask.allowed)(self.triangulation, a, tip) {
                     continue;
                 }
                 let (one, two) = (self.load(t), self.load(other));
@@ -322,12 +322,12 @@ impl Thinning<'_> {
                     continue;
                 }
                 left -= 1;
-                self.web.flip(t, k);
-                self.loads[t as usize] = (self.web.tri[t as usize], first);
-                self.loads[other as usize] = (self.web.tri[other as usize], second);
+                self.triangulation.flip(t, k);
+                self.loads[t as usize] = (self.triangulation.tri[t as usize], first);
+                self.loads[other as usize] = (self.triangulation.tri[other as usize], second);
                 self.changes.mark(&[a, b, d, tip]);
                 for n in [a, b, d, tip] {
-                    if n >= self.web.fixed && self.known[n as usize] == Known::Stays {
+                    if n >= self.triangulation.fixed && self.known[n as usize] == Known::Stays {
                         self.known[n as usize] = Known::Nothing;
                         self.heap.push(Reverse((0, n)));
                     }

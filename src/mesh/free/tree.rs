@@ -9,7 +9,7 @@ use crate::base::job;
 use crate::base::predicates::orient;
 
 /// Deepest level under a root: its squares are a millionth of a root.
-pub const DEEPEST: u8 = 20;
+pub const MAX_DEPTH: u8 = 20;
 
 /// Why a tree cannot be refined as far as is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +173,7 @@ impl<'a> Tree<'a> {
         while k < self.cells.len() {
             let cell = &self.cells[k];
             if cell.is_leaf() && wants(self, cell) {
-                if cell.level == DEEPEST {
+                if cell.level == MAX_DEPTH {
                     return Err(Halt::Deep(k as u32));
                 }
                 if self.cells.len() > most {

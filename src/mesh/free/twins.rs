@@ -6,11 +6,11 @@
 
 use std::collections::BTreeSet;
 
-use super::face::Made;
+use super::face::FaceInput;
 use crate::base::par;
-use crate::mesh::chart::Shape;
 use crate::mesh::data::Mesh;
-use crate::mesh::faces::{Frame, Prepared, element_ranges};
+use crate::mesh::face_geometry::Shape;
+use crate::mesh::faces::{FaceMesh, Frame, element_ranges};
 use crate::surface::Surface;
 
 /// Least part along the normal of the surface of the sine of a corner of what is divided.
@@ -20,7 +20,7 @@ const LEAST: f64 = 0.1;
 pub(in crate::mesh) type Edge = (u32, u32);
 
 /// Divides such edges at their middles in (u, v); whether there were any. Nodes have to be numbered again then.
-pub(in crate::mesh) fn divide(made: &Made, prepared: &mut [Prepared], mesh: &Mesh) -> bool {
+pub(in crate::mesh) fn divide(made: &FaceInput, prepared: &mut [FaceMesh], mesh: &Mesh) -> bool {
     // The mesh knows nothing yet of what is divided here.
     let shared = twins(made, prepared, mesh);
     let mut any = false;
@@ -43,8 +43,8 @@ pub(in crate::mesh) fn divide(made: &Made, prepared: &mut [Prepared], mesh: &Mes
 }
 
 /// Edges inside a face, by their places in its chart, that are one edge of the mesh with another one, which stays.
-fn own_twins(ready: &Prepared) -> Vec<Edge> {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return Vec::new() };
+fn own_twins(ready: &FaceMesh) -> Vec<Edge> {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.geometry.shape, &ready.geometry.frame) else { return Vec::new() };
     let border = ids.len() - ready.inner as usize;
     let mut on_border = ids[..border].to_vec();
     on_border.sort_unstable();
@@ -66,9 +66,9 @@ fn own_twins(ready: &Prepared) -> Vec<Edge> {
 }
 
 /// The length of the way over the surface from one end of an edge to the other, by two chords.
-fn way(ready: &Prepared, (a, b): Edge) -> f64 {
-    let Shape::Free(free) = &ready.chart.shape else { return 0.0 };
-    let point = |(u, v): (f64, f64)| ready.chart.surface.point(u, v);
+fn way(ready: &FaceMesh, (a, b): Edge) -> f64 {
+    let Shape::Free(free) = &ready.geometry.shape else { return 0.0 };
+    let point = |(u, v): (f64, f64)| ready.geometry.surface.point(u, v);
     let (p, q) = (free.uv[a as usize], free.uv[b as usize]);
     let top = point(middle(p, q));
     top.distance(point(p)) + top.distance(point(q))
@@ -79,8 +79,8 @@ fn middle(p: (f64, f64), q: (f64, f64)) -> (f64, f64) {
 }
 
 /// The place in the chart of an edge inside a face.
-fn local(ready: &Prepared, edge: Edge) -> Option<Edge> {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.chart.shape, &ready.chart.frame) else { return None };
+fn local(ready: &FaceMesh, edge: Edge) -> Option<Edge> {
+    let (Shape::Free(free), Frame::Free(ids)) = (&ready.geometry.shape, &ready.geometry.frame) else { return None };
     let sides = free.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
     let mut found = sides.filter(|(a, b)| ordered(ids[*a as usize], ids[*b as usize]) == edge);
     found.next().map(|(a, b)| ordered(a, b))
@@ -91,7 +91,7 @@ pub(in crate::mesh) fn ordered(a: u32, b: u32) -> Edge {
 }
 
 /// Edges that lie inside two faces or more, with these.
-pub(in crate::mesh) fn twins(made: &Made, prepared: &[Prepared], mesh: &Mesh) -> Vec<(Edge, Vec<usize>)> {
+pub(in crate::mesh) fn twins(made: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<(Edge, Vec<usize>)> {
     let places = element_ranges(prepared);
     let border = made.nodes.total;
     let inside = par::map(prepared.len(), |f| {
@@ -119,23 +119,23 @@ pub(in crate::mesh) fn twins(made: &Made, prepared: &[Prepared], mesh: &Mesh) ->
 }
 
 /// Edges of the lines inside faces, which others may share.
-fn lines(made: &Made) -> BTreeSet<Edge> {
-    let stretches: BTreeSet<usize> = made.layout.faces.iter().flat_map(|face| face.lines.iter().copied()).collect();
-    let edges = |stretch: usize| {
-        let ids = made.nodes.of_stretch(made.layout, stretch, false);
+fn lines(made: &FaceInput) -> BTreeSet<Edge> {
+    let segments: BTreeSet<usize> = made.layout.faces.iter().flat_map(|face| face.lines.iter().copied()).collect();
+    let edges = |segment: usize| {
+        let ids = made.nodes.of_segment(made.layout, segment, false);
         ids.windows(2).map(|w| ordered(w[0], w[1])).collect::<Vec<Edge>>()
     };
-    stretches.into_iter().flat_map(edges).collect()
+    segments.into_iter().flat_map(edges).collect()
 }
 
 /// Whether edges of a face can be divided: one made freely of triangles.
-fn divides(ready: &Prepared) -> bool {
-    matches!(&ready.chart.shape, Shape::Free(free) if free.quads.is_empty())
+fn divides(ready: &FaceMesh) -> bool {
+    matches!(&ready.geometry.shape, Shape::Free(free) if free.quads.is_empty())
 }
 
 /// Divides an edge between two triangles, given by its places in the chart; whether it is there.
-fn divide_edge(ready: &mut Prepared, (a, b): Edge) -> bool {
-    let (Shape::Free(free), Frame::Free(ids)) = (&mut ready.chart.shape, &mut ready.chart.frame) else { return false };
+fn divide_edge(ready: &mut FaceMesh, (a, b): Edge) -> bool {
+    let (Shape::Free(free), Frame::Free(ids)) = (&mut ready.geometry.shape, &mut ready.geometry.frame) else { return false };
     let side = |t: &[u32; 3]| (0..3).find(|k| ordered(t[*k], t[(k + 1) % 3]) == (a, b));
     let found: Vec<(usize, usize)> = free.triangles.iter().enumerate().filter_map(|(n, t)| side(t).map(|k| (n, k))).collect();
     if found.len() != 2 {
@@ -143,7 +143,7 @@ fn divide_edge(ready: &mut Prepared, (a, b): Edge) -> bool {
     }
     let (p, q) = (free.uv[a as usize], free.uv[b as usize]);
     let uv = middle(p, q);
-    let surface = &ready.chart.surface;
+    let surface = &ready.geometry.surface;
     let parts = |(n, k): &(usize, usize)| {
         let [from, to, tip] = [0, 1, 2].map(|d| free.uv[free.triangles[*n][(k + d) % 3] as usize]);
         [[from, uv, tip], [uv, to, tip]]

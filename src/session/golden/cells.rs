@@ -6,7 +6,7 @@ use super::words::Measure;
 
 /// How many times the allowed change lies between two numbers of a measure; `None` when they are equal enough.
 type Apart<'a> = &'a dyn Fn(Measure, f64, f64) -> Option<f64>;
-use crate::base::digest::Digester;
+use crate::base::digest::StableHasher;
 use crate::lang::units::length_unit;
 use crate::session::report::Cell;
 
@@ -186,7 +186,7 @@ const TOGETHER: usize = 10;
 pub fn together(rows: &[Vec<Cell>]) -> Vec<Cell> {
     let width = rows.iter().map(Vec::len).max().unwrap_or(0);
     let column = |c: usize| {
-        let (mut sum, mut words) = (0.0, Digester::new("words"));
+        let (mut sum, mut words) = (0.0, StableHasher::new("words"));
         let mut add = |weight: f64, cell: &Cell| {
             let told = Entry::of(cell, "");
             let mut tell = |place: usize, number: Option<f64>, piece: &str| {

@@ -14,7 +14,7 @@ use crate::base::bbox::Box3;
 use crate::base::math::compare_points;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Sound, Stop};
+use crate::lang::cx::{Cx, Halt, Sound};
 use crate::lang::value::{ModuleId, ShellValue};
 use crate::mesh::{Group, Mesh};
 use crate::model::Moments;
@@ -175,7 +175,7 @@ fn of_chain(chain: &Chain, moments: &Moments, loose: bool, (tolerance, unit): (&
     Look { loose, pairs }
 }
 
-fn of_shell(cx: &mut Cx, shell: &ShellValue) -> Result<Moments, Stop> {
+fn of_shell(cx: &mut Cx, shell: &ShellValue) -> Result<Moments, Halt> {
     let faces = cx.glued(ModuleId::MAIN, shell)?.faces();
     let parts = par::map(faces.len(), |k| {
         let (surface, other) = &faces[k];

@@ -13,7 +13,7 @@ use super::super::blend::Blend;
 use super::super::breaks::tidy;
 use super::super::line::Line;
 use super::super::nurbs::NurbsSurface;
-use super::super::rail::{Lean, Rail};
+use super::super::rail::{OneSided, Rail};
 use super::super::weights::{Axis, Rule};
 use super::family::{Course, Family, Fitted};
 use super::splines::{Breaks, Hermite};
@@ -25,7 +25,7 @@ use crate::geometry::Jet;
 const PARTS: usize = 16;
 
 impl Course for &Rail {
-    fn jet(&self, x: f64, lean: Lean) -> Jet {
+    fn jet(&self, x: f64, lean: OneSided) -> Jet {
         Rail::jet(self, x, lean)
     }
 
@@ -145,8 +145,8 @@ fn reach(axis: &Axis) -> f64 {
     for cell in axis.nodes.windows(2) {
         let h = (cell[1] - cell[0]) / PARTS as f64;
         for k in 0..PARTS {
-            let ends =
-                [k, k + 1].map(|k| whole(axis, (cell[0] + h * k as f64).min(cell[1]), if k == 0 { Lean::After } else { Lean::Before }));
+            let ends = [k, k + 1]
+                .map(|k| whole(axis, (cell[0] + h * k as f64).min(cell[1]), if k == 0 { OneSided::After } else { OneSided::Before }));
             let most = |(a, b): (&[f64; 3], &[f64; 3])| {
                 let points = [a[0], a[0] + a[1] * h / 3.0, b[0] - b[1] * h / 3.0, b[0]];
                 points.into_iter().map(f64::abs).fold(0.0, f64::max)
@@ -162,7 +162,7 @@ fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
     let n = axis.nodes.len();
     let mut all = vec![Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() }; n];
     for x in &breaks.at {
-        let (before, after) = (whole(axis, *x, Lean::Before), whole(axis, *x, Lean::After));
+        let (before, after) = (whole(axis, *x, OneSided::Before), whole(axis, *x, OneSided::After));
         for (own, (before, after)) in all.iter_mut().zip(before.into_iter().zip(after)) {
             own.value.push(after[0]);
             own.slope.push([before[1], after[1]]);
@@ -173,7 +173,7 @@ fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
 }
 
 /// Value and derivatives of every node's blending function, slopes across the nodes counted to the nodes that they are sums of.
-fn whole(axis: &Axis, x: f64, lean: Lean) -> Vec<[f64; 3]> {
+fn whole(axis: &Axis, x: f64, lean: OneSided) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; axis.nodes.len()];
     for (term, w) in axis.weights(x, lean).iter() {
         match term.checked_sub(sums.len()) {

@@ -9,7 +9,7 @@ use super::super::core::Surface;
 use super::super::extrude::unit_knots;
 use super::super::line::Line;
 use super::super::nurbs::NurbsSurface;
-use super::super::rail::{Lean, Rail};
+use super::super::rail::{OneSided, Rail};
 use super::super::reparam::Map;
 use super::super::shape::Shape;
 use super::super::sweep::Path;
@@ -17,7 +17,7 @@ use super::family::{Course, Family};
 use super::splines::Breaks;
 use super::{DEGREES, NetForm, Off};
 use crate::base::bbox::Box3;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::geometry::nurbs::{projected, weighted};
 use crate::geometry::{Jet, Nurbs};
 
@@ -28,7 +28,7 @@ struct Carried<'s> {
 }
 
 impl Course for Carried<'_> {
-    fn jet(&self, x: f64, lean: Lean) -> Jet {
+    fn jet(&self, x: f64, lean: OneSided) -> Jet {
         let g = Jet { p: self.from, ..Jet::default() };
         let jet = match self.shape {
             Shape::Framed(framed) => framed.jet_of(&g, x, lean),
@@ -41,17 +41,17 @@ impl Course for Carried<'_> {
     fn line(&self, x0: f64, x1: f64) -> Line {
         let half = 0.5 * (x1 - x0);
         let middle = 0.5 * (x0 + x1);
-        let still = Line::new(0.0, Jet { p: self.from, ..Jet::default() }, None, Ranges::default());
-        let spread = match self.shape {
-            Shape::Framed(framed) => framed.between(x0, x1).into_iter().map(|strip| framed.spread(&strip, (half, 0.0), &still)),
+        let still = Line::new(0.0, Jet { p: self.from, ..Jet::default() }, None, Interval3::default());
+        let enclosure = match self.shape {
+            Shape::Framed(framed) => framed.between(x0, x1).into_iter().map(|strip| framed.enclosure(&strip, (half, 0.0), &still)),
             Shape::Sweep(sweep) => {
-                let spread = sweep.spread(middle, (half, 0.0), &still);
-                return Line::new(half, self.jet(middle, Lean::After), None, spread.duu);
+                let enclosure = sweep.enclosure(middle, (half, 0.0), &still);
+                return Line::new(half, self.jet(middle, OneSided::After), None, enclosure.duu);
             }
             _ => return still,
         };
-        let whole = spread.map(|s| s.duu).reduce(Ranges::union).unwrap_or(Ranges::ANY);
-        Line::new(half, self.jet(middle, Lean::After), None, whole)
+        let whole = enclosure.map(|s| s.duu).reduce(Interval3::union).unwrap_or(Interval3::ANY);
+        Line::new(half, self.jet(middle, OneSided::After), None, whole)
     }
 
     fn corners(&self) -> Vec<f64> {

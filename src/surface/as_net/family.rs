@@ -7,12 +7,12 @@
 use glam::DVec3;
 
 use super::super::line::Line;
-use super::super::rail::Lean;
+use super::super::rail::OneSided;
 use super::splines::{Breaks, Hermite};
 use crate::base::job;
 use crate::base::math;
 use crate::base::par;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::NUDGE;
 use crate::geometry::Jet;
 
@@ -42,7 +42,7 @@ const JUMP: f64 = 16.0;
 /// A curve under the surface's parameter.
 pub trait Course: Sync {
     /// Point and derivatives, from the given side.
-    fn jet(&self, x: f64, lean: Lean) -> Jet;
+    fn jet(&self, x: f64, lean: OneSided) -> Jet;
     /// Bounds between two parameters.
     fn line(&self, x0: f64, x1: f64) -> Line;
     /// Parameters of its corners, ends left out.
@@ -104,9 +104,9 @@ impl Family<'_> {
             };
             let jump = |k: usize| {
                 let x = breaks[k];
-                let (a, b, h) = (course.jet(x, Lean::Before), course.jet(x, Lean::After), wide(k));
-                let next = (b.d2 - course.jet((x + h).min(1.0), Lean::Before).d2) * (-1.0 / h);
-                let last = (a.d2 - course.jet((x - h).max(0.0), Lean::After).d2) * (1.0 / h);
+                let (a, b, h) = (course.jet(x, OneSided::Before), course.jet(x, OneSided::After), wide(k));
+                let next = (b.d2 - course.jet((x + h).min(1.0), OneSided::Before).d2) * (-1.0 / h);
+                let last = (a.d2 - course.jet((x - h).max(0.0), OneSided::After).d2) * (1.0 / h);
                 let limit = |order: i32| JUMP * self.allowed / math::powi(NARROW, order);
                 let over = [a.d1.distance(b.d1) > limit(1), a.d2.distance(b.d2) > limit(2), next.distance(last) > limit(3)];
                 over.iter().position(|over| *over).map(|order| (x, order))
@@ -177,7 +177,7 @@ impl Spreading<'_, '_> {
             }
             let root = if round < HASTY { 1.0 } else { DAMPED } / (breaks.degree + 1) as f64;
             let parts: Vec<f64> = off.iter().map(|off| math::pow(off / allowed, root).clamp(1.0 / PARTS, PARTS)).collect();
-            breaks = self.spread(&breaks, &parts, 1.0 + ROOM * round as f64);
+            breaks = self.enclosure(&breaks, &parts, 1.0 + ROOM * round as f64);
             if breaks.spans() > MOST_SPANS {
                 let worst = (0..off.len()).max_by(|a, b| off[*a].total_cmp(&off[*b])).unwrap_or(0);
                 return Err(worst as f64 / off.len() as f64);
@@ -187,7 +187,7 @@ impl Spreading<'_, '_> {
     }
 
     /// Fixed breaks and others between them, so that spans get equal sums of parts.
-    fn spread(&self, breaks: &Breaks, parts: &[f64], room: f64) -> Breaks {
+    fn enclosure(&self, breaks: &Breaks, parts: &[f64], room: f64) -> Breaks {
         let mut out = self.fixed.clone();
         for ends in self.fixed.at.windows(2) {
             let first = breaks.at.partition_point(|x| *x < ends[0]);
@@ -213,8 +213,8 @@ impl Spreading<'_, '_> {
             let course = &self.family.courses[c];
             let mut spline = Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() };
             for (k, x) in breaks.at.iter().enumerate() {
-                let after = course.jet(*x, Lean::After);
-                let before = if breaks.is_given(k) { course.jet(*x, Lean::Before) } else { after };
+                let after = course.jet(*x, OneSided::After);
+                let before = if breaks.is_given(k) { course.jet(*x, OneSided::Before) } else { after };
                 spline.value.push(after.p);
                 // What goes on has one value.
                 let mean = |order: usize, a: DVec3, b: DVec3| if breaks.smooth[k] < order { [a, b] } else { [0.5 * (a + b); 2] };
@@ -231,7 +231,7 @@ impl Spreading<'_, '_> {
         let each = par::map(splines.len(), |c| {
             let at = |k: usize, share: f64| {
                 let x = breaks.at[k] + share * (breaks.at[k + 1] - breaks.at[k]);
-                breaks.jet(&splines[c], k, x)[0].distance(self.family.courses[c].jet(x, Lean::After).p)
+                breaks.jet(&splines[c], k, x)[0].distance(self.family.courses[c].jet(x, OneSided::After).p)
             };
             (0..breaks.spans()).map(|k| PLACES.map(|share| at(k, share)).into_iter().fold(0.0, f64::max)).collect::<Vec<f64>>()
         });
@@ -251,8 +251,8 @@ impl Spreading<'_, '_> {
             // A second derivative lies between those at the ends but for what it bends itself: linearly, of degree 5.
             let ends = [a, b].map(|x| breaks.jet(spline, k, x));
             let own = ends[0][4].abs().max(ends[1][4].abs()) * (0.5 * h * h);
-            let bend = line.d2 - (Ranges::of(ends.map(|jet| jet[2])) + Ranges::around_zero(own));
-            let most = if bend.is_vast() { f64::INFINITY } else { off + h * line.mid.d1.distance(slope) + 0.5 * h * h * bend.reach() };
+            let bend = line.d2 - (Interval3::of(ends.map(|jet| jet[2])) + Interval3::around_zero(own));
+            let most = if bend.is_unbounded() { f64::INFINITY } else { off + h * line.mid.d1.distance(slope) + 0.5 * h * h * bend.reach() };
             if most <= self.family.allowed {
                 largest = largest.max(most);
                 continue;

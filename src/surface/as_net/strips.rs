@@ -9,7 +9,7 @@ use super::super::Jet2;
 use super::super::core::{Domain, Surface};
 use super::super::nurbs::NurbsSurface;
 use super::super::offset::beside;
-use super::super::rail::Lean;
+use super::super::rail::OneSided;
 use crate::base::fault::{CurveFault, Result};
 use crate::base::tolerance::{EPSILON, Tolerance};
 
@@ -19,7 +19,7 @@ const MOST_STRIPS: usize = 1 << 10;
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// A parameter of the square, from one side.
-type At = (f64, Lean);
+type At = (f64, OneSided);
 
 /// Bicubic pieces in the making.
 pub struct Fit<'s> {
@@ -53,7 +53,7 @@ impl<'s> Fit<'s> {
         // T(s(1 − t), t).
         let each = vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v)));
         each.map(|((s, lean_s), (t, lean_t))| {
-            let jet = self.surface.jet_lean(s * (1.0 - t), t, (lean_s, lean_t));
+            let jet = self.surface.jet_one_sided(s * (1.0 - t), t, (lean_s, lean_t));
             let (du, across) = (jet.du * (1.0 - t), jet.duv - jet.duu * s);
             Jet2 { p: jet.p, du, dv: jet.dv - jet.du * s, duv: across * (1.0 - t) - jet.du, ..Jet2::default() }
         })
@@ -89,7 +89,7 @@ impl<'s> Fit<'s> {
         let inside = |stops: &[f64]| -> Vec<f64> { stops.windows(2).flat_map(|w| PLACES.map(|x| w[0] + (w[1] - w[0]) * x)).collect() };
         let (us, vs) = (inside(&self.us), inside(&self.vs));
         let far = |us: &[f64], vs: &[f64]| -> Vec<bool> {
-            let lean = |list: &[f64]| list.iter().map(|x| (*x, Lean::After)).collect::<Vec<At>>();
+            let lean = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<At>>();
             let mut found = vec![DVec3::ZERO; us.len() * vs.len()];
             net.grid(us, vs, &mut found);
             let jets = self.jets(&lean(us), &lean(vs));
@@ -119,7 +119,8 @@ impl<'s> Fit<'s> {
 
     /// The bicubic pieces as one net; inner knots are double, and triple where the derivative across them jumps.
     fn net(&self) -> NurbsSurface {
-        let sided = |stops: &[f64]| -> Vec<At> { stops.windows(2).flat_map(|w| [(w[0], Lean::After), (w[1], Lean::Before)]).collect() };
+        let sided =
+            |stops: &[f64]| -> Vec<At> { stops.windows(2).flat_map(|w| [(w[0], OneSided::After), (w[1], OneSided::Before)]).collect() };
         let (us, vs) = (sided(&self.us), sided(&self.vs));
         let jets = self.jets(&us, &vs);
         let at = |i: usize, j: usize| &jets[j * us.len() + i];

@@ -20,7 +20,7 @@ const LINES: usize = 5;
 /// Points of the rule for a length.
 const ORDER: usize = 16;
 /// Places at which the two sides of a seam are compared.
-const LOOKS: usize = 33;
+const MAX_SAMPLES: usize = 33;
 
 /// Surfaces with common whole borders, in any order and direction, as one.
 ///
@@ -133,15 +133,15 @@ fn apart(all: &[Surface], rims: &[Vec<Rim>], seen: &[usize]) -> Fault {
 /// The mean length of lines along x.
 fn length(piece: &Piece) -> f64 {
     let rule = gauss_legendre(ORDER);
-    let leans = (super::rail::Lean::After, super::rail::Lean::After);
+    let leans = (super::rail::OneSided::After, super::rail::OneSided::After);
     let line = |y: f64| rule.iter().map(|(x, w)| 0.5 * w * piece.jet(0.5 + 0.5 * x, y, leans).du.length()).sum::<f64>();
     (0..LINES).map(|k| line((k as f64 + 0.5) / LINES as f64)).sum::<f64>() / LINES as f64
 }
 
 /// Whether the surface has a crease along the seam before piece k.
 fn folds(joined: &Joined, k: usize, tolerance: &Tolerance) -> bool {
-    (0..LOOKS).any(|n| {
-        let (a, b) = joined.beside(k, n as f64 / (LOOKS - 1) as f64);
+    (0..MAX_SAMPLES).any(|n| {
+        let (a, b) = joined.beside(k, n as f64 / (MAX_SAMPLES - 1) as f64);
         match (unit_normal(&a), unit_normal(&b)) {
             (Some(a), Some(b)) => math::angle_between(a, b) > tolerance.angle,
             _ => false,
@@ -161,7 +161,7 @@ fn surface(joined: Joined, across_v: bool, origin: Origin, tolerance: &Tolerance
     let across = if across_v { &mut vs } else { &mut us };
     across.retain(|x| smooth.iter().all(|s| s != x));
     let point = |x: f64, y: f64| if across_v { joined.jet(y, x, LAST).p } else { joined.jet(x, y, LAST).p };
-    let places = |f: &dyn Fn(f64) -> bool| (0..LOOKS).all(|n| f(n as f64 / (LOOKS - 1) as f64));
+    let places = |f: &dyn Fn(f64) -> bool| (0..MAX_SAMPLES).all(|n| f(n as f64 / (MAX_SAMPLES - 1) as f64));
     let same = |a: glam::DVec3, b: glam::DVec3| a.distance(b) <= tolerance.rounding.max(tolerance.point * tolerance.parameter);
     let closed_x = pieces.len() > 1 && places(&|y| same(point(0.0, y), point(1.0, y)));
     let closed_y = pieces.iter().all(|p| if p.turn.swap { p.surface.closed().0 } else { p.surface.closed().1 });
@@ -210,4 +210,4 @@ fn surface(joined: Joined, across_v: bool, origin: Origin, tolerance: &Tolerance
     })
 }
 
-const LAST: (super::rail::Lean, super::rail::Lean) = (super::rail::Lean::After, super::rail::Lean::After);
+const LAST: (super::rail::OneSided, super::rail::OneSided) = (super::rail::OneSided::After, super::rail::OneSided::After);

@@ -6,7 +6,7 @@ use super::shape::{Piece, Turn, foot, foot_round};
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::surface::core::{Side, Surface};
-use crate::surface::rail::Lean;
+use crate::surface::rail::OneSided;
 
 /// Steps along a border.
 const STEPS: usize = 32;
@@ -64,7 +64,7 @@ impl Rim {
 
     fn of(surface: &Surface, side: usize) -> Self {
         let piece = Piece::new(surface.clone(), turn(side, true, false), 0);
-        let at = |n: usize| piece.jet(0.0, n as f64 / STEPS as f64, (Lean::After, Lean::After)).p;
+        let at = |n: usize| piece.jet(0.0, n as f64 / STEPS as f64, (OneSided::After, OneSided::After)).p;
         let closed = if side.is_multiple_of(2) { surface.closed().0 } else { surface.closed().1 };
         Self { side, points: (0..=STEPS).map(at).collect(), piece, closed }
     }
@@ -76,7 +76,7 @@ impl Rim {
             let start = (0..=STEPS).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap_or(0);
             let start = start as f64 / STEPS as f64;
             let w = if other.closed { foot_round(&other.piece, 0.0, start, p) } else { foot(&other.piece, start, p) };
-            other.piece.jet(0.0, w, (Lean::After, Lean::After)).p.distance(p)
+            other.piece.jet(0.0, w, (OneSided::After, OneSided::After)).p.distance(p)
         };
         let each = self.points.iter().map(|p| (far(*p), *p));
         each.fold((0.0, self.points[0]), |most, next| if next.0 > most.0 { next } else { most })

@@ -6,23 +6,23 @@
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::digest::{Content, Digester};
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::math;
-use crate::base::range::{Range, Ranges};
+use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, SLIVER};
 use crate::geometry::Motion;
 use crate::surface::Jet2;
 use crate::surface::breaks::tidy;
 use crate::surface::core::Surface;
-use crate::surface::rail::Lean;
-use crate::surface::spread::Spread;
+use crate::surface::enclosure::Enclosure;
+use crate::surface::rail::OneSided;
 
 /// Places by which a map of y is begun.
 const PLACES: usize = 64;
 /// Newton steps.
 const STEPS: usize = 16;
 
-type Leans = (Lean, Lean);
+type Leans = (OneSided, OneSided);
 
 /// How the unit square of a surface lies in that of x and y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,8 +35,8 @@ pub struct Turn {
     pub back_y: bool,
 }
 
-impl Content for Turn {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Turn {
+    fn tell(&self, to: &mut StableHasher) {
         (self.swap, self.back_x, self.back_y).tell(to);
     }
 }
@@ -53,7 +53,7 @@ impl Turn {
     }
 
     fn leans(self, (x, y): Leans) -> Leans {
-        let turned = |lean: Lean, back: bool| if back { lean.turned() } else { lean };
+        let turned = |lean: OneSided, back: bool| if back { lean.turned() } else { lean };
         let (x, y) = (turned(x, self.back_x), turned(y, self.back_y));
         if self.swap { (y, x) } else { (x, y) }
     }
@@ -73,10 +73,10 @@ impl Turn {
         Jet2 { du: j.du * x, dv: j.dv * y, duv: j.duv * (x * y), ..j }
     }
 
-    fn spread(self, s: Spread) -> Spread {
-        let s = if self.swap { Spread { du: s.dv, dv: s.du, duu: s.dvv, dvv: s.duu, half: (s.half.1, s.half.0), ..s } } else { s };
-        let sign = |r: Ranges, back: bool| if back { -r } else { r };
-        Spread { du: sign(s.du, self.back_x), dv: sign(s.dv, self.back_y), duv: sign(s.duv, self.back_x != self.back_y), ..s }
+    fn enclosure(self, s: Enclosure) -> Enclosure {
+        let s = if self.swap { Enclosure { du: s.dv, dv: s.du, duu: s.dvv, dvv: s.duu, half: (s.half.1, s.half.0), ..s } } else { s };
+        let sign = |r: Interval3, back: bool| if back { -r } else { r };
+        Enclosure { du: sign(s.du, self.back_x), dv: sign(s.dv, self.back_y), duv: sign(s.duv, self.back_x != self.back_y), ..s }
     }
 }
 
@@ -105,7 +105,7 @@ impl Piece {
 
     /// Begins y where the border x = `x` is nearest to a point. Of pieces that close in y.
     pub fn begin_at(&mut self, x: f64, p: DVec3) {
-        let far = |w: f64| self.jet(x, w, (Lean::After, Lean::After)).p.distance_squared(p);
+        let far = |w: f64| self.jet(x, w, (OneSided::After, OneSided::After)).p.distance_squared(p);
         let even = |n: usize| n as f64 / (4 * PLACES) as f64;
         let start = (0..4 * PLACES).min_by(|a, b| far(even(*a)).total_cmp(&far(even(*b)))).map_or(0.0, even);
         let w = foot_round(self, x, start, p);
@@ -118,28 +118,28 @@ impl Piece {
     }
 
     /// Its own y, turned, at a y, on the side to which the lean points at its seam.
-    fn around(&self, y: f64, lean: Lean) -> f64 {
+    fn around(&self, y: f64, lean: OneSided) -> f64 {
         let Some(seam) = self.seam() else { return y };
-        if y > seam || y == seam && lean == Lean::After { y - seam } else { y + self.shift }
+        if y > seam || y == seam && lean == OneSided::After { y - seam } else { y + self.shift }
     }
 
     /// Point and derivatives with respect to its own x and y.
     pub fn jet(&self, x: f64, y: f64, leans: Leans) -> Jet2 {
         // At its ends, which may be inside the surface, it is known from inside.
         let lean = if y >= 1.0 {
-            Lean::Before
+            OneSided::Before
         } else if y <= 0.0 {
-            Lean::After
+            OneSided::After
         } else {
             leans.1
         };
         let (y, leans) = (self.around(y, lean), (leans.0, lean));
         let (u, v) = self.turn.place(x, y);
-        self.turn.jet(self.surface.jet_lean(u, v, self.turn.leans(leans)))
+        self.turn.jet(self.surface.jet_one_sided(u, v, self.turn.leans(leans)))
     }
 
     /// Bounds over a rectangle whose y has the seam beside it at most.
-    fn spread(&self, x: (f64, f64), y: (f64, f64)) -> Spread {
+    fn enclosure(&self, x: (f64, f64), y: (f64, f64)) -> Enclosure {
         let after = self.seam().is_some_and(|seam| 0.5 * (y.0 + y.1) > seam);
         let own = |y: f64| match self.seam() {
             None => y,
@@ -149,7 +149,7 @@ impl Piece {
         let y = (own(y.0), own(y.1));
         let (a, b) = (self.turn.place(x.0, y.0), self.turn.place(x.1, y.1));
         let order = |a: f64, b: f64| (a.min(b), a.max(b));
-        self.turn.spread(self.surface.spread(order(a.0, b.0), order(a.1, b.1)))
+        self.turn.enclosure(self.surface.enclosure(order(a.0, b.0), order(a.1, b.1)))
     }
 
     /// Inner values of x and of y from those of u and v.
@@ -217,8 +217,8 @@ impl Joined {
     /// Jets on both sides of the seam before piece k at a y of all.
     pub fn beside(&self, k: usize, y: f64) -> (Jet2, Jet2) {
         let x = self.stops[k];
-        let side = |lean: Lean| self.xy_jet(x, y, (lean, Lean::After));
-        (side(Lean::Before), side(Lean::After))
+        let side = |lean: OneSided| self.xy_jet(x, y, (lean, OneSided::After));
+        (side(OneSided::Before), side(OneSided::After))
     }
 
     /// Whether first derivatives across the seam before piece k are the same on both sides.
@@ -233,7 +233,7 @@ impl Joined {
     fn is_even_along(&self, y: f64) -> bool {
         (0..=PLACES).step_by(4).all(|n| {
             let x = n as f64 / PLACES as f64;
-            let [a, b] = [Lean::Before, Lean::After].map(|lean| self.xy_jet(x, y, (Lean::After, lean)).dv);
+            let [a, b] = [OneSided::Before, OneSided::After].map(|lean| self.xy_jet(x, y, (OneSided::After, lean)).dv);
             a.distance(b) <= EPSILON * PLACES as f64 * (a.length() + b.length())
         })
     }
@@ -241,7 +241,7 @@ impl Joined {
     /// The y of piece k at even steps of the y of the one before; empty where they agree.
     fn table(&self, k: usize) -> Vec<f64> {
         let (a, b) = (&self.pieces[k - 1], &self.pieces[k]);
-        let leans = (Lean::After, Lean::After);
+        let leans = (OneSided::After, OneSided::After);
         let point = |piece: &Piece, x: f64, y: f64| piece.jet(x, y, leans).p;
         let grid: Vec<DVec3> = (0..=4 * PLACES).map(|n| point(b, 0.0, n as f64 / (4 * PLACES) as f64)).collect();
         let mut from = 0;
@@ -262,7 +262,7 @@ impl Joined {
     }
 
     /// y of piece k and its two derivatives at a y of all.
-    fn own(&self, k: usize, y: f64, lean: Lean) -> [f64; 3] {
+    fn own(&self, k: usize, y: f64, lean: OneSided) -> [f64; 3] {
         let mut at = [y, 1.0, 0.0];
         for n in 1..=k {
             let (a, b) = (&self.pieces[n - 1], &self.pieces[n]);
@@ -270,7 +270,7 @@ impl Joined {
                 continue;
             }
             let w = Self::next(a, b, at[0]);
-            let (from, to) = (a.jet(1.0, at[0], (Lean::Before, lean)), b.jet(0.0, w, (Lean::After, lean)));
+            let (from, to) = (a.jet(1.0, at[0], (OneSided::Before, lean)), b.jet(0.0, w, (OneSided::After, lean)));
             let square = to.dv.length_squared();
             if square <= 0.0 {
                 at = [w, at[1], 0.0];
@@ -292,7 +292,7 @@ impl Joined {
         let n = ((y * PLACES as f64) as usize).min(PLACES - 1);
         let share = y * PLACES as f64 - n as f64;
         let guess = b.follow[n] + (b.follow[n + 1] - b.follow[n]) * share;
-        foot(b, guess, a.jet(1.0, y, (Lean::Before, Lean::After)).p)
+        foot(b, guess, a.jet(1.0, y, (OneSided::Before, OneSided::After)).p)
     }
 
     /// The y of all at a y of piece k: by halving, as it rises.
@@ -301,17 +301,17 @@ impl Joined {
             return w;
         }
         let miss = |y: f64| {
-            let [own, slope, _] = self.own(k, y, Lean::After);
+            let [own, slope, _] = self.own(k, y, OneSided::After);
             (own - w, slope)
         };
         crate::base::solve::bracketed(0.0, 1.0, EPSILON, miss)
     }
 
     /// The piece at an x, and its own x.
-    fn at(&self, x: f64, lean: Lean) -> (usize, f64) {
+    fn at(&self, x: f64, lean: OneSided) -> (usize, f64) {
         let last = self.pieces.len() - 1;
         let inner = &self.stops[1..=last];
-        let k = inner.partition_point(|s| if lean == Lean::Before { *s < x - EPSILON } else { *s <= x + EPSILON });
+        let k = inner.partition_point(|s| if lean == OneSided::Before { *s < x - EPSILON } else { *s <= x + EPSILON });
         let (low, high) = (self.stops[k], self.stops[k + 1]);
         // From the nearer end, so that both are met exactly.
         let share = if x - low <= high - x { (x - low) / (high - low) } else { 1.0 - (high - x) / (high - low) };
@@ -355,22 +355,22 @@ impl Joined {
 
     /// How normals turn at most over a line of constant y.
     pub fn fold_at(&self, y: f64) -> f64 {
-        let normal = |x: f64, lean: Lean| {
-            let jet = self.xy_jet(x, y, (Lean::After, lean));
+        let normal = |x: f64, lean: OneSided| {
+            let jet = self.xy_jet(x, y, (OneSided::After, lean));
             jet.du.cross(jet.dv).normalize_or_zero()
         };
         let at = |n: usize| (n as f64 + 0.5) / PLACES as f64;
-        (0..PLACES).map(|n| math::angle_between(normal(at(n), Lean::Before), normal(at(n), Lean::After))).fold(0.0, f64::max)
+        (0..PLACES).map(|n| math::angle_between(normal(at(n), OneSided::Before), normal(at(n), OneSided::After))).fold(0.0, f64::max)
     }
 
     /// Bounds over a rectangle that no seam crosses.
-    pub fn spread(&self, u: (f64, f64), v: (f64, f64)) -> Spread {
+    pub fn enclosure(&self, u: (f64, f64), v: (f64, f64)) -> Enclosure {
         let (x, y) = if self.across_v { (v, u) } else { (u, v) };
-        let (k, _) = self.at(0.5 * (x.0 + x.1), Lean::After);
+        let (k, _) = self.at(0.5 * (x.0 + x.1), OneSided::After);
         let (low, width) = (self.stops[k], self.stops[k + 1] - self.stops[k]);
         let own = |x: f64| ((x - low) / width).clamp(0.0, 1.0);
-        let mut slope = Range::at(1.0);
-        let mut bend = Range::at(0.0);
+        let mut slope = Interval::at(1.0);
+        let mut bend = Interval::at(0.0);
         let mut at = y;
         for n in 1..=k {
             let (a, b) = (&self.pieces[n - 1], &self.pieces[n]);
@@ -378,24 +378,24 @@ impl Joined {
                 continue;
             }
             let next = (Self::next(a, b, at.0), Self::next(a, b, at.1));
-            let (from, to) = (a.spread((1.0, 1.0), at), b.spread((0.0, 0.0), next));
+            let (from, to) = (a.enclosure((1.0, 1.0), at), b.enclosure((0.0, 0.0), next));
             let over = to.dv.dot(&to.dv).inverse();
             let second = from.dvv * slope.square() + from.dv * bend;
             slope = from.dv.dot(&to.dv) * over * slope;
             bend = (second - to.dvv * slope.square()).dot(&to.dv) * over;
             at = next;
         }
-        let s = self.pieces[k].spread((own(x.0), own(x.1)), at);
+        let s = self.pieces[k].enclosure((own(x.0), own(x.1)), at);
         let scale = 1.0 / width;
-        let mid = self.xy_jet(0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1), (Lean::After, Lean::After));
+        let mid = self.xy_jet(0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1), (OneSided::After, OneSided::After));
         let half = (0.5 * (x.1 - x.0), 0.5 * (y.1 - y.0));
         let (du, dv) = (s.du * scale, s.dv * slope);
         let (duu, duv, dvv) = (s.duu * (scale * scale), s.duv * (slope * scale), s.dvv * slope.square() + s.dv * bend);
         if self.across_v {
             let half = (half.1, half.0);
-            return Spread { mid: Self::swapped(mid), half, p: s.p, du: dv, dv: du, duu: dvv, duv, dvv: duu };
+            return Enclosure { mid: Self::swapped(mid), half, p: s.p, du: dv, dv: du, duu: dvv, duv, dvv: duu };
         }
-        Spread { mid, half, p: s.p, du, dv, duu, duv, dvv }
+        Enclosure { mid, half, p: s.p, du, dv, duu, duv, dvv }
     }
 
     /// Lines of all pieces and the seams between and in them, of u and of v.
@@ -441,7 +441,7 @@ pub fn foot(piece: &Piece, guess: f64, p: DVec3) -> f64 {
 /// The same of the line of constant x of a piece that closes in y: beside its seam the foot may be on either side of it.
 pub fn foot_round(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
     let starts = if guess <= 0.0 || guess >= 1.0 { vec![0.0, 1.0] } else { vec![guess] };
-    let far = |w: &f64| piece.jet(x, *w, (Lean::After, Lean::After)).p.distance_squared(p);
+    let far = |w: &f64| piece.jet(x, *w, (OneSided::After, OneSided::After)).p.distance_squared(p);
     let feet = starts.into_iter().map(|start| foot_on(piece, x, start, p));
     feet.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(guess)
 }
@@ -450,7 +450,7 @@ pub fn foot_round(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
 fn foot_on(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
     let mut w = guess;
     for _ in 0..STEPS {
-        let jet = piece.jet(x, w, (Lean::After, Lean::After));
+        let jet = piece.jet(x, w, (OneSided::After, OneSided::After));
         let off = jet.p - p;
         let bend = jet.dv.length_squared() + off.dot(jet.dvv);
         let square = jet.dv.length_squared();

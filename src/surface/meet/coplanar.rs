@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::sheet::grounded;
 use crate::base::fault::Result;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::Nearest;
@@ -69,9 +69,9 @@ fn is_flat(face: &Surface) -> bool {
     if face.is_flat() {
         return true;
     }
-    let spread = face.untrimmed().spread((0.0, 1.0), (0.0, 1.0));
-    let even = |r: &Ranges| !r.is_vast() && r.low == r.high;
-    matches!(face.ground(), Domain::Square) && even(&spread.du) && even(&spread.dv)
+    let enclosure = face.untrimmed().enclosure((0.0, 1.0), (0.0, 1.0));
+    let even = |r: &Interval3| !r.is_unbounded() && r.low == r.high;
+    matches!(face.ground(), Domain::Square) && even(&enclosure.du) && even(&enclosure.dv)
 }
 
 /// Whether the corners of a flat face's ground, and with them all of it, lie in the plane of another flat one.

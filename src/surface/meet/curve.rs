@@ -469,7 +469,7 @@ fn crosses(node: &Node, cell: &Cell, point: f64) -> bool {
     let rise = cell.normals.along(node.axis);
     let least = if rise.low > 0.0 { rise.low } else { -rise.high };
     // n·t ≥ cos φ · n·axis − sin φ · |n × axis| for tangents t within φ of the axis.
-    let across = cell.normals.cross(&crate::base::range::Ranges::at(node.axis)).reach();
+    let across = cell.normals.cross(&crate::base::range::Interval3::at(node.axis)).reach();
     // A part that hardly rises over its length runs along the surface.
     let rises = node.p.0.distance(node.p.1) * least > DIVERGENCE * point * cell.normals.reach();
     rises && least * cosine > across * sine

@@ -14,10 +14,10 @@ use super::search::{apart, crosses, inside};
 use super::sheet::{Cell, Patch, patches};
 use crate::base::bbox::Box3;
 use crate::base::job;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::surface::core::{Domain, Side, Surface};
-use crate::surface::spread::Strip;
+use crate::surface::enclosure::Strip;
 
 /// Pairs that are looked at, at most, and what a place that is solved for counts.
 const MOST_PAIRS: usize = 12_000;
@@ -295,6 +295,6 @@ fn middle((low, high): (f64, f64), breaks: &[f64]) -> Option<f64> {
 fn one_sided(cells: &[&Cell]) -> bool {
     let way: DVec3 = cells.iter().map(|c| c.normal).sum();
     let way = way.normalize_or_zero();
-    let ahead = |du: &Ranges, dv: &Ranges| du.cross(dv).along(way).low > 0.0;
-    way != DVec3::ZERO && cells.iter().all(|a| cells.iter().all(|b| ahead(&a.spread.du, &b.spread.dv)))
+    let ahead = |du: &Interval3, dv: &Interval3| du.cross(dv).along(way).low > 0.0;
+    way != DVec3::ZERO && cells.iter().all(|a| cells.iter().all(|b| ahead(&a.enclosure.du, &b.enclosure.dv)))
 }

@@ -83,7 +83,7 @@ impl Search<'_> {
             return Ok(());
         }
         if self.looked_at > MOST_PAIRS {
-            return Err(Stopped::Lost(x.spread.mid.p));
+            return Err(Stopped::Lost(x.enclosure.mid.p));
         }
         let fine = x.thick.max(y.thick) <= FINE * self.point;
         // Flat cells that part by no more than a few tolerances run along each other.
@@ -135,7 +135,7 @@ impl Search<'_> {
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         let (mut a, mut b) = (x.middle(), y.middle());
         let mut gap = f64::INFINITY;
-        let mut at = x.spread.mid.p;
+        let mut at = x.enclosure.mid.p;
         for _ in 0..ROUNDS {
             job::look();
             b = y.hold(self.b.patch.foot(self.a.patch.jet(a).p, b).0);
@@ -151,8 +151,8 @@ impl Search<'_> {
         self.touched = self.touched.union(extent);
         self.common.touches.push(extent);
         // A single touch may have many cells where parameters crowd, at a pole.
-        let spread = self.touched.diagonal() > self.long;
-        if self.common.touches.len() > if spread { MOST_TOUCHES } else { MOST_PAIRS / 4 } { Err(Stopped::Along(at)) } else { Ok(()) }
+        let enclosure = self.touched.diagonal() > self.long;
+        if self.common.touches.len() > if enclosure { MOST_TOUCHES } else { MOST_PAIRS / 4 } { Err(Stopped::Along(at)) } else { Ok(()) }
     }
 }
 

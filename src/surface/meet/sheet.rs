@@ -3,13 +3,13 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::range::{Range, Ranges};
+use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, SINGULAR};
 use crate::surface::core::{Domain, Jet2, Surface};
+use crate::surface::enclosure::Enclosure;
 use crate::surface::foot::{self, Footing};
 use crate::surface::plane;
-use crate::surface::rail::Lean;
-use crate::surface::spread::Spread;
+use crate::surface::rail::OneSided;
 
 /// A part of a surface over a rectangle of (u, v) inside which it has no kink.
 #[derive(Clone, Debug)]
@@ -37,8 +37,8 @@ impl Patch {
 impl Footing for Patch {
     /// Point and derivatives from inside the patch.
     fn jet(&self, uv: DVec2) -> Jet2 {
-        let lean = |x: f64, high: f64| if x >= high { Lean::Before } else { Lean::After };
-        self.surface.jet_lean(uv.x, uv.y, (lean(uv.x, self.u.1), lean(uv.y, self.v.1)))
+        let lean = |x: f64, high: f64| if x >= high { OneSided::Before } else { OneSided::After };
+        self.surface.jet_one_sided(uv.x, uv.y, (lean(uv.x, self.u.1), lean(uv.y, self.v.1)))
     }
 
     /// The nearest place of the patch.
@@ -120,13 +120,13 @@ impl Line {
 pub(super) struct Cell {
     pub u: (f64, f64),
     pub v: (f64, f64),
-    pub spread: Spread,
+    pub enclosure: Enclosure,
     /// Box of its points.
     pub bounds: Box3,
     /// Unit normal in the middle; zero where there is none.
     pub normal: DVec3,
     /// All vectors du × dv.
-    pub normals: Ranges,
+    pub normals: Interval3,
     /// How far points are from the tangent plane of the middle, at most.
     pub thick: f64,
     /// Lengths along u and v, at most.
@@ -136,20 +136,20 @@ pub(super) struct Cell {
 
 impl Cell {
     pub fn new(patch: &Patch, u: (f64, f64), v: (f64, f64)) -> Self {
-        Self::of(patch.surface.spread(u, v), u, v)
+        Self::of(patch.surface.enclosure(u, v), u, v)
     }
 
     /// From bounds over the rectangle.
-    pub fn of(spread: Spread, u: (f64, f64), v: (f64, f64)) -> Self {
-        let normals = spread.du.cross(&spread.dv);
-        let mid = spread.mid.du.cross(spread.mid.dv);
-        let scale = spread.mid.du.length() * spread.mid.dv.length();
+    pub fn of(enclosure: Enclosure, u: (f64, f64), v: (f64, f64)) -> Self {
+        let normals = enclosure.du.cross(&enclosure.dv);
+        let mid = enclosure.mid.du.cross(enclosure.mid.dv);
+        let scale = enclosure.mid.du.length() * enclosure.mid.dv.length();
         let normal = if mid.length() > SINGULAR * scale { mid.normalize_or_zero() } else { DVec3::ZERO };
-        let (a, b) = spread.half;
-        let most = |r: &Ranges| if r.is_vast() { f64::INFINITY } else { r.reach() };
-        let thick = 0.5 * a * a * most(&spread.duu) + a * b * most(&spread.duv) + 0.5 * b * b * most(&spread.dvv);
-        let size = (2.0 * a * most(&spread.du), 2.0 * b * most(&spread.dv));
-        Self { u, v, bounds: spread.p.bounds(), normal, normals, thick, size, spread, halves: None }
+        let (a, b) = enclosure.half;
+        let most = |r: &Interval3| if r.is_unbounded() { f64::INFINITY } else { r.reach() };
+        let thick = 0.5 * a * a * most(&enclosure.duu) + a * b * most(&enclosure.duv) + 0.5 * b * b * most(&enclosure.dvv);
+        let size = (2.0 * a * most(&enclosure.du), 2.0 * b * most(&enclosure.dv));
+        Self { u, v, bounds: enclosure.p.bounds(), normal, normals, thick, size, enclosure, halves: None }
     }
 
     /// Its middle in (u, v).
@@ -162,13 +162,13 @@ impl Cell {
         self.size.0.max(self.size.1)
     }
 
-    /// Range of the points along a vector.
-    pub fn along(&self, n: DVec3) -> Range {
-        let (s, (a, b)) = (&self.spread, self.spread.half);
-        let (ra, rb) = (Range::around_zero(a), Range::around_zero(b));
-        let square = |h: f64| Range { low: 0.0, high: 0.5 * h * h };
-        let bent = s.duu.along(n) * square(a) + s.duv.along(n) * Range::around_zero(a * b) + s.dvv.along(n) * square(b);
-        let straight = Range::at(s.mid.p.dot(n)) + ra * s.mid.du.dot(n) + rb * s.mid.dv.dot(n);
+    /// Interval of the points along a vector.
+    pub fn along(&self, n: DVec3) -> Interval {
+        let (s, (a, b)) = (&self.enclosure, self.enclosure.half);
+        let (ra, rb) = (Interval::around_zero(a), Interval::around_zero(b));
+        let square = |h: f64| Interval { low: 0.0, high: 0.5 * h * h };
+        let bent = s.duu.along(n) * square(a) + s.duv.along(n) * Interval::around_zero(a * b) + s.dvv.along(n) * square(b);
+        let straight = Interval::at(s.mid.p.dot(n)) + ra * s.mid.du.dot(n) + rb * s.mid.dv.dot(n);
         (straight + bent).intersection(s.p.along(n))
     }
 
@@ -233,9 +233,9 @@ impl Sheet {
         let (u, v) = (self.cells[k].u, self.cells[k].v);
         let along_u = {
             let cell = &self.cells[k];
-            let (a, b) = cell.spread.half;
-            let bend = |r: &Ranges, h: f64| if r.is_vast() { f64::INFINITY } else { r.reach() * h * h };
-            let (bend_u, bend_v) = (bend(&cell.spread.duu, a), bend(&cell.spread.dvv, b));
+            let (a, b) = cell.enclosure.half;
+            let bend = |r: &Interval3, h: f64| if r.is_unbounded() { f64::INFINITY } else { r.reach() * h * h };
+            let (bend_u, bend_v) = (bend(&cell.enclosure.duu, a), bend(&cell.enclosure.dvv, b));
             // The longer way, unless only the other one is bent and it is not much shorter.
             const SHORTER: f64 = 16.0;
             let score = |size: f64, bend: f64, other: f64| if bend > other { size * SHORTER } else { size };

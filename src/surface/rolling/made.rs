@@ -17,7 +17,7 @@ use crate::surface::core::{Jet2, Parts, Surface, SurfaceKind};
 use crate::surface::extrude::extrude;
 use crate::surface::iso::IsoLine;
 use crate::surface::nurbs::NurbsSurface;
-use crate::surface::rail::Lean;
+use crate::surface::rail::OneSided;
 use crate::surface::revolve::{Axis, revolve};
 
 /// Share of the tolerance within which a net keeps to the ball.
@@ -153,7 +153,7 @@ fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Stat
     const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
     let piece = net(&[*a, *b], radius);
     let allowed = SHARE * ball.tolerance.point;
-    let lean = (Lean::After, Lean::After);
+    let lean = (OneSided::After, OneSided::After);
     let mut middle = None;
     let mut near = true;
     for u in PLACES {

@@ -14,9 +14,9 @@ use crate::geometry::curve::Shape as CurveShape;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::core::{Border, Domain, Parts, Side as Edge, Surface, SurfaceKind};
-use crate::surface::pull::{Course, Pull};
+use crate::surface::pcurve::{Pcurve, TrimCurve};
 use crate::surface::shape::Shape;
-use crate::surface::trim::{Walk, assembled};
+use crate::surface::trim::{TrimLoop, assembled};
 
 /// A side of the border: its two points, and the piece that lies along it.
 #[derive(Clone, Copy, Debug)]
@@ -144,15 +144,15 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
     if square {
         return Ok(base);
     }
-    let mut walk = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
     for (curve, start) in curves.iter().zip(corners) {
         let chain = Chain::of_curve(curve);
-        let pull = Pull::follow(&base, (&chain, 0.0, 1.0), start, tolerance.point).map_err(|off| {
+        let pcurve = Pcurve::follow(&base, (&chain, 0.0, 1.0), start, tolerance.point).map_err(|off| {
             let (off, at) = (off.distance, off.at);
             Fault::from(SurfaceFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
         })?;
         walk.borders.push(Border::chain(chain.clone(), false));
-        walk.courses.push(Course::Pull(Arc::new(pull)));
+        walk.courses.push(TrimCurve::Pcurve(Arc::new(pcurve)));
         walk.chains.push(chain);
     }
     let made = assembled(&base, vec![walk], origin)?;

@@ -5,8 +5,8 @@
 use glam::DVec2;
 
 use super::field::{Height, Heights};
-use crate::base::digest::{Content, Digester};
-use crate::base::range::Range;
+use crate::base::digest::{StableHash, StableHasher};
+use crate::base::range::Interval;
 
 /// Where the ordinate with these three indices of corners stands in the row of ten.
 const fn place(a: usize, b: usize, c: usize) -> usize {
@@ -50,8 +50,8 @@ pub struct Piece {
     gradients: [DVec2; 3],
 }
 
-impl Content for Piece {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Piece {
+    fn tell(&self, to: &mut StableHasher) {
         (self.corners.map(|c| (c.x, c.y)), self.ordinates).tell(to);
     }
 }
@@ -108,7 +108,7 @@ impl Piece {
         }
     }
 
-    /// Ranges over the part of it in a rectangle: Taylor's formula about the middle of that part's box, with second derivatives
+    /// Interval3 over the part of it in a rectangle: Taylor's formula about the middle of that part's box, with second derivatives
     /// that are linear, and the hulls of Bézier ordinates.
     pub fn heights(&self, low: DVec2, high: DVec2) -> Heights {
         let (own_low, own_high) = self.bounds();
@@ -120,15 +120,15 @@ impl Piece {
         let over = |k: usize| {
             let slope: DVec2 = (0..3).map(|c| g[c] * ends[c][k]).sum();
             let off = slope.abs().dot(half);
-            Range { low: at.d2[k] - off, high: at.d2[k] + off }
+            Interval { low: at.d2[k] - off, high: at.d2[k] + off }
         };
         let second = [0, 1, 2].map(over);
-        let (a, b) = (Range::around_zero(half.x), Range::around_zero(half.y));
-        let d1 = [second[0] * a + second[1] * b + Range::at(at.d1.x), second[1] * a + second[2] * b + Range::at(at.d1.y)];
-        let square = |h: f64| Range { low: 0.0, high: 0.5 * h * h };
-        let bent = second[0] * square(half.x) + second[1] * Range::around_zero(half.x * half.y) + second[2] * square(half.y);
-        let h = a * at.d1.x + b * at.d1.y + bent + Range::at(at.h);
-        let hull = |values: &[f64]| values.iter().fold(Range::at(values[0]), |r, x| r.union(Range::at(*x)));
+        let (a, b) = (Interval::around_zero(half.x), Interval::around_zero(half.y));
+        let d1 = [second[0] * a + second[1] * b + Interval::at(at.d1.x), second[1] * a + second[2] * b + Interval::at(at.d1.y)];
+        let square = |h: f64| Interval { low: 0.0, high: 0.5 * h * h };
+        let bent = second[0] * square(half.x) + second[1] * Interval::around_zero(half.x * half.y) + second[2] * square(half.y);
+        let h = a * at.d1.x + b * at.d1.y + bent + Interval::at(at.h);
+        let hull = |values: &[f64]| values.iter().fold(Interval::at(values[0]), |r, x| r.union(Interval::at(*x)));
         let slopes = self.slopes();
         let known = |k: usize| hull(&slopes.map(|d| d[k]));
         Heights {

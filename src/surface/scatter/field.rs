@@ -10,12 +10,12 @@ use glam::{DVec2, DVec3};
 
 use super::element::Piece;
 use crate::base::bbox::Box3;
-use crate::base::range::Range;
+use crate::base::range::Interval;
 use crate::base::tolerance::{BESIDE_TRIANGLE, EPSILON, NUDGE};
 use crate::geometry::Motion;
 use crate::surface::Jet2;
+use crate::surface::enclosure::Enclosure;
 use crate::surface::plane::Frame;
-use crate::surface::spread::Spread;
 
 /// Cells of the table in each direction at most.
 const MOST_CELLS: usize = 1 << 9;
@@ -31,20 +31,20 @@ pub struct Height {
     pub d2: [f64; 3],
 }
 
-/// Ranges of the same.
+/// Interval3 of the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Heights {
     /// Value.
-    pub h: Range,
+    pub h: Interval,
     /// ∂u, ∂v.
-    pub d1: [Range; 2],
+    pub d1: [Interval; 2],
     /// ∂uu, ∂uv, ∂vv.
-    pub d2: [Range; 3],
+    pub d2: [Interval; 3],
 }
 
 impl Heights {
     fn union(self, other: Self) -> Self {
-        let each = |a: &[Range], b: &[Range], k: usize| a[k].union(b[k]);
+        let each = |a: &[Interval], b: &[Interval], k: usize| a[k].union(b[k]);
         Self {
             h: self.h.union(other.h),
             d1: [0, 1].map(|k| each(&self.d1, &other.d1, k)),
@@ -88,8 +88,8 @@ fn stretch<const N: usize>(ordinates: [f64; N], from: f64, to: f64) -> [f64; N] 
     })
 }
 
-fn hull<const N: usize>(values: [f64; N]) -> Range {
-    values.into_iter().map(Range::at).fold(Range::at(values[0]), Range::union)
+fn hull<const N: usize>(values: [f64; N]) -> Interval {
+    values.into_iter().map(Interval::at).fold(Interval::at(values[0]), Interval::union)
 }
 
 /// The surface: a frame and a height along a vector.
@@ -103,7 +103,7 @@ pub struct Field {
     rims: Arc<Vec<Rim>>,
     table: Arc<Table>,
     /// Heights over the square.
-    reach: Range,
+    reach: Interval,
 }
 
 crate::content!(Field { frame, normal, pieces } but { size, rims, table, reach });
@@ -163,7 +163,7 @@ impl Field {
         };
         let rims = Arc::new(rim.iter().map(side).collect());
         let table = Arc::new(Table::new(&pieces));
-        let mut made = Self { frame, normal, size, pieces: Arc::new(pieces), rims, table, reach: Range::default() };
+        let mut made = Self { frame, normal, size, pieces: Arc::new(pieces), rims, table, reach: Interval::default() };
         made.reach = made.heights((0.0, 1.0), (0.0, 1.0)).h;
         made
     }
@@ -273,12 +273,12 @@ impl Field {
     }
 
     /// Bounds over a rectangle.
-    pub fn spread(&self, u: (f64, f64), v: (f64, f64)) -> Spread {
+    pub fn enclosure(&self, u: (f64, f64), v: (f64, f64)) -> Enclosure {
         let middle = DVec2::new(0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
         let found = self.heights(u, v);
-        let up = |range: Range| range * self.normal;
-        let level = |low: f64, high: f64, vector: DVec3| Range { low, high } * vector;
-        Spread {
+        let up = |range: Interval| range * self.normal;
+        let level = |low: f64, high: f64, vector: DVec3| Interval { low, high } * vector;
+        Enclosure {
             mid: self.jet(middle.x, middle.y),
             half: (0.5 * (u.1 - u.0), 0.5 * (v.1 - v.0)),
             p: up(found.h) + level(u.0, u.1, self.frame.eu) + level(v.0, v.1, self.frame.ev) + self.frame.origin,
@@ -290,7 +290,7 @@ impl Field {
         }
     }
 
-    /// Ranges of the height over a rectangle: those of every piece that meets it, and of what is beyond the border there.
+    /// Interval3 of the height over a rectangle: those of every piece that meets it, and of what is beyond the border there.
     fn heights(&self, u: (f64, f64), v: (f64, f64)) -> Heights {
         let (low, high) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
         let ((i0, i1), (j0, j1)) = (span(self.table.cells, u.0, u.1), span(self.table.cells, v.0, v.1));
@@ -311,10 +311,10 @@ impl Field {
                 add(self.outside(rim, &corners, off.into_iter().fold(0.0, f64::max)));
             }
         }
-        whole.unwrap_or(Heights { h: Range::default(), d1: [Range::default(); 2], d2: [Range::default(); 3] })
+        whole.unwrap_or(Heights { h: Interval::default(), d1: [Interval::default(); 2], d2: [Interval::default(); 3] })
     }
 
-    /// Ranges of what goes on beyond a side and its ends, as far as a rectangle with these corners (model units) reaches.
+    /// Interval3 of what goes on beyond a side and its ends, as far as a rectangle with these corners (model units) reaches.
     fn outside(&self, rim: &Rim, corners: &[DVec2; 4], far: f64) -> Heights {
         let piece = &self.pieces[rim.piece];
         let (t, n) = (rim.along, -rim.along.perp());
@@ -329,17 +329,17 @@ impl Field {
             DVec2::new(bend.dot(t), bend.dot(n))
         };
         let (a, b) = (bend(0).lerp(bend(1), from), bend(0).lerp(bend(1), to));
-        let (along, across) = (Range::between(a.x, b.x), Range::between(a.y, b.y));
+        let (along, across) = (Interval::between(a.x, b.x), Interval::between(a.y, b.y));
         let slopes = piece.side_slopes().map(|d| d / self.size);
         let slope = |axis: usize| hull(stretch(slopes.map(|d| d[axis]), from, to));
-        let depth = Range { low: 0.0, high: far };
+        let depth = Interval { low: 0.0, high: far };
         let d1 = [0, 1].map(|k| slope(k) + across * depth * t[k]);
         let d2 =
-            [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (along * (t[i] * t[j]) + across * (t[i] * n[j] + t[j] * n[i])).union(Range::at(0.0)));
+            [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (along * (t[i] * t[j]) + across * (t[i] * n[j] + t[j] * n[i])).union(Interval::at(0.0)));
         // From feet to the rectangle.
         let feet = [from, to].map(|s| rim.ends[0].lerp(rim.ends[1], s));
         let arms = corners.iter().flat_map(|p| feet.map(|foot| *p - foot));
-        let arm = |k: usize| arms.clone().map(|d| Range::at(d[k])).fold(Range::at(0.0), Range::union);
+        let arm = |k: usize| arms.clone().map(|d| Interval::at(d[k])).fold(Interval::at(0.0), Interval::union);
         let h = hull(stretch(piece.side_heights(), from, to)) + slope(0) * arm(0) + slope(1) * arm(1);
         let (w, l) = (self.size.x, self.size.y);
         Heights { h, d1: [d1[0] * w, d1[1] * l], d2: [d2[0] * (w * w), d2[1] * (w * l), d2[2] * (l * l)] }
@@ -358,15 +358,15 @@ impl Field {
     pub fn strips(&self, within: f64) -> (f64, DVec3) {
         /// A cubic over a step h is off by this share of a jump of the second derivative times h².
         const OFF: f64 = 1.0 / 64.0;
-        let mut around: BTreeMap<[u64; 2], (DVec2, [Range; 3])> = BTreeMap::new();
+        let mut around: BTreeMap<[u64; 2], (DVec2, [Interval; 3])> = BTreeMap::new();
         for piece in self.pieces.iter() {
             for corner in &piece.corners[..2] {
-                let own = piece.height(*corner).d2.map(Range::at);
+                let own = piece.height(*corner).d2.map(Interval::at);
                 let known = around.entry([corner.x.to_bits(), corner.y.to_bits()]).or_insert((*corner, own));
                 known.1 = [0, 1, 2].map(|k| known.1[k].union(own[k]));
             }
         }
-        let jump = |ranges: &[Range; 3]| ranges.iter().map(|r| r.high - r.low).fold(0.0, f64::max) * self.normal.length();
+        let jump = |ranges: &[Interval; 3]| ranges.iter().map(|r| r.high - r.low).fold(0.0, f64::max) * self.normal.length();
         let worst = around.values().max_by(|a, b| jump(&a.1).total_cmp(&jump(&b.1)));
         let inside = worst.map_or((0.0, self.frame.origin), |(at, ranges)| ((OFF * jump(ranges) / within).sqrt(), self.jet(at.x, at.y).p));
         let outside = self.rims.iter().map(|rim| self.creases(rim, within));

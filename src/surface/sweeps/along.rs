@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::super::core::{Border, Domain, Parts, Side, Surface, SurfaceKind};
 use super::super::extrude::{extrude, kinked, sweeps_area};
 use super::super::flow_words::phrase;
-use super::super::rail::{Lean, Rail};
+use super::super::rail::{OneSided, Rail};
 use super::super::reparam::{Map, Reparam};
 use super::super::revolve::{Axis, revolve};
 use super::super::shape::Shape;
@@ -192,7 +192,7 @@ fn folds(surface: &Surface, path: &Chain, fraction: &dyn Fn(f64) -> Option<f64>,
     let (us, vs) = surface.breaks();
     let path_breaks = super::super::chain_breaks(path);
     let (us, vs) = (inside(if us.is_empty() { path_breaks } else { us }), inside(vs));
-    let lean = |list: &[f64]| list.iter().map(|x| (*x, Lean::After)).collect::<Vec<_>>();
+    let lean = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<_>>();
     let jets = surface.jets(&lean(&us), &lean(&vs));
     let mut worst: Option<(f64, usize)> = None;
     for (k, jet) in jets.iter().enumerate() {

@@ -7,7 +7,7 @@ use super::super::coons::{Made, finish};
 use super::super::core::{Parts, Surface, SurfaceKind};
 use super::super::flow_words::phrase;
 use super::super::gordon::{CurveNet, Named, gordon};
-use super::super::rail::{Lean, Rail};
+use super::super::rail::{OneSided, Rail};
 use super::super::reparam::{Map, Reparam};
 use super::super::weights::{Axis, Rule};
 use super::laws::Law;
@@ -253,7 +253,7 @@ fn contains(surface: &Surface, net: &SweepNet, tolerance: &Tolerance) -> Result<
         for k in 0..=PLACES {
             let v = k as f64 / PLACES as f64;
             let p = rib.chain.point(map.value(v));
-            if far(surface.jet_lean(u, v, (Lean::After, Lean::After)).p, p) {
+            if far(surface.jet_one_sided(u, v, (OneSided::After, OneSided::After)).p, p) {
                 return Err(fault(p));
             }
         }

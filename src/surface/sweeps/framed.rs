@@ -4,9 +4,9 @@ use glam::{DMat3, DVec3};
 
 use super::super::Jet2;
 use super::super::breaks::tidy;
+use super::super::enclosure::Enclosure;
 use super::super::line::Line;
-use super::super::rail::{Lean, Rail};
-use super::super::spread::Spread;
+use super::super::rail::{OneSided, Rail};
 use super::matrices::{At, Matrices, Over, times};
 use crate::base::bbox::Box3;
 use crate::base::par;
@@ -54,12 +54,12 @@ impl Framed {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (Lean, Lean)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
         self.carried(&self.path.jet(u, lean.0), &self.turn.at(u, lean.0), &self.profile.jet(v, lean.1))
     }
 
     /// Where a point of the profile, with its derivatives, is carried.
-    pub fn jet_of(&self, g: &Jet, u: f64, lean: Lean) -> Jet2 {
+    pub fn jet_of(&self, g: &Jet, u: f64, lean: OneSided) -> Jet2 {
         self.carried(&self.path.jet(u, lean), &self.turn.at(u, lean), g)
     }
 
@@ -83,7 +83,7 @@ impl Framed {
     /// Points of the tensor grid, u fastest: path and frame are evaluated once per column, the profile once per row.
     pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
         let (profile, path) = (self.profile.points(vs), self.path.points(us));
-        let turns: Vec<DMat3> = us.iter().map(|&u| self.turn.at(u, Lean::After)[0]).collect();
+        let turns: Vec<DMat3> = us.iter().map(|&u| self.turn.at(u, OneSided::After)[0]).collect();
         let width = us.len().max(1);
         par::chunks_mut(out, width * ROWS, |chunk, part| {
             for (row, g) in part.chunks_exact_mut(width).zip(&profile[(chunk * ROWS).min(vs.len())..]) {
@@ -94,7 +94,7 @@ impl Framed {
     }
 
     /// Jets of the tensor grid, u fastest.
-    pub fn jets(&self, us: &[(f64, Lean)], vs: &[(f64, Lean)], out: &mut Vec<Jet2>) {
+    pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
         let columns: Vec<(Jet, At)> = us.iter().map(|&(u, lean)| (self.path.jet(u, lean), self.turn.at(u, lean))).collect();
         for &(v, lean) in vs {
             let g = self.profile.jet(v, lean);
@@ -110,12 +110,12 @@ impl Framed {
 
     /// What depends on u alone, between two values with one formula.
     pub fn strip(&self, (u0, u1): (f64, f64)) -> FramedStrip {
-        let middle = self.turn.at(0.5 * (u0 + u1), Lean::After);
+        let middle = self.turn.at(0.5 * (u0 + u1), OneSided::After);
         FramedStrip { path: self.path.line(u0, u1), middle, over: self.turn.over((u0, u1)) }
     }
 
     /// Bounds over the rectangle of a strip and a stretch of the profile.
-    pub fn spread(&self, strip: &FramedStrip, half: (f64, f64), line: &Line) -> Spread {
+    pub fn enclosure(&self, strip: &FramedStrip, half: (f64, f64), line: &Line) -> Enclosure {
         let [k, k1, k2] = &strip.middle;
         let (arm, arms) = (line.mid.p - self.foot, line.p() + -self.foot);
         let m = &strip.path;
@@ -125,7 +125,7 @@ impl Framed {
             times(&strip.over[0], k, &line.d2, line.mid.d2),
         ];
         let first = [m.d1 + times(&strip.over[1], k1, &arms, arm), times(&strip.over[0], k, &line.d1, line.mid.d1)];
-        Spread::new(self.carried(&m.mid, &strip.middle, &line.mid), half, second, Some(first))
+        Enclosure::new(self.carried(&m.mid, &strip.middle, &line.mid), half, second, Some(first))
     }
 
     /// Interior parameters where the shape is less than analytic.

@@ -48,7 +48,7 @@ pub fn no_frame(path: &Chain, (a, b): (f64, f64)) -> Fault {
 }
 
 impl<'a> Legs<'a> {
-    /// Carries a frame along the whole path; a closed path gets what its frame lacks spread over its length, then `twist`.
+    /// Carries a frame along the whole path; a closed path gets what its frame lacks enclosure over its length, then `twist`.
     ///
     /// E636 where the path turns back on itself.
     pub fn new(path: &'a Chain, twist: f64, tolerance: &Tolerance) -> Result<Self> {

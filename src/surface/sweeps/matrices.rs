@@ -5,11 +5,11 @@
 
 use glam::{DMat3, DVec3};
 
-use super::super::rail::Lean;
-use crate::base::digest::{Content, Digester};
+use super::super::rail::OneSided;
+use crate::base::digest::{StableHash, StableHasher};
 use crate::base::job;
 use crate::base::math;
-use crate::base::range::Ranges;
+use crate::base::range::Interval3;
 use crate::base::tolerance::{EPSILON, FRAME};
 
 /// Degree of a fitted piece.
@@ -31,10 +31,10 @@ pub struct Matrices {
 pub type At = [DMat3; 3];
 
 /// The same over a stretch: bounds of the columns, then of those of both derivatives.
-pub type Over = [[Ranges; 3]; 3];
+pub type Over = [[Interval3; 3]; 3];
 
-impl Content for Matrices {
-    fn tell(&self, to: &mut Digester) {
+impl StableHash for Matrices {
+    fn tell(&self, to: &mut StableHasher) {
         self.stops.tell(to);
         for piece in &self.pieces {
             piece.len().tell(to);
@@ -75,13 +75,13 @@ impl Matrices {
         depth > 0 && self.halved((a, middle), of, depth - 1) && self.halved((middle, b), of, depth - 1)
     }
 
-    fn piece_at(&self, u: f64, lean: Lean) -> usize {
+    fn piece_at(&self, u: f64, lean: OneSided) -> usize {
         let inner = &self.stops[1..self.stops.len() - 1];
-        inner.partition_point(|&x| if lean == Lean::Before { x < u - EPSILON } else { x <= u + EPSILON })
+        inner.partition_point(|&x| if lean == OneSided::Before { x < u - EPSILON } else { x <= u + EPSILON })
     }
 
     /// Value and derivatives, from the given side at a stop.
-    pub fn at(&self, u: f64, lean: Lean) -> At {
+    pub fn at(&self, u: f64, lean: OneSided) -> At {
         let k = self.piece_at(u, lean);
         let (a, b) = (self.stops[k], self.stops[k + 1]);
         let by = 2.0 / (b - a);
@@ -98,7 +98,7 @@ impl Matrices {
 
     /// Bounds between two parameters of one piece.
     pub fn over(&self, (u0, u1): (f64, f64)) -> Over {
-        let k = self.piece_at(0.5 * (u0 + u1), Lean::After);
+        let k = self.piece_at(0.5 * (u0 + u1), OneSided::After);
         let (a, b) = (self.stops[k], self.stops[k + 1]);
         let by = 2.0 / (b - a);
         let (middle, half) = ((0.5 * (u0 + u1) - 0.5 * (a + b)) * by, 0.5 * (u1 - u0) * by);
@@ -106,13 +106,13 @@ impl Matrices {
         [0, 1, 2].map(|order| {
             let scale = math::powi(by, order);
             [0, 1, 2].map(|column| {
-                let mut range = Ranges::default();
+                let mut range = Interval3::default();
                 let mut power = 1.0;
                 for (n, c) in shifted.iter().enumerate().skip(order as usize) {
                     // n (n − 1) … over the order of the derivative.
                     let factor: f64 = (0..order as usize).map(|j| (n - j) as f64).product();
                     let share = c.col(column) * (factor * power * scale);
-                    range = range + if n == order as usize { Ranges::at(share) } else { Ranges::around_zero(share.abs()) };
+                    range = range + if n == order as usize { Interval3::at(share) } else { Interval3::around_zero(share.abs()) };
                     power *= half;
                 }
                 range
@@ -212,7 +212,7 @@ fn shifted(piece: &Piece, middle: f64) -> Piece {
 }
 
 /// Bounds of K·w for columns known within ranges about `middle` and a vector within ranges about `at`.
-pub fn times(columns: &[Ranges; 3], middle: &DMat3, w: &Ranges, at: DVec3) -> Ranges {
+pub fn times(columns: &[Interval3; 3], middle: &DMat3, w: &Interval3, at: DVec3) -> Interval3 {
     let (rest, still) = (*w + -at, *middle * at);
     let part = |k: usize| rest.coordinate(k) * middle.col(k) + (columns[k] + -middle.col(k)) * w.coordinate(k);
     part(0) + part(1) + part(2) + still

@@ -1,7 +1,7 @@
 //! What a net's surface says of itself: its stations, and how smooth it is across them.
 
 use super::super::core::{Surface, SurfaceKind};
-use super::super::rail::{Lean, Rail};
+use super::super::rail::{OneSided, Rail};
 use super::super::shape::Shape;
 use crate::base::math;
 use crate::network::Chain;
@@ -35,11 +35,11 @@ impl Surface {
         let (axis_u, axis_v) = blend.axes();
         let (us, vs) = (inner(&axis_u.nodes, own_kinks(blend.along_u())), inner(&axis_v.nodes, own_kinks(blend.along_v())));
         let place = |k: usize| (k as f64 + 0.5) / PLACES as f64;
-        let (before, after) = (Lean::Before, Lean::After);
+        let (before, after) = (OneSided::Before, OneSided::After);
         let across_u = us.iter().flat_map(|&u| (0..PLACES).map(move |k| (u, place(k), [(before, after), (after, after)])));
         let across_v = vs.iter().flat_map(|&v| (0..PLACES).map(move |k| (place(k), v, [(after, before), (after, after)])));
-        let angle = |(u, v, [a, b]): (f64, f64, [(Lean, Lean); 2])| {
-            let (a, b) = (self.jet_lean(u, v, a), self.jet_lean(u, v, b));
+        let angle = |(u, v, [a, b]): (f64, f64, [(OneSided, OneSided); 2])| {
+            let (a, b) = (self.jet_one_sided(u, v, a), self.jet_one_sided(u, v, b));
             let (a, b) = (a.du.cross(a.dv), b.du.cross(b.dv));
             if a.length_squared() == 0.0 || b.length_squared() == 0.0 { 0.0 } else { math::angle_between(a, b) }
         };

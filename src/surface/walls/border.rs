@@ -12,9 +12,9 @@ use crate::surface::breaks::chain_breaks;
 use crate::surface::core::{Border, Domain, Jet2, Parts, Side, Surface};
 use crate::surface::foot::step;
 use crate::surface::offset::slopes;
-use crate::surface::pull::{Course, foot};
-use crate::surface::rail::Lean;
-use crate::surface::trim::{Walk, natural};
+use crate::surface::pcurve::{TrimCurve, foot};
+use crate::surface::rail::OneSided;
+use crate::surface::trim::{TrimLoop, natural};
 
 /// Share of the tolerance within which copies of a border are.
 const SHARE: f64 = 0.125;
@@ -30,7 +30,7 @@ const STEP: f64 = NUDGE;
 pub struct Boundary {
     surface: Surface,
     side: Side,
-    course: Course,
+    course: TrimCurve,
     /// The part of the course that it is; of a closed one it may run on beyond 1.
     part: (f64, f64),
 }
@@ -75,9 +75,9 @@ pub(in crate::surface) fn whole(surface: &Surface, tolerance: &Tolerance) -> Sur
 }
 
 /// The borders of all loops of a face, loop by loop; `None` for poles and for seams, across which the face goes on.
-pub fn boundaries(surface: &Surface, walks: &[Walk], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
+pub fn boundaries(surface: &Surface, walks: &[TrimLoop], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
     let below = whole(surface, tolerance);
-    let each = |walk: &Walk| {
+    let each = |walk: &TrimLoop| {
         let seams = seams(surface, &below, walk);
         let one = |k: usize| {
             let pole = matches!(walk.borders[k].side, Side::Pole(_));
@@ -104,7 +104,7 @@ pub(in crate::surface) fn border_chains(surface: &Surface, tolerance: &Tolerance
 }
 
 /// Which borders of a loop are seams across which the face goes on: its loop runs along both sides of them.
-fn seams(surface: &Surface, below: &Surface, walk: &Walk) -> Vec<bool> {
+fn seams(surface: &Surface, below: &Surface, walk: &TrimLoop) -> Vec<bool> {
     let closed = surface.closed();
     let on_seam = |k: usize| !matches!(walk.borders[k].side, Side::Pole(_)) && walk.courses[k].is_seam(closed);
     let middle = |k: usize| Boundary::of(below, walk, k).jet(0.5, false).map(|jet| jet.p);
@@ -119,18 +119,18 @@ fn seams(surface: &Surface, below: &Surface, walk: &Walk) -> Vec<bool> {
 
 impl Boundary {
     /// Border `k` of a loop of the face over a surface.
-    fn of(below: &Surface, walk: &Walk, k: usize) -> Self {
+    fn of(below: &Surface, walk: &TrimLoop, k: usize) -> Self {
         Self { surface: below.clone(), side: walk.borders[k].side.clone(), course: walk.courses[k].clone(), part: (0.0, 1.0) }
     }
 
     /// Parameters along the border, ends included, between which it has no corner.
     pub fn stops(&self) -> Vec<f64> {
         let inner: Vec<f64> = match (&self.course, &self.side) {
-            (Course::Pull(pull), Side::Chain { chain, .. }) => {
-                let (from, to) = (pull.fraction(0.0), pull.fraction(1.0));
+            (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
+                let (from, to) = (pcurve.fraction(0.0), pcurve.fraction(1.0));
                 chain_breaks(chain).into_iter().map(|f| (f - from) / (to - from)).collect()
             }
-            (Course::Line(a, b), _) => {
+            (TrimCurve::Line(a, b), _) => {
                 let (us, vs) = self.surface.breaks();
                 let along = |x: f64, a: f64, b: f64| if a == b { f64::NAN } else { (x - a) / (b - a) };
                 us.iter().map(|u| along(*u, a.0, b.0)).chain(vs.iter().map(|v| along(*v, a.1, b.1))).collect()
@@ -149,11 +149,11 @@ impl Boundary {
     /// The place at a parameter from 0 to 1; `before`: of the piece that ends there. `None` where nothing is known of it.
     pub fn jet(&self, t: f64, before: bool) -> Option<BoundaryJet> {
         let (uv, p, d1, way) = self.place(t, before)?;
-        let lean = |x: f64| if x < 0.0 { Lean::Before } else { Lean::After };
+        let lean = |x: f64| if x < 0.0 { OneSided::Before } else { OneSided::After };
         let way = if before { -way } else { way };
         let leans = (lean(way.x), lean(way.y));
         let normal = self.surface.normal_lean(uv.x, uv.y, leans);
-        let jet = self.surface.jet_lean(uv.x, uv.y, leans);
+        let jet = self.surface.jet_one_sided(uv.x, uv.y, leans);
         let along = if before { -way } else { way };
         let turn = match slopes(&jet) {
             Some((nu, nv)) if normal.length_squared() > 0.0 => nu * along.x + nv * along.y,
@@ -187,8 +187,8 @@ impl Boundary {
     pub fn point(&self, t: f64) -> Option<DVec3> {
         let t = self.of_whole(t, false);
         match (&self.course, &self.side) {
-            (Course::Pull(pull), Side::Chain { chain, .. }) => {
-                let (f, onwards) = (pull.fraction(t), pull.fraction(1.0) > pull.fraction(0.0));
+            (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
+                let (f, onwards) = (pcurve.fraction(t), pcurve.fraction(1.0) > pcurve.fraction(0.0));
                 Some(if onwards { chain.jet(f).p } else { chain.jet_before(f).p })
             }
             _ => self.whole_place(t, false).map(|place| place.1),
@@ -213,18 +213,18 @@ impl Boundary {
     /// The same by the parameter of the whole border.
     fn whole_place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
         match (&self.course, &self.side) {
-            (Course::Line(a, b), _) => {
+            (TrimCurve::Line(a, b), _) => {
                 let (a, b) = (DVec2::from(*a), DVec2::from(*b));
                 let (uv, way) = (a.lerp(b, t), b - a);
                 let jet: Jet2 = self.surface.jet(uv.x, uv.y);
                 Some((uv, jet.p, jet.du * way.x + jet.dv * way.y, way))
             }
-            (Course::Pull(pull), Side::Chain { chain, .. }) => {
-                let (f, speed) = (pull.fraction(t), pull.fraction(1.0) - pull.fraction(0.0));
+            (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
+                let (f, speed) = (pcurve.fraction(t), pcurve.fraction(1.0) - pcurve.fraction(0.0));
                 let own = if before == (speed > 0.0) { chain.jet_before(f) } else { chain.jet(f) };
                 let uv = match self.surface.flat_uv(own.p) {
                     Some(uv) => uv.into(),
-                    None => foot((&self.surface, None), own.p, pull.guess(f)).0,
+                    None => foot((&self.surface, None), own.p, pcurve.guess(f)).0,
                 };
                 let jet: Jet2 = self.surface.jet(uv.x, uv.y);
                 let d1 = own.d1 * speed;

@@ -12,8 +12,8 @@ use crate::network::Chain;
 use crate::surface::closest::closest;
 use crate::surface::core::{Border, Side, Surface};
 use crate::surface::offset::offset;
-use crate::surface::pull::{Course, Pull, foot};
-use crate::surface::trim::{Walk, assembled, natural};
+use crate::surface::pcurve::{Pcurve, TrimCurve, foot};
+use crate::surface::trim::{TrimLoop, assembled, natural};
 
 /// The offset of a trimmed surface whose surface below has no creases, with the copies of its borders, loop by loop.
 pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
@@ -27,7 +27,7 @@ pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, toleranc
 /// The same with the copies of its borders at that distance given.
 pub(super) fn with_loops(
     surface: &Surface,
-    (walks, copies): (&[Walk], &[Vec<Option<Chain>>]),
+    (walks, copies): (&[TrimLoop], &[Vec<Option<Chain>>]),
     distance: f64,
     origin: Origin,
     tolerance: &Tolerance,
@@ -36,7 +36,7 @@ pub(super) fn with_loops(
     let (ground, notes) = offset(&below, distance, origin, tolerance)?;
     let ground = ground.untrimmed();
     let carrier = Carrier { below: &below, ground: &ground, distance, tolerance };
-    let loops: Result<Vec<Walk>> = walks.iter().zip(copies).map(|(walk, row)| carrier.walk(walk, row)).collect();
+    let loops: Result<Vec<TrimLoop>> = walks.iter().zip(copies).map(|(walk, row)| carrier.walk(walk, row)).collect();
     Ok((assembled(&ground, loops?, origin)?, notes))
 }
 
@@ -63,8 +63,8 @@ impl Carrier<'_> {
         found + DVec2::new(turns(closed_u, uv.x, found.x), turns(closed_v, uv.y, found.y))
     }
 
-    fn walk(&self, walk: &Walk, copies: &[Option<Chain>]) -> Result<Walk> {
-        let mut made = Walk { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    fn walk(&self, walk: &TrimLoop, copies: &[Option<Chain>]) -> Result<TrimLoop> {
+        let mut made = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
         for ((border, course), copy) in walk.borders.iter().zip(&walk.courses).zip(copies) {
             let places = course.places();
             let (first, last) = (places[0], places[places.len() - 1]);
@@ -75,15 +75,15 @@ impl Carrier<'_> {
                     _ => Side::Seam,
                 };
                 made.borders.push(Border::straight(side));
-                made.courses.push(Course::Line(a.into(), b.into()));
+                made.courses.push(TrimCurve::Line(a.into(), b.into()));
                 continue;
             };
-            let pull = Pull::follow(self.ground, (chain, 0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
+            let pcurve = Pcurve::follow(self.ground, (chain, 0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
                 let (of, surface) = (chain.origin(), self.ground.origin());
                 SurfaceFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
             })?;
             made.chains.push(chain.clone());
-            made.courses.push(Course::Pull(Arc::new(pull.into_poles(self.ground, chain))));
+            made.courses.push(TrimCurve::Pcurve(Arc::new(pcurve.into_poles(self.ground, chain))));
             made.borders.push(Border::chain(chain.clone(), false));
         }
         Ok(made)

@@ -20,7 +20,7 @@ const PLACES: usize = 4;
 /// Largest turn along a piece, as a share of a whole one.
 const LEAP: f64 = 0.2;
 /// Halvings of a piece: what then still turns more leaps through a pole.
-const DEEPEST: u32 = 16;
+const MAX_DEPTH: u32 = 16;
 /// Control points of a curve in (u, v): readers integrate over its pieces, and some end at thousands of them.
 const MOST: usize = 1_000;
 /// Share of the tolerance within which a curve in (u, v) follows its edge.
@@ -150,7 +150,7 @@ impl<'e> Frame<'e> {
         let mut found = vec![of(knots[0])];
         let mut open: Vec<(f64, u32)> = Vec::new();
         for w in knots.windows(2).rev() {
-            open.extend((1..=PLACES).rev().map(|k| (w[0] + (w[1] - w[0]) * k as f64 / PLACES as f64, DEEPEST)));
+            open.extend((1..=PLACES).rev().map(|k| (w[0] + (w[1] - w[0]) * k as f64 / PLACES as f64, MAX_DEPTH)));
         }
         while let Some((t, deeper)) = open.pop() {
             let (last, mut next) = (found[found.len() - 1], of(t));

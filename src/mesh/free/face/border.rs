@@ -1,13 +1,13 @@
-//! The border of a face in its chart: the nodes of its stretches, each with its own (u, v), and the edges between them.
+//! The border of a face in its chart: the nodes of its segments, each with its own (u, v), and the edges between them.
 
 use std::collections::BTreeMap;
 
-use super::Made;
+use super::FaceInput;
 use crate::base::tolerance::NUDGE;
 use crate::mesh::build::Input;
 use crate::mesh::faces::line as line_of;
+use crate::mesh::free::chart::Chart;
 use crate::mesh::free::inner;
-use crate::mesh::free::sheet::Sheet;
 use crate::mesh::layout::{Face, side_parameters};
 use crate::model::{Patch, Trace};
 use crate::surface::{Domain, Side, Surface};
@@ -48,11 +48,11 @@ impl Border {
 
     /// Places of one node that are no further apart than borders were glued over become one: on the face itself the ends of
     /// its borders need not meet.
-    pub(super) fn close(&mut self, sheet: &Sheet, near: f64) {
+    pub(super) fn close(&mut self, chart: &Chart, near: f64) {
         let mut into: Vec<u32> = (0..self.ids.len() as u32).collect();
         for n in 0..self.ids.len() {
-            let here = sheet.xy(self.uv[n]);
-            let first = (0..n).find(|m| self.ids[*m] == self.ids[n] && sheet.xy(self.uv[*m]).distance(here) <= ROOM * near);
+            let here = chart.xy(self.uv[n]);
+            let first = (0..n).find(|m| self.ids[*m] == self.ids[n] && chart.xy(self.uv[*m]).distance(here) <= ROOM * near);
             into[n] = first.map_or(into[n], |m| into[m]);
         }
         let kept: Vec<usize> = (0..into.len()).filter(|n| into[*n] == *n as u32).collect();
@@ -65,7 +65,7 @@ impl Border {
 }
 
 /// The nodes round a face, loop by loop, with their places on the surface.
-pub(super) fn border(made: &Made, face: &Face) -> Border {
+pub(super) fn border(made: &FaceInput, face: &Face) -> Border {
     let record = &made.input.model.patches[face.patch.index()];
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let mut border = Border::default();
@@ -152,12 +152,12 @@ pub fn places(input: &Input, face: &Face, side: usize, lengths: &[f64]) -> Vec<(
 fn along_border(surface: &Surface, side: usize, total: f64, lengths: &[f64]) -> Vec<(f64, f64)> {
     match (surface.side(side), surface.border_line(side)) {
         (Side::Chain { from, to, .. }, _) => {
-            let quick = surface.quick();
+            let quick = surface.power_form();
             let place = |s: &f64| surface.border_place_by(quick.as_ref(), side, from + (to - from) * (s / total)).unwrap_or_default();
             lengths.iter().map(place).collect()
         }
         (_, Some((from, to))) => {
-            let trace = Trace::by((surface, surface.quick()), from, to);
+            let trace = Trace::by((surface, surface.power_form()), from, to);
             lengths.iter().map(|s| trace.uv(trace.at_length(s / total * trace.length()))).collect()
         }
         _ => vec![(0.0, 0.0); lengths.len()],

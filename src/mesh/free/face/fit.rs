@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3};
 
 use super::longest::{LONGEST, Longest, longest_side};
-use super::{Made, SPACING, outlined};
+use super::{FaceInput, SPACING, outlined};
 use crate::base::bbox::Box3;
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::Job;
@@ -15,14 +15,14 @@ use crate::mesh::explain::{Decider, Tally, Why};
 use crate::mesh::faces::limits_of;
 use crate::mesh::free::bound;
 use crate::mesh::free::build::{Lattice, Task, Trouble, expected_nodes, triangulate};
-use crate::mesh::free::ground::{Even, Field};
-use crate::mesh::free::improve::{Care, FINEST, Guard};
-use crate::mesh::free::loads::{Loads, load};
+use crate::mesh::free::chart::Chart;
+use crate::mesh::free::ground::{SizeField, UniformSize};
+use crate::mesh::free::improve::{FINEST, LimitCheck, OptimizeSettings};
+use crate::mesh::free::loads::{LimitTable, load};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::poles;
-use crate::mesh::free::sheet::Sheet;
-use crate::mesh::free::size::{Background, Blend};
-use crate::mesh::free::web::Web;
+use crate::mesh::free::size::{Background, GradedSize};
+use crate::mesh::free::triangulation::Triangulation;
 use crate::mesh::layout::Face;
 use crate::mesh::plan::{Elements, Method};
 use crate::mesh::sources::{Body, STEEP, Source, Sources};
@@ -61,26 +61,26 @@ const ROUNDS: usize = 12;
 
 /// A face being fitted: what its triangles are made from and measured by.
 pub(super) struct Fit<'a> {
-    pub(super) made: &'a Made<'a>,
+    pub(super) made: &'a FaceInput<'a>,
     pub(super) face: &'a Face,
     pub(super) surface: &'a Surface,
-    pub(super) sheet: &'a Sheet,
+    pub(super) chart: &'a Chart,
     pub(super) outline: &'a Outline,
     pub(super) limits: Limits,
     pub(super) longest: Longest<'a>,
-    pub(super) care: Care,
+    pub(super) care: OptimizeSettings,
 }
 
 /// Triangles, what decided their sizes, and the cells they were made of.
-pub(super) type Shown = (Web, Vec<Decider>, Option<Tally>);
+pub(super) type Shown = (Triangulation, Vec<Decider>, Option<Tally>);
 
-type Fitted = Result<std::result::Result<Web, Trouble>>;
+type Fitted = Result<std::result::Result<Triangulation, Trouble>>;
 
 /// Triangles that keep the limits, and what decided their sizes.
 pub(super) fn fitting(
-    made: &Made,
+    made: &FaceInput,
     face: &Face,
-    sheet: &Sheet,
+    chart: &Chart,
     outline: &Outline,
     job: &Job,
 ) -> Result<std::result::Result<Shown, Trouble>> {
@@ -96,18 +96,18 @@ pub(super) fn fitting(
         (SMOOTH, FINEST, WANTED, 1.0)
     };
     let smooth = made.input.plan.smooth.map_or(smooth, |n| n.0 as usize);
-    let care = Care { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
+    let care = OptimizeSettings { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
-    let mut fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
-    if face.method.is_sparing() {
+    let mut fit = Fit { made, face, surface, chart, outline, limits, longest, care };
+    if face.method.is_coarse() {
         let mut laid = fit.laid(&rules, job)?;
         match (face.method, &mut laid) {
-            (Method::Display, Ok((web, _, tally))) => {
-                fit.thin(web, job)?;
+            (Method::Display, Ok((triangulation, _, tally))) => {
+                fit.thin(triangulation, job)?;
                 *tally = None;
             }
-            (_, Ok((web, ..))) => fit.raise(web),
+            (_, Ok((triangulation, ..))) => fit.raise(triangulation),
             _ => {}
         }
         return Ok(laid);
@@ -120,37 +120,37 @@ pub(super) fn fitting(
         fit.care.beyond = 1.0;
         fit.care.smooth = made.input.plan.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
     }
-    let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;
-    let web = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
-    if matches!(web, Err(Trouble::Full)) {
+    let triangulation = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
+    if matches!(triangulation, Err(Trouble::Full)) {
         return Err(fit.too_large(&field, None));
     }
-    Ok(web.map(|web| {
-        let deciders = fit.deciders(&field, &web);
-        (web, deciders, None)
+    Ok(triangulation.map(|triangulation| {
+        let deciders = fit.deciders(&field, &triangulation);
+        (triangulation, deciders, None)
     }))
 }
 
 /// About how many elements the wanted lengths ask for between borders as they are divided here, and how many the size of the
 /// face alone does; `None` where these borders cross or bound nothing.
-pub(in crate::mesh) fn elements_ahead(made: &Made, face: &Face) -> Option<[f64; 2]> {
-    let (_, sheet, outline) = outlined(made, face)?;
+pub(in crate::mesh) fn elements_ahead(made: &FaceInput, face: &Face) -> Option<[f64; 2]> {
+    let (_, chart, outline) = outlined(made, face)?;
     let rules = near(made, face, &outline);
     let quads = face.elements == Elements::Quads;
     let (lattice, spacing) = if quads { (Lattice::Squares, 1.0) } else { (Lattice::Crystal, if face.is_grown() { SPACING } else { 1.0 }) };
     let sources = Sources::new(rules.items().to_vec(), rules.slope() / spacing);
-    let field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
-    let even = Even(spacing * face.size.0);
-    let fields: [&dyn Field; 2] = [if sources.is_empty() { &even } else { &field }, &even];
-    let care = Care { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
-    let task = |field| Task { ground: &sheet, field, outline: &outline, care, lattice, most: made.input.plan.most_nodes(), guard: None };
+    let field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
+    let even = UniformSize(spacing * face.size.0);
+    let fields: [&dyn SizeField; 2] = [if sources.is_empty() { &even } else { &field }, &even];
+    let care = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
+    let task = |field| Task { ground: &chart, field, outline: &outline, care, lattice, most: made.input.plan.most_nodes(), guard: None };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))
 }
 
 /// The sources of a plan that reach a face.
-pub(super) fn near(made: &Made, face: &Face, outline: &Outline) -> Sources {
+pub(super) fn near(made: &FaceInput, face: &Face, outline: &Outline) -> Sources {
     let all = &made.wanted.sources;
     let hull = made.input.model.surfaces[face.surface.index()].surface.hull().union(Box3::of(outline.p.iter().copied()));
     let items = all.items().iter().filter(|source| source.reaches(&hull, all.slope(), face.size.0));
@@ -162,15 +162,15 @@ struct Bounded<'a> {
     fit: &'a Fit<'a>,
     /// What is shorter is left as it is.
     floor: f64,
-    loads: &'a RefCell<Loads>,
+    loads: &'a RefCell<LimitTable>,
 }
 
-impl Guard for Bounded<'_> {
-    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
+impl LimitCheck for Bounded<'_> {
+    fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
         let mut loads = self.loads.borrow_mut();
-        loads.update(self.fit.sheet, web, some, &self.fit.limits);
-        let mut found = self.fit.longest.broken(web, some);
-        let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(web, *t) > self.floor;
+        loads.update(self.fit.chart, triangulation, some, &self.fit.limits);
+        let mut found = self.fit.longest.broken(triangulation, some);
+        let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(triangulation, *t) > self.floor;
         found.extend(some.iter().copied().filter(over));
         found.sort_unstable();
         found.dedup();
@@ -181,24 +181,25 @@ impl Guard for Bounded<'_> {
         true
     }
 
-    fn keeps(&self, web: &Web, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
+    fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
         let [a, b, c] = corners.map(|n| n as usize);
-        let a = first.map_or_else(|| web.p[a], |first| first.1);
-        let longest = a.distance(web.p[b]).max(web.p[b].distance(web.p[c])).max(web.p[c].distance(a));
-        longest <= self.floor || load(self.fit.sheet, web, corners, first, &self.fit.limits).worst() <= 1.0
+        let a = first.map_or_else(|| triangulation.p[a], |first| first.1);
+        let longest =
+            a.distance(triangulation.p[b]).max(triangulation.p[b].distance(triangulation.p[c])).max(triangulation.p[c].distance(a));
+        longest <= self.floor || load(self.fit.chart, triangulation, corners, first, &self.fit.limits).worst() <= 1.0
     }
 }
 
-impl Guard for Longest<'_> {
-    fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
-        self.broken(web, some)
+impl LimitCheck for Longest<'_> {
+    fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
+        self.broken(triangulation, some)
     }
 
     fn foresees(&self) -> bool {
         false
     }
 
-    fn keeps(&self, _: &Web, _: [u32; 3], _: Option<(DVec2, DVec3)>) -> bool {
+    fn keeps(&self, _: &Triangulation, _: [u32; 3], _: Option<(DVec2, DVec3)>) -> bool {
         true
     }
 }
@@ -208,18 +209,18 @@ impl Fit<'_> {
     pub(super) fn background(&self, limits: &Limits) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
-        let surface = (self.surface, self.sheet.quick());
-        let tangents = |at: DVec2| self.sheet.tangents(at.into());
+        let surface = (self.surface, self.chart.power_form());
+        let tangents = |at: DVec2| self.chart.tangents(at.into());
         let wanted = |at: DVec2| {
-            let jet = self.surface.jet_by(self.sheet.quick(), at.x, at.y);
+            let jet = self.surface.jet_by(self.chart.power_form(), at.x, at.y);
             let plain = bound::wanted(&jet, limits.chord, limits.angle).min(size / FILLED);
             FILLED * limits.chord.map_or(plain, |limit| bound::likely(surface, (at, &jet), jet.du, (limit, plain)))
         };
         let of = |xy: DVec2| {
-            let at = DVec2::from(self.sheet.uv(xy));
+            let at = DVec2::from(self.chart.uv(xy));
             poles::at_tip(self.surface, &tangents, at, &wanted).unwrap_or_else(|| wanted(at)).min(size)
         };
-        Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &of)
+        Background::new(self.chart, whole, 1.0 + self.made.input.plan.slope(), &of)
     }
 
     /// Edges of the border that are so short that lengths have to grow from them; nodes are `spacing` times as far apart as
@@ -243,19 +244,19 @@ impl Fit<'_> {
         self.outline.edges().flat_map(sources).collect()
     }
 
-    fn task<'t>(&'t self, field: &'t dyn Field, guard: &'t dyn Guard) -> Task<'t> {
+    fn task<'t>(&'t self, field: &'t dyn SizeField, guard: &'t dyn LimitCheck) -> Task<'t> {
         let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
-        Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: Some(guard) }
+        Task { ground: self.chart, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: Some(guard) }
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
-    fn even(&self, field: &mut Blend, job: &Job) -> Fitted {
+    fn even(&self, field: &mut GradedSize, job: &Job) -> Fitted {
         for _ in 0..ROUNDS {
-            let same = Even(field.spacing * self.face.size.0);
-            let field_now: &dyn Field = if field.sources.is_empty() { &same } else { &*field };
+            let same = UniformSize(field.spacing * self.face.size.0);
+            let field_now: &dyn SizeField = if field.sources.is_empty() { &same } else { &*field };
             match triangulate(&self.task(field_now, &self.longest), job)? {
                 Ok(made) if !made.keeps => field.spacing *= LESS,
-                other => return Ok(other.map(|made| made.web)),
+                other => return Ok(other.map(|made| made.triangulation)),
             }
         }
         let plan = self.made.input.plan;
@@ -265,21 +266,21 @@ impl Fit<'_> {
     }
 
     /// Lengths by the bends at first, smaller where a triangle's bound says so.
-    fn bent(&self, field: &mut Blend, job: &Job) -> Fitted {
+    fn bent(&self, field: &mut GradedSize, job: &Job) -> Fitted {
         let floor = self.made.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
-        let loads = RefCell::new(Loads::default());
+        let loads = RefCell::new(LimitTable::default());
         for _ in 0..ROUNDS {
             let guard = Bounded { fit: self, floor, loads: &loads };
-            let web = match triangulate(&self.task(&*field, &guard), job)? {
+            let triangulation = match triangulate(&self.task(&*field, &guard), job)? {
                 // Below a floor limits may be broken all the same; that is told.
-                Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.web)),
-                Ok(made) => made.web,
+                Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.triangulation)),
+                Ok(made) => made.triangulation,
                 Err(trouble) => return Ok(Err(trouble)),
             };
-            worst = self.lower(field, &web, &mut loads.borrow_mut())?;
+            worst = self.lower(field, &triangulation, &mut loads.borrow_mut())?;
             if worst.0 == 0.0 {
-                return Ok(Ok(web));
+                return Ok(Ok(triangulation));
             }
             if let Some(background) = &mut field.background {
                 background.level();
@@ -299,11 +300,11 @@ impl Fit<'_> {
     }
 
     /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
-    fn lower(&self, field: &mut Blend, web: &Web, loads: &mut Loads) -> Result<(f64, DVec3, &'static str)> {
-        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
-        loads.update(self.sheet, web, &all, &self.limits);
-        let mut stretched = vec![false; web.tri.len()];
-        self.longest.broken(web, &all).into_iter().for_each(|t| stretched[t as usize] = true);
+    fn lower(&self, field: &mut GradedSize, triangulation: &Triangulation, loads: &mut LimitTable) -> Result<(f64, DVec3, &'static str)> {
+        let all: Vec<u32> = (0..triangulation.tri.len() as u32).collect();
+        loads.update(self.chart, triangulation, &all, &self.limits);
+        let mut stretched = vec![false; triangulation.tri.len()];
+        self.longest.broken(triangulation, &all).into_iter().for_each(|t| stretched[t as usize] = true);
         let least = self.made.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, "chord_error");
         for (t, stretched) in stretched.into_iter().enumerate() {
@@ -312,11 +313,11 @@ impl Fit<'_> {
             if over <= 1.0 {
                 continue;
             }
-            let c = web.tri[t].map(|n| n as usize);
-            let middle = (web.p[c[0]] + web.p[c[1]] + web.p[c[2]]) / 3.0;
+            let c = triangulation.tri[t].map(|n| n as usize);
+            let middle = (triangulation.p[c[0]] + triangulation.p[c[1]] + triangulation.p[c[2]]) / 3.0;
             // A side that is too long where limits have room gets shorter all the same.
             let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle }.max(1.0);
-            if load.worst() > 1.0 && longest_side(web, t as u32) <= least {
+            if load.worst() > 1.0 && longest_side(triangulation, t as u32) <= least {
                 return Err(floor_keeps(self.made.input, least / factor, middle));
             }
             if over > worst.0 {
@@ -325,18 +326,18 @@ impl Fit<'_> {
             }
             let smaller = (LESS / factor).max(0.5);
             if let Some(background) = &mut field.background {
-                c.iter().for_each(|n| background.lower(web.xy[*n], web.size[*n] * smaller));
+                c.iter().for_each(|n| background.lower(triangulation.xy[*n], triangulation.size[*n] * smaller));
             }
         }
         Ok(worst)
     }
 
     /// What decided the sizes, with the number of inner nodes and one of them.
-    pub(super) fn deciders(&self, field: &Blend, web: &Web) -> Vec<Decider> {
+    pub(super) fn deciders(&self, field: &GradedSize, triangulation: &Triangulation) -> Vec<Decider> {
         let mut found: Vec<Decider> = Vec::new();
         let (most, least) = field.range;
-        for n in 0..web.p.len() {
-            let (xy, p) = (web.xy[n], web.p[n]);
+        for n in 0..triangulation.p.len() {
+            let (xy, p) = (triangulation.xy[n], triangulation.p[n]);
             let bends = field.by_bends(xy, p);
             let source = field.sources.who(p, most.min(bends / field.spacing));
             let by_sources = source.map_or(most, |s| s.size) * field.spacing;
@@ -347,7 +348,7 @@ impl Fit<'_> {
                 Some(source) => Why::Refined(field.sources.items()[source.item as usize].tag as usize),
                 None => Why::Size,
             };
-            let inner = usize::from(n >= web.fixed as usize);
+            let inner = usize::from(n >= triangulation.fixed as usize);
             match found.iter_mut().find(|d| d.why == why) {
                 Some(decider) if decider.nodes == 0 && inner == 1 => (decider.nodes, decider.at) = (1, p),
                 Some(decider) => decider.nodes += inner,

@@ -9,8 +9,8 @@ use crate::mesh::ahead::of_size;
 use crate::mesh::edges::Limits;
 use crate::mesh::faces::{allow, too_many};
 use crate::mesh::free::build::{Lattice, Task, expected_nodes};
-use crate::mesh::free::ground::{Even, Field};
-use crate::mesh::free::size::{Background, Blend};
+use crate::mesh::free::ground::{SizeField, UniformSize};
+use crate::mesh::free::size::{Background, GradedSize};
 use crate::mesh::plan::{GROWTH, Target};
 use crate::mesh::sources::{Source, Sources};
 
@@ -18,13 +18,13 @@ use crate::mesh::sources::{Source, Sources};
 const SMALL: f64 = 0.1;
 
 /// A field like another one of some of its parts.
-fn alone<'s>(field: &Blend, sources: &'s Sources, background: Option<Background>) -> Blend<'s> {
-    Blend { sources, range: field.range, spacing: field.spacing, background }
+fn alone<'s>(field: &GradedSize, sources: &'s Sources, background: Option<Background>) -> GradedSize<'s> {
+    GradedSize { sources, range: field.range, spacing: field.spacing, background }
 }
 
 impl Fit<'_> {
     /// E217 where wanted lengths, grown from short edges and by bends, ask for too much.
-    pub(super) fn refuse_large(&self, field: &Blend) -> Result<()> {
+    pub(super) fn refuse_large(&self, field: &GradedSize) -> Result<()> {
         let across = self.surface.hull().diagonal() / field.least();
         let most = self.made.input.plan.most_elements;
         if across * across < SMALL * most.min(MESH_WORK / WORK_OF_AN_ELEMENT) as f64 {
@@ -44,7 +44,7 @@ impl Fit<'_> {
     }
 
     /// The fault for so many elements, or for more than there may be.
-    pub(super) fn too_large(&self, field: &Blend, elements: Option<f64>) -> Fault {
+    pub(super) fn too_large(&self, field: &GradedSize, elements: Option<f64>) -> Fault {
         too_many(self.made.input.plan, self.asks(field), elements.map(|n| n as u64))
     }
 
@@ -55,15 +55,15 @@ impl Fit<'_> {
     }
 
     /// About how many elements each field asks for.
-    fn expected<const N: usize>(&self, fields: [&dyn Field; N]) -> [f64; N] {
+    fn expected<const N: usize>(&self, fields: [&dyn SizeField; N]) -> [f64; N] {
         let lattice = Lattice::Crystal;
         let task =
-            |field| Task { ground: self.sheet, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: None };
+            |field| Task { ground: self.chart, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: None };
         expected_nodes(fields.map(task).each_ref()).map_or([0.0; N], |nodes| nodes.map(|n| 2.0 * n))
     }
 
     /// The expression that asks for most of the elements.
-    fn asks(&self, field: &Blend) -> Origin {
+    fn asks(&self, field: &GradedSize) -> Origin {
         let (plan, slope) = (self.made.input.plan, field.sources.slope());
         let default = Sources::new(field.sources.items().to_vec(), (GROWTH - 1.0) / SPACING);
         let grown = alone(field, &default, field.background.clone());
@@ -72,7 +72,7 @@ impl Fit<'_> {
         let least = rules.iter().min_by(|a, b| a.size.total_cmp(&b.size)).map(|source| source.tag as usize);
         let [none, rules, edges] = [Vec::new(), rules, edges].map(|items| Sources::new(items, slope));
         let (edges, rules) = (alone(field, &edges, None), alone(field, &rules, None));
-        let (bends, size) = (alone(field, &none, field.background.clone()), Even(self.face.size.0 * field.spacing));
+        let (bends, size) = (alone(field, &none, field.background.clone()), UniformSize(self.face.size.0 * field.spacing));
         let [grown, by_edges, by_rules, by_bends, by_size] = self.expected([&grown, &edges, &rules, &bends, &size]);
         if let Some(growth) = plan.growth.filter(|g| g.0 < GROWTH && grown <= plan.most_elements as f64) {
             return growth.1;
@@ -98,7 +98,7 @@ impl Fit<'_> {
     }
 
     /// Whether the angle asks for more than the chord error.
-    fn turns_more(&self, field: &Blend) -> bool {
+    fn turns_more(&self, field: &GradedSize) -> bool {
         if self.limits.angle.is_none() || self.limits.chord.is_none() {
             return self.limits.chord.is_none();
         }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::free::outline::Outline;
-use crate::mesh::free::web::Web;
+use crate::mesh::free::triangulation::Triangulation;
 use crate::mesh::sources::{Body, Source, Sources};
 
 /// Longest edge inside over the size (language reference, mesh settings).
@@ -67,21 +67,21 @@ impl<'a> Longest<'a> {
     }
 
     /// Whether a side inside the face between two nodes may be as long as it is.
-    pub(super) fn allows(&self, web: &Web, a: u32, b: u32) -> bool {
-        web.p[a as usize].distance(web.p[b as usize]) <= self.at(&web.p, a).max(self.at(&web.p, b))
+    pub(super) fn allows(&self, triangulation: &Triangulation, a: u32, b: u32) -> bool {
+        triangulation.p[a as usize].distance(triangulation.p[b as usize]) <= self.at(&triangulation.p, a).max(self.at(&triangulation.p, b))
     }
 
     /// Those of some triangles with a side inside the face that is too long; those between two border nodes are what they are.
-    pub(super) fn broken(&self, web: &Web, some: &[u32]) -> Vec<u32> {
+    pub(super) fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
         // Where most are looked at, each node is asked once.
-        let all = if 2 * some.len() > web.tri.len() { web.p.len() } else { 0 };
-        let known: Vec<f64> = par::map(all, |n| self.at(&web.p, n as u32));
-        let most = |n: usize| known.get(n).copied().unwrap_or_else(|| self.at(&web.p, n as u32));
+        let all = if 2 * some.len() > triangulation.tri.len() { triangulation.p.len() } else { 0 };
+        let known: Vec<f64> = par::map(all, |n| self.at(&triangulation.p, n as u32));
+        let most = |n: usize| known.get(n).copied().unwrap_or_else(|| self.at(&triangulation.p, n as u32));
         let too_long = |t: &u32| {
-            let c = web.tri[*t as usize].map(|n| n as usize);
-            (0..3).filter(|k| web.locked[*t as usize] >> k & 1 == 0).any(|k| {
+            let c = triangulation.tri[*t as usize].map(|n| n as usize);
+            (0..3).filter(|k| triangulation.locked[*t as usize] >> k & 1 == 0).any(|k| {
                 let [a, b] = [c[(k + 1) % 3], c[(k + 2) % 3]];
-                a.max(b) >= web.fixed as usize && web.p[a].distance(web.p[b]) > most(a).max(most(b))
+                a.max(b) >= triangulation.fixed as usize && triangulation.p[a].distance(triangulation.p[b]) > most(a).max(most(b))
             })
         };
         some.iter().copied().filter(too_long).collect()
@@ -89,7 +89,7 @@ impl<'a> Longest<'a> {
 }
 
 /// The longest side of a triangle.
-pub(super) fn longest_side(web: &Web, t: u32) -> f64 {
-    let [a, b, c] = web.tri[t as usize].map(|n| web.p[n as usize]);
+pub(super) fn longest_side(triangulation: &Triangulation, t: u32) -> f64 {
+    let [a, b, c] = triangulation.tri[t as usize].map(|n| triangulation.p[n as usize]);
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }

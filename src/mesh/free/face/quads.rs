@@ -12,21 +12,21 @@ use maker::{Maker, nodes};
 
 use super::fit::{Fit, WANTED_TREE, near};
 use super::longest::{LONGEST, Longest};
-use super::{Border, Made, fault, prepared};
+use super::{Border, FaceInput, fault, prepared};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::PointsFault;
-use crate::mesh::chart::Free;
 use crate::mesh::explain::Decider;
-use crate::mesh::faces::{Prepared, limits_of};
+use crate::mesh::face_geometry::Free;
+use crate::mesh::faces::{FaceMesh, limits_of};
 use crate::mesh::free::bound;
 use crate::mesh::free::build::Trouble;
-use crate::mesh::free::improve::{Care, FINEST};
+use crate::mesh::free::chart::Chart;
+use crate::mesh::free::improve::{FINEST, OptimizeSettings};
 use crate::mesh::free::outline::Outline;
 use crate::mesh::free::quads::halves::Halves;
 use crate::mesh::free::quads::net::{NONE, Net};
-use crate::mesh::free::sheet::Sheet;
-use crate::mesh::free::size::{Background, Blend};
+use crate::mesh::free::size::{Background, GradedSize};
 use crate::mesh::layout::Face;
 use crate::mesh::plan::Elements;
 use crate::mesh::sources::Sources;
@@ -39,17 +39,17 @@ const SMOOTH: usize = 8;
 const HALVED: f64 = 0.7;
 
 /// Makes the face.
-pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline): (&Sheet, &Outline), job: &Job) -> Result<Prepared> {
+pub(super) fn prepare(made: &FaceInput, face: &Face, border: Border, (chart, outline): (&Chart, &Outline), job: &Job) -> Result<FaceMesh> {
     let halves = match face.elements {
         Elements::Quads => halved(made, face, &border, outline),
         _ => Some(Halves::whole(outline, &border.ids)),
     };
     let Some(halves) = halves else { return Err(fault(made, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
-    let fitted = fitting(made, face, sheet, outline, &halves, job)?;
+    let fitted = fitting(made, face, chart, outline, &halves, job)?;
     let (net, deciders) = fitted.map_err(|trouble| fault(made, face, &border, of_whole(&halves, trouble)))?;
     let fixed = net.fixed as usize;
     let mut uv = border.uv;
-    uv.extend(net.xy[fixed..].iter().map(|xy| sheet.uv(*xy)));
+    uv.extend(net.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
     let inner = net.p[fixed..].to_vec();
     let mut free = Free { uv, border: fixed, ..Free::default() };
     for face in net.face {
@@ -58,7 +58,7 @@ pub(super) fn prepare(made: &Made, face: &Face, border: Border, (sheet, outline)
             quad => free.quads.push(quad),
         }
     }
-    Ok(Prepared { deciders, ..prepared(made, face, free, (border.ids, border.edges), inner) })
+    Ok(FaceMesh { deciders, ..prepared(made, face, free, (border.ids, border.edges), inner) })
 }
 
 /// A trouble with nodes of the whole border.
@@ -76,9 +76,9 @@ type Shown = (Net, Vec<Decider>);
 
 /// Elements that keep the limits, and what decided their sizes.
 fn fitting(
-    made: &Made,
+    made: &FaceInput,
     face: &Face,
-    sheet: &Sheet,
+    chart: &Chart,
     outline: &Outline,
     halves: &Halves,
     job: &Job,
@@ -87,14 +87,14 @@ fn fitting(
     let limits = limits_of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
-    let care = Care { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
+    let care = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
-    let fit = Fit { made, face, surface, sheet, outline, limits, longest, care };
+    let fit = Fit { made, face, surface, chart, outline, limits, longest, care };
     let background = bent.then(|| fit.background_of_squares());
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
-    let mut field = Blend { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     let maker = Maker { fit: &fit, halves };
     Ok(maker.fitted(&mut field, job)?.map(|net| {
         let deciders = fit.deciders(&field, &nodes(&net));
@@ -107,7 +107,7 @@ impl Fit<'_> {
     fn background_of_squares(&self) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
-        let wanted = |xy: DVec2| (HALVED * bound::wanted(&self.sheet.jet(xy), self.limits.chord, self.limits.angle)).min(size);
-        Background::new(self.sheet, whole, 1.0 + self.made.input.plan.slope(), &wanted)
+        let wanted = |xy: DVec2| (HALVED * bound::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
+        Background::new(self.chart, whole, 1.0 + self.made.input.plan.slope(), &wanted)
     }
 }

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::{Border, Made, ONE_PLACE};
+use super::{Border, FaceInput, ONE_PLACE};
+use crate::mesh::free::chart::Chart;
 use crate::mesh::free::outline::Outline;
-use crate::mesh::free::sheet::Sheet;
 use crate::mesh::layout::Face;
 use crate::surface::Surface;
 
@@ -28,7 +28,7 @@ pub(in crate::mesh) fn way_round(surface: &Surface, from: (f64, f64), to: (f64, 
 }
 
 /// Adds rings where the face has one seam.
-pub(super) fn add_rings(made: &Made, face: &Face, border: &Border, (sheet, outline): (&Sheet, &mut Outline)) {
+pub(super) fn add_rings(made: &FaceInput, face: &Face, border: &Border, (chart, outline): (&Chart, &mut Outline)) {
     let mut places: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     border.ids.iter().zip(0..).for_each(|(id, n)| places.entry(*id).or_default().push(n));
     // What turns back along itself has no way round.
@@ -50,7 +50,7 @@ pub(super) fn add_rings(made: &Made, face: &Face, border: &Border, (sheet, outli
         if is_pole(s) || !beside[s as usize].iter().chain(&beside[t as usize]).all(twice) {
             continue;
         }
-        let surface = sheet.surface();
+        let surface = chart.surface();
         let (from, to) = (border.uv[s as usize], border.uv[t as usize]);
         if (from.1 - to.1).abs() > ONE_PLACE {
             continue;
@@ -66,13 +66,13 @@ pub(super) fn add_rings(made: &Made, face: &Face, border: &Border, (sheet, outli
         for k in 1..n {
             // On one line to the last digit, or three of them could be a triangle in space that is none in the chart.
             let (u, v) = (from.0 + (to.0 - from.0) * f64::from(k) / f64::from(n), from.1);
-            outline.xy.push(sheet.xy((u, v)));
+            outline.xy.push(chart.xy((u, v)));
             outline.p.push(surface.point(u, v));
             let new = outline.p.len() as u32 - 1;
             outline.lines.push([last, new]);
             last = new;
         }
         outline.lines.push([last, t]);
-        outline.xy[t as usize] = sheet.xy((to.0, from.1));
+        outline.xy[t as usize] = chart.xy((to.0, from.1));
     }
 }

@@ -8,11 +8,11 @@ use crate::base::job::Job;
 use crate::mesh::edges::Limits;
 use crate::mesh::faces::allow;
 use crate::mesh::free::build::Trouble;
-use crate::mesh::free::ground::Ground;
-use crate::mesh::free::lay::{Ask, Failure, lay};
+use crate::mesh::free::ground::ParametricSurface;
+use crate::mesh::free::lay::{Failure, IsolineInput, lay};
 use crate::mesh::free::loads;
 use crate::mesh::free::thin::Thinner;
-use crate::mesh::free::web::Web;
+use crate::mesh::free::triangulation::Triangulation;
 use crate::mesh::sources::Sources;
 use crate::mesh::wanted::floor_keeps;
 
@@ -30,9 +30,18 @@ impl Fit<'_> {
         let flat = Limits::default();
         let limits = if self.surface.is_flat() { &flat } else { &self.limits };
         let point = self.made.input.tolerance.point;
-        let ask = Ask { sheet: self.sheet, outline: self.outline, limits, size: self.face.size.0, rules, floor, most: self.most(), point };
+        let ask = IsolineInput {
+            chart: self.chart,
+            outline: self.outline,
+            limits,
+            size: self.face.size.0,
+            rules,
+            floor,
+            most: self.most(),
+            point,
+        };
         match lay(&ask, job)? {
-            Ok(laid) => Ok(Ok((laid.web, laid.deciders, Some(laid.tally)))),
+            Ok(laid) => Ok(Ok((laid.triangulation, laid.deciders, Some(laid.tally)))),
             Err(Failure::Trouble(Trouble::Full)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
             Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
             Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
@@ -49,26 +58,28 @@ impl Fit<'_> {
 
     /// Sides flipped where triangles are sharp, within the same limits: where lines of the surface run together, and where a
     /// border runs along one of them.
-    pub(super) fn raise(&self, web: &mut Web) {
+    pub(super) fn raise(&self, triangulation: &mut Triangulation) {
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
         let (twins, normals) = (self.outline.twins(), loads::Normals::default());
-        web.raise(SHARP, &|web, [a, b], both| {
-            let keeps = |c: &[u32; 3]| loads::load_of_upright(self.sheet, web, *c, limits, &normals) <= 1.0;
-            !web.joined_elsewhere(&twins, a, b) && both.iter().all(keeps)
+        triangulation.raise(SHARP, &|triangulation, [a, b], both| {
+            let keeps = |c: &[u32; 3]| loads::load_of_upright(self.chart, triangulation, *c, limits, &normals) <= 1.0;
+            !triangulation.joined_elsewhere(&twins, a, b) && both.iter().all(keeps)
         });
     }
 
     /// Fewer triangles for the same limits.
-    pub(super) fn thin(&self, web: &mut Web, job: &Job) -> Result<()> {
-        allow(THINNED * web.tri.len() as u64, &mut 0);
+    pub(super) fn thin(&self, triangulation: &mut Triangulation, job: &Job) -> Result<()> {
+        allow(THINNED * triangulation.tri.len() as u64, &mut 0);
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
         let normals = loads::Normals::default();
-        let bound = |web: &Web, c: [u32; 3]| loads::load_of_upright(self.sheet, web, c, limits, &normals);
+        let bound = |triangulation: &Triangulation, c: [u32; 3]| loads::load_of_upright(self.chart, triangulation, c, limits, &normals);
         let twins = self.outline.twins();
-        let allowed = |web: &Web, a: u32, b: u32| self.longest.allows(web, a, b) && !web.joined_elsewhere(&twins, a, b);
-        let point = |xy: DVec2| self.sheet.spot(xy).p;
-        Thinner { bound: &bound, allowed: &allowed, point: &point }.thin(web, job)?;
-        web.compact();
+        let allowed = |triangulation: &Triangulation, a: u32, b: u32| {
+            self.longest.allows(triangulation, a, b) && !triangulation.joined_elsewhere(&twins, a, b)
+        };
+        let point = |xy: DVec2| self.chart.spot(xy).p;
+        Thinner { bound: &bound, allowed: &allowed, point: &point }.thin(triangulation, job)?;
+        triangulation.compact();
         Ok(())
     }
 }

@@ -42,7 +42,7 @@ impl Front<'_> {
     /// A node over each node of the border, and those between where it turns outwards; gives the one over the longest
     /// straight run, from which the crystal starts.
     pub(super) fn layer_of_squares(&mut self) -> Option<u32> {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         let runs = self.runs();
         let longest = runs.iter().copied().reduce(|a, b| if b.length > a.length { b } else { a })?;
         let upright = |r: &&Run| r.along.dot(longest.along).abs() < UPRIGHT;
@@ -80,7 +80,7 @@ impl Front<'_> {
 
     /// Straight runs of the loops; the node of each is in its middle.
     fn runs(&self) -> Vec<Run> {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         let (mut runs, mut nodes): (Vec<Run>, Vec<u32>) = (Vec::new(), Vec::new());
         for &[a, b] in &outline.loops {
             let side = outline.p[b as usize] - outline.p[a as usize];
@@ -106,17 +106,17 @@ impl Front<'_> {
     /// The steps of a run over the wanted length, where the crystal can take them over.
     fn followed(&self, run: Option<Run>) -> f64 {
         let Some(run) = run.filter(|run| run.edges >= RUN) else { return 1.0 };
-        let outline = self.soil.outline;
-        let size = self.soil.field.size(outline.xy[run.node as usize], outline.p[run.node as usize]);
+        let outline = self.input.outline;
+        let size = self.input.field.size(outline.xy[run.node as usize], outline.p[run.node as usize]);
         let share = run.length / run.edges as f64 / size;
         if FOLLOWED.contains(&share) { share } else { 1.0 }
     }
 
     /// Nodes over a node of the border between its next and its last one: as many cells as fill the angle best.
     fn over(&mut self, node: u32, next: DVec3, last: DVec3, along: DVec3) {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         let (p, xy) = (outline.p[node as usize], outline.xy[node as usize]);
-        let spot = self.soil.ground.spot(xy);
+        let spot = self.input.ground.spot(xy);
         let normal = spot.normal();
         let (out, back) = ((next - p).reject_from_normalized(normal), (last - p).reject_from_normalized(normal));
         let (Some(unit), true) = (out.try_normalize(), back != DVec3::ZERO) else { return };
@@ -124,7 +124,7 @@ impl Front<'_> {
         let turn = if turn <= 0.0 { turn + 4.0 * RIGHT } else { turn };
         let frame = Frame::new(along, normal);
         let cells = frame.map_or((turn / RIGHT).round().clamp(1.0, 4.0) as usize, |f| f.cells(turn, unit, -back.normalize_or_zero()));
-        let size = self.soil.field.size(xy, p);
+        let size = self.input.field.size(xy, p);
         let aside = normal.cross(unit);
         let bent = turn > BENT * 2.0 * RIGHT && cells == 2;
         let way = |k: usize| {
@@ -133,7 +133,7 @@ impl Front<'_> {
             // Between corners the row turns half as fast as the border.
             frame.filter(|_| bent).map_or(way, |frame| (way + frame.nearest(way)).normalize_or_zero())
         };
-        let stretch = |way: DVec3| {
+        let segment = |way: DVec3| {
             let lengthwise = way.dot(along).abs();
             if lengthwise > 1.0 - UPRIGHT {
                 self.steps[0]
@@ -143,12 +143,12 @@ impl Front<'_> {
                 1.0
             }
         };
-        let arms: Vec<DVec3> = (1..cells).map(|k| way(k) * (size * stretch(way(k)))).collect();
+        let arms: Vec<DVec3> = (1..cells).map(|k| way(k) * (size * segment(way(k)))).collect();
         let between: Vec<DVec3> = arms.windows(2).map(|w| w[0] + w[1]).collect();
         for arm in arms.iter().chain(&between) {
             let Some(step) = spot.step(*arm) else { continue };
-            let to = self.soil.ground.clamp(xy + step);
-            let new = self.soil.ground.spot(to);
+            let to = self.input.ground.clamp(xy + step);
+            let new = self.input.ground.spot(to);
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
             let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();

@@ -14,7 +14,7 @@ impl Front<'_> {
     /// A row of nodes along the border, each the tip of an equilateral triangle over an edge; they do not grow further but
     /// for the one over the longest straight run, from which the crystal starts.
     pub(super) fn layer(&mut self) -> Option<u32> {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         self.corners();
         let (mut best, mut first) = (0.0, None);
         let mut run = (0.0, DVec3::ZERO);
@@ -25,15 +25,15 @@ impl Front<'_> {
             let Some(along) = side.try_normalize() else { continue };
             run = if along.dot(run.1) > STRAIGHT { (run.0 + side.length(), run.1) } else { (side.length(), along) };
             let middle = 0.5 * (xa + xb);
-            let spot = self.soil.ground.spot(middle);
-            let size = self.soil.field.size(middle, spot.p);
+            let spot = self.input.ground.spot(middle);
+            let size = self.input.field.size(middle, spot.p);
             let inward = spot.normal().cross(along);
             // Between the height of the edge's own triangle and that of the wanted one.
             let tall = (size * size - 0.25 * side.length_squared()).max(0.25 * size * size).sqrt();
             let Some(step) = spot.step(inward * tall) else { continue };
-            let to = self.soil.ground.clamp(middle + step);
-            let new = self.soil.ground.spot(to);
-            let size = self.soil.field.size(to, new.p);
+            let to = self.input.ground.clamp(middle + step);
+            let new = self.input.ground.spot(to);
+            let size = self.input.field.size(to, new.p);
             if new.p.distance(spot.p) > FAR * tall || self.is_on_edge(to) {
                 continue;
             }
@@ -52,13 +52,13 @@ impl Front<'_> {
 
     /// A node on the bisector of every corner that two triangles fill best.
     fn corners(&mut self) {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         let mut before = vec![u32::MAX; outline.p.len()];
         outline.loops.iter().for_each(|e| before[e[1] as usize] = e[0]);
         for &[a, b] in &outline.loops {
             let Some(from) = outline.p.get(before[a as usize] as usize) else { continue };
             let (pa, pb, xy) = (outline.p[a as usize], outline.p[b as usize], outline.xy[a as usize]);
-            let spot = self.soil.ground.spot(xy);
+            let spot = self.input.ground.spot(xy);
             let normal = spot.normal();
             let (out, back) = ((pb - pa).reject_from_normalized(normal), (*from - pa).reject_from_normalized(normal));
             let turn = math::atan2(normal.dot(out.cross(back)), out.dot(back));
@@ -66,10 +66,10 @@ impl Front<'_> {
                 continue;
             }
             let way = (out.normalize_or_zero() + back.normalize_or_zero()).normalize_or_zero();
-            let size = self.soil.field.size(xy, pa);
+            let size = self.input.field.size(xy, pa);
             let Some(step) = spot.step(way * size) else { continue };
-            let to = self.soil.ground.clamp(xy + step);
-            let new = self.soil.ground.spot(to);
+            let to = self.input.ground.clamp(xy + step);
+            let new = self.input.ground.spot(to);
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
             let far = new.p.distance(pa) > FAR * size || self.is_on_edge(to);
@@ -82,7 +82,7 @@ impl Front<'_> {
 
     /// Whether a tip is too near to an edge of the border that is not its own.
     fn near_others(&self, xy: DVec2, p: DVec3, size: f64, own: [u32; 2]) -> bool {
-        let outline = self.soil.outline;
+        let outline = self.input.outline;
         let middle = 0.5 * (outline.xy[own[0] as usize] + outline.xy[own[1] as usize]);
         self.border.any(p, SIGHT * size, size, |sample, _| {
             let edge = self.edges[sample.tag as usize];

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Gardener;
+use super::MeshOptimizer;
 use crate::base::job;
 use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::NO_TRIANGLE;
@@ -11,23 +11,23 @@ use crate::mesh::free::outline::area2;
 /// What a change must gain.
 pub(super) const GAIN: f64 = 0.001;
 
-impl Gardener<'_> {
+impl MeshOptimizer<'_> {
     /// Flips every free side whose opposite angles in space exceed a half turn together.
     pub fn flip_all(&mut self) {
         let moved = self.moved.take();
         let mut open = self.triangles_at(&moved);
         open.reverse();
-        let mut left = 4 * self.web.tri.len() + 64;
+        let mut left = 4 * self.triangulation.tri.len() + 64;
         while let Some(t) = open.pop() {
             job::look();
-            if !self.web.alive(t) {
+            if !self.triangulation.alive(t) {
                 continue;
             }
             for k in 0..3 {
-                let other = self.web.across[t as usize][k];
+                let other = self.triangulation.across[t as usize][k];
                 if left > 0 && self.wants_flip(t, k) {
                     left -= 1;
-                    self.web.flip(t, k);
+                    self.triangulation.flip(t, k);
                     open.push(other);
                     open.push(t);
                     self.wake(t);
@@ -40,7 +40,7 @@ impl Gardener<'_> {
 
     fn wants_flip(&self, t: u32, k: usize) -> bool {
         let Some(quad) = self.quad(t, k) else { return false };
-        let [a, b, c, d] = quad.map(|n| self.web.p[n as usize]);
+        let [a, b, c, d] = quad.map(|n| self.triangulation.p[n as usize]);
         let cot = |tip: DVec3, x: DVec3, y: DVec3| {
             let (x, y) = (x - tip, y - tip);
             x.dot(y) / x.cross(y).length().max(f64::MIN_POSITIVE)
@@ -56,11 +56,11 @@ impl Gardener<'_> {
                 continue;
             }
             let [na, nb, nc, nd] = quad;
-            let before = self.web.shape([na, nb, nd]).min(self.web.shape([nc, nd, nb]));
-            let after = self.web.shape([na, nb, nc]).min(self.web.shape([na, nc, nd]));
+            let before = self.triangulation.shape([na, nb, nd]).min(self.triangulation.shape([nc, nd, nb]));
+            let after = self.triangulation.shape([na, nb, nc]).min(self.triangulation.shape([na, nc, nd]));
             if after > before + GAIN && self.keeps([na, nb, nc], None) && self.keeps([na, nc, nd], None) {
-                let other = self.web.across[t as usize][k];
-                self.web.flip(t, k);
+                let other = self.triangulation.across[t as usize][k];
+                self.triangulation.flip(t, k);
                 self.wake(t);
                 self.wake(other);
                 return true;
@@ -70,16 +70,16 @@ impl Gardener<'_> {
     }
 
     pub(super) fn quad(&self, t: u32, k: usize) -> Option<[u32; 4]> {
-        let web = &self.web;
-        if web.locked[t as usize] >> k & 1 == 1 {
+        let triangulation = &self.triangulation;
+        if triangulation.locked[t as usize] >> k & 1 == 1 {
             return None;
         }
-        let other = web.across[t as usize][k];
+        let other = triangulation.across[t as usize][k];
         if other == NO_TRIANGLE {
             return None;
         }
-        let c = web.tri[t as usize];
-        let o = web.tri[other as usize];
+        let c = triangulation.tri[t as usize];
+        let o = triangulation.tri[other as usize];
         let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
         let tip = o.iter().copied().find(|n| *n != b && *n != d)?;
         Some([a, b, tip, d])
@@ -87,7 +87,7 @@ impl Gardener<'_> {
 
     /// Whether the chart allows the flip.
     pub(super) fn convex(&self, [a, b, c, d]: [u32; 4]) -> bool {
-        let xy = |n: u32| self.web.xy[n as usize];
+        let xy = |n: u32| self.triangulation.xy[n as usize];
         area2(xy(a), xy(b), xy(c)) > 0.0 && area2(xy(a), xy(c), xy(d)) > 0.0
     }
 }

@@ -3,13 +3,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Gardener;
-use super::mend::{Plan, Worth};
+use super::MeshOptimizer;
+use super::repair::{Plan, Worth};
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::shape::Star;
-use crate::mesh::free::web::Patch;
+use crate::mesh::free::triangulation::Patch;
 
 /// One triangle in so many is worked on; of small faces one in so many more, up to so many.
 const RARE: usize = 8000;
@@ -22,7 +22,7 @@ const SHARE: f64 = 0.4;
 /// Share of how bad a place is that may be left of it.
 const LESS: f64 = 0.9;
 /// How bad it may be after the first sweeps, over what it has to come below.
-const HOPE: f64 = 3.0;
+const MIN_START_RATIO: f64 = 3.0;
 
 /// A change of the triangles.
 enum Change {
@@ -45,38 +45,38 @@ struct Swept {
     places: Vec<(u32, DVec2, DVec3)>,
 }
 
-impl Gardener<'_> {
+impl MeshOptimizer<'_> {
     /// Works on bad triangles, and then on the worst that are left.
     pub fn mend_last(&mut self, job: &Job) -> Result<()> {
-        self.mend();
+        self.repair();
         if self.last(job)? > 0 {
-            self.mend();
+            self.repair();
         }
         Ok(())
     }
 
     /// Works on the worst triangles below the wanted quality; how many places got better.
     fn last(&mut self, job: &Job) -> Result<usize> {
-        let live = (0..self.web.tri.len() as u32).filter(|t| self.web.alive(*t));
+        let live = (0..self.triangulation.tri.len() as u32).filter(|t| self.triangulation.alive(*t));
         let mut bad: Vec<(f64, u32)> = live.map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let n = self.web.tri.len();
+        let n = self.triangulation.tri.len();
         bad.truncate(1 + (n / SMALL.0).min(SMALL.1) + n / RARE);
         let mut better = 0;
         for (_, t) in bad {
             job.go_on()?;
-            let still = self.web.alive(t) && self.worth(t) < self.care.wanted;
+            let still = self.triangulation.alive(t) && self.worth(t) < self.care.wanted;
             better += usize::from(still && self.try_all(t));
         }
         Ok(better)
     }
 
     fn try_all(&mut self, t: u32) -> bool {
-        let corners = self.web.tri[t as usize];
+        let corners = self.triangulation.tri[t as usize];
         let near = self.rings_of(&corners);
-        let nodes = self.web.nodes_of(&near);
+        let nodes = self.triangulation.nodes_of(&near);
         let all = self.rings_of(&nodes);
-        let kept = self.web.before(&all);
+        let kept = self.triangulation.before(&all);
         let before = self.sight(&all);
         let mut best: Option<(usize, Swept)> = None;
         let changes = self.changes(t);
@@ -87,11 +87,11 @@ impl Gardener<'_> {
             if let Some(swept) = self.sweep(&nodes, (before, most)) {
                 best = Some((k, swept));
             }
-            self.web.put_back(&kept);
+            self.triangulation.put_back(&kept);
         }
         let Some((k, Swept { places, .. })) = best else { return false };
         let (nodes, star) = self.apply(&changes[k], &nodes);
-        self.squeezed.resize(self.web.p.len(), 1.0);
+        self.squeezed.resize(self.triangulation.p.len(), 1.0);
         if let (Change::Star(patch, ..), Some(node)) = (&changes[k], star) {
             self.squeezed[node as usize] = self.squeezed(&patch.rim);
         }
@@ -113,16 +113,16 @@ impl Gardener<'_> {
     /// What may be done at a triangle and its neighbours.
     fn changes(&mut self, t: u32) -> Vec<Change> {
         let mut changes = vec![Change::None];
-        let near = self.web.across[t as usize].into_iter().filter(|next| *next != NO_TRIANGLE);
+        let near = self.triangulation.across[t as usize].into_iter().filter(|next| *next != NO_TRIANGLE);
         for other in std::iter::once(t).chain(near) {
             // A side of both is flipped once.
-            let own = |k: &usize| other == t || self.web.across[other as usize][*k] != t;
+            let own = |k: &usize| other == t || self.triangulation.across[other as usize][*k] != t;
             let free = |k: &usize| self.quad(other, *k).is_some_and(|quad| self.convex(quad));
             changes.extend((0..3).filter(own).filter(free).map(|k| Change::Flip(other, k)));
         }
         for (tri, keep) in self.candidates(t) {
             let mut patch = Patch::default();
-            if self.web.patch(&tri, &mut patch).is_none() {
+            if self.triangulation.patch(&tri, &mut patch).is_none() {
                 continue;
             }
             match self.plan(&patch, keep, Worth::ANY) {
@@ -139,16 +139,16 @@ impl Gardener<'_> {
         let (mut nodes, mut made) = (nodes.to_vec(), None);
         match change {
             Change::None => {}
-            Change::Flip(t, k) => self.web.flip(*t, *k),
+            Change::Flip(t, k) => self.triangulation.flip(*t, *k),
             Change::Star(patch, node, star) => {
                 let size = self.field.size(star.xy, star.p) * self.squeezed(&patch.rim);
-                let new = self.web.restar(patch, *node, star, size);
+                let new = self.triangulation.restar(patch, *node, star, size);
                 nodes.push(new);
                 made = Some(new);
             }
-            Change::Fan(patch, k) => self.web.refan(patch, *k),
+            Change::Fan(patch, k) => self.triangulation.refan(patch, *k),
         }
-        nodes.retain(|n| self.web.at[*n as usize] != NO_TRIANGLE);
+        nodes.retain(|n| self.triangulation.at[*n as usize] != NO_TRIANGLE);
         nodes.sort_unstable();
         nodes.dedup();
         (nodes, made)
@@ -161,29 +161,29 @@ impl Gardener<'_> {
         let (mut best, mut most): (Option<Swept>, f64) = (None, most);
         for round in 0..=SWEEPS {
             let now = self.sight(&all);
-            if now.bad < most && now.least >= before.least && all.iter().all(|t| self.web.chart_area(*t) > 0.0) {
-                let free = nodes.iter().filter(|n| self.web.is_free(**n));
-                let places = free.map(|n| (*n, self.web.xy[*n as usize], self.web.p[*n as usize])).collect();
+            if now.bad < most && now.least >= before.least && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
+                let free = nodes.iter().filter(|n| self.triangulation.is_free(**n));
+                let places = free.map(|n| (*n, self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize])).collect();
                 best = Some(Swept { bad: now.bad, places });
                 most = now.bad;
             }
-            if round == SWEEPS || round == FIRST && now.bad > HOPE * most {
+            if round == SWEEPS || round == FIRST && now.bad > MIN_START_RATIO * most {
                 break;
             }
             let mut moved = false;
             for &node in nodes {
                 job::look();
-                if !self.web.is_free(node) {
+                if !self.triangulation.is_free(node) {
                     continue;
                 }
                 self.fill_rim(node);
-                let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
+                let (xy, p) = (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]);
                 self.rim.worst(xy, p);
-                let Some(way) = self.ground.spot(xy).step(self.rim.wish(p) * SHARE) else { continue };
+                let Some(way) = self.ground.spot(xy).step(self.rim.demand(p) * SHARE) else { continue };
                 let xy = self.ground.clamp(xy + way);
                 let p = self.ground.point(xy);
                 if self.rim.worst(xy, p) > 0.0 {
-                    (self.web.xy[node as usize], self.web.p[node as usize]) = (xy, p);
+                    (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]) = (xy, p);
                     moved = true;
                 }
             }
@@ -193,8 +193,8 @@ impl Gardener<'_> {
         }
         let best = best?;
         for (n, xy, p) in &best.places {
-            (self.web.xy[*n as usize], self.web.p[*n as usize]) = (*xy, *p);
+            (self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize]) = (*xy, *p);
         }
-        all.iter().all(|t| self.keeps(self.web.tri[*t as usize], None)).then_some(best)
+        all.iter().all(|t| self.keeps(self.triangulation.tri[*t as usize], None)).then_some(best)
     }
 }

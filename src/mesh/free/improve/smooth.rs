@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Gardener;
+use super::MeshOptimizer;
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::ground::foot_near;
@@ -10,7 +10,7 @@ use crate::mesh::free::ground::foot_near;
 /// A move below this share of the wanted length ends the smoothing of a node.
 const STILL: f64 = 0.005;
 
-impl Gardener<'_> {
+impl MeshOptimizer<'_> {
     /// Moves free nodes that wait towards the area-weighted mean of their triangles' centroids, and in the next round their
     /// neighbours too.
     pub fn smooth(&mut self, rounds: usize) {
@@ -18,7 +18,7 @@ impl Gardener<'_> {
             let mut moved = false;
             for node in self.active.take() {
                 job::look();
-                if !self.web.is_free(node) || self.web.at[node as usize] == NO_TRIANGLE {
+                if !self.triangulation.is_free(node) || self.triangulation.at[node as usize] == NO_TRIANGLE {
                     continue;
                 }
                 if self.relax(node) {
@@ -35,12 +35,12 @@ impl Gardener<'_> {
     /// One step of one node; whether it moved worth mentioning.
     fn relax(&mut self, node: u32) -> bool {
         self.fill_rim(node);
-        let here = self.web.p[node as usize];
-        let before = self.rim.worst(self.web.xy[node as usize], here);
+        let here = self.triangulation.p[node as usize];
+        let before = self.rim.worst(self.triangulation.xy[node as usize], here);
         if before > self.care.fine {
             return false;
         }
-        let xy = self.web.xy[node as usize];
+        let xy = self.triangulation.xy[node as usize];
         let (mut sum, mut place, mut weights) = (DVec3::ZERO, DVec2::ZERO, 0.0);
         let (points, places) = (self.rim.points(), self.rim.places());
         let n = points.len();
@@ -48,19 +48,19 @@ impl Gardener<'_> {
             let j = if i + 1 < n { i + 1 } else { 0 };
             let (a, b) = (points[i], points[j]);
             let area = (a - here).cross(b - here).length();
-            let size = (self.web.size[self.ring.node[i] as usize] + self.web.size[self.ring.node[j] as usize]) * 0.5;
+            let size = (self.triangulation.size[self.ring.node[i] as usize] + self.triangulation.size[self.ring.node[j] as usize]) * 0.5;
             let weight = area / (size * size * size * size);
             sum += (here + a + b) * weight;
             place += (xy + places[i] + places[j]) * weight;
             weights += weight;
         }
-        let size = self.web.size[node as usize];
-        let wish = sum / (3.0 * weights) - here;
+        let size = self.triangulation.size[node as usize];
+        let demand = sum / (3.0 * weights) - here;
         // The same mean in the chart is nearly the foot of the one in space.
         let way = place / (3.0 * weights) - xy;
         let mut share = self.care.beyond;
         for _ in 0..3 {
-            let step = wish * share;
+            let step = demand * share;
             if step.length() < STILL * size {
                 return false;
             }
@@ -77,16 +77,16 @@ impl Gardener<'_> {
     }
 
     pub(super) fn fill_rim(&mut self, node: u32) {
-        let web = &self.web;
-        web.ring(node, &mut self.ring);
-        self.rim.fill(self.ring.node.iter().map(|n| (web.p[*n as usize], web.xy[*n as usize])));
-        self.rim.longest = web.size[node as usize] * self.care.longest;
+        let triangulation = &self.triangulation;
+        triangulation.ring(node, &mut self.ring);
+        self.rim.fill(self.ring.node.iter().map(|n| (triangulation.p[*n as usize], triangulation.xy[*n as usize])));
+        self.rim.longest = triangulation.size[node as usize] * self.care.longest;
     }
 
     pub(super) fn place(&mut self, node: u32, xy: DVec2, p: DVec3) {
-        self.web.xy[node as usize] = xy;
-        self.web.p[node as usize] = p;
-        self.web.size[node as usize] = self.field.size(xy, p) * self.squeezed[node as usize];
+        self.triangulation.xy[node as usize] = xy;
+        self.triangulation.p[node as usize] = p;
+        self.triangulation.size[node as usize] = self.field.size(xy, p) * self.squeezed[node as usize];
         self.touch(node);
     }
 }

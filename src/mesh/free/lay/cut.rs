@@ -9,7 +9,7 @@ use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::explain::Why;
 use crate::mesh::faces::allow;
 use crate::mesh::free::build::Trouble;
-use crate::mesh::free::ground::Ground;
+use crate::mesh::free::ground::ParametricSurface;
 use crate::mesh::free::loads;
 use crate::mesh::free::marks::corners;
 use crate::mesh::free::tree::Class;
@@ -38,7 +38,7 @@ const PIECES: usize = 4;
 impl Work<'_> {
     /// Cuts leaves, and theirs, until each is no longer than allowed and keeps the limits by itself.
     pub(super) fn settle(&mut self, mut open: Vec<u32>) -> Tried<()> {
-        let (across, along) = self.ask.sheet.surface().curves_of_a_point();
+        let (across, along) = self.ask.chart.surface().curves_of_a_point();
         let worth = CELL * (1 + (across + along) / CURVES) as u64;
         while let Some(k) = open.pop() {
             job::look();
@@ -102,7 +102,7 @@ impl Work<'_> {
     /// The direction in which a leaf goes so far round a surface that closes, or from pole to pole, that nodes on its two sides
     /// would have more than one edge between them.
     fn overlong(&self, k: u32) -> Option<usize> {
-        let surface = self.ask.sheet.surface();
+        let surface = self.ask.chart.surface();
         let width = self.cells.all()[k as usize].width();
         let pole = |side: usize| surface.domain() == Domain::Square && matches!(surface.side(side), Side::Pole(_));
         let most = |closed: bool, poles: bool| {
@@ -145,7 +145,7 @@ impl Work<'_> {
                 let mut last = None;
                 for k in 0..=PIECES {
                     at[axis] = low[axis] + (high[axis] - low[axis]) * share(k);
-                    let p = self.ask.sheet.spot(self.place(at)).p;
+                    let p = self.ask.chart.spot(self.place(at)).p;
                     length += last.map_or(0.0, |last: DVec3| last.distance(p));
                     last = Some(p);
                 }
@@ -205,7 +205,7 @@ impl Work<'_> {
         let at = corners((low, high));
         let p = at.map(|at| self.point(at));
         let xy = at.map(|at| self.place(at));
-        let one = |c: [usize; 3]| loads::load_of(self.ask.sheet, (c.map(|k| xy[k]), c.map(|k| p[k])), self.ask.limits).worst();
+        let one = |c: [usize; 3]| loads::load_of(self.ask.chart, (c.map(|k| xy[k]), c.map(|k| p[k])), self.ask.limits).worst();
         let first = one([0, 1, 2]).max(one([0, 2, 3]));
         if first <= 1.0 { first } else { first.min(one([0, 1, 3]).max(one([1, 2, 3]))) }
     }

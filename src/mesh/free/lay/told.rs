@@ -8,7 +8,7 @@ use crate::base::job;
 use crate::mesh::explain::{Decider, Tally, Why};
 use crate::mesh::free::marks::{corners, marks};
 use crate::mesh::free::tree::Class;
-use crate::mesh::free::web::Web;
+use crate::mesh::free::triangulation::Triangulation;
 
 impl Work<'_> {
     /// Counts of cells, and at how many corners beside borders the marks say what the winding does.
@@ -39,15 +39,15 @@ impl Work<'_> {
     }
 
     /// What decided, with the number of nodes inside.
-    pub(super) fn deciders(&self, corners: &Corners, web: &Web) -> Vec<Decider> {
+    pub(super) fn deciders(&self, corners: &Corners, triangulation: &Triangulation) -> Vec<Decider> {
         let mut found: BTreeMap<Why, Decider> = BTreeMap::new();
         for (corner, node) in corners.all.iter().zip(&corners.node) {
             job::look();
-            let Some(n) = node.filter(|n| *n >= web.fixed) else { continue };
+            let Some(n) = node.filter(|n| *n >= triangulation.fixed) else { continue };
             let smallest = |k: &u32| self.cells.all()[*k as usize].width().element_product();
             let leaf = self.cells.around(corner.at).into_iter().min_by(|a, b| smallest(a).total_cmp(&smallest(b)));
             let why = leaf.map_or(Why::Size, |k| self.cells.all()[k as usize].why);
-            found.entry(why).or_insert(Decider { why, nodes: 0, at: web.p[n as usize] }).nodes += 1;
+            found.entry(why).or_insert(Decider { why, nodes: 0, at: triangulation.p[n as usize] }).nodes += 1;
         }
         found.into_values().collect()
     }

@@ -6,7 +6,7 @@ use super::halves::Halves;
 use super::pair::Alone;
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::mesh::free::web::Web;
+use crate::mesh::free::triangulation::Triangulation;
 
 /// Where there is no node, face or side.
 pub const NONE: u32 = u32::MAX;
@@ -20,7 +20,7 @@ pub struct Net {
     pub xy: Vec<DVec2>,
     /// Unit normals of the surface there; zero where there is none.
     pub normal: Vec<DVec3>,
-    /// Wanted lengths.
+    /// SizeRequests lengths.
     pub size: Vec<f64>,
     /// Number of border nodes.
     pub fixed: u32,
@@ -80,12 +80,12 @@ pub fn least_quality(net: &Net, faces: &[u32]) -> f64 {
 /// What a net is made of.
 pub struct Raw<'a> {
     /// Triangles over the cells' border.
-    pub web: &'a Web,
+    pub triangulation: &'a Triangulation,
     /// The triangle that each is paired with.
     pub mate: &'a [u32],
     /// Triangles that are a point or a line in space.
     pub flat: &'a [bool],
-    /// Normals at the nodes of the web.
+    /// Normals at the nodes of the triangulation.
     pub normal: &'a [DVec3],
     /// The whole border.
     pub halves: &'a Halves,
@@ -94,37 +94,37 @@ pub struct Raw<'a> {
 impl Raw<'_> {
     /// Pairs of triangles as quads; what is flat goes, and what it parted is joined.
     pub fn net(&self) -> Net {
-        let (web, halves) = (self.web, self.halves);
+        let (triangulation, halves) = (self.triangulation, self.halves);
         let fixed = halves.p.len();
-        let node = |n: u32| if n < web.fixed { halves.of[n as usize] } else { n - web.fixed + fixed as u32 };
+        let node = |n: u32| if n < triangulation.fixed { halves.of[n as usize] } else { n - triangulation.fixed + fixed as u32 };
         let mut net = Net { fixed: fixed as u32, p: halves.p.clone(), xy: halves.xy.clone(), ..Net::default() };
-        net.p.extend(&web.p[web.fixed as usize..]);
-        net.xy.extend(&web.xy[web.fixed as usize..]);
+        net.p.extend(&triangulation.p[triangulation.fixed as usize..]);
+        net.xy.extend(&triangulation.xy[triangulation.fixed as usize..]);
         net.normal = vec![DVec3::ZERO; fixed];
         net.size = vec![0.0; fixed];
-        for n in 0..web.fixed as usize {
+        for n in 0..triangulation.fixed as usize {
             job::look();
             let at = halves.of[n] as usize;
-            (net.normal[at], net.size[at]) = (self.normal[n], web.size[n]);
+            (net.normal[at], net.size[at]) = (self.normal[n], triangulation.size[n]);
         }
-        net.normal.extend(&self.normal[web.fixed as usize..]);
-        net.size.extend(&web.size[web.fixed as usize..]);
+        net.normal.extend(&self.normal[triangulation.fixed as usize..]);
+        net.size.extend(&triangulation.size[triangulation.fixed as usize..]);
         // Sides of faces as sides of triangles.
         let mut sides: Vec<[(u32, usize); 4]> = Vec::new();
-        let mut side_of = vec![[NONE; 3]; web.tri.len()];
-        for t in 0..web.tri.len() as u32 {
+        let mut side_of = vec![[NONE; 3]; triangulation.tri.len()];
+        for t in 0..triangulation.tri.len() as u32 {
             job::look();
             let mate = self.mate[t as usize];
             if self.flat[t as usize] || mate != NO_TRIANGLE && mate < t {
                 continue;
             }
-            let c = web.tri[t as usize];
+            let c = triangulation.tri[t as usize];
             let (corners, of) = if mate == NO_TRIANGLE {
                 ([c[0], c[1], c[2], NONE], [(t, 2), (t, 0), (t, 1), (t, usize::MAX)])
             } else {
-                let k = web.across[t as usize].iter().position(|o| *o == mate).unwrap_or(0);
-                let j = web.across[mate as usize].iter().position(|o| *o == t).unwrap_or(0);
-                let quad = [c[k], c[(k + 1) % 3], web.tri[mate as usize][j], c[(k + 2) % 3]];
+                let k = triangulation.across[t as usize].iter().position(|o| *o == mate).unwrap_or(0);
+                let j = triangulation.across[mate as usize].iter().position(|o| *o == t).unwrap_or(0);
+                let quad = [c[k], c[(k + 1) % 3], triangulation.tri[mate as usize][j], c[(k + 2) % 3]];
                 (quad, [(t, (k + 2) % 3), (mate, (j + 1) % 3), (mate, (j + 2) % 3), (t, (k + 1) % 3)])
             };
             for (k, (t, side)) in of.iter().enumerate().filter(|(_, s)| s.1 < 3) {
@@ -150,25 +150,25 @@ impl Raw<'_> {
 
     /// What lies beyond a side, flat triangles left out.
     fn beyond(&self, (mut t, mut k): (u32, usize)) -> Beyond {
-        let web = self.web;
+        let triangulation = self.triangulation;
         let mut beyond = Beyond { side: None, locked: false, mid: NONE };
-        for _ in 0..=web.tri.len() {
+        for _ in 0..=triangulation.tri.len() {
             job::look();
-            let c = web.tri[t as usize];
-            if web.locked[t as usize] >> k & 1 == 1 {
+            let c = triangulation.tri[t as usize];
+            if triangulation.locked[t as usize] >> k & 1 == 1 {
                 beyond.locked = true;
                 let mid = self.halves.mid(c[(k + 1) % 3], c[(k + 2) % 3]);
                 beyond.mid = if mid == NONE { beyond.mid } else { mid };
             }
-            let other = web.across[t as usize][k];
-            let j = (0..3).find(|j| other != NO_TRIANGLE && web.across[other as usize][*j] == t);
+            let other = triangulation.across[t as usize][k];
+            let j = (0..3).find(|j| other != NO_TRIANGLE && triangulation.across[other as usize][*j] == t);
             let Some(j) = j else { return beyond };
             if !self.flat[other as usize] {
                 beyond.side = Some((other, j));
                 return beyond;
             }
             // The other one of the two sides that are one line in space.
-            let ids = web.tri[other as usize].map(|n| self.halves.id(n));
+            let ids = triangulation.tri[other as usize].map(|n| self.halves.id(n));
             let long = |i: &usize| *i != j && ids[(i + 1) % 3] != ids[(i + 2) % 3];
             let Some(next) = (0..3).find(long) else { return beyond };
             (t, k) = (other, next);
@@ -190,9 +190,9 @@ pub fn alone(net: &Net) -> usize {
 }
 
 impl Alone {
-    /// Triangles of a web that are a point or a line in space: two corners are one node.
-    pub fn flat(web: &Web, halves: &Halves) -> Vec<bool> {
+    /// Triangles of a triangulation that are a point or a line in space: two corners are one node.
+    pub fn flat(triangulation: &Triangulation, halves: &Halves) -> Vec<bool> {
         let flat = |t: &[u32; 3]| (0..3).any(|k| halves.id(t[k]) != NONE && halves.id(t[k]) == halves.id(t[(k + 1) % 3]));
-        web.tri.iter().map(flat).collect()
+        triangulation.tri.iter().map(flat).collect()
     }
 }

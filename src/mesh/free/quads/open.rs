@@ -6,7 +6,7 @@ use super::net::{NONE, Net};
 use super::smooth::{Over, Smoother};
 use crate::base::job;
 use crate::base::math::angle_between;
-use crate::mesh::free::ground::{Field, Ground, foot_spot};
+use crate::mesh::free::ground::{ParametricSurface, SizeField, foot_spot};
 
 /// Quality of the quads round a node that is opened.
 const SOUND: f64 = 0.5;
@@ -25,7 +25,7 @@ struct Opening {
 }
 
 /// Opens nodes at sides that are longer than allowed, no two of them beside each other; gives the nodes of the new quads.
-pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Over) -> Vec<u32> {
+pub fn open(net: &mut Net, (ground, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<u32> {
     let mut all = openings(net, (ground, field), over);
     all.sort_by(|a, b| b.over.total_cmp(&a.over).then((a.node, a.towards).cmp(&(b.node, b.towards))));
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); if all.is_empty() { 0 } else { net.p.len() }];
@@ -65,7 +65,7 @@ pub fn open(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Ov
 }
 
 /// What may be opened, at either end of each side that is too long.
-fn openings(net: &mut Net, (ground, field): (&dyn Ground, &dyn Field), over: &Over) -> Vec<Opening> {
+fn openings(net: &mut Net, (ground, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<Opening> {
     let smoother = Smoother::new(net, ground, field);
     let net = &*smoother.net;
     let mut found = Vec::new();

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::net::least_sine;
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::mesh::free::web::Web;
+use crate::mesh::free::triangulation::Triangulation;
 
 /// What triangles that stay alone are worth.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ const GAIN: f64 = 1.0 / STEPS;
 const STEPS: f64 = 1e6;
 
 struct Pairing<'a> {
-    web: &'a Web,
+    triangulation: &'a Triangulation,
     alone: Alone,
     /// Cost of the pair across each side; infinite where there may be none.
     cost: Vec<[f64; 3]>,
@@ -38,26 +38,26 @@ struct Pairing<'a> {
 
 /// The triangle that each is paired with, or [`NO_TRIANGLE`]; `normal` are those of the surface at the nodes, `flat`
 /// triangles are left out.
-pub fn pair(web: &Web, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<u32> {
-    let cost = costs(web, normal, flat, alone);
+pub fn pair(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<u32> {
+    let cost = costs(triangulation, normal, flat, alone);
     let mut order: Vec<(f64, u32, u8)> = Vec::new();
     for (t, sides) in cost.iter().enumerate() {
         job::look();
         for (k, c) in sides.iter().enumerate() {
-            if c.is_finite() && web.across[t][k] > t as u32 {
+            if c.is_finite() && triangulation.across[t][k] > t as u32 {
                 order.push((*c, t as u32, k as u8));
             }
         }
     }
     order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut mate = vec![NO_TRIANGLE; web.tri.len()];
+    let mut mate = vec![NO_TRIANGLE; triangulation.tri.len()];
     for (_, t, k) in order {
-        let other = web.across[t as usize][k as usize];
+        let other = triangulation.across[t as usize][k as usize];
         if mate[t as usize] == NO_TRIANGLE && mate[other as usize] == NO_TRIANGLE {
             (mate[t as usize], mate[other as usize]) = (other, t);
         }
     }
-    let mut pairing = Pairing { web, alone, cost, mate, row: Vec::new(), best: (0.0, Vec::new()) };
+    let mut pairing = Pairing { triangulation, alone, cost, mate, row: Vec::new(), best: (0.0, Vec::new()) };
     for _ in 0..ROUNDS {
         if !pairing.exchange(flat) {
             break;
@@ -67,26 +67,29 @@ pub fn pair(web: &Web, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<u32
 }
 
 /// Costs of all pairs: how far from a square.
-fn costs(web: &Web, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<[f64; 3]> {
+fn costs(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<[f64; 3]> {
     let cost = |t: usize, k: usize| {
-        let other = web.across[t][k];
-        if other == NO_TRIANGLE || web.locked[t] >> k & 1 == 1 || flat[t] || flat[other as usize] {
+        let other = triangulation.across[t][k];
+        if other == NO_TRIANGLE || triangulation.locked[t] >> k & 1 == 1 || flat[t] || flat[other as usize] {
             return f64::INFINITY;
         }
-        let c = web.tri[t];
+        let c = triangulation.tri[t];
         let (a, b, d) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
-        let Some(tip) = web.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { return f64::INFINITY };
+        let Some(tip) = triangulation.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { return f64::INFINITY };
         let quad = [a, b, tip, d].map(|n| n as usize);
-        let quality = least_sine(quad.map(|n| web.p[n]), quad.map(|n| normal[n]));
+        let quality = least_sine(quad.map(|n| triangulation.p[n]), quad.map(|n| normal[n]));
         if quality < alone.least { f64::INFINITY } else { (loss(quality) * STEPS).round() / STEPS }
     };
-    let mut all = vec![[f64::INFINITY; 3]; web.tri.len()];
-    for t in 0..web.tri.len() {
+    let mut all = vec![[f64::INFINITY; 3]; triangulation.tri.len()];
+    for t in 0..triangulation.tri.len() {
         job::look();
         for k in 0..3 {
-            let other = web.across[t][k];
+            let other = triangulation.across[t][k];
             all[t][k] = match (other as usize) < t {
-                true => web.across[other as usize].iter().position(|o| *o == t as u32).map_or(f64::INFINITY, |j| all[other as usize][j]),
+                true => triangulation.across[other as usize]
+                    .iter()
+                    .position(|o| *o == t as u32)
+                    .map_or(f64::INFINITY, |j| all[other as usize][j]),
                 false => cost(t, k),
             };
         }
@@ -103,7 +106,7 @@ impl Pairing<'_> {
     /// Rows that start from triangles alone; whether any changed.
     fn exchange(&mut self, flat: &[bool]) -> bool {
         let mut changed = false;
-        for t in 0..self.web.tri.len() as u32 {
+        for t in 0..self.triangulation.tri.len() as u32 {
             job::look();
             if self.mate[t as usize] != NO_TRIANGLE || flat[t as usize] {
                 continue;
@@ -131,7 +134,7 @@ impl Pairing<'_> {
     /// Pairs the last triangle of the row with each neighbour in turn, whose own mate is the next one.
     fn follow(&mut self, t: u32, spent: f64) {
         for k in 0..3 {
-            let other = self.web.across[t as usize][k];
+            let other = self.triangulation.across[t as usize][k];
             let cost = self.cost[t as usize][k];
             if !cost.is_finite() || self.row.contains(&other) {
                 continue;
@@ -141,7 +144,8 @@ impl Pairing<'_> {
             if next == NO_TRIANGLE {
                 self.keep(spent + cost - 2.0 * loss(self.alone.worth));
             } else {
-                let freed = self.web.across[other as usize].iter().position(|o| *o == next).map_or(0.0, |j| self.cost[other as usize][j]);
+                let freed =
+                    self.triangulation.across[other as usize].iter().position(|o| *o == next).map_or(0.0, |j| self.cost[other as usize][j]);
                 let spent = spent + cost - freed;
                 self.row.push(next);
                 self.keep(spent);

@@ -7,7 +7,7 @@ use super::net::{NONE, Net, least_quality};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::work;
-use crate::mesh::free::ground::{Field, Ground, foot_near, foot_spot};
+use crate::mesh::free::ground::{ParametricSurface, SizeField, foot_near, foot_spot};
 
 /// Work of a search for a better place of a node, in evaluations of the surface, beside those.
 const CLIMB_WORK: u64 = 40;
@@ -47,8 +47,8 @@ struct Place {
 pub struct Smoother<'a> {
     /// The net.
     pub net: &'a mut Net,
-    ground: &'a dyn Ground,
-    field: &'a dyn Field,
+    ground: &'a dyn ParametricSurface,
+    field: &'a dyn SizeField,
     /// Faces round each node: from `first[n]` to the next one.
     first: Vec<u32>,
     of: Vec<u32>,
@@ -60,7 +60,7 @@ pub struct Smoother<'a> {
 
 impl<'a> Smoother<'a> {
     /// Takes a net.
-    pub fn new(net: &'a mut Net, ground: &'a dyn Ground, field: &'a dyn Field) -> Self {
+    pub fn new(net: &'a mut Net, ground: &'a dyn ParametricSurface, field: &'a dyn SizeField) -> Self {
         let n = net.p.len();
         let mut first = vec![0; n + 1];
         let corners =
@@ -177,9 +177,9 @@ impl<'a> Smoother<'a> {
 
     /// One step of one node; whether it moved worth mentioning.
     fn relax(&mut self, node: usize) -> bool {
-        let Some((wish, to)) = self.centre(node) else { return false };
+        let Some((demand, to)) = self.centre(node) else { return false };
         let start = self.place(node);
-        let step = wish - start.p;
+        let step = demand - start.p;
         let still = STILL * self.net.size[node];
         if step.length_squared() < still * still {
             return false;
@@ -274,7 +274,7 @@ impl<'a> Smoother<'a> {
 
     /// Moves corners of elements below `wanted` to where the worst element round them is best, the worst ones first, for so
     /// many rounds at most.
-    pub fn mend(&mut self, wanted: f64, rounds: usize, job: &Job) -> Result<()> {
+    pub fn repair(&mut self, wanted: f64, rounds: usize, job: &Job) -> Result<()> {
         // Nodes round which nothing moved since they were tried: they would stay where they are once more.
         let mut tried = vec![false; self.net.p.len()];
         for _ in 0..rounds {

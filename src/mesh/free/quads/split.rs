@@ -4,11 +4,11 @@ use glam::{DVec2, DVec3};
 
 use super::net::{NONE, Net};
 use crate::base::job;
-use crate::mesh::free::ground::{Field, Ground, foot_spot};
+use crate::mesh::free::ground::{ParametricSurface, SizeField, foot_spot};
 
 /// Quads in place of all faces; sides of borders and lines get the nodes that are given for their middles. Neighbours are
 /// not noted in the finer net. `whole` has the sides of each face that are not halved, as bits, an even number of them.
-pub fn split(net: &Net, whole: &[u8], (ground, field): (&dyn Ground, &dyn Field)) -> Net {
+pub fn split(net: &Net, whole: &[u8], (ground, field): (&dyn ParametricSurface, &dyn SizeField)) -> Net {
     let mut fine = Net { p: net.p.clone(), xy: net.xy.clone(), normal: net.normal.clone(), fixed: net.fixed, ..Net::default() };
     for n in 0..net.fixed as usize {
         job::look();
@@ -69,7 +69,7 @@ pub fn split(net: &Net, whole: &[u8], (ground, field): (&dyn Ground, &dyn Field)
 }
 
 /// A new node at the foot of the mean of some nodes.
-fn between(net: &mut Net, ground: &dyn Ground, nodes: &[u32]) -> u32 {
+fn between(net: &mut Net, ground: &dyn ParametricSurface, nodes: &[u32]) -> u32 {
     let n = nodes.len() as f64;
     let p = nodes.iter().map(|n| net.p[*n as usize]).sum::<DVec3>() / n;
     // A pole has many places in the chart, and none of them is in the right direction.

@@ -25,9 +25,9 @@ impl Thinning<'_> {
     /// Moves nodes so that their triangles have more even bounds.
     pub(super) fn relax(&mut self, job: &Job) -> Result<()> {
         let last = self.changes.moved.replace(self.changes.now);
-        for node in self.web.fixed..self.web.p.len() as u32 {
-            if self.web.at[node as usize] != NO_TRIANGLE && self.changes.since(last, &[node]) && self.relax_node(node, 1.0) {
-                self.web.ring(node, &mut self.ring);
+        for node in self.triangulation.fixed..self.triangulation.p.len() as u32 {
+            if self.triangulation.at[node as usize] != NO_TRIANGLE && self.changes.since(last, &[node]) && self.relax_node(node, 1.0) {
+                self.triangulation.ring(node, &mut self.ring);
                 let changed: Vec<u32> = self.ring.node.iter().copied().chain([node]).collect();
                 self.requeue(&changed);
             }
@@ -40,7 +40,7 @@ impl Thinning<'_> {
 
     /// Moves a node where that lowers the sum of the fourth powers of the bounds of its triangles, all below a limit; whether it moved.
     fn relax_node(&mut self, node: u32, limit: f64) -> bool {
-        self.web.ring(node, &mut self.ring);
+        self.triangulation.ring(node, &mut self.ring);
         let (k, around) = (node as usize, self.ring.tri.clone());
         if !self.ring.closed {
             return false;
@@ -48,21 +48,22 @@ impl Thinning<'_> {
         let (mut mean, mut weights, mut before) = (DVec2::ZERO, 0.0, 0.0);
         for t in &around {
             let load = self.load(*t);
-            mean += self.web.tri[*t as usize].iter().map(|n| self.web.xy[*n as usize]).sum::<DVec2>() * (load * load / 3.0);
+            mean +=
+                self.triangulation.tri[*t as usize].iter().map(|n| self.triangulation.xy[*n as usize]).sum::<DVec2>() * (load * load / 3.0);
             weights += load * load;
             before += load * load * load * load;
         }
         if !(before > 0.0 && before.is_finite()) {
             return false;
         }
-        let old = (self.web.xy[k], self.web.p[k]);
+        let old = (self.triangulation.xy[k], self.triangulation.p[k]);
         for share in STEPS {
             let xy = old.0.lerp(mean / weights, share);
-            (self.web.xy[k], self.web.p[k]) = (xy, (self.ask.point)(xy));
+            (self.triangulation.xy[k], self.triangulation.p[k]) = (xy, (self.ask.point)(xy));
             let (mut loads, mut sum) = (Vec::with_capacity(around.len()), 0.0);
             for t in &around {
-                let c = self.web.tri[*t as usize];
-                let far = c.iter().all(|n| *n == node || (self.ask.allowed)(self.web, node, *n));
+                let c = self.triangulation.tri[*t as usize];
+                let far = c.iter().all(|n| *n == node || (self.ask.allowed)(self.triangulation, node, *n));
                 let Some(load) = self.less(c, limit).filter(|_| far) else { break };
                 sum += load * load * load * load;
                 if sum > GAIN * before {
@@ -75,14 +76,14 @@ impl Thinning<'_> {
                 return true;
             }
         }
-        (self.web.xy[k], self.web.p[k]) = old;
+        (self.triangulation.xy[k], self.triangulation.p[k]) = old;
         false
     }
 
     /// Marks nodes as changed and puts them into the queue again.
     fn requeue(&mut self, changed: &[u32]) {
         self.changes.mark(changed);
-        for n in changed.iter().copied().filter(|n| *n >= self.web.fixed && self.web.at[*n as usize] != NO_TRIANGLE) {
+        for n in changed.iter().copied().filter(|n| *n >= self.triangulation.fixed && self.triangulation.at[*n as usize] != NO_TRIANGLE) {
             self.known[n as usize] = Known::Nothing;
             self.heap.push(Reverse((0, n)));
         }
@@ -93,12 +94,12 @@ impl Thinning<'_> {
     pub(super) fn join_relaxed(&mut self, job: &Job) -> Result<usize> {
         let mut gone = 0_usize;
         let last = self.changes.joined_relaxed.replace(self.changes.now);
-        let (most, mut spent) = (RELAXED_WORK * self.web.tri.len() as u64, 0);
-        for t in 0..self.web.tri.len() as u32 {
+        let (most, mut spent) = (RELAXED_WORK * self.triangulation.tri.len() as u64, 0);
+        for t in 0..self.triangulation.tri.len() as u32 {
             for k in 0..3 {
-                let c = self.web.tri[t as usize];
+                let c = self.triangulation.tri[t as usize];
                 let (a, b) = (c[(k + 1) % 3], c[(k + 2) % 3]);
-                let is_open = self.web.alive(t) && self.web.fixed <= a && a < b && self.changes.since(last, &[a, b]);
+                let is_open = self.triangulation.alive(t) && self.triangulation.fixed <= a && a < b && self.changes.since(last, &[a, b]);
                 if !is_open {
                     continue;
                 }
@@ -124,16 +125,16 @@ impl Thinning<'_> {
         let patch = std::mem::take(&mut self.patch);
         let mut all = patch.tri.clone();
         for n in &patch.rim {
-            self.web.ring(*n, &mut self.ring);
+            self.triangulation.ring(*n, &mut self.ring);
             all.extend_from_slice(&self.ring.tri);
         }
         all.sort_unstable();
         all.dedup();
-        let kept = self.web.before(&all);
-        let size = self.web.size[a as usize];
-        self.web.restar(&patch, Some(a), &star, size);
+        let kept = self.triangulation.before(&all);
+        let size = self.triangulation.size[a as usize];
+        self.triangulation.restar(&patch, Some(a), &star, size);
         self.invalidate(&all);
-        let free: Vec<u32> = std::iter::once(a).chain(patch.rim.iter().copied().filter(|n| *n >= self.web.fixed)).collect();
+        let free: Vec<u32> = std::iter::once(a).chain(patch.rim.iter().copied().filter(|n| *n >= self.triangulation.fixed)).collect();
         let mut worst = self.worst(&all);
         for _ in 0..MAX_SWEEPS {
             for n in &free {
@@ -148,12 +149,12 @@ impl Thinning<'_> {
         }
         self.patch = patch;
         if worst >= 1.0 {
-            self.web.put_back(&kept);
+            self.triangulation.put_back(&kept);
             self.invalidate(&all);
             return false;
         }
-        let live: Vec<u32> = all.into_iter().filter(|t| self.web.alive(*t)).collect();
-        let changed = self.web.nodes_of(&live);
+        let live: Vec<u32> = all.into_iter().filter(|t| self.triangulation.alive(*t)).collect();
+        let changed = self.triangulation.nodes_of(&live);
         self.requeue(&changed);
         true
     }
@@ -162,7 +163,7 @@ impl Thinning<'_> {
     fn worst(&mut self, some: &[u32]) -> f64 {
         let mut worst = 0.0_f64;
         for t in some.iter().copied() {
-            if self.web.alive(t) {
+            if self.triangulation.alive(t) {
                 worst = worst.max(self.load(t));
             }
         }

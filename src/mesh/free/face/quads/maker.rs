@@ -7,12 +7,12 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::{MeshFault, Result};
 use crate::base::job::{self, Job};
 use crate::mesh::faces::allow;
-use crate::mesh::free::build::{Lattice, Task, Trouble, plant};
+use crate::mesh::free::build::{Lattice, Task, Trouble, initial_triangulation};
 use crate::mesh::free::face::fit::{Fit, LESS};
 use crate::mesh::free::face::longest::longest_side;
-use crate::mesh::free::ground::{Even, Field, Ground};
-use crate::mesh::free::improve::Gardener;
-use crate::mesh::free::loads::Loads;
+use crate::mesh::free::ground::{ParametricSurface, SizeField, UniformSize};
+use crate::mesh::free::improve::MeshOptimizer;
+use crate::mesh::free::loads::LimitTable;
 use crate::mesh::free::quads::halves::Halves;
 use crate::mesh::free::quads::net::{NONE, Net, Raw};
 use crate::mesh::free::quads::odd::whole_sides;
@@ -21,8 +21,8 @@ use crate::mesh::free::quads::pair::{Alone, pair};
 use crate::mesh::free::quads::smooth::Smoother;
 use crate::mesh::free::quads::split::split;
 use crate::mesh::free::quads::swap::Swapper;
-use crate::mesh::free::size::Blend;
-use crate::mesh::free::web::Web;
+use crate::mesh::free::size::GradedSize;
+use crate::mesh::free::triangulation::Triangulation;
 use crate::mesh::plan::{Elements, Method};
 use crate::mesh::shape_check::is_concave;
 use crate::mesh::wanted::floor_keeps;
@@ -74,7 +74,7 @@ struct Worst {
 }
 
 impl Maker<'_> {
-    pub(super) fn fitted(&self, field: &mut Blend, job: &Job) -> Fitted {
+    pub(super) fn fitted(&self, field: &mut GradedSize, job: &Job) -> Fitted {
         let plan = self.fit.made.input.plan;
         let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
         for round in 0..TRIES {
@@ -82,7 +82,7 @@ impl Maker<'_> {
                 Ok(net) => net,
                 Err(trouble) => return Ok(Err(trouble)),
             };
-            let mut loads = Loads::default();
+            let mut loads = LimitTable::default();
             if field.background.is_some() {
                 self.repair(&mut net, field, &mut loads, job)?;
             }
@@ -115,33 +115,33 @@ impl Maker<'_> {
     }
 
     /// One net for these lengths, which may take the work that its elements are worth whatever nets before took.
-    fn net(&self, field: &Blend, job: &Job) -> Fitted {
-        let same = Even(field.spacing * self.fit.face.size.0);
+    fn net(&self, field: &GradedSize, job: &Job) -> Fitted {
+        let same = UniformSize(field.spacing * self.fit.face.size.0);
         let plain = field.sources.is_empty() && field.background.is_none();
-        let wanted: &dyn Field = if plain { &same } else { field };
+        let wanted: &dyn SizeField = if plain { &same } else { field };
         let quads = self.fit.face.elements == Elements::Quads;
         let twice = Twice(wanted);
-        let cells: &dyn Field = if quads { &twice } else { wanted };
+        let cells: &dyn SizeField = if quads { &twice } else { wanted };
         let lattice = if self.fit.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Squares };
-        let (ground, outline) = (self.fit.sheet, &self.halves.outline);
+        let (ground, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
         let task = Task { ground, field: cells, outline, care: self.fit.care, lattice, most, guard: None };
-        let web = match plant(&task, job)? {
-            Ok(web) => web,
+        let triangulation = match initial_triangulation(&task, job)? {
+            Ok(triangulation) => triangulation,
             Err(trouble) => return Ok(Err(trouble)),
         };
-        allow(WORK_OF_QUADS * if quads { 2 } else { 1 } * web.tri.len() as u64, &mut 0);
-        let mut gardener = Gardener::new(web, ground, cells, self.fit.care);
-        gardener.flip_all();
-        let mut web = gardener.web;
+        allow(WORK_OF_QUADS * if quads { 2 } else { 1 } * triangulation.tri.len() as u64, &mut 0);
+        let mut optimizer = MeshOptimizer::new(triangulation, ground, cells, self.fit.care);
+        optimizer.flip_all();
+        let mut triangulation = optimizer.triangulation;
         // Where loops touch, nodes may have grown through the point into a hole.
-        web.compact();
+        triangulation.compact();
         job.go_on()?;
-        let normal: Vec<DVec3> = web.xy.iter().map(|xy| ground.spot(*xy).normal()).collect();
-        let flat = Alone::flat(&web, self.halves);
-        let mate = pair(&web, &normal, &flat, if quads { CELLS } else { MIXED });
-        let mut net = Raw { web: &web, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
-        drop(web);
+        let normal: Vec<DVec3> = triangulation.xy.iter().map(|xy| ground.spot(*xy).normal()).collect();
+        let flat = Alone::flat(&triangulation, self.halves);
+        let mate = pair(&triangulation, &normal, &flat, if quads { CELLS } else { MIXED });
+        let mut net = Raw { triangulation: &triangulation, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
+        drop(triangulation);
         self.smooth(&mut net, cells, job)?;
         if quads {
             Swapper::new(&mut net).swap();
@@ -156,7 +156,7 @@ impl Maker<'_> {
     }
 
     /// Rows of sides that are not halved get half as wide as others.
-    fn narrow_rows(&self, net: &mut Net, whole: &[u8], cells: &dyn Field, job: &Job) -> Result<()> {
+    fn narrow_rows(&self, net: &mut Net, whole: &[u8], cells: &dyn SizeField, job: &Job) -> Result<()> {
         let mut sides: BTreeSet<(usize, usize)> = BTreeSet::new();
         for (f, whole) in whole.iter().enumerate().filter(|(_, whole)| **whole != 0) {
             let c = net.corners(f);
@@ -171,15 +171,15 @@ impl Maker<'_> {
             let steps = if sides.contains(&(a.min(b), a.max(b))) { 1.0 } else { 2.0 };
             net.p[a].distance(net.p[b]) / (steps * longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32)))
         };
-        Smoother::new(net, self.fit.sheet, cells).even_out(&over, SHARES, job)
+        Smoother::new(net, self.fit.chart, cells).even_out(&over, SHARES, job)
     }
 
     /// Shares long sides out, and crosses those that stay too long by more quads.
-    fn shorten(&self, net: &mut Net, wanted: &dyn Field, job: &Job) -> Result<()> {
+    fn shorten(&self, net: &mut Net, wanted: &dyn SizeField, job: &Job) -> Result<()> {
         if self.fit.care.smooth == 0 {
             return Ok(());
         }
-        let (longest, ground) = (&self.fit.longest, self.fit.sheet);
+        let (longest, ground) = (&self.fit.longest, self.fit.chart);
         let over =
             |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32));
         Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
@@ -190,23 +190,23 @@ impl Maker<'_> {
             }
             let mut smoother = Smoother::new(net, ground, wanted).only(&opened);
             smoother.smooth(self.fit.care.smooth, job)?;
-            smoother.mend(WANTED, MENDS, job)?;
+            smoother.repair(WANTED, MENDS, job)?;
             smoother.even_out(&over, SHARES, job)?;
         }
         Ok(())
     }
 
-    fn smooth(&self, net: &mut Net, field: &dyn Field, job: &Job) -> Result<()> {
-        let mut smoother = Smoother::new(net, self.fit.sheet, field);
+    fn smooth(&self, net: &mut Net, field: &dyn SizeField, job: &Job) -> Result<()> {
+        let mut smoother = Smoother::new(net, self.fit.chart, field);
         smoother.smooth(self.fit.care.smooth, job)?;
         if self.fit.care.smooth > 0 {
-            smoother.mend(WANTED, MENDS, job)?;
+            smoother.repair(WANTED, MENDS, job)?;
         }
         Ok(())
     }
 
     /// Lowers lengths where the longest side or an element breaks a limit; what breaks one of chord error or angle most, 0 where nothing does.
-    fn lower(&self, field: &mut Blend, net: &Net, (side, loads): (Worst, &mut Loads)) -> Result<Worst> {
+    fn lower(&self, field: &mut GradedSize, net: &Net, (side, loads): (Worst, &mut LimitTable)) -> Result<Worst> {
         let mut worst = Worst { over: 0.0, limit: "chord_error", ..side };
         if side.over > 1.0 {
             field.spacing *= (1.0 / side.over).clamp(MOST_LESS, LESS);
@@ -214,19 +214,19 @@ impl Maker<'_> {
         if field.background.is_none() {
             return Ok(worst);
         }
-        let web = nodes(net);
-        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
-        loads.update(self.fit.sheet, &web, &all, &self.fit.limits);
+        let triangulation = nodes(net);
+        let all: Vec<u32> = (0..triangulation.tri.len() as u32).collect();
+        loads.update(self.fit.chart, &triangulation, &all, &self.fit.limits);
         let least = self.fit.made.wanted.written;
-        for t in 0..web.tri.len() as u32 {
+        for t in 0..triangulation.tri.len() as u32 {
             let load = loads.of(t);
             if load.worst() <= 1.0 {
                 continue;
             }
-            let c = web.tri[t as usize].map(|n| n as usize);
-            let at = (web.p[c[0]] + web.p[c[1]] + web.p[c[2]]) / 3.0;
+            let c = triangulation.tri[t as usize].map(|n| n as usize);
+            let at = (triangulation.p[c[0]] + triangulation.p[c[1]] + triangulation.p[c[2]]) / 3.0;
             let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle };
-            if longest_side(&web, t) <= least {
+            if longest_side(&triangulation, t) <= least {
                 return Err(floor_keeps(self.fit.made.input, least / factor, at));
             }
             if load.worst() > worst.over {
@@ -234,7 +234,7 @@ impl Maker<'_> {
             }
             let smaller = (LOWER / factor).max(0.5);
             if let Some(background) = &mut field.background {
-                c.iter().for_each(|n| background.lower(web.xy[*n], web.size[*n] * smaller));
+                c.iter().for_each(|n| background.lower(triangulation.xy[*n], triangulation.size[*n] * smaller));
             }
         }
         Ok(worst)
@@ -269,23 +269,24 @@ fn has_concave(net: &Net) -> bool {
     job::looking(quads).any(|quad| is_concave(quad.map(|n| net.p[n as usize])))
 }
 
-/// The nodes of a net as those of a web, with each quad as two triangles.
-pub(super) fn nodes(net: &Net) -> Web {
-    let mut web = Web::default();
-    (web.p, web.xy, web.size, web.fixed) = (net.p.clone(), net.xy.clone(), net.size.clone(), net.fixed);
+/// The nodes of a net as those of a triangulation, with each quad as two triangles.
+pub(super) fn nodes(net: &Net) -> Triangulation {
+    let mut triangulation = Triangulation::default();
+    (triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed) =
+        (net.p.clone(), net.xy.clone(), net.size.clone(), net.fixed);
     for [a, b, c, d] in net.face.iter().copied() {
-        web.tri.push([a, b, c]);
+        triangulation.tri.push([a, b, c]);
         if d != NONE {
-            web.tri.push([a, c, d]);
+            triangulation.tri.push([a, c, d]);
         }
     }
-    web
+    triangulation
 }
 
 /// Twice the wanted lengths: of cells that are halved.
-struct Twice<'a>(&'a dyn Field);
+struct Twice<'a>(&'a dyn SizeField);
 
-impl Field for Twice<'_> {
+impl SizeField for Twice<'_> {
     fn size(&self, xy: DVec2, p: DVec3) -> f64 {
         2.0 * self.0.size(xy, p)
     }

@@ -8,10 +8,10 @@ use std::cell::Cell;
 use super::maker::{Maker, nodes};
 use crate::base::fault::Result;
 use crate::base::job::Job;
-use crate::mesh::free::loads::{Loads, likely, load_of};
+use crate::mesh::free::loads::{LimitTable, likely, load_of};
 use crate::mesh::free::quads::net::{NONE, Net, least_quality};
 use crate::mesh::free::quads::smooth::Smoother;
-use crate::mesh::free::size::Blend;
+use crate::mesh::free::size::GradedSize;
 
 /// Rounds of moves at most.
 const ROUNDS: usize = 12;
@@ -30,7 +30,7 @@ const ABOVE: (f64, f64) = (1.1, 3.0);
 
 impl Maker<'_> {
     /// Repairs elements that break a limit where they are few; what is left of them needs shorter lengths.
-    pub(super) fn repair(&self, net: &mut Net, field: &Blend, loads: &mut Loads, job: &Job) -> Result<()> {
+    pub(super) fn repair(&self, net: &mut Net, field: &GradedSize, loads: &mut LimitTable, job: &Job) -> Result<()> {
         let (mut least, mut idle, mut bounded) = (usize::MAX, 0, 0);
         for round in 0..=ROUNDS {
             let over = self.over(net, loads);
@@ -47,7 +47,7 @@ impl Maker<'_> {
     }
 
     /// Elements that break a limit whichever way they are cut, with the lesser load; the others are cut so that they keep it.
-    fn over(&self, net: &mut Net, loads: &mut Loads) -> Vec<(f64, usize)> {
+    fn over(&self, net: &mut Net, loads: &mut LimitTable) -> Vec<(f64, usize)> {
         let turn = |net: &mut Net, f: usize, by: usize| {
             if net.face[f][3] != NONE {
                 net.face[f].rotate_left(by);
@@ -63,10 +63,10 @@ impl Maker<'_> {
     }
 
     /// Elements that break a limit as they are cut, with their loads.
-    fn loaded(&self, net: &Net, loads: &mut Loads) -> Vec<(f64, usize)> {
-        let web = nodes(net);
-        let all: Vec<u32> = (0..web.tri.len() as u32).collect();
-        loads.update(self.fit.sheet, &web, &all, &self.fit.limits);
+    fn loaded(&self, net: &Net, loads: &mut LimitTable) -> Vec<(f64, usize)> {
+        let triangulation = nodes(net);
+        let all: Vec<u32> = (0..triangulation.tri.len() as u32).collect();
+        loads.update(self.fit.chart, &triangulation, &all, &self.fit.limits);
         let mut next = 0;
         let load = |f: usize| {
             let own = next..next + net.corners(f).len() as u32 - 2;
@@ -78,12 +78,12 @@ impl Maker<'_> {
 
     /// Moves nodes of some elements to where the worst load round them is least: by their bounds, or by samples and how much the bound of each
     /// is above them.
-    fn move_nodes(&self, (net, field): (&mut Net, &Blend), over: &[(f64, usize)], by_bounds: bool, job: &Job) -> Result<()> {
+    fn move_nodes(&self, (net, field): (&mut Net, &GradedSize), over: &[(f64, usize)], by_bounds: bool, job: &Job) -> Result<()> {
         let found = |net: &Net, f: usize, enough: f64| {
             let half = |corners: [u32; 3]| {
                 let c = corners.map(|n| n as usize);
-                let (sheet, at, limits) = (self.fit.sheet, (c.map(|n| net.xy[n]), c.map(|n| net.p[n])), &self.fit.limits);
-                if by_bounds { load_of(sheet, at, limits).worst() } else { likely(sheet, at, limits) }
+                let (chart, at, limits) = (self.fit.chart, (c.map(|n| net.xy[n]), c.map(|n| net.p[n])), &self.fit.limits);
+                if by_bounds { load_of(chart, at, limits).worst() } else { likely(chart, at, limits) }
             };
             let [a, b, c, d] = net.face[f];
             if d == NONE {
@@ -97,7 +97,7 @@ impl Maker<'_> {
             over.iter().for_each(|(load, f)| above[*f] = (load / found(net, *f, 0.0)).clamp(ABOVE.0, ABOVE.1));
         }
         let load = |net: &Net, f: usize| above[f] * found(net, f, ENOUGH / above[f]);
-        let mut smoother = Smoother::new(net, self.fit.sheet, field);
+        let mut smoother = Smoother::new(net, self.fit.chart, field);
         for f in over.iter().map(|found| found.1) {
             for n in smoother.net.face[f] {
                 if n == NONE || n < smoother.net.fixed || load(smoother.net, f) <= ENOUGH {

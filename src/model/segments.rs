@@ -1,6 +1,6 @@
-//! Atoms of edges: what is left when every edge is cut where a corner of another one lies on it [Yoo & Yoon 2000].
+//! Segments of edges: what is left when every edge is cut where a corner of another one lies on it [Yoo & Yoon 2000].
 //!
-//! One long side may meet several shorter ones (a non-conformal join). The sides keep their own edges; their atoms are
+//! One long side may meet several shorter ones (a non-conformal join). The sides keep their own edges; their segments are
 //! shared, so that shells know which stretches are free and meshes divide each stretch once. How near borders must be to be
 //! one is said by each of them: the model's tolerance, or what a shell of imported faces allows.
 
@@ -18,7 +18,7 @@ use crate::base::tolerance::Tolerance;
 
 /// A stretch between two neighbouring junctions.
 #[derive(Clone, Debug)]
-pub struct Atom {
+pub struct Segment {
     /// First and last junction.
     pub ends: (usize, usize),
     /// The track that gives its geometry.
@@ -27,44 +27,44 @@ pub struct Atom {
     pub s: (f64, f64),
 }
 
-crate::content!(Atom { ends, track, s });
+crate::content!(Segment { ends, track, s });
 
-impl Atom {
+impl Segment {
     /// Arc length, model units.
     pub fn length(&self) -> f64 {
         self.s.1 - self.s.0
     }
 }
 
-/// An atom as a part of a track.
+/// An segment as a part of a track.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Use {
-    /// The atom.
-    pub atom: usize,
+pub struct SegmentUse {
+    /// The segment.
+    pub segment: usize,
     /// The track runs against it.
     pub against: bool,
     /// Arc lengths on the track that uses it, ascending.
     pub s: (f64, f64),
 }
 
-crate::content!(Use { atom, against, s });
+crate::content!(SegmentUse { segment, against, s });
 
 /// All tracks in pieces.
 #[derive(Clone, Debug, Default)]
-pub struct Atoms {
-    /// Points where atoms end.
+pub struct Segments {
+    /// Points where segments end.
     pub junctions: Vec<DVec3>,
-    /// The atoms.
-    pub atoms: Vec<Atom>,
-    /// Atoms of each track from its start to its end; none for a track that is shorter than its reach and became a junction.
-    pub of_track: Vec<Vec<Use>>,
+    /// The segments.
+    pub segments: Vec<Segment>,
+    /// Segments of each track from its start to its end; none for a track that is shorter than its reach and became a junction.
+    pub of_track: Vec<Vec<SegmentUse>>,
     /// The junction of each anchor, where some track passes or ends there.
     pub of_anchor: Vec<Option<usize>>,
     /// Junction of the start of each track.
     pub starts: Vec<usize>,
 }
 
-crate::content!(Atoms { junctions, atoms, of_track, of_anchor, starts });
+crate::content!(Segments { junctions, segments, of_track, of_anchor, starts });
 
 /// A track with what its user knows of it.
 #[derive(Clone, Debug)]
@@ -73,7 +73,7 @@ pub struct Part {
     pub track: Track,
     /// Arc lengths inside at which it must be cut, ascending.
     pub cuts: Vec<f64>,
-    /// Tracks of lower rank give the geometry of atoms that several share (0: links).
+    /// Tracks of lower rank give the geometry of segments that several share (0: links).
     pub rank: u8,
     /// How far another track may be and still be the same, model units; of two tracks the smaller one counts.
     pub near: f64,
@@ -84,7 +84,7 @@ crate::content!(Part { track, cuts, rank, near });
 /// Cuts tracks at each other's ends and at anchors that lie on them, and joins the pieces that lie on each other.
 ///
 /// `anchors` are points that give their place to the junctions they hit: vertices, nodes, declared points.
-pub fn atoms(parts: &[Part], anchors: &[Station], tolerance: &Tolerance) -> Atoms {
+pub fn segments(parts: &[Part], anchors: &[Station], tolerance: &Tolerance) -> Segments {
     let stops = Stops::new(parts, anchors, tolerance);
     let turns = stops.turns(parts);
     if turns.is_empty() {
@@ -127,7 +127,7 @@ impl Stops {
     }
 
     /// Tracks with arc lengths at which they turn back along themselves: in the middle of a stretch from a junction to the same one
-    /// whose halves are the same way there and back. Cut there, the halves are one atom.
+    /// whose halves are the same way there and back. Cut there, the halves are one segment.
     fn turns(&self, parts: &[Part]) -> Vec<(usize, f64)> {
         let of_part = |n: usize| {
             let part = &parts[n];
@@ -144,16 +144,16 @@ impl Stops {
 }
 
 /// The pieces of tracks between their stops, those that lie on each other as one; the first points are `anchors`.
-fn joined(parts: &[Part], anchors: usize, stops: &Stops, tolerance: &Tolerance) -> Atoms {
+fn joined(parts: &[Part], anchors: usize, stops: &Stops, tolerance: &Tolerance) -> Segments {
     let group = &stops.group;
-    let mut result = Atoms { junctions: places(&stops.points, group, anchors), ..Atoms::default() };
+    let mut result = Segments { junctions: places(&stops.points, group, anchors), ..Segments::default() };
     result.starts = stops.first.iter().map(|n| group[*n]).collect();
     result.of_track = vec![Vec::new(); parts.len()];
     Joiner { parts, result: &mut result, same: BTreeMap::new(), point: tolerance.point }.join(&stops.of_track);
     let mut used = vec![false; result.junctions.len()];
-    for atom in &result.atoms {
-        used[atom.ends.0] = true;
-        used[atom.ends.1] = true;
+    for segment in &result.segments {
+        used[segment.ends.0] = true;
+        used[segment.ends.1] = true;
     }
     result.of_anchor = group[..anchors].iter().map(|g| used[*g].then_some(*g)).collect();
     result
@@ -176,7 +176,7 @@ fn places(points: &[Station], group: &[usize], anchors: usize) -> Vec<DVec3> {
 /// Pieces found so far, by their pair of junctions.
 struct Joiner<'a> {
     parts: &'a [Part],
-    result: &'a mut Atoms,
+    result: &'a mut Segments,
     same: BTreeMap<(usize, usize), Vec<usize>>,
     point: f64,
 }
@@ -199,8 +199,8 @@ impl Joiner<'_> {
         }
         raw.sort_by_key(|r| (self.parts[r.part].rank, r.part));
         for piece in &raw {
-            let (atom, against) = self.find(piece).unwrap_or_else(|| self.add(piece));
-            self.result.of_track[piece.part].push(Use { atom, against, s: piece.s });
+            let (segment, against) = self.find(piece).unwrap_or_else(|| self.add(piece));
+            self.result.of_track[piece.part].push(SegmentUse { segment, against, s: piece.s });
         }
         self.settle();
     }
@@ -210,39 +210,39 @@ impl Joiner<'_> {
     fn settle(&mut self) {
         let rank = |parts: &[Part], part: usize| parts[part].rank;
         let middle = |part: usize, s: (f64, f64)| self.parts[part].track.point(0.5 * (s.0 + s.1));
-        let mut turned = vec![false; self.result.atoms.len()];
+        let mut turned = vec![false; self.result.segments.len()];
         for (part, uses) in self.result.of_track.iter().enumerate().filter(|(part, _)| self.parts[*part].near > self.point) {
             for u in uses {
-                let atom = &mut self.result.atoms[u.atom];
-                let better = rank(self.parts, part).cmp(&rank(self.parts, atom.track));
-                if better.then(compare_points(middle(part, u.s), middle(atom.track, atom.s))).is_lt() {
-                    (atom.track, atom.s) = (part, u.s);
-                    turned[u.atom] = u.against;
+                let segment = &mut self.result.segments[u.segment];
+                let better = rank(self.parts, part).cmp(&rank(self.parts, segment.track));
+                if better.then(compare_points(middle(part, u.s), middle(segment.track, segment.s))).is_lt() {
+                    (segment.track, segment.s) = (part, u.s);
+                    turned[u.segment] = u.against;
                 }
             }
         }
-        for (atom, _) in self.result.atoms.iter_mut().zip(&turned).filter(|(_, turned)| **turned) {
-            atom.ends = (atom.ends.1, atom.ends.0);
+        for (segment, _) in self.result.segments.iter_mut().zip(&turned).filter(|(_, turned)| **turned) {
+            segment.ends = (segment.ends.1, segment.ends.0);
         }
-        self.result.of_track.iter_mut().flatten().for_each(|u| u.against ^= turned[u.atom]);
+        self.result.of_track.iter_mut().flatten().for_each(|u| u.against ^= turned[u.segment]);
     }
 
     fn add(&mut self, raw: &Raw) -> (usize, bool) {
-        self.result.atoms.push(Atom { ends: raw.ends, track: raw.part, s: raw.s });
-        let atom = self.result.atoms.len() - 1;
-        self.same.entry((raw.ends.0.min(raw.ends.1), raw.ends.0.max(raw.ends.1))).or_default().push(atom);
-        (atom, false)
+        self.result.segments.push(Segment { ends: raw.ends, track: raw.part, s: raw.s });
+        let segment = self.result.segments.len() - 1;
+        self.same.entry((raw.ends.0.min(raw.ends.1), raw.ends.0.max(raw.ends.1))).or_default().push(segment);
+        (segment, false)
     }
 
-    /// The atom that a piece lies on, with whether it runs against it.
+    /// The segment that a piece lies on, with whether it runs against it.
     fn find(&self, raw: &Raw) -> Option<(usize, bool)> {
         let here = Piece { track: &self.parts[raw.part].track, s: raw.s };
         let known = self.same.get(&(raw.ends.0.min(raw.ends.1), raw.ends.0.max(raw.ends.1)))?;
         known.iter().find_map(|id| {
-            let atom = &self.result.atoms[*id];
-            let there = Piece { track: &self.parts[atom.track].track, s: atom.s };
-            let near = self.parts[raw.part].near.min(self.parts[atom.track].near);
-            let against = if raw.ends.0 == raw.ends.1 { here.ring_against(&there) } else { raw.ends != atom.ends };
+            let segment = &self.result.segments[*id];
+            let there = Piece { track: &self.parts[segment.track].track, s: segment.s };
+            let near = self.parts[raw.part].near.min(self.parts[segment.track].near);
+            let against = if raw.ends.0 == raw.ends.1 { here.ring_against(&there) } else { raw.ends != segment.ends };
             (here.off(&there, against).0 <= near).then_some((*id, against))
         })
     }

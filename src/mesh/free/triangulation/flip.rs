@@ -1,15 +1,15 @@
 //! The diagonal of two triangles becomes the other one.
 
-use super::Web;
+use super::Triangulation;
 use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::outline::{in_line, is_left};
 use crate::mesh::free::shape::quality;
 
 /// Whether a new side, and the triangles on both sides of it, may be.
-type Fine<'a> = dyn Fn(&Web, [u32; 2], [[u32; 3]; 2]) -> bool + 'a;
+type Fine<'a> = dyn Fn(&Triangulation, [u32; 2], [[u32; 3]; 2]) -> bool + 'a;
 
-impl Web {
+impl Triangulation {
     /// The diagonal of the two triangles at side `k` of `t` becomes the other one. Both must be there and unlocked.
     pub fn flip(&mut self, t: u32, k: usize) {
         let u = self.across[t as usize][k];

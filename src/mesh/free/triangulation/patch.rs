@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Web;
+use super::Triangulation;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::free::shape::Star;
 
@@ -21,7 +21,7 @@ pub struct Patch {
     sides: Vec<(u32, u32, u32, bool)>,
 }
 
-impl Web {
+impl Triangulation {
     /// What is round a set of triangles that hang together; `None` when that is not one simple loop, or a locked side or a
     /// border node is inside.
     pub fn patch(&mut self, tri: &[u32], patch: &mut Patch) -> Option<()> {

@@ -14,12 +14,12 @@ use crate::base::triangulate_points::{NO_TRIANGLE, Triangles};
 
 /// A triangulation on a surface: border nodes first, which never move, then inner ones.
 #[derive(Clone, Debug, Default)]
-pub struct Web {
+pub struct Triangulation {
     /// Points.
     pub p: Vec<DVec3>,
     /// Their places in the chart.
     pub xy: Vec<DVec2>,
-    /// Wanted lengths.
+    /// SizeRequests lengths.
     pub size: Vec<f64>,
     /// Number of border nodes.
     pub fixed: u32,
@@ -73,30 +73,30 @@ fn by_nodes(all: &Triangles, kept: &[bool], nodes: usize) -> Vec<u32> {
     order
 }
 
-impl Web {
+impl Triangulation {
     /// From triangles of which the kept ones are marked, over border and inner nodes.
     pub fn new(p: Vec<DVec3>, xy: Vec<DVec2>, size: Vec<f64>, fixed: u32, all: &Triangles, kept: &[bool]) -> Self {
         let order = by_nodes(all, kept, p.len());
         let n = order.len();
         let mut number = vec![NO_TRIANGLE; kept.len()];
         order.iter().enumerate().for_each(|(k, t)| number[*t as usize] = k as u32);
-        let mut web = Self { at: vec![NO_TRIANGLE; p.len()], p, xy, size, fixed, ..Self::default() };
-        web.tri.reserve_exact(n);
-        web.across.reserve_exact(n);
-        web.locked.reserve_exact(n);
+        let mut triangulation = Self { at: vec![NO_TRIANGLE; p.len()], p, xy, size, fixed, ..Self::default() };
+        triangulation.tri.reserve_exact(n);
+        triangulation.across.reserve_exact(n);
+        triangulation.locked.reserve_exact(n);
         for k in order.into_iter().map(|k| k as usize) {
             job::look();
             let across = all.across[k].map(|t| if t == NO_TRIANGLE { t } else { number[t as usize] });
             let open = (0..3).filter(|c| across[*c] == NO_TRIANGLE).fold(0, |bits, c| bits | 1 << c);
             for c in all.corners[k] {
-                web.at[c as usize] = web.tri.len() as u32;
+                triangulation.at[c as usize] = triangulation.tri.len() as u32;
             }
-            web.tri.push(all.corners[k]);
-            web.across.push(across);
-            web.locked.push(all.given[k] | open);
+            triangulation.tri.push(all.corners[k]);
+            triangulation.across.push(across);
+            triangulation.locked.push(all.given[k] | open);
         }
-        web.stamp = vec![0; n];
-        web
+        triangulation.stamp = vec![0; n];
+        triangulation
     }
 
     /// Whether a triangle is there.
@@ -199,7 +199,7 @@ impl Web {
             let k = self.corner(t, node);
             ring.tri.push(t);
             ring.node.push(self.tri[t as usize][(k + 1) % 3]);
-            // A web that hangs together wrongly is found before it takes all memory.
+            // A triangulation that hangs together wrongly is found before it takes all memory.
             assert!(ring.tri.len() <= self.tri.len(), "triangles go round node {node} for ever");
             let next = self.across[t as usize][(k + 1) % 3];
             if next == NO_TRIANGLE {

@@ -5,35 +5,35 @@
 //! between two sides changes, P_a is linear.
 
 use super::Jet2;
+use super::enclosure::Enclosure;
 use super::line::Line;
 use super::rail::Rail;
-use super::spread::Spread;
 use super::trilateral::Trilateral;
-use crate::base::range::{Range, Ranges};
+use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::EPSILON;
 
 /// P_a over a range of its two weights: w, q, Q and the second derivatives of both sides.
 struct Corner {
-    w: Range,
-    q: Range,
-    rest: Ranges,
-    sides: (Ranges, Ranges),
+    w: Interval,
+    q: Interval,
+    rest: Interval3,
+    sides: (Interval3, Interval3),
 }
 
 impl Corner {
-    fn blended(&self) -> Ranges {
+    fn blended(&self) -> Interval3 {
         self.sides.0 * self.w + self.sides.1 * self.q
     }
 
-    fn bb(&self) -> Ranges {
+    fn bb(&self) -> Interval3 {
         self.blended() + self.rest * (self.q * 2.0)
     }
 
-    fn bc(&self) -> Ranges {
-        self.blended() + self.rest * (self.q * 2.0 - Range::at(1.0))
+    fn bc(&self) -> Interval3 {
+        self.blended() + self.rest * (self.q * 2.0 - Interval::at(1.0))
     }
 
-    fn cc(&self) -> Ranges {
+    fn cc(&self) -> Interval3 {
         self.blended() - self.rest * (self.w * 2.0)
     }
 }
@@ -41,18 +41,18 @@ impl Corner {
 /// A side read from its corner outwards: the rail and whether it runs towards the corner.
 type Outward<'a> = (&'a Rail, bool);
 
-fn line((rail, back): Outward, t: Range) -> Line {
+fn line((rail, back): Outward, t: Interval) -> Line {
     if back { rail.line(1.0 - t.high, 1.0 - t.low).backwards() } else { rail.line(t.low, t.high) }
 }
 
 /// The corner's part for weights in `b` and `c`, whose sum is in `t`.
-fn corner(side_b: Outward, side_c: Outward, b: Range, c: Range, t: Range) -> Corner {
+fn corner(side_b: Outward, side_c: Outward, b: Interval, c: Interval, t: Interval) -> Corner {
     let (f, g) = (line(side_b, t), line(side_c, t));
     let bent = f.d2 - g.d2;
     let share = |x: f64, y: f64, none: f64| if x + y > 0.0 { x / (x + y) } else { none };
-    let w = Range { low: share(b.low, c.high, 0.0), high: share(b.high, c.low, 1.0) };
-    let q = Range { low: share(c.low, b.high, 0.0), high: share(c.high, b.low, 1.0) };
-    let near = Range { low: 0.0, high: t.high };
+    let w = Interval { low: share(b.low, c.high, 0.0), high: share(b.high, c.low, 1.0) };
+    let q = Interval { low: share(c.low, b.high, 0.0), high: share(c.high, b.low, 1.0) };
+    let near = Interval { low: 0.0, high: t.high };
     let at_corner = || (line(side_b, near).d2 - line(side_c, near).d2) * 0.5;
     let rest = if t.low <= EPSILON {
         at_corner()
@@ -60,7 +60,7 @@ fn corner(side_b: Outward, side_c: Outward, b: Range, c: Range, t: Range) -> Cor
         let middle = 0.5 * (t.low + t.high);
         let at = (f.mid.d1 - g.mid.d1) * middle - (f.mid.p - g.mid.p);
         // (t D′ − D)′ = t D″.
-        let away = (bent * (t * Range::around_zero(f.half)) + at) * t.square().inverse();
+        let away = (bent * (t * Interval::around_zero(f.half)) + at) * t.square().inverse();
         if t.low < 0.5 * t.high { away.intersection(at_corner()) } else { away }
     };
     Corner { w, q, rest, sides: (f.d2, g.d2) }
@@ -68,8 +68,8 @@ fn corner(side_b: Outward, side_c: Outward, b: Range, c: Range, t: Range) -> Cor
 
 impl Trilateral {
     /// Bounds over the part of a rectangle inside the triangle.
-    pub fn spread(&self, u: (f64, f64), v: (f64, f64)) -> Spread {
-        let unit = |low: f64, high: f64| Range { low: low.clamp(0.0, 1.0), high: high.clamp(0.0, 1.0) };
+    pub fn enclosure(&self, u: (f64, f64), v: (f64, f64)) -> Enclosure {
+        let unit = |low: f64, high: f64| Interval { low: low.clamp(0.0, 1.0), high: high.clamp(0.0, 1.0) };
         let [bottom, slant, left] = self.sides();
         let l = [unit(1.0 - u.1 - v.1, 1.0 - u.0 - v.0), unit(u.0, u.1), unit(v.0, v.1)];
         let a = corner((bottom, false), (left, false), l[1], l[2], unit(u.0 + v.0, u.1 + v.1));
@@ -82,8 +82,8 @@ impl Trilateral {
         let over = (x + y - 1.0).max(0.0);
         let place = (x - 0.5 * over, y - 0.5 * over);
         let mid: Jet2 = self.jet(place.0, place.1);
-        let mut spread = Spread::new(mid, (half.0 + 0.5 * over, half.1 + 0.5 * over), second, None);
-        spread.half = half;
-        spread
+        let mut enclosure = Enclosure::new(mid, (half.0 + 0.5 * over, half.1 + 0.5 * over), second, None);
+        enclosure.half = half;
+        enclosure
     }
 }

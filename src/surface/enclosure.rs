@@ -4,50 +4,50 @@
 //! What depends on u alone (a [`Strip`]) is made once a column, what depends on v alone once a row.
 
 use super::Jet2;
-use super::blend_spread::BlendStrip;
+use super::blend_enclosure::BlendStrip;
 use super::core::{Domain, Surface};
 use super::line::Line;
-use super::net_spread::NetStrip;
-use super::rail::Lean;
+use super::net_enclosure::NetStrip;
+use super::rail::OneSided;
 use super::shape::Shape;
 use super::sweeps::FramedStrip;
-use crate::base::range::{Range, Ranges};
+use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
 
 /// What a surface may do over a rectangle.
 #[derive(Clone, Copy, Debug)]
-pub struct Spread {
+pub struct Enclosure {
     /// Point and derivatives in the middle.
     pub mid: Jet2,
     /// Half the width in u and in v.
     pub half: (f64, f64),
     /// Points.
-    pub p: Ranges,
+    pub p: Interval3,
     /// ∂/∂u.
-    pub du: Ranges,
+    pub du: Interval3,
     /// ∂/∂v.
-    pub dv: Ranges,
+    pub dv: Interval3,
     /// ∂²/∂u²; vast where a curve below has a cusp or a net a corner.
-    pub duu: Ranges,
+    pub duu: Interval3,
     /// ∂²/∂u∂v.
-    pub duv: Ranges,
+    pub duv: Interval3,
     /// ∂²/∂v².
-    pub dvv: Ranges,
+    pub dvv: Interval3,
 }
 
-impl Spread {
+impl Enclosure {
     /// First derivatives and points by Taylor's formula about the middle; `first` is what else is known of ∂u and ∂v.
-    pub(super) fn new(mid: Jet2, half: (f64, f64), second: [Ranges; 3], first: Option<[Ranges; 2]>) -> Self {
+    pub(super) fn new(mid: Jet2, half: (f64, f64), second: [Interval3; 3], first: Option<[Interval3; 2]>) -> Self {
         let [duu, duv, dvv] = second;
-        let (a, b) = (Range::around_zero(half.0), Range::around_zero(half.1));
+        let (a, b) = (Interval::around_zero(half.0), Interval::around_zero(half.1));
         let mut du = duu * a + duv * b + mid.du;
         let mut dv = duv * a + dvv * b + mid.dv;
         if let Some([known_u, known_v]) = first {
             (du, dv) = (du.intersection(known_u), dv.intersection(known_v));
         }
-        let square = |h: f64| Range { low: 0.0, high: 0.5 * h * h };
-        let bent = duu * square(half.0) + duv * Range::around_zero(half.0 * half.1) + dvv * square(half.1);
+        let square = |h: f64| Interval { low: 0.0, high: 0.5 * h * h };
+        let bent = duu * square(half.0) + duv * Interval::around_zero(half.0 * half.1) + dvv * square(half.1);
         let p = (a * mid.du + b * mid.dv + bent + mid.p).intersection(du * a + dv * b + mid.p);
         Self { mid, half, p, du, dv, duu, duv, dvv }
     }
@@ -66,7 +66,7 @@ impl Spread {
 
     /// Bounds of |∂uu|, |∂uv| and |∂vv|; infinite where nothing is known.
     pub fn second(&self) -> [f64; 3] {
-        [self.duu, self.duv, self.dvv].map(|r| if r.is_vast() { f64::INFINITY } else { r.reach() })
+        [self.duu, self.duv, self.dvv].map(|r| if r.is_unbounded() { f64::INFINITY } else { r.reach() })
     }
 }
 
@@ -102,11 +102,11 @@ impl Surface {
     /// They hold everywhere in it and come as near to the largest values as the rectangle is small. Infinite where a curve
     /// below ends in a cusp or a net has a corner inside.
     pub fn second_derivative_bound(&self, u: (f64, f64), v: (f64, f64)) -> [f64; 3] {
-        self.spread(u, v).second()
+        self.enclosure(u, v).second()
     }
 
     /// Bounds over a rectangle, low and high of u and of v.
-    pub fn spread(&self, u: (f64, f64), v: (f64, f64)) -> Spread {
+    pub fn enclosure(&self, u: (f64, f64), v: (f64, f64)) -> Enclosure {
         self.spread_of(&self.strip_u(u.0, u.1), &self.strip_v(v.0, v.1))
     }
 
@@ -138,31 +138,32 @@ impl Surface {
     }
 
     /// Bounds over the rectangle of two strips.
-    pub fn spread_of(&self, u: &Strip, v: &Strip) -> Spread {
+    pub fn spread_of(&self, u: &Strip, v: &Strip) -> Enclosure {
         work::spend(4);
         let (flipped, triangle) = (self.parts().flipped, self.domain() == Domain::Triangle);
         let (a, b) = if flipped && triangle { (v, u) } else { (u, v) };
-        let mut whole: Option<Spread> = None;
+        let mut whole: Option<Enclosure> = None;
         for (x, y) in a.parts.iter().flat_map(|x| b.parts.iter().map(move |y| (x, y))) {
-            let own = self.parts().shape.spread(x, y);
+            let own = self.parts().shape.enclosure(x, y);
             whole = Some(whole.map_or(own, |w| w.union(&own)));
         }
         let mut s = whole.unwrap_or_else(|| self.unknown(u, v));
         if a.parts.len() * b.parts.len() > 1 {
             let middle = |strip: &Strip| 0.5 * (strip.ends.0 + strip.ends.1);
             let half = |strip: &Strip| 0.5 * (strip.ends.1 - strip.ends.0);
-            (s.half, s.mid) = ((half(a), half(b)), self.parts().shape.jet(inner_middle(a), inner_middle(b), (Lean::After, Lean::After)));
+            (s.half, s.mid) =
+                ((half(a), half(b)), self.parts().shape.jet(inner_middle(a), inner_middle(b), (OneSided::After, OneSided::After)));
             debug_assert!(middle(u).is_finite());
             if a.jumps && a.parts.len() > 1 {
-                (s.duu, s.duv) = (Ranges::ANY, Ranges::ANY);
+                (s.duu, s.duv) = (Interval3::ANY, Interval3::ANY);
             }
             if b.jumps && b.parts.len() > 1 {
-                (s.dvv, s.duv) = (Ranges::ANY, Ranges::ANY);
+                (s.dvv, s.duv) = (Interval3::ANY, Interval3::ANY);
             }
         }
         match (flipped, triangle) {
             (false, _) => s,
-            (true, true) => Spread {
+            (true, true) => Enclosure {
                 mid: Jet2 { du: s.mid.dv, dv: s.mid.du, duu: s.mid.dvv, dvv: s.mid.duu, ..s.mid },
                 half: (s.half.1, s.half.0),
                 du: s.dv,
@@ -171,13 +172,13 @@ impl Surface {
                 dvv: s.duu,
                 ..s
             },
-            (true, false) => Spread { mid: Jet2 { dv: -s.mid.dv, duv: -s.mid.duv, ..s.mid }, dv: -s.dv, duv: -s.duv, ..s },
+            (true, false) => Enclosure { mid: Jet2 { dv: -s.mid.dv, duv: -s.mid.duv, ..s.mid }, dv: -s.dv, duv: -s.duv, ..s },
         }
     }
 
-    fn unknown(&self, u: &Strip, v: &Strip) -> Spread {
+    fn unknown(&self, u: &Strip, v: &Strip) -> Enclosure {
         let mid = self.jet(u.ends.0, v.ends.0);
-        Spread::new(mid, (u.ends.1 - u.ends.0, v.ends.1 - v.ends.0), [Ranges::ANY; 3], None)
+        Enclosure::new(mid, (u.ends.1 - u.ends.0, v.ends.1 - v.ends.0), [Interval3::ANY; 3], None)
     }
 }
 
@@ -218,19 +219,19 @@ impl Shape {
         Strip { ends: (x0, x1), parts, jumps }
     }
 
-    fn spread(&self, u: &Part, v: &Part) -> Spread {
+    fn enclosure(&self, u: &Part, v: &Part) -> Enclosure {
         let half = (0.5 * (u.ends.1 - u.ends.0), 0.5 * (v.ends.1 - v.ends.0));
         let middle = (0.5 * (u.ends.0 + u.ends.1), 0.5 * (v.ends.0 + v.ends.1));
         match (self, &u.known, &v.known) {
-            (Self::Blend(s), Known::Blend(a), Known::Blend(b)) => s.spread(a, b, half),
-            (Self::Sweep(s), _, Known::Profile(line)) => s.spread(middle.0, half, line),
-            (Self::Framed(s), Known::Framed(strip), Known::Profile(line)) => s.spread(strip, half, line),
-            (Self::Nurbs(s), Known::Net(a), Known::Net(b)) => s.spread(a, b, middle, half),
-            (Self::Joined(s), ..) => s.spread(u.ends, v.ends),
-            (Self::Scatter(s), ..) => s.spread(u.ends, v.ends),
-            (Self::Trilateral(s), ..) => s.spread(u.ends, v.ends),
-            (Self::Plane(s), ..) => Spread::new(s.jet(middle.0, middle.1), half, [Ranges::default(); 3], None),
-            _ => Spread::new(self.jet(middle.0, middle.1, (Lean::After, Lean::After)), half, [Ranges::ANY; 3], None),
+            (Self::Blend(s), Known::Blend(a), Known::Blend(b)) => s.enclosure(a, b, half),
+            (Self::Sweep(s), _, Known::Profile(line)) => s.enclosure(middle.0, half, line),
+            (Self::Framed(s), Known::Framed(strip), Known::Profile(line)) => s.enclosure(strip, half, line),
+            (Self::Nurbs(s), Known::Net(a), Known::Net(b)) => s.enclosure(a, b, middle, half),
+            (Self::Joined(s), ..) => s.enclosure(u.ends, v.ends),
+            (Self::Scatter(s), ..) => s.enclosure(u.ends, v.ends),
+            (Self::Trilateral(s), ..) => s.enclosure(u.ends, v.ends),
+            (Self::Plane(s), ..) => Enclosure::new(s.jet(middle.0, middle.1), half, [Interval3::default(); 3], None),
+            _ => Enclosure::new(self.jet(middle.0, middle.1, (OneSided::After, OneSided::After)), half, [Interval3::ANY; 3], None),
         }
     }
 }

@@ -175,12 +175,12 @@ impl Lattice {
     }
 }
 
-/// Charts of the faces of a mesh, in the order of its faces; they ride along for measuring and never decide whether two
+/// FaceGeometries of the faces of a mesh, in the order of its faces; they ride along for measuring and never decide whether two
 /// meshes are equal.
 #[derive(Clone, Debug, Default)]
-pub struct Charts(pub Vec<Chart>);
+pub struct FaceGeometries(pub Vec<FaceGeometry>);
 
-impl PartialEq for Charts {
+impl PartialEq for FaceGeometries {
     fn eq(&self, _: &Self) -> bool {
         true
     }
@@ -188,7 +188,7 @@ impl PartialEq for Charts {
 
 /// One face of a mesh on its surface.
 #[derive(Clone, Debug)]
-pub struct Chart {
+pub struct FaceGeometry {
     /// The surface.
     pub surface: Surface,
     /// Where its nodes lie.
@@ -199,7 +199,7 @@ pub struct Chart {
     pub flipped: bool,
 }
 
-impl Chart {
+impl FaceGeometry {
     /// The same face in a mesh where its nodes come `by` later.
     pub fn shifted(mut self, by: u32) -> Self {
         self.frame.shift(by);

@@ -2,26 +2,26 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Gardener;
+use super::MeshOptimizer;
 use super::flips::GAIN;
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::base::work;
 use crate::mesh::free::outline::area2;
 use crate::mesh::free::shape::Star;
-use crate::mesh::free::web::Patch;
+use crate::mesh::free::triangulation::Patch;
 
 /// Share of the quality that is there which a first guess must have to be searched on.
-const HOPE: f64 = 0.6;
+const MIN_START_RATIO: f64 = 0.6;
 /// Work of a bad triangle that is looked at, and of a patch that is planned anew, in evaluations of the surface.
 const MEND_WORK: u64 = 20;
 const PLAN_WORK: u64 = 20;
 /// What a change must gain where all is fair.
-const WORTH: f64 = 0.01;
+const MIN_GAIN: f64 = 0.01;
 
-impl Gardener<'_> {
+impl MeshOptimizer<'_> {
     /// Works on triangles below the wanted quality, the worst first; how many changes were made.
-    pub fn mend(&mut self) -> usize {
+    pub fn repair(&mut self) -> usize {
         let changed = self.changed.take();
         let mut bad: Vec<(f64, u32)> =
             self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
@@ -30,10 +30,10 @@ impl Gardener<'_> {
         for (_, t) in bad {
             job::look();
             for _ in 0..3 {
-                if !self.web.alive(t) || self.worth(t) >= self.care.wanted {
+                if !self.triangulation.alive(t) || self.worth(t) >= self.care.wanted {
                     break;
                 }
-                if !self.mend_one(t) {
+                if !self.repair_triangle(t) {
                     self.tried.give_up(t);
                     break;
                 }
@@ -43,26 +43,27 @@ impl Gardener<'_> {
         changes
     }
 
-    fn mend_one(&mut self, t: u32) -> bool {
+    fn repair_triangle(&mut self, t: u32) -> bool {
         work::spend(MEND_WORK);
         self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
     }
 
     /// What a change must gain where the worst triangle is so good.
     fn gain(&self, worst: f64) -> f64 {
-        if worst < self.care.fair { GAIN } else { WORTH }
+        if worst < self.care.fair { GAIN } else { MIN_GAIN }
     }
 
     /// What a triangle is worth: its quality less what its longest side takes.
     pub(super) fn worth(&self, t: u32) -> f64 {
-        let c = self.web.tri[t as usize];
-        let shape = self.web.shape(c);
+        let c = self.triangulation.tri[t as usize];
+        let shape = self.triangulation.shape(c);
         let mut worth = shape;
         for k in 0..3 {
             let (i, j) = (c[k], c[(k + 1) % 3]);
-            if self.web.is_free(i) || self.web.is_free(j) {
-                let size = if self.web.is_free(i) { self.web.size[i as usize] } else { self.web.size[j as usize] };
-                let length = self.web.p[i as usize].distance(self.web.p[j as usize]);
+            if self.triangulation.is_free(i) || self.triangulation.is_free(j) {
+                let size =
+                    if self.triangulation.is_free(i) { self.triangulation.size[i as usize] } else { self.triangulation.size[j as usize] };
+                let length = self.triangulation.p[i as usize].distance(self.triangulation.p[j as usize]);
                 worth = worth.min(shape * (size * self.care.longest / length).min(1.0));
             }
         }
@@ -73,15 +74,15 @@ impl Gardener<'_> {
     fn shift_corners(&mut self, t: u32) -> bool {
         let mut any = false;
         let since = self.tried.since(t);
-        for node in self.web.tri[t as usize] {
-            if !self.web.is_free(node) {
+        for node in self.triangulation.tri[t as usize] {
+            if !self.triangulation.is_free(node) {
                 continue;
             }
             self.fill_rim(node);
             if !self.tried.is_new(self.ring.node.iter().copied().chain([node]), since) {
                 continue;
             }
-            let (xy, p) = (self.web.xy[node as usize], self.web.p[node as usize]);
+            let (xy, p) = (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]);
             let before = self.rim.worst(xy, p);
             let star = self.rim.best(self.ground, xy, p);
             if star.worst > before + self.gain(before) && self.star_keeps(&self.ring.node, node, &star) {
@@ -97,15 +98,15 @@ impl Gardener<'_> {
         let mut best: Option<(f64, Patch, Plan)> = None;
         let since = self.tried.since(t);
         for (tri, keep) in self.candidates(t) {
-            if !self.tried.is_new(tri.iter().flat_map(|t| self.web.tri[*t as usize]), since) {
+            if !self.tried.is_new(tri.iter().flat_map(|t| self.triangulation.tri[*t as usize]), since) {
                 continue;
             }
             let before = tri.iter().map(|t| self.worth(*t)).fold(f64::INFINITY, f64::min);
             let mut patch = std::mem::take(&mut self.patch);
-            let fits = self.web.patch(&tri, &mut patch);
+            let fits = self.triangulation.patch(&tri, &mut patch);
             if fits.is_some()
                 && let Some((after, plan)) =
-                    self.plan(&patch, keep, Worth { least: before * HOPE, more: before + best.as_ref().map_or(0.0, |b| b.0) })
+                    self.plan(&patch, keep, Worth { least: before * MIN_START_RATIO, more: before + best.as_ref().map_or(0.0, |b| b.0) })
                 && after > before + self.gain(before)
                 && best.as_ref().is_none_or(|b| after - before > b.0)
                 && self.plan_keeps(&patch, &plan)
@@ -118,7 +119,7 @@ impl Gardener<'_> {
         match plan {
             Plan::Star(star, node) => self.restar(&patch, node, &star),
             Plan::Fan(k) => {
-                self.web.refan(&patch, k);
+                self.triangulation.refan(&patch, k);
                 self.wake_patch(&patch);
             }
         }
@@ -127,7 +128,7 @@ impl Gardener<'_> {
 
     /// Whether a triangle keeps the limits, with its first corner moved to a place.
     pub(super) fn keeps(&self, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
-        self.guard.is_none_or(|guard| guard.keeps(&self.web, corners, first))
+        self.guard.is_none_or(|guard| guard.keeps(&self.triangulation, corners, first))
     }
 
     /// The same of the triangles from a place to the sides of a rim.
@@ -149,35 +150,35 @@ impl Gardener<'_> {
     /// neighbouring corners as one.
     pub(super) fn candidates(&mut self, t: u32) -> Vec<(Vec<u32>, Keep)> {
         let mut sets = Vec::new();
-        let c = self.web.tri[t as usize];
-        let across = self.web.across[t as usize];
+        let c = self.triangulation.tri[t as usize];
+        let across = self.triangulation.across[t as usize];
         for (k, next) in across.into_iter().enumerate() {
-            if self.web.locked[t as usize] >> k & 1 == 0 && next != NO_TRIANGLE {
+            if self.triangulation.locked[t as usize] >> k & 1 == 0 && next != NO_TRIANGLE {
                 sets.push((vec![t, next], Keep::New));
             }
         }
-        let open: Vec<u32> = (0..3).filter(|k| self.web.locked[t as usize] >> k & 1 == 0).map(|k| across[k]).collect();
+        let open: Vec<u32> = (0..3).filter(|k| self.triangulation.locked[t as usize] >> k & 1 == 0).map(|k| across[k]).collect();
         if open.len() >= 2 {
             sets.push((std::iter::once(t).chain(open).collect(), Keep::New));
         }
         for k in 0..3 {
             if let Some([_, _, tip, _]) = self.quad(t, k)
-                && self.web.is_free(tip)
+                && self.triangulation.is_free(tip)
             {
-                self.web.ring(tip, &mut self.ring);
+                self.triangulation.ring(tip, &mut self.ring);
                 sets.push((self.ring.tri.iter().copied().chain([t]).collect(), Keep::One(tip)));
             }
         }
         for k in 0..3 {
             let (a, b) = (c[k], c[(k + 1) % 3]);
-            if self.web.is_free(a) {
-                self.web.ring(a, &mut self.ring);
+            if self.triangulation.is_free(a) {
+                self.triangulation.ring(a, &mut self.ring);
                 sets.push((self.ring.tri.clone(), Keep::None));
             }
-            if self.web.is_free(a) && self.web.is_free(b) {
-                self.web.ring(a, &mut self.ring);
+            if self.triangulation.is_free(a) && self.triangulation.is_free(b) {
+                self.triangulation.ring(a, &mut self.ring);
                 let mut tri = self.ring.tri.clone();
-                self.web.ring(b, &mut self.ring);
+                self.triangulation.ring(b, &mut self.ring);
                 tri.extend(self.ring.tri.iter().filter(|t| !tri.contains(t)).copied().collect::<Vec<_>>());
                 sets.push((tri, Keep::One(a.min(b))));
             }
@@ -188,7 +189,7 @@ impl Gardener<'_> {
     /// The best that can be made of a patch, where that may be worth it.
     pub(super) fn plan(&mut self, patch: &Patch, keep: Keep, worth: Worth) -> Option<(f64, Plan)> {
         work::spend(PLAN_WORK);
-        self.rim.fill(patch.rim.iter().map(|n| (self.web.p[*n as usize], self.web.xy[*n as usize])));
+        self.rim.fill(patch.rim.iter().map(|n| (self.triangulation.p[*n as usize], self.triangulation.xy[*n as usize])));
         if let Keep::None = keep {
             return self.best_fan(patch);
         }
@@ -222,9 +223,9 @@ impl Gardener<'_> {
                     break;
                 }
                 let far = p[k].distance(p[a]);
-                let longest = self.web.size[patch.rim[a] as usize] * self.care.longest;
+                let longest = self.triangulation.size[patch.rim[a] as usize] * self.care.longest;
                 let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
-                worst = worst.min(self.web.shape([k, a, b].map(|i| patch.rim[i])) * share);
+                worst = worst.min(self.triangulation.shape([k, a, b].map(|i| patch.rim[i])) * share);
             }
             if worst > 0.0 && best.is_none_or(|b| worst > b.0) {
                 best = Some((worst, k));

@@ -9,10 +9,10 @@ use glam::DVec3;
 
 use super::Jet2;
 use super::blend::Blend;
+use super::enclosure::Enclosure;
 use super::line::{Line, Shares, blended, taylor};
-use super::rail::Lean;
-use super::spread::Spread;
-use crate::base::range::Range;
+use super::rail::OneSided;
+use crate::base::range::Interval;
 
 /// What is known of a blended surface between two values of u: weights a and curves G_j; of v: b and F_i.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct BlendStrip {
     /// Terms that take part, and how many of their functions sum to 1 (they come first).
     terms: Vec<usize>,
     shares: usize,
-    weights: Vec<([f64; 3], [Range; 3])>,
+    weights: Vec<([f64; 3], [Interval; 3])>,
     /// Third derivatives of the weights, where these are numbers.
     thirds: Option<Vec<f64>>,
     /// The curves along the strip, one per node of the other direction, made for the cells that ask for them.
@@ -50,7 +50,7 @@ impl Blend {
         let (axis, rails, across) = if along_u { (axes.0, self.along_u(), axes.1) } else { (axes.1, self.along_v(), axes.0) };
         // Without curves along v nothing is blended across u.
         let idle = along_u && self.along_v().is_empty();
-        let middle = axis.weights(0.5 * (x0 + x1), Lean::After);
+        let middle = axis.weights(0.5 * (x0 + x1), OneSided::After);
         let weights = if idle { Vec::new() } else { middle.values().iter().copied().zip(axis.ranges(x0, x1)).collect::<Vec<_>>() };
         let rails = vec![OnceLock::new(); rails.len()];
         let slopes = if rails.is_empty() { Vec::new() } else { vec![OnceLock::new(); across.slopes().len()] };
@@ -108,13 +108,13 @@ impl Blend {
     }
 
     /// Bounds over the rectangle of a strip of u and one of v.
-    pub fn spread(&self, u: &BlendStrip, v: &BlendStrip, half: (f64, f64)) -> Spread {
+    pub fn enclosure(&self, u: &BlendStrip, v: &BlendStrip, half: (f64, f64)) -> Enclosure {
         let g = |m: &[f64]| self.mixed(u, true, &v.terms, m);
         let (a, b) = (u.shares_of(half.0), v.shares_of(half.1));
         if self.along_v().is_empty() {
             let second = [blended(b, 0, 2, &g), blended(b, 1, 1, &g), blended(b, 2, 0, &g)];
             let first = [blended(b, 0, 1, &g), blended(b, 1, 0, &g)];
-            return Spread::new(self.middle(u, v), half, second, Some(first));
+            return Enclosure::new(self.middle(u, v), half, second, Some(first));
         }
         let f = |m: &[f64]| self.mixed(v, false, &u.terms, m);
         let e = |m: &[f64]| self.rest(v, false, &u.terms, m);
@@ -125,7 +125,7 @@ impl Blend {
             blended(a, 0, 2, &f) + blended(b, 2, 0, &h),
         ];
         let first = [blended(a, 1, 0, &e) + blended(b, 0, 1, &g), blended(a, 0, 1, &f) + blended(b, 1, 0, &h)];
-        Spread::new(self.middle(u, v), half, second, Some(first))
+        Enclosure::new(self.middle(u, v), half, second, Some(first))
     }
 
     /// The surface's derivatives in the middle of both strips.

@@ -3,10 +3,10 @@
 
 use glam::{DVec3, DVec4};
 
+use super::enclosure::Enclosure;
 use super::nurbs::NurbsSurface;
-use super::rail::Lean;
-use super::spread::Spread;
-use crate::base::range::{Range, Ranges};
+use super::rail::OneSided;
+use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, SAME_SLOPE};
 use crate::geometry::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected};
 
@@ -72,11 +72,11 @@ fn along_v(net: &Net, f: f64) -> Net {
     net.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(a, b)| (*b - *a) * f).collect()).collect()
 }
 
-fn hull(net: &Net) -> (Ranges, Range) {
+fn hull(net: &Net) -> (Interval3, Interval) {
     let mut all = net.iter().flatten();
-    let Some(first) = all.next() else { return (Ranges::default(), Range::default()) };
+    let Some(first) = all.next() else { return (Interval3::default(), Interval::default()) };
     let (low, high) = all.fold((*first, *first), |(low, high), q| (low.min(*q), high.max(*q)));
-    (Ranges { low: low.truncate(), high: high.truncate() }, Range { low: low.w, high: high.w })
+    (Interval3 { low: low.truncate(), high: high.truncate() }, Interval { low: low.w, high: high.w })
 }
 
 impl NurbsSurface {
@@ -147,7 +147,7 @@ impl NurbsSurface {
     }
 
     /// Bounds over the rectangle of two strips.
-    pub fn spread(&self, u: &NetStrip, v: &NetStrip, (x, y): (f64, f64), half: (f64, f64)) -> Spread {
+    pub fn enclosure(&self, u: &NetStrip, v: &NetStrip, (x, y): (f64, f64), half: (f64, f64)) -> Enclosure {
         let net = self.piece(u, v);
         let (p, q) = (self.degree.0 as f64, self.degree.1 as f64);
         let nets = |net: &Net| {
@@ -155,13 +155,13 @@ impl NurbsSurface {
             let (uu, vv) = (along_u(&nu, (p - 1.0) / u.width), along_v(&nv, (q - 1.0) / v.width));
             [hull(net), hull(&nu), hull(&nv), hull(&uu), hull(&along_v(&nu, q / v.width)), hull(&vv)]
         };
-        let mid = self.jet(x, y, (Lean::After, Lean::After));
+        let mid = self.jet(x, y, (OneSided::After, OneSided::After));
         let same_weights = net.iter().flatten().all(|q| q.w == net[0][0].w);
         if same_weights {
             let hulls = nets(&net).map(|h| h.0 * (1.0 / net[0][0].w));
-            let mut spread = Spread::new(mid, half, [hulls[3], hulls[4], hulls[5]], Some([hulls[1], hulls[2]]));
-            spread.p = spread.p.intersection(hulls[0]);
-            return spread;
+            let mut enclosure = Enclosure::new(mid, half, [hulls[3], hulls[4], hulls[5]], Some([hulls[1], hulls[2]]));
+            enclosure.p = enclosure.p.intersection(hulls[0]);
+            return enclosure;
         }
         // Relative to the first point little cancels.
         let origin = projected(net[0][0]);
@@ -169,7 +169,7 @@ impl NurbsSurface {
         let [value, u1, v1, uu, uv, vv] = nets(&local);
         let over = value.1.inverse();
         let points: Vec<DVec3> = local.iter().flatten().map(|q| projected(*q)).collect();
-        let place = Ranges::of(points);
+        let place = Interval3::of(points);
         let du = (u1.0 - place * u1.1) * over;
         let dv = (v1.0 - place * v1.1) * over;
         let second = [
@@ -177,9 +177,9 @@ impl NurbsSurface {
             (uv.0 - du * v1.1 - dv * u1.1 - place * uv.1) * over,
             (vv.0 - dv * (v1.1 * 2.0) - place * vv.1) * over,
         ];
-        let mut spread = Spread::new(mid, half, second, Some([du, dv]));
-        spread.p = spread.p.intersection(place + origin);
-        spread
+        let mut enclosure = Enclosure::new(mid, half, second, Some([du, dv]));
+        enclosure.p = enclosure.p.intersection(place + origin);
+        enclosure
     }
 
     /// Bézier points over a rectangle, rows along u.

@@ -2,16 +2,16 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ground::{Ground, Near, Spot};
+use super::ground::{Near, ParametricSurface, Spot};
 use crate::base::tolerance::EPSILON;
-use crate::surface::quick::Quick;
+use crate::surface::quick::PowerForm;
 use crate::surface::{Domain, Jet2, Surface};
 
 /// A surface under a chart (x, y) = (a u + b v, c v).
 #[derive(Clone, Debug)]
-pub struct Sheet {
+pub struct Chart {
     surface: Surface,
-    quick: Option<Quick>,
+    quick: Option<PowerForm>,
     domain: Domain,
     /// Directions in which borders may run over the seam.
     closed: (bool, bool),
@@ -22,7 +22,7 @@ pub struct Sheet {
     by: (f64, f64),
 }
 
-impl Sheet {
+impl Chart {
     /// The chart whose mean metric over some places is that of the plane; `None` where the surface is singular all over.
     pub fn new(surface: &Surface, places: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
         let (mut e, mut f, mut g, mut n) = (0.0, 0.0, 0.0, 0.0);
@@ -41,7 +41,7 @@ impl Sheet {
         let c = if rest > EPSILON * g { rest.sqrt() } else { g.sqrt() };
         (a.is_finite() && c.is_finite() && a > 0.0 && c > 0.0).then(|| Self {
             surface: surface.clone(),
-            quick: surface.quick(),
+            quick: surface.power_form(),
             domain: surface.ground(),
             closed: if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) },
             a,
@@ -63,19 +63,19 @@ impl Sheet {
     }
 
     /// The surface made ready for many evaluations, where it can be.
-    pub fn quick(&self) -> Option<&Quick> {
+    pub fn power_form(&self) -> Option<&PowerForm> {
         self.quick.as_ref()
     }
 
     /// Point, ∂/∂u and ∂/∂v.
     pub fn tangents(&self, (u, v): (f64, f64)) -> [DVec3; 3] {
-        self.surface.tangents_by(self.quick(), u, v)
+        self.surface.tangents_by(self.power_form(), u, v)
     }
 
     /// Point and all derivatives by u and v at a place of the chart.
     pub fn jet(&self, xy: DVec2) -> Jet2 {
         let (u, v) = self.uv(xy);
-        self.surface.jet_by(self.quick(), u, v)
+        self.surface.jet_by(self.power_form(), u, v)
     }
 
     /// The place of surface parameters in the chart.
@@ -84,7 +84,7 @@ impl Sheet {
     }
 }
 
-impl Ground for Sheet {
+impl ParametricSurface for Chart {
     fn spot(&self, xy: DVec2) -> Spot {
         let (u, v) = self.uv(xy);
         let [p, du, dv] = self.tangents((u, v));
@@ -103,7 +103,7 @@ impl Ground for Sheet {
 
     fn point(&self, xy: DVec2) -> DVec3 {
         let (u, v) = self.uv(xy);
-        self.surface.point_by(self.quick(), u, v)
+        self.surface.point_by(self.power_form(), u, v)
     }
 
     fn clamp(&self, xy: DVec2) -> DVec2 {

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::core::{Domain, Jet2, Side, Surface};
 use super::foot::{Footing, step};
-use super::quick::Quick;
+use super::quick::PowerForm;
 use crate::base::tolerance::{EPSILON, NUDGE, POLE_STEP, SINGULAR};
 use crate::network::Chain;
 
@@ -16,7 +16,7 @@ const LEAST: usize = 8;
 /// Largest share of a turn from one place to the next where a surface closes.
 const TURN: f64 = 0.2;
 /// Halvings of a step before it counts as a leap.
-const DEEPEST: u32 = 12;
+const MAX_DEPTH: u32 = 12;
 /// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
 const BEND: f64 = 0.25;
 
@@ -27,21 +27,21 @@ const STRETCH: usize = 16;
 
 /// What a border of a trimmed surface is in (u, v), from its start to its end in the loop's direction.
 #[derive(Clone, Debug)]
-pub(super) enum Course {
+pub(super) enum TrimCurve {
     /// A straight line.
     Line((f64, f64), (f64, f64)),
     /// The feet of a chain.
-    Pull(Arc<Pull>),
+    Pcurve(Arc<Pcurve>),
 }
 
-impl Course {
+impl TrimCurve {
     /// The same backwards, in other parameters.
     pub fn flipped(&self, turn: &dyn Fn((f64, f64)) -> (f64, f64)) -> Self {
         match self {
             Self::Line(a, b) => Self::Line(turn(*b), turn(*a)),
-            Self::Pull(pull) => {
-                let at = pull.at.iter().rev().map(|(f, uv)| (*f, turn((uv.x, uv.y)).into()));
-                Self::Pull(Arc::new(Pull::new(at.collect(), pull.off)))
+            Self::Pcurve(pcurve) => {
+                let at = pcurve.at.iter().rev().map(|(f, uv)| (*f, turn((uv.x, uv.y)).into()));
+                Self::Pcurve(Arc::new(Pcurve::new(at.collect(), pcurve.off)))
             }
         }
     }
@@ -50,7 +50,7 @@ impl Course {
     pub fn turned(&self) -> Self {
         match self {
             Self::Line(a, b) => Self::Line(*b, *a),
-            Self::Pull(pull) => Self::Pull(Arc::new(pull.turned())),
+            Self::Pcurve(pcurve) => Self::Pcurve(Arc::new(pcurve.turned())),
         }
     }
 
@@ -78,9 +78,9 @@ impl Course {
     pub fn mapped(&self, to: &dyn Fn((f64, f64)) -> (f64, f64)) -> Self {
         match self {
             Self::Line(a, b) => Self::Line(to(*a), to(*b)),
-            Self::Pull(pull) => {
-                let at = pull.at.iter().map(|(f, uv)| (*f, to((uv.x, uv.y)).into())).collect();
-                Self::Pull(Arc::new(Pull::new(at, pull.off)))
+            Self::Pcurve(pcurve) => {
+                let at = pcurve.at.iter().map(|(f, uv)| (*f, to((uv.x, uv.y)).into())).collect();
+                Self::Pcurve(Arc::new(Pcurve::new(at, pcurve.off)))
             }
         }
     }
@@ -94,14 +94,14 @@ impl Course {
     pub fn places(&self) -> Vec<DVec2> {
         match self {
             Self::Line(a, b) => vec![DVec2::new(a.0, a.1), DVec2::new(b.0, b.1)],
-            Self::Pull(pull) => pull.at.iter().map(|s| s.1).collect(),
+            Self::Pcurve(pcurve) => pcurve.at.iter().map(|s| s.1).collect(),
         }
     }
 }
 
 /// A chain's places on a surface at fractions of the chain, in the order of the loop.
 #[derive(Clone, Debug)]
-pub(super) struct Pull {
+pub(super) struct Pcurve {
     at: Vec<(f64, DVec2)>,
     /// The largest distance from the surface met on the way, model units.
     pub off: f64,
@@ -118,7 +118,7 @@ pub(super) struct Off {
     pub distance: f64,
 }
 
-impl Pull {
+impl Pcurve {
     fn new(at: Vec<(f64, DVec2)>, off: f64) -> Self {
         Self { at, off, boxes: OnceLock::new() }
     }
@@ -145,7 +145,7 @@ impl Pull {
         if is_pole(surface, start) {
             let end = super::closest::closest(surface, chain.point(to)).uv.into();
             if !is_pole(surface, end) {
-                return Self::along(surface, (chain, to, from), end, near).map(|pull| pull.turned());
+                return Self::along(surface, (chain, to, from), end, near).map(|pcurve| pcurve.turned());
             }
         }
         Self::along(surface, (chain, from, to), start, near)
@@ -174,7 +174,7 @@ impl Pull {
         for w in cuts.windows(2) {
             for k in 1..=LEAST {
                 let f = if k == LEAST { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / LEAST as f64 };
-                walk(surface, chain, &mut at, f, &land, DEEPEST)?;
+                walk(surface, chain, &mut at, f, &land, MAX_DEPTH)?;
             }
         }
         Ok(Self::new(at, widest.get()))
@@ -329,7 +329,7 @@ fn walk(
 }
 
 /// Feet on a surface, held in the parts of (u, v) where it is.
-struct Whole<'a>(&'a Surface, Option<&'a Quick>);
+struct Whole<'a>(&'a Surface, Option<&'a PowerForm>);
 
 impl Footing for Whole<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
@@ -342,6 +342,6 @@ impl Footing for Whole<'_> {
 }
 
 /// The foot of a point near a guess, with its distance; by the surface made ready, where it is.
-pub(super) fn foot((surface, quick): (&Surface, Option<&Quick>), p: DVec3, guess: DVec2) -> (DVec2, f64) {
+pub(super) fn foot((surface, quick): (&Surface, Option<&PowerForm>), p: DVec3, guess: DVec2) -> (DVec2, f64) {
     Whole(surface, quick).foot(p, guess)
 }

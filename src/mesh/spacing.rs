@@ -17,30 +17,30 @@ use super::layout::Layout;
 use super::narrow::Narrow;
 use super::plan::Method;
 use super::sources::{Body, STEEP, Source, Sources};
-use super::wanted::Wanted;
+use super::wanted::SizeRequests;
 use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::base::{math, par};
 use crate::surface::Surface;
-use crate::surface::quick::Quick;
+use crate::surface::quick::PowerForm;
 
 /// Borders cannot be divided any more when their triangles are made: a little shorter than inside.
 const ROOM: f64 = 0.9;
-/// Distance of places along a stretch over the length wanted there.
+/// Distance of places along a segment over the length wanted there.
 const APART: f64 = 0.5;
-/// Halvings of a stretch.
-const DEEPEST: u32 = 40;
-/// Places of one stretch.
+/// Halvings of a segment.
+const MAX_DEPTH: u32 = 40;
+/// Places of one segment.
 const MOST_PLACES: usize = 1 << 20;
 /// Rounds in which short steps are carried on to neighbours.
 const ROUNDS: usize = 64;
 /// What is lowered by less is not carried on.
-const WORTH: f64 = 0.99;
+const MIN_GAIN: f64 = 0.99;
 
-/// Wanted lengths along a stretch, from its start to its end, linear between places.
+/// SizeRequests lengths along a segment, from its start to its end, linear between places.
 #[derive(Clone, Debug)]
-pub struct Pace {
+pub struct BorderSpacing {
     /// Fractions of the length, 0 to 1.
     at: Vec<f64>,
     /// Model units.
@@ -49,7 +49,7 @@ pub struct Pace {
     why: Vec<Why>,
 }
 
-impl Pace {
+impl BorderSpacing {
     fn even(length: f64) -> Self {
         Self { at: vec![0.0, 1.0], lengths: vec![length; 2], why: Vec::new() }
     }
@@ -76,7 +76,7 @@ impl Pace {
                 let (before, from) = (made.at[made.at.len() - 1], made.lengths[made.lengths.len() - 1]);
                 if at > before && at <= g {
                     // Shares are added up from place to place: near enough to each other for lengths that grow.
-                    let parts = (math::log(length / from).abs() / math::log(ALIKE)).ceil().clamp(1.0, MOST_PARTS) as usize;
+                    let parts = (math::log(length / from).abs() / math::log(SIZE_RATIO_EQUAL)).ceil().clamp(1.0, MOST_PARTS) as usize;
                     for k in 1..=parts {
                         let now = if k == parts { length } else { from * math::exp(math::log(length / from) * k as f64 / parts as f64) };
                         let share = if k == parts { 1.0 } else { (now - from) / (length - from) };
@@ -119,7 +119,7 @@ impl Pace {
         self.lengths.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Places, fractions of the stretch.
+    /// Places, fractions of the segment.
     pub fn places(&self) -> impl Iterator<Item = f64> + '_ {
         self.at.iter().copied()
     }
@@ -133,7 +133,7 @@ impl Pace {
     }
 
     /// Number of steps over the whole for no step longer than wanted or than `size`.
-    pub fn wish(&self, length: f64, size: f64, most: u32) -> u32 {
+    pub fn demand(&self, length: f64, size: f64, most: u32) -> u32 {
         let part = |k: usize| {
             let (a, b) = (self.lengths[k - 1].min(size), self.lengths[k].min(size));
             (self.at[k] - self.at[k - 1]) * 0.5 * (1.0 / a + 1.0 / b)
@@ -164,86 +164,91 @@ impl Pace {
     }
 }
 
-/// Of each stretch where its steps vary.
-pub type Paces = Vec<Option<Pace>>;
+/// Of each segment where its steps vary.
+pub type BorderSpacings = Vec<Option<BorderSpacing>>;
 
-/// What is known of the stretches before their paces.
-pub struct Ask<'a> {
+/// What is known of the segments before their spacings.
+pub struct SpacingInput<'a> {
     /// Lengths wanted at places.
-    pub wanted: &'a Wanted,
+    pub wanted: &'a SizeRequests,
     /// Chord error and angle.
     pub limits: &'a Limits,
-    /// Size of each stretch, model units.
+    /// Size of each segment, model units.
     pub size: &'a [f64],
     /// Steps that are written out.
-    pub written: &'a [Option<Pace>],
+    pub written: &'a [Option<BorderSpacing>],
     /// Places where borders face each other.
     pub narrow: &'a [Narrow],
     /// What runs beside each face.
     pub rows: &'a [Vec<Beside>],
 }
 
-/// The paces of stretches: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
+/// The spacings of segments: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
 /// Stretches of mapped faces follow the bends of free ones beside them and nothing else: their rows are even. The second
-/// list has the paces that those would have to follow, were they not. E217 where bends alone ask for too much.
-pub fn along(input: &Input, layout: &Layout, ask: &Ask) -> Result<(Paces, Paces)> {
-    let n = layout.pieces.atoms.len();
-    let mut paces: Vec<Pace> = ask.size.iter().map(|s| Pace::even(*s)).collect();
-    bends(input, layout, ask, &mut paces);
-    ahead::refuse_bends(input, layout, &paces, ask.size)?;
-    let bent = paces.clone();
+/// list has the spacings that those would have to follow, were they not. E217 where bends alone ask for too much.
+pub fn along(input: &Input, layout: &Layout, ask: &SpacingInput) -> Result<(BorderSpacings, BorderSpacings)> {
+    let n = layout.pieces.segments.len();
+    let mut spacings: Vec<BorderSpacing> = ask.size.iter().map(|s| BorderSpacing::even(*s)).collect();
+    bends(input, layout, ask, &mut spacings);
+    ahead::refuse_bends(input, layout, &spacings, ask.size)?;
+    let bent = spacings.clone();
     let mut even = vec![false; n];
-    layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.stretches()).for_each(|k| even[k] = true);
+    layout.faces.iter().filter(|f| !f.free).flat_map(|f| &f.sides).flat_map(|s| s.segments()).for_each(|k| even[k] = true);
     let least = if ask.wanted.written > 0.0 { ask.wanted.floor } else { input.tolerance.point };
-    let walker = Walker { layout, ask, even: &even, least };
-    let (gaps, strained) = walker.narrowed(input.plan.slope());
-    for (pace, gap) in paces.iter_mut().zip(&gaps) {
-        *pace = gap.as_ref().map_or_else(|| pace.clone(), |gap| lower_of(pace, gap));
+    let walker = SpacingSolver { layout, ask, even: &even, least };
+    let (gaps, required_on_mapped) = walker.narrowed(input.plan.slope());
+    for (spacing, gap) in spacings.iter_mut().zip(&gaps) {
+        *spacing = gap.as_ref().map_or_else(|| spacing.clone(), |gap| lower_of(spacing, gap));
     }
     if !ask.wanted.sources.is_empty() {
-        let found = par::map(n, |k| walker.open(k).then(|| walker.lowered(k, &paces[k], &ask.wanted.sources)));
-        for (pace, found) in paces.iter_mut().zip(found) {
-            *pace = found.unwrap_or_else(|| pace.clone());
+        let found = par::map(n, |k| walker.open(k).then(|| walker.lowered(k, &spacings[k], &ask.wanted.sources)));
+        for (spacing, found) in spacings.iter_mut().zip(found) {
+            *spacing = found.unwrap_or_else(|| spacing.clone());
         }
     }
     let bent = if ask.limits.chord.is_some() || ask.limits.angle.is_some() { bent } else { Vec::new() };
-    walker.grade(&mut paces);
-    let strained = walker.strained(&paces, strained);
-    let paces = par::map(n, |k| {
-        let pace = &paces[k];
-        let taken = ask.written[k].is_none() && pace.least() < ask.size[k] * (1.0 - EPSILON);
+    walker.grade(&mut spacings);
+    let required_on_mapped = walker.required_on_mapped(&spacings, required_on_mapped);
+    let spacings = par::map(n, |k| {
+        let spacing = &spacings[k];
+        let taken = ask.written[k].is_none() && spacing.least() < ask.size[k] * (1.0 - EPSILON);
         taken.then(|| {
-            let why = pace.at.iter().zip(&pace.lengths).map(|(f, l)| walker.why(k, (*f, *l), (bent.get(k), gaps[k].as_ref()))).collect();
-            Pace { why, ..pace.clone() }
+            let why =
+                spacing.at.iter().zip(&spacing.lengths).map(|(f, l)| walker.why(k, (*f, *l), (bent.get(k), gaps[k].as_ref()))).collect();
+            BorderSpacing { why, ..spacing.clone() }
         })
     });
-    Ok((paces, strained))
+    Ok((spacings, required_on_mapped))
 }
 
-/// Lowers paces to what the bends of free faces ask for.
-fn bends(input: &Input, layout: &Layout, ask: &Ask, paces: &mut [Pace]) {
+/// Lowers spacings to what the bends of free faces ask for.
+fn bends(input: &Input, layout: &Layout, ask: &SpacingInput, spacings: &mut [BorderSpacing]) {
     if ask.limits.chord.is_none() && ask.limits.angle.is_none() {
         return;
     }
     let found = par::map(layout.faces.len(), |f| of_face(input, layout, (f, &ask.rows[f]), ask.limits));
-    for (stretch, lengths) in found.into_iter().flatten() {
-        let (pace, size) = (&mut paces[stretch], ask.size[stretch]);
-        if pace.at.len() == 2 {
-            *pace = Pace { at: (0..=PLACES).map(|k| k as f64 / PLACES as f64).collect(), lengths: vec![size; PLACES + 1], why: Vec::new() };
+    for (segment, lengths) in found.into_iter().flatten() {
+        let (spacing, size) = (&mut spacings[segment], ask.size[segment]);
+        if spacing.at.len() == 2 {
+            *spacing = BorderSpacing {
+                at: (0..=PLACES).map(|k| k as f64 / PLACES as f64).collect(),
+                lengths: vec![size; PLACES + 1],
+                why: Vec::new(),
+            };
         }
-        pace.lengths.iter_mut().zip(lengths).for_each(|(l, other)| *l = l.min(other.max(ask.wanted.written)));
+        spacing.lengths.iter_mut().zip(lengths).for_each(|(l, other)| *l = l.min(other.max(ask.wanted.written)));
     }
-    let graded = graded(layout, paces.len());
-    for (stretch, pace) in paces.iter_mut().enumerate().filter(|(k, p)| p.at.len() > 2 && graded[*k]) {
-        level(&mut pace.lengths, input.plan.slope() * layout.length(stretch) / PLACES as f64);
+    let graded = graded(layout, spacings.len());
+    for (segment, spacing) in spacings.iter_mut().enumerate().filter(|(k, p)| p.at.len() > 2 && graded[*k]) {
+        level(&mut spacing.lengths, input.plan.slope() * layout.length(segment) / PLACES as f64);
     }
 }
 
 /// Stretches beside a free face on which lengths grow step by step.
 fn graded(layout: &Layout, n: usize) -> Vec<bool> {
     let mut graded = vec![false; n];
-    let grown = layout.faces.iter().filter(|f| f.free && !f.method.is_sparing());
-    grown.flat_map(|f| f.sides.iter().flat_map(|s| s.stretches()).chain(f.lines.iter().copied())).for_each(|k| graded[k] = true);
+    let grown = layout.faces.iter().filter(|f| f.free && !f.method.is_coarse());
+    grown.flat_map(|f| f.sides.iter().flat_map(|s| s.segments()).chain(f.lines.iter().copied())).for_each(|k| graded[k] = true);
     graded
 }
 
@@ -257,52 +262,52 @@ fn level(lengths: &mut [f64], step: f64) {
     }
 }
 
-struct Walker<'a> {
+struct SpacingSolver<'a> {
     layout: &'a Layout,
-    ask: &'a Ask<'a>,
+    ask: &'a SpacingInput<'a>,
     even: &'a [bool],
     /// The least length that others grow from, model units.
     least: f64,
 }
 
-impl Walker<'_> {
-    /// What decides the length at a place of a stretch; `bent` is its pace by bends alone, `gap` by borders that face it.
-    fn why(&self, k: usize, (f, length): (f64, f64), (bent, gap): (Option<&Pace>, Option<&Pace>)) -> Why {
+impl SpacingSolver<'_> {
+    /// What decides the length at a place of a segment; `bent` is its spacing by bends alone, `gap` by borders that face it.
+    fn why(&self, k: usize, (f, length): (f64, f64), (bent, gap): (Option<&BorderSpacing>, Option<&BorderSpacing>)) -> Why {
         let size = self.ask.size[k];
         let sources = &self.ask.wanted.sources;
-        let about = |x: f64| x * WORTH <= length;
+        let about = |x: f64| x * MIN_GAIN <= length;
         match sources.who(self.layout.point(k, f), size) {
-            _ if length >= size * WORTH => Why::Size,
+            _ if length >= size * MIN_GAIN => Why::Size,
             Some(least) if about(least.size) => Why::Refined(sources.items()[least.item as usize].tag as usize),
             _ if length <= self.ask.wanted.written => Why::Floor,
-            _ if bent.is_some_and(|pace| about(pace.length_at(f))) => Why::Bends,
-            _ if gap.is_some_and(|pace| about(pace.length_at(f))) => Why::Gap,
+            _ if bent.is_some_and(|spacing| about(spacing.length_at(f))) => Why::Bends,
+            _ if gap.is_some_and(|spacing| about(spacing.length_at(f))) => Why::Gap,
             _ => Why::Border,
         }
     }
 
-    /// Paces of stretches by the borders that face them alone; longer by `slope` away from there. Those that rows of mapped
+    /// BorderSpacings of segments by the borders that face them alone; longer by `slope` away from there. Those that rows of mapped
     /// faces do not follow are apart.
-    fn narrowed(&self, slope: f64) -> (Vec<Option<Pace>>, Vec<Option<Pace>>) {
+    fn narrowed(&self, slope: f64) -> (Vec<Option<BorderSpacing>>, Vec<Option<BorderSpacing>>) {
         let mut places: [Vec<Vec<(f64, f64)>>; 2] = [vec![Vec::new(); self.even.len()], vec![Vec::new(); self.even.len()]];
         for narrow in self.ask.narrow {
-            if self.ask.written[narrow.stretch].is_none() {
-                let left = usize::from(self.even[narrow.stretch] && !narrow.must);
-                places[left][narrow.stretch].push((narrow.f, narrow.size));
+            if self.ask.written[narrow.segment].is_none() {
+                let left = usize::from(self.even[narrow.segment] && !narrow.must);
+                places[left][narrow.segment].push((narrow.f, narrow.size));
             }
         }
-        let pace = |(k, places): (usize, &Vec<(f64, f64)>)| {
-            (!places.is_empty()).then(|| Pace::about(places, self.ask.size[k], slope * self.layout.length(k)))
+        let spacing = |(k, places): (usize, &Vec<(f64, f64)>)| {
+            (!places.is_empty()).then(|| BorderSpacing::about(places, self.ask.size[k], slope * self.layout.length(k)))
         };
-        let [taken, left] = places.map(|places| places.iter().enumerate().map(pace).collect());
+        let [taken, left] = places.map(|places| places.iter().enumerate().map(spacing).collect());
         (taken, left)
     }
 
-    /// What stretches of mapped faces would be like if they followed what is beside them on free faces; nothing of others.
-    fn strained(&self, paces: &[Pace], narrow: Vec<Option<Pace>>) -> Vec<Option<Pace>> {
-        let mut found: Vec<Option<Pace>> = narrow;
-        for face in self.layout.faces.iter().filter(|face| face.free && !face.method.is_sparing()) {
-            let mut all: Vec<usize> = face.stretches().collect();
+    /// What segments of mapped faces would be like if they followed what is beside them on free faces; nothing of others.
+    fn required_on_mapped(&self, spacings: &[BorderSpacing], narrow: Vec<Option<BorderSpacing>>) -> Vec<Option<BorderSpacing>> {
+        let mut found: Vec<Option<BorderSpacing>> = narrow;
+        for face in self.layout.faces.iter().filter(|face| face.free && !face.method.is_coarse()) {
+            let mut all: Vec<usize> = face.segments().collect();
             all.sort_unstable();
             all.dedup();
             let even: Vec<usize> = all.iter().copied().filter(|k| self.even[*k] && self.ask.written[*k].is_none()).collect();
@@ -310,34 +315,40 @@ impl Walker<'_> {
                 continue;
             }
             let cap = all.iter().map(|k| self.ask.size[*k]).fold(0.0, f64::max);
-            let items: Vec<Source> = all.iter().flat_map(|k| self.steps_of(*k, &paces[*k], cap)).collect();
+            let items: Vec<Source> = all.iter().flat_map(|k| self.steps_of(*k, &spacings[*k], cap)).collect();
             let sources = Sources::new(items, self.ask.wanted.sources.slope());
             for k in even {
-                let pace = self.lowered(k, &paces[k], &sources);
-                found[k] = Some(found[k].as_ref().map_or_else(|| pace.clone(), |other| lower_of(other, &pace)));
+                let spacing = self.lowered(k, &spacings[k], &sources);
+                found[k] = Some(found[k].as_ref().map_or_else(|| spacing.clone(), |other| lower_of(other, &spacing)));
             }
         }
         found
     }
 
-    /// Whether the steps of a stretch may vary.
+    /// Whether the steps of a segment may vary.
     fn open(&self, k: usize) -> bool {
         !self.even[k] && self.ask.written[k].is_none()
     }
 
-    /// A pace with what sources ask for as well; places are added where lengths change.
-    fn lowered(&self, k: usize, pace: &Pace, sources: &Sources) -> Pace {
+    /// A spacing with what sources ask for as well; places are added where lengths change.
+    fn lowered(&self, k: usize, spacing: &BorderSpacing, sources: &Sources) -> BorderSpacing {
         let cap = self.ask.size[k];
-        if sources.least() >= pace.lengths.iter().copied().fold(0.0, f64::max) {
-            return pace.clone();
+        if sources.least() >= spacing.lengths.iter().copied().fold(0.0, f64::max) {
+            return spacing.clone();
         }
-        let mut sampler =
-            Sampler { walker: self, k, pace, sources, cap, made: Pace { at: Vec::new(), lengths: Vec::new(), why: Vec::new() } };
+        let mut sampler = Sampler {
+            walker: self,
+            k,
+            spacing,
+            sources,
+            cap,
+            made: BorderSpacing { at: Vec::new(), lengths: Vec::new(), why: Vec::new() },
+        };
         let mut last = sampler.place(0.0);
         sampler.take(&last);
-        for next in &pace.at[1..] {
+        for next in &spacing.at[1..] {
             let next = sampler.place(*next);
-            sampler.between(&last, &next, DEEPEST);
+            sampler.between(&last, &next, MAX_DEPTH);
             sampler.take(&next);
             last = next;
         }
@@ -345,72 +356,72 @@ impl Walker<'_> {
     }
 
     /// Carries short steps on to the neighbours across free faces, and from curve to curve outside faces.
-    fn grade(&self, paces: &mut [Pace]) {
+    fn grade(&self, spacings: &mut [BorderSpacing]) {
         let mut groups: Vec<Vec<usize>> = Vec::new();
-        let mut on_face = vec![false; paces.len()];
+        let mut on_face = vec![false; spacings.len()];
         for face in &self.layout.faces {
-            let mut all: Vec<usize> = face.sides.iter().flat_map(|s| s.stretches()).chain(face.lines.iter().copied()).collect();
+            let mut all: Vec<usize> = face.sides.iter().flat_map(|s| s.segments()).chain(face.lines.iter().copied()).collect();
             all.iter().for_each(|k| on_face[*k] = true);
             all.sort_unstable();
             all.dedup();
-            groups.push(if face.free && !face.method.is_sparing() { all } else { Vec::new() });
+            groups.push(if face.free && !face.method.is_coarse() { all } else { Vec::new() });
         }
-        groups.push((0..paces.len()).filter(|k| !on_face[*k]).collect());
-        let mut of_stretch: Vec<Vec<usize>> = vec![Vec::new(); paces.len()];
-        groups.iter().enumerate().for_each(|(g, all)| all.iter().for_each(|k| of_stretch[*k].push(g)));
+        groups.push((0..spacings.len()).filter(|k| !on_face[*k]).collect());
+        let mut of_segment: Vec<Vec<usize>> = vec![Vec::new(); spacings.len()];
+        groups.iter().enumerate().for_each(|(g, all)| all.iter().for_each(|k| of_segment[*k].push(g)));
         let mut open: BTreeSet<usize> = (0..groups.len()).collect();
         for _ in 0..ROUNDS {
             let now: Vec<usize> = std::mem::take(&mut open).into_iter().collect();
             if now.is_empty() {
                 return;
             }
-            let found = par::map(now.len(), |n| self.within(&groups[now[n]], paces));
-            for (k, pace) in found.into_iter().flatten() {
-                if pace.at.iter().zip(&pace.lengths).any(|(f, l)| *l < WORTH * paces[k].length_at(*f)) {
+            let found = par::map(now.len(), |n| self.within(&groups[now[n]], spacings));
+            for (k, spacing) in found.into_iter().flatten() {
+                if spacing.at.iter().zip(&spacing.lengths).any(|(f, l)| *l < MIN_GAIN * spacings[k].length_at(*f)) {
                     // Two faces may both have lowered it.
-                    paces[k] = lower_of(&paces[k], &pace);
-                    open.extend(&of_stretch[k]);
+                    spacings[k] = lower_of(&spacings[k], &spacing);
+                    open.extend(&of_segment[k]);
                 }
             }
         }
     }
 
-    /// Lowered paces of stretches round one face.
-    fn within(&self, all: &[usize], paces: &[Pace]) -> Vec<(usize, Pace)> {
+    /// Lowered spacings of segments round one face.
+    fn within(&self, all: &[usize], spacings: &[BorderSpacing]) -> Vec<(usize, BorderSpacing)> {
         let cap = all.iter().map(|k| self.ask.size[*k]).fold(0.0, f64::max);
-        let items: Vec<Source> = all.iter().flat_map(|k| self.steps_of(*k, &paces[*k], cap)).collect();
+        let items: Vec<Source> = all.iter().flat_map(|k| self.steps_of(*k, &spacings[*k], cap)).collect();
         if items.is_empty() {
             return Vec::new();
         }
         let sources = Sources::new(items, self.ask.wanted.sources.slope());
         let open = all.iter().filter(|k| self.open(**k) && self.ask.size[**k] > sources.least());
-        open.map(|k| (*k, self.lowered(*k, &paces[*k], &sources))).collect()
+        open.map(|k| (*k, self.lowered(*k, &spacings[*k], &sources))).collect()
     }
 
-    /// Pieces of a stretch whose steps are shorter than lengths may be beside them.
-    fn steps_of(&self, k: usize, pace: &Pace, cap: f64) -> Vec<Source> {
-        let pace = self.ask.written[k].as_ref().unwrap_or(pace);
+    /// Pieces of a segment whose steps are shorter than lengths may be beside them.
+    fn steps_of(&self, k: usize, spacing: &BorderSpacing, cap: f64) -> Vec<Source> {
+        let spacing = self.ask.written[k].as_ref().unwrap_or(spacing);
         let length = self.layout.length(k);
         let floor = self.ask.wanted.floor;
         let least = cap / (1.0 + self.ask.wanted.sources.slope());
-        if pace.least().min(length).max(floor) >= least {
+        if spacing.least().min(length).max(floor) >= least {
             return Vec::new();
         }
-        let place = |f: f64| (f, self.layout.point(k, f), pace.length_at(f).min(length));
+        let place = |f: f64| (f, self.layout.point(k, f), spacing.length_at(f).min(length));
         let mut found = Vec::new();
-        for w in pace.at.windows(2) {
-            let mut open = vec![(place(w[0]), place(w[1]), DEEPEST)];
+        for w in spacing.at.windows(2) {
+            let mut open = vec![(place(w[0]), place(w[1]), MAX_DEPTH)];
             while let Some((a, b, left)) = open.pop() {
                 job::look();
                 let middle = place(0.5 * (a.0 + b.0));
                 let size = a.2.min(b.2);
                 let straight = [(0.5, middle.1), (0.25, self.layout.point(k, 0.75 * a.0 + 0.25 * b.0))];
                 let off = straight.iter().map(|(t, p)| p.distance(a.1.lerp(b.1, *t))).fold(0.0, f64::max);
-                if left > 0 && (off > APART * size || a.2.max(b.2) > ALIKE * size) && a.1.distance(b.1) + off > APART * size {
+                if left > 0 && (off > APART * size || a.2.max(b.2) > SIZE_RATIO_EQUAL * size) && a.1.distance(b.1) + off > APART * size {
                     open.extend([(a, middle, left - 1), (middle, b, left - 1)]);
                     continue;
                 }
-                // The larger of both, so that no stretch lowers itself.
+                // The larger of both, so that no segment lowers itself.
                 let raw = a.2.max(b.2);
                 let size = raw.max(floor);
                 if size < least {
@@ -428,44 +439,44 @@ impl Walker<'_> {
     }
 }
 
-/// Places put between two of a pace at most.
+/// Places put between two of a spacing at most.
 const MOST_PARTS: f64 = 256.0;
 /// Ratio of lengths that count as one.
-const ALIKE: f64 = 1.15;
+const SIZE_RATIO_EQUAL: f64 = 1.15;
 
-/// The lower of two paces at the places of both.
-fn lower_of(a: &Pace, b: &Pace) -> Pace {
+/// The lower of two spacings at the places of both.
+fn lower_of(a: &BorderSpacing, b: &BorderSpacing) -> BorderSpacing {
     let mut at: Vec<f64> = a.at.iter().chain(&b.at).copied().collect();
     at.sort_by(f64::total_cmp);
     at.dedup();
     let lengths = at.iter().map(|f| a.length_at(*f).min(b.length_at(*f))).collect();
-    Pace { at, lengths, why: Vec::new() }
+    BorderSpacing { at, lengths, why: Vec::new() }
 }
 
-/// A place on a stretch.
+/// A place on a segment.
 struct Spot {
     f: f64,
     p: DVec3,
     length: f64,
-    /// What the stretch wants there before the sources.
+    /// What the segment wants there before the sources.
     own: f64,
-    /// The source that decides, whatever the size of the stretch.
+    /// The source that decides, whatever the size of the segment.
     item: Option<u32>,
 }
 
 struct Sampler<'a> {
-    walker: &'a Walker<'a>,
+    walker: &'a SpacingSolver<'a>,
     k: usize,
-    pace: &'a Pace,
+    spacing: &'a BorderSpacing,
     sources: &'a Sources,
     cap: f64,
-    made: Pace,
+    made: BorderSpacing,
 }
 
 impl Sampler<'_> {
     fn place(&self, f: f64) -> Spot {
         let p = self.walker.layout.point(self.k, f);
-        let own = self.pace.length_at(f).min(self.cap);
+        let own = self.spacing.length_at(f).min(self.cap);
         let found = self.sources.who(p, own);
         let length = found.map_or(own, |l| l.size);
         Spot { f, p, length, own, item: found.map(|l| l.item) }
@@ -498,24 +509,24 @@ impl Sampler<'_> {
     }
 }
 
-/// Wanted lengths along the stretches of one face.
+/// SizeRequests lengths along the segments of one face.
 fn of_face(input: &Input, layout: &Layout, (f, rows): (usize, &[Beside]), limits: &Limits) -> Vec<(usize, Vec<f64>)> {
     let own = &layout.faces[f];
     let surface = &input.model.surfaces[own.surface.index()].surface;
     if !own.free || surface.is_flat() {
         return Vec::new();
     }
-    let quick = surface.quick();
+    let quick = surface.power_form();
     let ready = (surface, quick.as_ref());
     let wanted = |row: &Beside, apart: f64| {
-        if own.method.is_sparing() {
+        if own.method.is_coarse() {
             spared(ready, row, apart, (own.size.0, limits, own.method == Method::Display))
         } else {
             by_bends(ready, row, apart, (own.size.0, limits))
         }
     };
     let mut found = Vec::new();
-    let apart = |stretch: usize| layout.length(stretch) / PLACES as f64;
+    let apart = |segment: usize| layout.length(segment) / PLACES as f64;
     // Cells halve by twos and fit best where a curve has one length; `display` joins them again.
     let by_cells = own.method == Method::Isoline;
     let both = |row: &Beside, apart: f64| {
@@ -523,7 +534,7 @@ fn of_face(input: &Input, layout: &Layout, (f, rows): (usize, &[Beside]), limits
         wanted(row, apart).into_iter().enumerate().map(|(i, length)| length.min(curve(i))).collect::<Vec<_>>()
     };
     for (u, row) in own.sides.iter().flat_map(|side| &side.uses).zip(rows) {
-        found.push((u.atom, both(row, apart(u.atom))));
+        found.push((u.segment, both(row, apart(u.segment))));
     }
     for line in &own.lines {
         let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
@@ -547,7 +558,7 @@ fn by_curve(points: &[DVec3], i: usize, limits: &Limits) -> f64 {
 
 /// Lengths along a row of places `apart` so that triangles on both sides of it keep the limits, the chord error less how far
 /// `off` the surface the row is within a step.
-fn by_bends(surfaces: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits): (f64, &Limits)) -> Vec<f64> {
+fn by_bends(surfaces: (&Surface, Option<&PowerForm>), row: &Beside, apart: f64, (size, limits): (f64, &Limits)) -> Vec<f64> {
     let (surface, last) = (surfaces.0, row.places.len() - 1);
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
     let tangents = |at: DVec2| surface.tangents_by(surfaces.1, at.x, at.y);
@@ -615,7 +626,7 @@ fn by_few(row: &Beside, apart: f64, limits: &Limits, length: &dyn Fn(usize) -> f
 }
 
 /// The same where triangles may be long: an edge is no longer than what any place on it wants.
-fn spared(ready: (&Surface, Option<&Quick>), row: &Beside, apart: f64, (size, limits, leans): (f64, &Limits, bool)) -> Vec<f64> {
+fn spared(ready: (&Surface, Option<&PowerForm>), row: &Beside, apart: f64, (size, limits, leans): (f64, &Limits, bool)) -> Vec<f64> {
     let (surface, last) = (ready.0, row.places.len() - 1);
     let wide = surface.hull().diagonal().min(size);
     let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);

@@ -1,8 +1,8 @@
-//! Part of a web as it was: to try a change and take it back.
+//! Part of a triangulation as it was: to try a change and take it back.
 
 use glam::{DVec2, DVec3};
 
-use super::Web;
+use super::Triangulation;
 use crate::base::triangulate_points::NO_TRIANGLE;
 
 /// Free places that one change may take.
@@ -28,7 +28,7 @@ fn put_back(free: &mut Vec<u32>, (len, last): &(usize, Vec<u32>)) {
     free.extend(last);
 }
 
-impl Web {
+impl Triangulation {
     /// All that one flip or patch inside some triangles can change, and moves of their nodes.
     pub fn before(&self, some: &[u32]) -> Before {
         let beyond = some.iter().flat_map(|t| self.across[*t as usize]).filter(|t| *t != NO_TRIANGLE);
@@ -85,65 +85,75 @@ mod tests {
     use super::*;
     use crate::base::triangulate_points::points;
     use crate::mesh::free::shape::Star;
-    use crate::mesh::free::web::{Patch, Ring};
+    use crate::mesh::free::triangulation::{Patch, Ring};
 
     /// A square of 6 × 6 nodes, the border first.
-    fn web() -> Web {
+    fn triangulation() -> Triangulation {
         let place = |k: usize| DVec2::new((k % 6) as f64 + 0.1 * (k * k % 7) as f64, (k / 6) as f64 + 0.1 * (k * k % 5) as f64);
         let on_border = |k: &usize| k.is_multiple_of(6) || k % 6 == 5 || k / 6 == 0 || k / 6 == 5;
         let (border, inner): (Vec<usize>, Vec<usize>) = (0..36).partition(on_border);
         let xy: Vec<DVec2> = border.iter().chain(&inner).map(|k| place(*k)).collect();
         let all = points(&xy, &[]).unwrap();
         let p = xy.iter().map(|p| p.extend(0.0)).collect();
-        Web::new(p, xy, vec![1.0; 36], border.len() as u32, &all, &vec![true; all.corners.len()])
+        Triangulation::new(p, xy, vec![1.0; 36], border.len() as u32, &all, &vec![true; all.corners.len()])
     }
 
     /// All that counts: places in the lists that are free hold nothing.
-    fn told(web: &Web) -> String {
-        let live: Vec<_> =
-            (0..web.tri.len()).filter(|t| web.alive(*t as u32)).map(|t| (t, web.tri[t], web.across[t], web.locked[t])).collect();
-        let used: Vec<_> =
-            (0..web.p.len()).filter(|n| web.at[*n] != NO_TRIANGLE).map(|n| (n, web.at[n], web.p[n], web.xy[n], web.size[n])).collect();
-        format!("{live:?} {used:?} {:?} {:?} {} {}", web.free_tri, web.free_node, web.tri.len(), web.p.len())
+    fn told(triangulation: &Triangulation) -> String {
+        let live: Vec<_> = (0..triangulation.tri.len())
+            .filter(|t| triangulation.alive(*t as u32))
+            .map(|t| (t, triangulation.tri[t], triangulation.across[t], triangulation.locked[t]))
+            .collect();
+        let used: Vec<_> = (0..triangulation.p.len())
+            .filter(|n| triangulation.at[*n] != NO_TRIANGLE)
+            .map(|n| (n, triangulation.at[n], triangulation.p[n], triangulation.xy[n], triangulation.size[n]))
+            .collect();
+        format!(
+            "{live:?} {used:?} {:?} {:?} {} {}",
+            triangulation.free_tri,
+            triangulation.free_node,
+            triangulation.tri.len(),
+            triangulation.p.len()
+        )
     }
 
-    fn takes_back(web: &mut Web, some: &[u32], change: impl FnOnce(&mut Web)) {
-        let (as_it_was, before) = (told(web), web.before(some));
-        change(web);
-        assert_ne!(told(web), as_it_was);
-        web.put_back(&before);
-        assert_eq!(told(web), as_it_was);
+    fn takes_back(triangulation: &mut Triangulation, some: &[u32], change: impl FnOnce(&mut Triangulation)) {
+        let (as_it_was, before) = (told(triangulation), triangulation.before(some));
+        change(triangulation);
+        assert_ne!(told(triangulation), as_it_was);
+        triangulation.put_back(&before);
+        assert_eq!(told(triangulation), as_it_was);
     }
 
     #[test]
     fn every_change_is_taken_back() {
-        let (mut web, mut patch, mut ring, mut tried) = (web(), Patch::default(), Ring::default(), [0; 3]);
+        let (mut triangulation, mut patch, mut ring, mut tried) = (triangulation(), Patch::default(), Ring::default(), [0; 3]);
         // The second time with free places.
         for round in 0..2 {
-            for t in (0..web.tri.len() as u32).filter(|t| web.alive(*t)).collect::<Vec<_>>() {
-                for k in (0..3).filter(|k| web.locked[t as usize] >> k & 1 == 0).collect::<Vec<_>>() {
-                    let pair = [t, web.across[t as usize][k]];
-                    takes_back(&mut web, &pair, |web| web.flip(t, k));
-                    if web.patch(&pair, &mut patch).is_some() {
+            for t in (0..triangulation.tri.len() as u32).filter(|t| triangulation.alive(*t)).collect::<Vec<_>>() {
+                for k in (0..3).filter(|k| triangulation.locked[t as usize] >> k & 1 == 0).collect::<Vec<_>>() {
+                    let pair = [t, triangulation.across[t as usize][k]];
+                    takes_back(&mut triangulation, &pair, |triangulation| triangulation.flip(t, k));
+                    if triangulation.patch(&pair, &mut patch).is_some() {
                         let star = Star { xy: DVec2::ONE, p: DVec3::ONE, worst: 1.0 };
-                        takes_back(&mut web, &pair, |web| _ = web.restar(&patch, None, &star, 0.5));
+                        takes_back(&mut triangulation, &pair, |triangulation| _ = triangulation.restar(&patch, None, &star, 0.5));
                         tried[0] += 1;
                     }
                 }
-                for node in web.tri[t as usize].into_iter().filter(|n| web.is_free(*n)).collect::<Vec<_>>() {
-                    web.ring(node, &mut ring);
-                    assert!(web.patch(&ring.tri, &mut patch).is_some());
-                    takes_back(&mut web, &ring.tri, |web| {
-                        web.refan(&patch, 0);
-                        web.p[patch.rim[1] as usize] = DVec3::ONE;
+                for node in triangulation.tri[t as usize].into_iter().filter(|n| triangulation.is_free(*n)).collect::<Vec<_>>() {
+                    triangulation.ring(node, &mut ring);
+                    assert!(triangulation.patch(&ring.tri, &mut patch).is_some());
+                    takes_back(&mut triangulation, &ring.tri, |triangulation| {
+                        triangulation.refan(&patch, 0);
+                        triangulation.p[patch.rim[1] as usize] = DVec3::ONE;
                     });
                     tried[1 + round] += 1;
                 }
             }
             if round == 0 {
-                web.ring(web.fixed, &mut ring);
-                web.patch(&ring.tri, &mut patch).unwrap();
-                web.refan(&patch, 0);
+                triangulation.ring(triangulation.fixed, &mut ring);
+                triangulation.patch(&ring.tri, &mut patch).unwrap();
+                triangulation.refan(&patch, 0);
             }
         }
         assert!(tried.iter().all(|n| *n > 20), "{tried:?}");
