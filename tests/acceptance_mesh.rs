@@ -7,7 +7,7 @@ use std::process::Command;
 
 use glam::{DVec2, DVec3};
 use lofting::mesh::Mesh;
-use lofting::mesh::face_geometry::Shape;
+use lofting::mesh::data::face_geometry::Shape;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::run::Outcome;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::mesh::Mesh;
-use lofting::mesh::face_geometry::{FaceGeometry, Grid, Shape};
+use lofting::mesh::data::face_geometry::{FaceGeometry, Shape};
+use lofting::mesh::mapped::grid::Grid;
 use lofting::session::live::{Depth, Live};
 
 /// Limits that each shape is made with, degrees, falling.

@@ -12,8 +12,9 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::io::iges::{Options, open};
-use lofting::mesh::face_geometry::Shape;
-use lofting::mesh::{Input, Mesh, Plan, build};
+use lofting::mesh::data::face_geometry::Shape;
+use lofting::mesh::pipeline::build::build;
+use lofting::mesh::{Input, Mesh, Plan};
 use lofting::model::topology::Named;
 use lofting::model::{Model, Shell, ShellRequest, SurfaceId, measure};
 use lofting::network::Network;
@@ -138,7 +139,9 @@ fn census(mesh: &Mesh, near: f64) -> Census {
 fn turned(mesh: &Mesh) -> usize {
     let mut count = 0;
     for geometry in &mesh.geometries.0 {
-        let (Shape::Free(free), lofting::mesh::faces::Frame::Free(ids)) = (&geometry.shape, &geometry.frame) else { continue };
+        let (Shape::Free(free), lofting::mesh::data::face_geometry::Frame::Free(ids)) = (&geometry.shape, &geometry.frame) else {
+            continue;
+        };
         for t in &free.triangles {
             let [a, b, c] = t.map(|n| mesh.nodes[ids[n as usize] as usize]);
             let uv = t.iter().map(|n| free.uv[*n as usize]).fold((0.0, 0.0), |s, uv| (s.0 + uv.0 / 3.0, s.1 + uv.1 / 3.0));

@@ -18,6 +18,29 @@ const FLOORS: &[(&str, u8)] = &[
     ("cli", 9),
 ];
 
+/// Rooms of a floor in their order: each imports only from rooms before it.
+const ROOMS: &[(&str, &[&str])] = &[(
+    "mesh",
+    &[
+        "request",
+        "mapped",
+        "data",
+        "border",
+        "chart",
+        "deviation",
+        "size",
+        "divide",
+        "tri",
+        "quad",
+        "face",
+        "output",
+        "verify",
+        "report",
+        "cache",
+        "pipeline",
+    ],
+)];
+
 /// A crate and the places that may name it.
 const DOORS: &[(&str, &[&str])] = &[
     ("spade", &["src/base/triangulate"]),
@@ -56,7 +79,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_800),
     ("surface", 25_150),
     ("model", 6_400),
-    ("mesh", 23_900),
+    ("mesh", 24_400),
     ("io", 16_500),
     ("draw", 3_000),
     ("lang", 29_250),
@@ -131,6 +154,39 @@ fn floors_import_only_downward() {
         }
     }
     report("a floor imports only from floors below it", found);
+}
+
+#[test]
+fn rooms_import_only_from_rooms_before_them() {
+    let mut found = Vec::new();
+    for (floor, rooms) in ROOMS {
+        let place = |room: &str| rooms.iter().position(|name| *name == room);
+        let start = format!("crate::{floor}::");
+        for source in sources().iter().filter(|source| source.floor == *floor) {
+            let room = source.path.split('/').nth(2).unwrap_or_default();
+            if room.ends_with(".rs") {
+                continue;
+            }
+            let Some(here) = place(room) else {
+                found.push(format!("{}: {room} is no room of {floor}", source.path));
+                continue;
+            };
+            for (number, line) in code_lines(&source.text) {
+                for path in line.split(&start).skip(1) {
+                    let named: Vec<&str> = path.trim_start_matches('{').split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+                    // Whatever the floor offers as a whole comes from its last room.
+                    let climbs = named.first().is_some_and(|name| place(name).is_none_or(|there| there > here));
+                    if climbs {
+                        found.push(format!("{}:{number}: {room} imports {}", source.path, named[0]));
+                    }
+                }
+                if line.contains("super::super::") {
+                    found.push(format!("{}:{number}: paths between rooms begin with crate::{floor}", source.path));
+                }
+            }
+        }
+    }
+    report("a room imports only from rooms before it", found);
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use lofting::mesh::free::isoline::Cells;
-use lofting::mesh::free::marks::{corners, marks};
-use lofting::mesh::free::tree::{Class, Tree};
+use lofting::mesh::tri::isoline::Cells;
+use lofting::mesh::tri::marks::{corners, marks};
+use lofting::mesh::tri::tree::{Class, Tree};
 use serde_json::Value;
 
 use crate::support::borders::closed;
@@ -75,7 +75,7 @@ fn a_small_loop_crosses_its_cell() {
     let segments = [closed(&square), closed(&eye)].concat();
     let mut cells = Cells::new(&segments, segments.len(), Default::default());
     assert_eq!(cells.all()[0].class, Class::Partial);
-    cells.split(0, (0, 2), lofting::mesh::explain::Why::Size);
+    cells.split(0, (0, 2), lofting::mesh::request::decider::Why::Size);
     let classes: Vec<Class> = cells.all()[1..].iter().map(|c| c.class).collect();
     assert_eq!(classes, [Class::Partial, Class::Interior]);
     assert!(!cells.holds(DVec2::splat(0.405)) && cells.holds(DVec2::splat(0.2)));

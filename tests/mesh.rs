@@ -9,7 +9,8 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Spline};
-use lofting::mesh::{Built, Elements, Input, Mesh, Plan, Rule, Target, build};
+use lofting::mesh::pipeline::build::build;
+use lofting::mesh::{Built, Elements, Input, Mesh, Plan, Rule, Target};
 use lofting::model::topology::Named;
 use lofting::model::{Model, ShellRequest, SurfaceId};
 use lofting::network::flow_chains::{ChainFlow, of_chains};
@@ -358,7 +359,7 @@ fn revolved_surfaces_close_and_have_one_node_a_pole() {
     (plan.elements, plan.size) = (Elements::Quads, Some((0.2, Origin::NONE)));
     let mesh = scene.sound(&plan);
     assert!(mesh.triangles.is_empty() && edges_of(&mesh) == (0, 2), "no map, no triangles");
-    plan.method = lofting::mesh::plan::Method::Mapped;
+    plan.method = lofting::mesh::request::plan::Method::Mapped;
     assert_eq!(scene.mesh(&plan).unwrap_err().code().0, "E704");
     // A tube round the axis: seams are welded, rings have at least three steps.
     let profile = straight(p(1., 0., 0.), p(1., 0., 3.));

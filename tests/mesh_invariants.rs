@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
-use lofting::mesh::extent::{Extent, Place, agrees, inside, left_out};
+use lofting::mesh::verify::extent::{Extent, Place, agrees, inside, left_out};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
@@ -96,7 +96,7 @@ fn plate() -> (Vec<[u32; 3]>, Vec<[u32; 2]>) {
 #[test]
 fn a_broken_mesh_is_seen() {
     use lofting::mesh::Elements;
-    use lofting::mesh::verify::{Claim, Defect};
+    use lofting::mesh::verify::face_check::{Claim, Defect};
     let (whole, border) = plate();
     let look = |triangles: &[[u32; 3]], border: &[[u32; 2]], euler: i64| {
         let kind = Elements::Triangles;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use lofting::mesh::Mesh;
-use lofting::mesh::quality::of_element;
+use lofting::mesh::data::quality::of_element;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::run::Outcome;
 

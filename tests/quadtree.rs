@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use lofting::mesh::free::tree::{Cell, Class, Halt, MAX_DEPTH, Tree};
+use lofting::mesh::tri::tree::{Cell, Class, Halt, MAX_DEPTH, Tree};
 use serde_json::Value;
 
 use crate::support::borders::closed;
@@ -112,11 +112,11 @@ mod plate {
     use glam::DVec3;
     use lofting::base::job::Job;
     use lofting::base::triangulate_points::points;
-    use lofting::mesh::free::build::{Lattice, Task, triangulate};
-    use lofting::mesh::free::ground::{ParametricSurface, Spot, UniformSize};
-    use lofting::mesh::free::improve::{FINEST, OptimizeSettings};
-    use lofting::mesh::free::outline::Outline;
-    use lofting::mesh::free::shape::quality;
+    use lofting::mesh::chart::outline::Outline;
+    use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot, UniformSize};
+    use lofting::mesh::tri::build::{Lattice, Task, triangulate};
+    use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
+    use lofting::mesh::tri::shape::quality;
 
     struct Flat;
 

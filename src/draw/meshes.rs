@@ -68,7 +68,7 @@ fn of_element(mesh: &Mesh, nodes: &[u32], measure: Measure) -> f64 {
     let p: Vec<DVec3> = nodes.iter().map(|n| mesh.nodes[*n as usize]).collect();
     match measure {
         Measure::Size => (0..p.len()).map(|k| p[k].distance(p[(k + 1) % p.len()])).fold(0.0, f64::max),
-        _ => crate::mesh::quality::of_element(&p),
+        _ => crate::mesh::data::quality::of_element(&p),
     }
 }
 

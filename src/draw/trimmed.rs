@@ -6,11 +6,11 @@ use super::faces::{MAX_SAMPLES, MOST, Show, curvature, even};
 use super::scene::Sheet;
 use crate::base::bbox::Box3;
 use crate::base::job::Job;
-use crate::mesh::free::build::{Lattice, Task, triangulate};
-use crate::mesh::free::chart::Chart;
-use crate::mesh::free::ground::UniformSize;
-use crate::mesh::free::improve::{FINEST, OptimizeSettings};
-use crate::mesh::free::outline::Outline;
+use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::chart::parametric_surface::UniformSize;
+use crate::mesh::tri::build::{Lattice, Task, triangulate};
+use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
 use crate::surface::{Side, Surface};
 
 /// Points of a border, for each of its sides.

@@ -18,7 +18,7 @@ use super::staging::Staging;
 use crate::base::bytes::{self, bytes_of};
 use crate::base::digest::{Digest, StableHasher};
 use crate::base::limits::CACHE_BYTES;
-use crate::mesh::reuse::Shelf;
+use crate::mesh::cache::reuse::Shelf;
 
 const MAGIC: [u8; 8] = *b"loftkept";
 /// One more whenever the bytes of a result change their meaning; older files are never read.

@@ -11,7 +11,7 @@ use crate::lang::plans::{CheckResult, ReportTable};
 use crate::lang::unmade::{Unmade, Why};
 use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
-use crate::mesh::reuse::Reuse;
+use crate::mesh::cache::reuse::Reuse;
 use crate::model::topology::Named;
 use crate::model::{Model, SurfaceId, measure};
 use crate::network::{Chain, LinkId, Network};

@@ -5,7 +5,7 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::mesh::Plan;
-use crate::mesh::plan::Target;
+use crate::mesh::request::plan::Target;
 use crate::model::carry::Stage;
 use crate::model::{Lines, Model, PatchId, SurfaceId};
 use crate::network::Chain;

@@ -10,7 +10,7 @@ use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::Scene;
 use crate::lang::value::{BodyKind, Home, ModuleId, Value};
-use crate::mesh::plan::{GroupRequest, Place, Refine, Target};
+use crate::mesh::request::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::carry::Stage;
 use crate::model::{Model, SharedEdge, SurfaceId};

@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use lofting::geometry::Kind;
 use lofting::mesh::Mesh;
-use lofting::mesh::data::FaceRange;
-use lofting::mesh::face_geometry::FaceGeometry;
+use lofting::mesh::data::face_geometry::FaceGeometry;
+use lofting::mesh::data::mesh::FaceRange;
 use lofting::session::run::Outcome;
 use lofting::surface::{Domain, Nearest, Side, Surface, SurfaceKind};
 

@@ -9,8 +9,8 @@ use crate::lang::cx::{Cx, Halt};
 use crate::lang::types::{Angle, Length, Point};
 use crate::lang::value::{MeshValue, Plane, Value};
 use crate::mesh::Mesh;
-use crate::mesh::quality::Quality;
-use crate::mesh::section::section;
+use crate::mesh::data::quality::Quality;
+use crate::mesh::data::section::section;
 use crate::network::Chain;
 use crate::{builtins, fields};
 

@@ -1,0 +1,175 @@
+//! Keys of meshes: everything that the mesher reads, by content.
+//!
+//! Entities are told as seen from the plan (its surfaces in order, their patches from the first), so that numbers given to
+//! them by a model or network that grew elsewhere do not matter.
+
+use std::collections::BTreeMap;
+
+use crate::base::digest::{Digest, StableHash, StableHasher};
+use crate::mesh::border::layout::{Face, FaceSide, Layout};
+use crate::mesh::request::input::Input;
+use crate::mesh::request::plan::{Elements, GroupRequest, Method, Place, Plan, Refine, Rule, Target};
+use crate::mesh::size::sizing::links_of;
+use crate::model::{PatchId, SurfaceId};
+use crate::network::Chain;
+
+/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another,
+/// `surfaces` the digests of the plan's surfaces.
+pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<SurfaceId, Digest>) -> Digest {
+    let mut to = StableHasher::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
+    input.tolerance.tell(&mut to);
+    let mut places = BTreeMap::new();
+    input.plan.surfaces.iter().enumerate().for_each(|(place, (surface, _))| {
+        places.entry(*surface).or_insert(place);
+    });
+    let teller = Teller { input, layouts, surfaces, places };
+    teller.plan(size, &mut to);
+    layouts.len().tell(&mut to);
+    layouts.iter().for_each(|layout| teller.layout(layout, &mut to));
+    to.finish()
+}
+
+crate::content_of_word!(Elements, Method);
+crate::content!(FaceSide { uses, pole, length });
+
+struct Teller<'a> {
+    input: &'a Input<'a>,
+    layouts: &'a [Layout],
+    surfaces: &'a BTreeMap<SurfaceId, Digest>,
+    /// Where each surface stands first in the plan.
+    places: BTreeMap<SurfaceId, usize>,
+}
+
+impl Teller<'_> {
+    fn plan(&self, size: f64, to: &mut StableHasher) {
+        let Plan {
+            name,
+            origin: _,
+            surfaces,
+            curves,
+            points,
+            size: _,
+            chord_error,
+            angle_error,
+            min_size,
+            growth,
+            smooth,
+            elements,
+            order,
+            method,
+            conforming,
+            imprint,
+            // The tracks and faces of the layouts tell it.
+            glue: _,
+            bodies: _,
+            rules,
+            refines,
+            groups,
+            most_elements,
+        } = self.input.plan;
+        (name, size, (chord_error.map(|c| c.0), angle_error.map(|a| a.0))).tell(to);
+        (*elements, *order, (*method, *conforming, *most_elements)).tell(to);
+        surfaces.len().tell(to);
+        for (id, flipped) in surfaces {
+            let named = &self.input.model.surfaces[id.index()];
+            (self.places.get(id), *flipped, (&named.name, self.surfaces.get(id))).tell(to);
+        }
+        (curves, points, imprint.as_ref().map(|i| &i.0)).tell(to);
+        rules.len().tell(to);
+        rules.iter().for_each(|rule| self.rule(rule, to));
+        (min_size.map(|s| s.0), growth.map(|g| g.0), smooth.map(|n| n.0)).tell(to);
+        refines.len().tell(to);
+        for Refine { at, size, radius, origin: _ } in refines {
+            (at.len(), size.0, *radius).tell(to);
+            at.iter().for_each(|place| match place {
+                Place::Point(p) => (0u8, *p).tell(to),
+                Place::Chain(chain) => (1u8, chain).tell(to),
+                Place::Box(b) => (2u8, b.min, b.max).tell(to),
+            });
+        }
+        groups.len().tell(to);
+        for GroupRequest { name, members, origin: _ } in groups {
+            (name, members.len()).tell(to);
+            members.iter().for_each(|member| self.target(member, to));
+        }
+    }
+
+    fn rule(&self, rule: &Rule, to: &mut StableHasher) {
+        let Rule { target, count, size, bias, elements, method, origin: _ } = rule;
+        self.target(target, to);
+        (count.map(|c| c.0), size.map(|s| s.0), bias.map(|b| b.0)).tell(to);
+        (elements.map(|e| e.0), method.map(|m| m.0)).tell(to);
+    }
+
+    /// What a rule or group speaks of, and what of the mesh that is.
+    fn target(&self, target: &Target, to: &mut StableHasher) {
+        match target {
+            Target::Chain(chain) => self.chain(chain, to),
+            Target::Edge(courses) => {
+                (4u8, courses.len()).tell(to);
+                for course in courses {
+                    self.layouts.iter().for_each(|layout| layout.along_course(course).tell(to));
+                }
+            }
+            Target::Surface(_) | Target::Patches(_) => {
+                matches!(target, Target::Surface(_)).tell(to);
+                for face in self.layouts.iter().flat_map(|l| &l.faces) {
+                    target.faces(face.patch, face.surface).tell(to);
+                }
+            }
+            Target::Point(point) => (2u8, *point).tell(to),
+        }
+    }
+
+    fn chain(&self, chain: &Chain, to: &mut StableHasher) {
+        (3u8, chain, links_of(self.input, chain)).tell(to);
+        self.layouts.iter().for_each(|layout| layout.along(self.input, chain).tell(to));
+    }
+
+    fn layout(&self, layout: &Layout, to: &mut StableHasher) {
+        // Which edges its tracks are is told by the faces.
+        let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets, lost } = layout;
+        faces.len().tell(to);
+        faces.iter().for_each(|face| self.face(face, to));
+        (parts, pieces, (curves, points, (creases, meets, lost))).tell(to);
+        of_link.len().tell(to);
+        for (link, uses) in of_link {
+            let network = self.input.network;
+            let curve = network.links[link.index()].curve;
+            (&network.curves[curve.index()].name, uses).tell(to);
+        }
+    }
+
+    fn face(&self, face: &Face, to: &mut StableHasher) {
+        // How it is made and what lies in it follow from the rest.
+        let Face {
+            patch,
+            surface,
+            flipped,
+            elements,
+            method,
+            size,
+            sides,
+            near,
+            free: _,
+            uneven: _,
+            kept: _,
+            foreseen_free: _,
+            foreseen: _,
+            halved: _,
+            why: _,
+            lines: _,
+            points: _,
+        } = face;
+        let record = &self.input.model.patches[patch.index()];
+        (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).tell(to);
+        (*flipped, *elements, (*method, size.0, size.1)).tell(to);
+        (sides, *near).tell(to);
+    }
+
+    /// The number of a patch on its surface.
+    fn patch(&self, surface: SurfaceId, patch: PatchId) -> usize {
+        let first = self.input.model.patches_of(surface).next().map_or(0, |p| p.index());
+        patch.index() - first
+    }
+}

@@ -1,0 +1,124 @@
+//! A surface as ground: its parameters sheared and stretched so that lengths in the chart are those in space on average.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::tolerance::EPSILON;
+use crate::mesh::chart::parametric_surface::{Near, ParametricSurface, Spot};
+use crate::surface::quick::PowerForm;
+use crate::surface::{Domain, Jet2, Surface};
+
+/// A surface under a chart (x, y) = (a u + b v, c v).
+#[derive(Clone, Debug)]
+pub struct Chart {
+    surface: Surface,
+    quick: Option<PowerForm>,
+    domain: Domain,
+    /// Directions in which borders may run over the seam.
+    closed: (bool, bool),
+    a: f64,
+    b: f64,
+    c: f64,
+    /// 1 / a and 1 / c.
+    by: (f64, f64),
+}
+
+impl Chart {
+    /// The chart whose mean metric over some places is that of the plane; `None` where the surface is singular all over.
+    pub fn new(surface: &Surface, places: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
+        let (mut e, mut f, mut g, mut n) = (0.0, 0.0, 0.0, 0.0);
+        for (u, v) in places {
+            let jet = surface.jet(u, v);
+            e += jet.du.length_squared();
+            f += jet.du.dot(jet.dv);
+            g += jet.dv.length_squared();
+            n += 1.0;
+        }
+        let (e, f, g) = (e / n, f / n, g / n);
+        let a = f64::sqrt(e);
+        let b = f / a;
+        let rest = g - b * b;
+        // Parameters that run together are not sheared apart.
+        let c = if rest > EPSILON * g { rest.sqrt() } else { g.sqrt() };
+        (a.is_finite() && c.is_finite() && a > 0.0 && c > 0.0).then(|| Self {
+            surface: surface.clone(),
+            quick: surface.power_form(),
+            domain: surface.ground(),
+            closed: if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) },
+            a,
+            b,
+            c,
+            by: (1.0 / a, 1.0 / c),
+        })
+    }
+
+    /// Surface parameters of a place of the chart.
+    pub fn uv(&self, xy: DVec2) -> (f64, f64) {
+        let v = xy.y * self.by.1;
+        ((xy.x - self.b * v) * self.by.0, v)
+    }
+
+    /// The surface.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The surface made ready for many evaluations, where it can be.
+    pub fn power_form(&self) -> Option<&PowerForm> {
+        self.quick.as_ref()
+    }
+
+    /// Point, ∂/∂u and ∂/∂v.
+    pub fn tangents(&self, (u, v): (f64, f64)) -> [DVec3; 3] {
+        self.surface.tangents_by(self.power_form(), u, v)
+    }
+
+    /// Point and all derivatives by u and v at a place of the chart.
+    pub fn jet(&self, xy: DVec2) -> Jet2 {
+        let (u, v) = self.uv(xy);
+        self.surface.jet_by(self.power_form(), u, v)
+    }
+
+    /// The place of surface parameters in the chart.
+    pub fn xy(&self, (u, v): (f64, f64)) -> DVec2 {
+        DVec2::new(self.a * u + self.b * v, self.c * v)
+    }
+}
+
+impl ParametricSurface for Chart {
+    fn spot(&self, xy: DVec2) -> Spot {
+        let (u, v) = self.uv(xy);
+        let [p, du, dv] = self.tangents((u, v));
+        let dx: DVec3 = du * self.by.0;
+        Spot { p, dx, dy: (dv - dx * self.b) * self.by.1 }
+    }
+
+    fn near(&self, xy: DVec2) -> Near {
+        let jet = self.jet(xy);
+        let (by_x, by_y) = self.by;
+        let (dx, dxx) = (jet.du * by_x, jet.duu * (by_x * by_x));
+        let dxv = jet.duv * by_x;
+        let bends = [dxx, (dxv - dxx * self.b) * by_y, (jet.dvv - (dxv * 2.0 - dxx * self.b) * self.b) * (by_y * by_y)];
+        Near { spot: Spot { p: jet.p, dx, dy: (jet.dv - dx * self.b) * by_y }, bends }
+    }
+
+    fn point(&self, xy: DVec2) -> DVec3 {
+        let (u, v) = self.uv(xy);
+        self.surface.point_by(self.power_form(), u, v)
+    }
+
+    fn clamp(&self, xy: DVec2) -> DVec2 {
+        let (u, v) = self.uv(xy);
+        let inside = |x: f64| (0.0..=1.0).contains(&x);
+        let hold = |x: f64, closed: bool| if closed { x } else { x.clamp(0.0, 1.0) };
+        match self.domain {
+            Domain::Square if inside(u) && inside(v) => xy,
+            Domain::Square => self.xy((hold(u, self.closed.0), hold(v, self.closed.1))),
+            Domain::Triangle => {
+                let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+                let over = 0.5 * (u + v - 1.0).max(0.0);
+                self.xy(((u - over).max(0.0), (v - over).max(0.0)))
+            }
+            Domain::Loop | Domain::Unbounded => xy,
+        }
+    }
+}

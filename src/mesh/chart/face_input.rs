@@ -1,0 +1,78 @@
+//! Everything a face is made from, and its border in its chart.
+
+use crate::mesh::border::layout::{Face, Layout};
+use crate::mesh::border::nodes::Nodes;
+use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::face_border::FaceBorder;
+use crate::mesh::chart::face_border::border;
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::data::face_geometry::Frame;
+use crate::mesh::data::face_geometry::{FaceGeometry, Free, Shape};
+use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::request::input::Input;
+use crate::mesh::request::size_requests::SizeRequests;
+use glam::DVec3;
+
+/// Everything a face is made from.
+pub struct FaceInput<'a> {
+    /// The plan and the model.
+    pub input: &'a Input<'a>,
+    /// Its segments.
+    pub layout: &'a Layout,
+    /// Their nodes.
+    pub nodes: &'a Nodes,
+    /// Points of all border nodes.
+    pub points: &'a [DVec3],
+    /// What `near`, `in` and `min_size` ask for.
+    pub wanted: &'a SizeRequests,
+}
+
+/// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
+pub(crate) fn outlined(made: &FaceInput, face: &Face) -> Option<(FaceBorder, Chart, Outline)> {
+    let surface = &made.input.model.surfaces[face.surface.index()].surface;
+    // FaceInput ready once for the border and the chart.
+    let _ready = surface.power_form();
+    let mut border = border(made, face);
+    let chart = Chart::new(surface, border.uv.iter().copied())?;
+    if face.near > made.input.tolerance.point {
+        border.close(&chart, face.near);
+    }
+    let outline = Outline {
+        xy: border.uv.iter().map(|uv| chart.xy(*uv)).collect(),
+        p: border.ids.iter().map(|n| made.points[*n as usize]).collect(),
+        loops: border.edges.clone(),
+        lines: border.lines.clone(),
+    };
+    Some((border, chart, outline))
+}
+
+/// A face of these places and elements; `ids` and edges of its loops.
+pub(crate) fn prepared(
+    made: &FaceInput,
+    face: &Face,
+    free: Free,
+    (mut ids, around): (Vec<u32>, Vec<[u32; 2]>),
+    inner: Vec<DVec3>,
+) -> FaceMesh {
+    let surface = &made.input.model.surfaces[face.surface.index()].surface;
+    let (triangles, quads) = (free.triangles.len() as u64, free.quads.len() as u64);
+    ids.resize(free.uv.len(), 0);
+    FaceMesh {
+        surface: face.surface,
+        geometry: FaceGeometry { surface: surface.clone(), shape: Shape::Free(free), frame: Frame::Free(ids), flipped: face.flipped },
+        elements: face.elements,
+        first: 0,
+        inner: inner.len() as u64,
+        triangles,
+        quads,
+        made: inner,
+        around,
+        deciders: Vec::new(),
+        tally: None,
+    }
+}
+
+/// A face without anything in it, for as long as only its border matters.
+pub fn empty(made: &FaceInput, face: &Face) -> FaceMesh {
+    prepared(made, face, Free::default(), (Vec::new(), Vec::new()), Vec::new())
+}

@@ -1,0 +1,111 @@
+//! A mesh as plain arrays.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::mesh::data::face_geometry::FaceGeometries;
+
+/// Elements of one patch or curve, contiguous in the arrays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaceRange {
+    /// Name of the surface (faces) or curve (lines) as declared.
+    pub name: String,
+    /// Triangles of it.
+    pub triangles: Range<u32>,
+    /// Quads of it.
+    pub quads: Range<u32>,
+    /// Line elements of it.
+    pub lines: Range<u32>,
+}
+
+/// A named set. Element numbers count lines, then triangles, then quads.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// Name as declared.
+    pub name: String,
+    /// Nodes, ascending, from 0.
+    pub nodes: Vec<u32>,
+    /// Line elements, ascending.
+    pub lines: Vec<u32>,
+    /// Triangles, ascending.
+    pub triangles: Vec<u32>,
+    /// Quads, ascending.
+    pub quads: Vec<u32>,
+}
+
+impl Group {
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty() && self.lines.is_empty() && self.triangles.is_empty() && self.quads.is_empty()
+    }
+
+    /// Highest dimension of what it holds: 2 faces, 1 lines, 0 nodes.
+    pub fn dimension(&self) -> u8 {
+        if !self.triangles.is_empty() || !self.quads.is_empty() { 2 } else { u8::from(!self.lines.is_empty()) }
+    }
+}
+
+/// A mesh: nodes and elements, elements of one face contiguous, corner nodes counter-clockwise seen against the normal.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Name as declared.
+    pub name: String,
+    /// 1 or 2.
+    pub order: u8,
+    /// Nodes, model units; mid nodes of order 2 come after all corner nodes.
+    pub nodes: Vec<DVec3>,
+    /// Nodes that are elements of their own (points in the mesh).
+    pub points: Vec<u32>,
+    /// Two-node line elements.
+    pub lines: Vec<[u32; 2]>,
+    /// Triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Quads.
+    pub quads: Vec<[u32; 4]>,
+    /// Order 2: middle node of each line.
+    pub line_mids: Vec<u32>,
+    /// Order 2: mid nodes of each triangle, after corners 0, 1, 2.
+    pub triangle_mids: Vec<[u32; 3]>,
+    /// Order 2: mid nodes of each quad, after corners 0, 1, 2, 3.
+    pub quad_mids: Vec<[u32; 4]>,
+    /// Which elements belong to which surface and patch, in order.
+    pub faces: Vec<FaceRange>,
+    /// Named sets: one per surface, then one per `group`, in order of declaration.
+    pub groups: Vec<Group>,
+    /// Where the nodes of its faces lie on their surfaces; empty for meshes that were read.
+    pub geometries: FaceGeometries,
+    /// Largest distance between the steps of borders of one face alone and their curves, model units; 0 for meshes that were read.
+    pub border_error: f64,
+}
+
+impl Mesh {
+    /// Adds the nodes and elements of another mesh after this one's; groups are left to the caller.
+    ///
+    /// Only meshes of order 1, or one mesh into an empty one, keep mid nodes after all corner nodes.
+    pub fn append(&mut self, other: Mesh) {
+        if self.nodes.is_empty() {
+            *self = other;
+            return;
+        }
+        self.border_error = self.border_error.max(other.border_error);
+        let n = self.nodes.len() as u32;
+        let (l, t, q) = (self.lines.len() as u32, self.triangles.len() as u32, self.quads.len() as u32);
+        self.nodes.extend(other.nodes);
+        self.points.extend(other.points.iter().map(|p| p + n));
+        self.lines.extend(other.lines.iter().map(|e| e.map(|p| p + n)));
+        self.triangles.extend(other.triangles.iter().map(|e| e.map(|p| p + n)));
+        self.quads.extend(other.quads.iter().map(|e| e.map(|p| p + n)));
+        self.line_mids.extend(other.line_mids.iter().map(|p| p + n));
+        self.triangle_mids.extend(other.triangle_mids.iter().map(|e| e.map(|p| p + n)));
+        self.quad_mids.extend(other.quad_mids.iter().map(|e| e.map(|p| p + n)));
+        self.geometries.0.extend(other.geometries.0.into_iter().map(|geometry| geometry.shifted(n)));
+        let shift = |r: &Range<u32>, by: u32| r.start + by..r.end + by;
+        self.faces.extend(other.faces.into_iter().map(|f| FaceRange {
+            triangles: shift(&f.triangles, t),
+            quads: shift(&f.quads, q),
+            lines: shift(&f.lines, l),
+            name: f.name,
+        }));
+    }
+}

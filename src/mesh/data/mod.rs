@@ -1,0 +1,10 @@
+//! Meshes and their faces as plain arrays, with their quality.
+
+pub mod face_geometry;
+pub mod face_mesh;
+pub mod hash;
+pub mod mesh;
+pub mod moved;
+pub mod parts;
+pub mod quality;
+pub mod section;

@@ -1,0 +1,308 @@
+//! The least number of steps along a segment that keeps chord error and angle, and the nodes of these steps.
+
+use crate::mesh::request::limits::Limits;
+use crate::mesh::request::sources::distance_to_segment;
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec3;
+
+use crate::base::fault::Result;
+use crate::base::math::{self, widest_angle};
+use crate::base::tolerance::Tolerance;
+use crate::base::work;
+use crate::geometry::Curve;
+use crate::geometry::nurbs::projected;
+use crate::geometry::nurbs_edit::Bezier;
+use crate::mesh::border::counts::for_size;
+use crate::mesh::border::layout::Layout;
+use crate::model::Track;
+
+/// Halvings of a step's control polygon; each brings the bound four times closer to the truth.
+const HALVINGS: u32 = 4;
+/// Points inside a step where no control polygon is known.
+const PROBES: u32 = 8;
+
+/// How far the worst step of a division is from its limits: 1 is just kept, the square law applies to `chord`.
+#[derive(Clone, Copy, Debug)]
+struct LimitRatio {
+    chord: f64,
+    angle: f64,
+}
+
+/// The least number of steps for the limits, up to `cap`: so many are not looked at any more.
+///
+/// `divided` gives the fractions 0…1 of so many steps. Counts below half of one that does are not the least in any but odd cases;
+/// from there on each is tried, so that a looser limit never asks for more.
+pub fn least_steps(layout: &Layout, segment: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
+    if limits.chord.is_none() && limits.angle.is_none() {
+        return Ok(1);
+    }
+    let line = Line { layout, segment, limits };
+    let mut worst = Vec::new();
+    let (mut low, mut n) = (0_u32, 1_u32);
+    loop {
+        if n >= cap {
+            return Ok(cap);
+        }
+        let Some(step) = line.worst(&divided(n), &worst)? else { break };
+        worst.push(step.at);
+        // Deviation falls with the square of the step, turns with the step, once steps are shorter than bends.
+        // Where a bend is sharper than any step they fall more slowly: many steps are doubled, and the least is sought between.
+        let more = if n > ONE_BY_ONE { TWICE } else { step.load.steps().min(TWICE) };
+        let guess = f64::from(n) * more;
+        (low, n) = (n, (guess.min(f64::from(cap)) as u32).max(n + 1));
+    }
+    if n > ONE_BY_ONE {
+        return line.between(divided, (low, n), &mut worst);
+    }
+    for count in if n <= FEW { 1 } else { n / 2 }..n {
+        match line.broken(&divided(count), &worst)? {
+            Some(at) if worst.contains(&at) => {}
+            Some(at) => worst.push(at),
+            None => return Ok(count),
+        }
+    }
+    Ok(n)
+}
+
+/// Counts up to which all are tried.
+const FEW: u32 = 32;
+/// Counts up to which those from the half on are tried; of larger ones the least is found to within what one step more changes.
+const ONE_BY_ONE: u32 = 4096;
+
+/// Work of looking at one step, in evaluations of a curve.
+const OF_A_STEP: u64 = 8;
+
+/// Counts grow by no more at a time: steps longer than bends seem to ask for more than they do.
+const TWICE: f64 = 2.0;
+
+impl LimitRatio {
+    /// Steps in place of one that would keep the limits.
+    fn steps(&self) -> f64 {
+        self.chord.sqrt().max(self.angle)
+    }
+}
+
+/// A step that breaks a limit.
+struct Broken {
+    /// Fraction of its middle.
+    at: f64,
+    load: LimitRatio,
+}
+
+/// A segment under limits.
+struct Line<'a> {
+    layout: &'a Layout,
+    segment: usize,
+    limits: &'a Limits,
+}
+
+impl Line<'_> {
+    /// The least count above `low`, which does not do, up to `high`, which does, as if all between did from one on: the least
+    /// that does where others were broken, looked at whole.
+    fn between(&self, divided: &dyn Fn(u32) -> Vec<f64>, (mut low, high): (u32, u32), worst: &mut Vec<f64>) -> Result<u32> {
+        loop {
+            let mut least = high;
+            while least - low > 1 {
+                let middle = low + (least - low) / 2;
+                if self.broken_at(&divided(middle), worst)?.is_some() { low = middle } else { least = middle }
+            }
+            if least == high {
+                return Ok(high);
+            }
+            match self.worst(&divided(least), worst)? {
+                Some(step) => {
+                    worst.push(step.at);
+                    low = least;
+                }
+                None => return Ok(least),
+            }
+        }
+    }
+
+    /// The first of some places whose step breaks a limit, the last of them looked at first.
+    fn broken_at(&self, fractions: &[f64], places: &[f64]) -> Result<Option<f64>> {
+        for place in places.iter().rev() {
+            if self.load(fractions, Self::at(fractions, *place))?.is_some() {
+                return Ok(Some(*place));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The place of a step that breaks a limit, looked for first where others did.
+    fn broken(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<f64>> {
+        if let Some(place) = self.broken_at(fractions, worst)? {
+            return Ok(Some(place));
+        }
+        for k in 0..fractions.len() - 1 {
+            if self.load(fractions, k)?.is_some() {
+                return Ok(Some(0.5 * (fractions[k] + fractions[k + 1])));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The step that breaks a limit most, or one that asks for twice as many.
+    fn worst(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<Broken>> {
+        let mut found: Option<Broken> = None;
+        let first = worst.iter().rev().map(|place| Self::at(fractions, *place));
+        for k in first.chain(0..fractions.len() - 1) {
+            let Some(load) = self.load(fractions, k)? else { continue };
+            if found.as_ref().is_none_or(|f| f.load.steps() < load.steps()) {
+                let enough = load.steps() >= TWICE;
+                found = Some(Broken { at: 0.5 * (fractions[k] + fractions[k + 1]), load });
+                if enough {
+                    break;
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The step over a place.
+    fn at(fractions: &[f64], place: f64) -> usize {
+        fractions.partition_point(|f| *f <= place).clamp(1, fractions.len() - 1) - 1
+    }
+
+    /// How far a step is over its limits; `None` where it keeps them.
+    fn load(&self, fractions: &[f64], k: usize) -> Result<Option<LimitRatio>> {
+        work::spend(OF_A_STEP);
+        let (limits, segment) = (self.limits, &self.layout.pieces.segments[self.segment]);
+        let track = &self.layout.parts[segment.track].track;
+        let length = segment.s.1 - segment.s.0;
+        let (a, b) = (segment.s.0 + length * fractions[k], segment.s.0 + length * fractions[k + 1]);
+        let steps = (fractions.len() - 1) as f64;
+        // What is kept for sure need not be known closer.
+        let most = (
+            limits.chord.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.chord_room(length))),
+            limits.angle.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.turn_room(length, limit * steps))),
+        );
+        let (chord, angle) = match track {
+            Track::Links { .. } => hull_of(track, (a, b), (track.point(a), track.point(b)), (most, limits.near))?,
+            Track::Iso(_) => probed(track, a, b),
+        };
+        let over = |x: f64, limit: Option<f64>| limit.map_or(0.0, |limit| x / limit);
+        let load = LimitRatio { chord: over(chord, limits.chord), angle: over(angle, limits.angle) };
+        Ok((chord > most.0 || angle > most.1).then_some(load))
+    }
+}
+
+/// Bounds over a step on links: distance from the chord by the convex hull, turn by the directions of the control legs [Floater 1992].
+/// Bounds up to `enough` may be rough. A piece of another curve that is no longer than `near`, as rounding leaves at a kink,
+/// has no direction.
+fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), (enough, near): ((f64, f64), f64)) -> Result<(f64, f64)> {
+    let Track::Links { chains, starts, span } = track else {
+        return Ok((0.0, 0.0));
+    };
+    let (a, b) = (span.0 + s0, span.0 + s1);
+    let k = starts.partition_point(|x| *x <= 0.5 * (a + b)).clamp(1, chains.len()) - 1;
+    let (chain, against) = &chains[k];
+    let length = starts[k + 1] - starts[k];
+    let (mut from, mut to) = (a - starts[k], b - starts[k]);
+    if *against {
+        (from, to) = (length - to, length - from);
+    }
+    let (mut chord, mut before) = (0.0_f64, 0.0);
+    let mut turning = Vec::new();
+    for run in chain.runs() {
+        let extent = (run.s1 - run.s0).abs();
+        let (low, high) = ((from - before).max(0.0), (to - before).min(extent));
+        before += extent;
+        if high <= low {
+            continue;
+        }
+        let forward = run.s0 <= run.s1;
+        let part = if forward { (run.s0 + low, run.s0 + high) } else { (run.s0 - high, run.s0 - low) };
+        let pieces = pieces_of(&run.curve, part, ends.0.distance(ends.1))?;
+        if enough.1.is_finite() && high - low > near {
+            turning.extend(pieces.iter().map(|piece| (piece.clone(), if forward { 1.0 } else { -1.0 })));
+        }
+        if enough.0.is_finite() {
+            chord = chord_of(pieces, ends, (enough.0, chord));
+        }
+    }
+    Ok((chord, turn_of(turning, enough.1)))
+}
+
+/// Bézier pieces of a part of a curve by arc length, converted for a step with a chord of this length.
+fn pieces_of(curve: &Curve, s: (f64, f64), across: f64) -> Result<Vec<Bezier>> {
+    let length = curve.length();
+    let wrap = |x: f64| if x > length { x - length } else { x };
+    let (s0, mut s1) = (wrap(s.0), wrap(s.1));
+    if s1 <= s0 {
+        s1 = length;
+    }
+    let (t0, t1) = (curve.param_at_length(s0), curve.param_at_length(s1));
+    if t1 <= t0 {
+        return Ok(Vec::new());
+    }
+    Ok(curve.part(t0, t1).to_nurbs(&Tolerance::new(across * CONVERSION, across))?.beziers())
+}
+
+/// Distance bound of pieces of a curve from a chord, closer only where it is above what is `enough` or was seen.
+fn chord_of(pieces: Vec<Bezier>, ends: (DVec3, DVec3), (enough, seen): (f64, f64)) -> f64 {
+    let mut chord = seen;
+    let mut open: Vec<_> = pieces.into_iter().map(|piece| (piece, HALVINGS)).collect();
+    while let Some((piece, left)) = open.pop() {
+        let own = piece.poles.iter().map(|q| distance_to_segment(projected(*q), ends.0, ends.1)).fold(0.0, f64::max);
+        if own > enough.max(chord) && left > 0 && piece.poles.len() > 2 {
+            let (a, b) = piece.halves();
+            open.extend([(a, left - 1), (b, left - 1)]);
+        } else {
+            chord = chord.max(own);
+        }
+    }
+    chord
+}
+
+/// How far tangents of pieces, each run one way or the other, are apart: tangents lie between control legs, and the first and last
+/// legs are tangents. Pieces are halved until a bound is `enough` or tangents are sure to be farther apart.
+fn turn_of(mut pieces: Vec<(Bezier, f64)>, enough: f64) -> f64 {
+    for left in (0..=HALVINGS).rev() {
+        let (mut legs, mut tangents) = (Vec::new(), Vec::new());
+        for (piece, sign) in &pieces {
+            let points: Vec<DVec3> = piece.poles.iter().map(|q| projected(*q)).collect();
+            let own: Vec<DVec3> = points.windows(2).filter_map(|w| (w[1] - w[0]).try_normalize()).map(|leg| *sign * leg).collect();
+            tangents.extend(own.first().into_iter().chain(own.last()).copied());
+            legs.extend(own);
+        }
+        let (sure, bound) = (widest_angle(&tangents), widest_angle(&legs));
+        // Tangents that are more than a right angle apart may have more between them.
+        if sure > enough || left == 0 || bound <= enough && bound <= FRAC_PI_2 {
+            return sure.max(bound);
+        }
+        pieces = pieces.into_iter().flat_map(|(piece, sign)| halved(&piece).map(move |half| (half, sign))).collect();
+    }
+    0.0
+}
+
+/// Both halves of a piece; one of a straight piece is as good as the whole.
+fn halved(piece: &Bezier) -> impl Iterator<Item = Bezier> + use<> {
+    let (a, b) = if piece.poles.len() > 2 { piece.halves() } else { (piece.clone(), piece.clone()) };
+    [a, b].into_iter()
+}
+
+/// Share of a step within which curves without an exact NURBS form are converted for their bound.
+const CONVERSION: f64 = 1.0 / 16_384.0;
+
+/// Distance and turn at points inside a step.
+fn probed(track: &Track, s0: f64, s1: f64) -> (f64, f64) {
+    let (a, b) = (track.jet(s0), track.jet(s1));
+    let (mut chord, mut angle) = (0.0_f64, angle_or_zero(a.1, b.1));
+    for k in 1..PROBES {
+        let (p, tangent) = track.jet(s0 + (s1 - s0) * f64::from(k) / f64::from(PROBES));
+        chord = chord.max(distance_to_segment(p, a.0, b.0));
+        angle = angle.max(angle_or_zero(a.1, tangent)).max(angle_or_zero(tangent, b.1));
+    }
+    (chord, angle)
+}
+
+fn angle_or_zero(a: DVec3, b: DVec3) -> f64 {
+    if a == DVec3::ZERO || b == DVec3::ZERO { 0.0 } else { math::angle_between(a, b) }
+}
+
+/// The wanted number of steps for a size, of a length that may be longer by `near`.
+pub fn wanted_steps((length, near): (f64, f64), size: f64, bias: f64, cap: u32) -> u32 {
+    for_size((length - near).max(0.0), size, bias).min(f64::from(cap)) as u32
+}

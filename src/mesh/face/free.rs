@@ -1,0 +1,38 @@
+//! A free face: its border in its chart, its inside fitted to the limits.
+
+use crate::mesh::chart::face_border::FaceBorder;
+use crate::mesh::chart::face_input::FaceInput;
+use crate::mesh::chart::face_input::prepared;
+use crate::mesh::tri::fit::fitting;
+use crate::mesh::tri::trouble::fault;
+
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::mesh::border::layout::Face;
+use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::data::face_geometry::Free;
+use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::request::plan::Elements;
+
+/// Fills the face: of quads, or of triangles that keep its limits.
+pub(crate) fn grown(made: &FaceInput, face: &Face, (border, chart, outline): (FaceBorder, Chart, Outline), job: &Job) -> Result<FaceMesh> {
+    if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
+        return crate::mesh::quad::fit::prepare(made, face, border, (&chart, &outline), job);
+    }
+    let (triangulation, deciders, tally) = match fitting(made, face, &chart, &outline, job)? {
+        Ok(fitted) => fitted,
+        Err(trouble) => return Err(fault(made, face, &border, trouble)),
+    };
+    // Rings are fixed, but no part of the border.
+    let fixed = border.uv.len();
+    // At a pole the chart has an edge that is a point in space.
+    let node = |n: u32| border.ids.get(n as usize).copied();
+    let flat = |t: &[u32; 3]| (0..3).any(|k| node(t[k]).is_some() && node(t[k]) == node(t[(k + 1) % 3]));
+    let triangles: Vec<[u32; 3]> = triangulation.tri.iter().copied().filter(|t| !flat(t)).collect();
+    let mut uv = border.uv;
+    uv.extend(triangulation.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
+    let inner = triangulation.p[fixed..].to_vec();
+    let free = Free { uv, border: fixed, triangles, ..Free::default() };
+    Ok(FaceMesh { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) })
+}

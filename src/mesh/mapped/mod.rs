@@ -1,0 +1,4 @@
+//! Grids of quads and lattices of triangles over a rectangle or a triangle of (u, v).
+
+pub mod grid;
+pub mod trilateral;

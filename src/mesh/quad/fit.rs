@@ -1,0 +1,118 @@
+//! A free face of quads, or of quads and triangles.
+
+use crate::mesh::chart::halved::halved;
+use crate::mesh::quad::maker::{Maker, nodes};
+use crate::mesh::request::limits::Limits;
+use glam::DVec2;
+
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::triangulate_points::PointsFault;
+use crate::mesh::border::layout::Face;
+use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::face_border::FaceBorder;
+use crate::mesh::chart::face_input::FaceInput;
+use crate::mesh::chart::face_input::prepared;
+use crate::mesh::chart::halves::Halves;
+use crate::mesh::chart::halves::NONE;
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::data::face_geometry::Free;
+use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::deviation::triangle;
+use crate::mesh::quad::net::Net;
+use crate::mesh::request::decider::Decider;
+use crate::mesh::request::plan::Elements;
+use crate::mesh::request::sources::Sources;
+use crate::mesh::tri::fit::{Fit, WANTED_TREE, near};
+use crate::mesh::tri::graded_size::{Background, GradedSize};
+use crate::mesh::tri::longest::{LONGEST, Longest};
+use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
+use crate::mesh::tri::trouble::Trouble;
+use crate::mesh::tri::trouble::fault;
+
+/// Distance of the crystal's nodes over the size.
+const SPACING: f64 = 0.85;
+/// Rounds of smoothing.
+const SMOOTH: usize = 8;
+/// Distance of nodes over the side of an equilateral triangle that keeps the limits: half a square has a longer side.
+const HALVED: f64 = 0.7;
+
+/// Makes the face.
+pub(crate) fn prepare(
+    made: &FaceInput,
+    face: &Face,
+    border: FaceBorder,
+    (chart, outline): (&Chart, &Outline),
+    job: &Job,
+) -> Result<FaceMesh> {
+    let halves = match face.elements {
+        Elements::Quads => halved(made, face, &border, outline),
+        _ => Some(Halves::whole(outline, &border.ids)),
+    };
+    let Some(halves) = halves else { return Err(fault(made, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
+    let fitted = fitting(made, face, chart, outline, &halves, job)?;
+    let (net, deciders) = fitted.map_err(|trouble| fault(made, face, &border, of_whole(&halves, trouble)))?;
+    let fixed = net.fixed as usize;
+    let mut uv = border.uv;
+    uv.extend(net.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
+    let inner = net.p[fixed..].to_vec();
+    let mut free = Free { uv, border: fixed, ..Free::default() };
+    for face in net.face {
+        match face {
+            [a, b, c, NONE] => free.triangles.push([a, b, c]),
+            quad => free.quads.push(quad),
+        }
+    }
+    Ok(FaceMesh { deciders, ..prepared(made, face, free, (border.ids, border.edges), inner) })
+}
+
+/// A trouble with nodes of the whole border.
+fn of_whole(halves: &Halves, trouble: Trouble) -> Trouble {
+    let node = |n: u32| halves.of.get(n as usize).copied().unwrap_or(0);
+    match trouble {
+        Trouble::Border(PointsFault::Crosses(a, b)) => Trouble::Border(PointsFault::Crosses(node(a), node(b))),
+        Trouble::Border(PointsFault::Same(a, b)) => Trouble::Border(PointsFault::Same(node(a), node(b))),
+        other => other,
+    }
+}
+
+/// A net, and what decided its sizes.
+type Shown = (Net, Vec<Decider>);
+
+/// Elements that keep the limits, and what decided their sizes.
+fn fitting(
+    made: &FaceInput,
+    face: &Face,
+    chart: &Chart,
+    outline: &Outline,
+    halves: &Halves,
+    job: &Job,
+) -> Result<std::result::Result<Shown, Trouble>> {
+    let surface = &made.input.model.surfaces[face.surface.index()].surface;
+    let limits = Limits::of(made.input);
+    let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
+    let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
+    let care = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
+    let rules = near(made, face, outline);
+    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
+    let fit = Fit { made, face, surface, chart, outline, limits, longest, care };
+    let background = bent.then(|| fit.background_of_squares());
+    let slope = rules.slope() / SPACING;
+    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
+    let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    let maker = Maker { fit: &fit, halves };
+    Ok(maker.fitted(&mut field, job)?.map(|net| {
+        let deciders = fit.deciders(&field, &nodes(&net));
+        (net, deciders)
+    }))
+}
+
+impl Fit<'_> {
+    /// Distances of nodes of squares by the bends of the surface.
+    fn background_of_squares(&self) -> Background {
+        let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
+        let size = self.face.size.0 * SPACING;
+        let wanted = |xy: DVec2| (HALVED * triangle::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
+        Background::new(self.chart, whole, 1.0 + self.made.input.plan.slope(), &wanted)
+    }
+}

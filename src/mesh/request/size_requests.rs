@@ -1,0 +1,113 @@
+//! What `near`, `in` and `min_size` ask for, as one function of the place.
+
+use glam::DVec3;
+
+use crate::base::fault::{Fault, MeshFault, Result};
+use crate::mesh::request::input::Input;
+use crate::mesh::request::plan::{Place, Refine};
+use crate::mesh::request::sources::{Body, Least, Source, Sources, pieces};
+use crate::surface::{Domain, Surface};
+
+/// How far the straight pieces of a curve may be from it, as a share of the size near it.
+const OFF: f64 = 1.0 / 64.0;
+/// Share of the size that stands for no size at all: the floor where none is written.
+const FLOOR: f64 = 0.01;
+
+/// Lengths wanted at places, and their floor.
+#[derive(Clone, Debug, Default)]
+pub struct SizeRequests {
+    /// Sources of `near` and `in`; tags are places in the plan's list.
+    pub sources: Sources,
+    /// What short edges of the model are taken for when sizes grow from them, model units.
+    pub floor: f64,
+    /// Floor of all sizes, model units: as written, else 0.
+    pub written: f64,
+}
+
+impl SizeRequests {
+    /// Of a plan whose size is `size` where no rule says another.
+    ///
+    /// Fails with E707 where a size is below a written `min_size`.
+    pub fn new(input: &Input, size: f64) -> Result<Self> {
+        let plan = input.plan;
+        let written = plan.rules.iter().filter_map(|r| r.size).chain(plan.refines.iter().map(|r| r.size)).chain(plan.size);
+        if let Some(floor) = plan.min_size
+            && let Some(size) = written.clone().find(|s| s.0 < floor.0)
+        {
+            return Err(MeshFault::BelowFloor { size, floor }.into());
+        }
+        let least = written.map(|s| s.0).fold(f64::INFINITY, f64::min);
+        let floor = plan.min_size.map_or_else(|| (FLOOR * size).min(least), |s| s.0);
+        let items = plan.refines.iter().enumerate().flat_map(|(k, refine)| sources_of(refine, k as u32));
+        Ok(Self { sources: Sources::new(items.collect(), plan.slope()), floor, written: plan.min_size.map_or(0.0, |s| s.0) })
+    }
+}
+
+fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
+    let (size, radius) = (refine.size.0, refine.radius);
+    let of = |place: &Place| -> Vec<Source> {
+        match place {
+            Place::Point(p) => vec![Source { body: Body::Point(*p), radius, size, steep: 1.0, tag }],
+            Place::Box(b) => vec![Source { body: Body::Box(*b), radius: 0.0, size, steep: 1.0, tag }],
+            Place::Chain(chain) => {
+                let off = OFF * size;
+                let piece = |(a, b)| Source { body: Body::Segment(a, b), radius: radius + off, size, steep: 1.0, tag };
+                pieces(chain, off).into_iter().map(piece).collect()
+            }
+        }
+    };
+    refine.at.iter().flat_map(of).collect()
+}
+
+/// E707: a limit asks for elements of a size below the floor.
+pub fn floor_keeps(input: &Input, needed: f64, at: DVec3) -> Fault {
+    let plan = input.plan;
+    let chord = plan.chord_error.map(|c| ("chord_error", c.1));
+    let (limit, says) = chord.or(plan.angle_error.map(|a| ("angle_error", a.1))).unwrap_or(("size", plan.origin));
+    MeshFault::FloorKeeps { limit, says, floor: plan.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
+}
+
+/// How much above the least length on a patch the one found may be.
+const NEARLY: f64 = 0.02;
+/// Rectangles looked at before the best one found is taken.
+const RECTANGLES: usize = 20_000;
+
+/// The least length that sources ask for on a patch, within [`NEARLY`] of itself, where that is below `most`: rectangles
+/// are halved where their box leaves room for less.
+pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &Sources, most: f64) -> Option<Least> {
+    if sources.is_empty() || sources.least() >= most {
+        return None;
+    }
+    let triangle = surface.domain() == Domain::Triangle;
+    let mut best: Option<Least> = None;
+    let mut open = vec![(u, v)];
+    for _ in 0..RECTANGLES {
+        let Some((u, v)) = open.pop() else { break };
+        if triangle && u.0 + v.0 >= 1.0 {
+            continue;
+        }
+        let bounds = surface.enclosure(u, v).p.bounds();
+        let (x, y) = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
+        let p = if triangle && x + y > 1.0 { surface.point(u.0, v.0) } else { surface.point(x, y) };
+        let reach = (p - bounds.min).max(bounds.max - p).length();
+        let now = best.map_or(most, |b| b.size);
+        let Some(here) = sources.who(p, now + sources.steepest() * reach) else { continue };
+        if here.size < now {
+            best = Some(here);
+            if here.size <= sources.least() {
+                return best;
+            }
+        }
+        let now = best.map_or(most, |b| b.size);
+        if (here.size - sources.steepest() * reach).max(sources.least()) >= now * (1.0 - NEARLY) {
+            continue;
+        }
+        let jet = surface.jet(x, y);
+        if jet.du.length() * (u.1 - u.0) >= jet.dv.length() * (v.1 - v.0) {
+            open.extend([((x, u.1), v), ((u.0, x), v)]);
+        } else {
+            open.extend([(u, (y, v.1)), (u, (v.0, y))]);
+        }
+    }
+    best
+}

@@ -1,0 +1,307 @@
+//! Narrow places of free faces: where borders, divided into steps, cross, or face each other over less than a step.
+//!
+//! The divided border of a face is triangulated in its geometry. Where steps cross, they are halved until they do not; where a
+//! node stands nearer over a step than half of it is long, a triangle between them must have a small angle, and steps are
+//! shortened there: the distance of the borders is the local feature size of the face [Ruppert 1995]. What a corner of the
+//! border makes narrow is left: shorter steps make its triangles no better.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use crate::base::job;
+use crate::base::par;
+use crate::base::predicates::orient;
+use crate::base::triangulate_points::{PointsFault, Triangles, points};
+use crate::mesh::border::layout::Face;
+use crate::mesh::chart::face_input::{FaceInput, outlined};
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::chart::outline::inside;
+use crate::mesh::request::plan::Elements;
+use crate::mesh::request::sources::distance_to_segment;
+use crate::model::glue::{join, root};
+
+/// A place of a segment where steps have to be shorter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Narrow {
+    /// The segment.
+    pub segment: usize,
+    /// Fraction of its length.
+    pub f: f64,
+    /// Longest step there, model units.
+    pub size: f64,
+    /// Steps cross there: rows of mapped faces beside it have to follow.
+    pub must: bool,
+}
+
+/// Longest step over the distance to the border that faces it: the triangle with a right angle at its end has 27°.
+const ACROSS: f64 = 2.0;
+/// The same for quads, whose cells have sides of two steps.
+const ACROSS_QUADS: f64 = 1.0;
+/// The least step that facing borders ask for, over the size, where no `min_size` is written: a long gap is not filled with
+/// steps as short as it is wide.
+const LEAST: f64 = 1.0 / 16.0;
+/// Steps that face each other over less than that, up to which they are a narrow place of its own and no gap along a border:
+/// there steps get as short as it is narrow, for lengths grow from it at once.
+const FEW: usize = 24;
+/// How much shorter such steps get at a time: what is long shows as more of them.
+const DEEPER: f64 = 0.3;
+/// The shortest of them, in tolerances.
+const SHORTEST: f64 = 16.0;
+/// Steps that are longer than allowed by less stay.
+const SLACK: f64 = 1.15;
+/// What is halved becomes a little shorter than half.
+const HALF: f64 = 0.45;
+/// Steps that cross are halved down to so many tolerances; then the curves themselves meet.
+const TOUCHING: f64 = 4.0;
+/// Cosine of the angle from which two edges at a node are no corner: 150°.
+const SMOOTH: f64 = -0.866;
+/// Share of what the two legs of a corner are apart that is still the corner's doing.
+const CORNER: f64 = 0.5;
+
+/// Places of all free faces where steps have to be shorter.
+pub fn find(made: &FaceInput) -> Vec<Narrow> {
+    let faces = &made.layout.faces;
+    let found = par::map(faces.len(), |f| if faces[f].free { of_face(made, &faces[f]) } else { Vec::new() });
+    found.into_iter().flatten().collect()
+}
+
+fn of_face(made: &FaceInput, face: &Face) -> Vec<Narrow> {
+    let Some((border, _, outline)) = outlined(made, face) else { return Vec::new() };
+    let gaze = ProximityScan { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
+    let mut found = gaze.polygon();
+    if face.halved > 0 {
+        found.extend(crate::mesh::size::girth::find(made, face));
+    }
+    if face.takes_quads()
+        && let Some(halves) = crate::mesh::chart::halved::halved(made, face, &border, &outline)
+    {
+        let ids: Vec<u32> = halves.of.iter().map(|n| border.ids[*n as usize]).collect();
+        found.extend(ProximityScan { outline: &halves.outline, ids: &ids, ..gaze }.crossings());
+    }
+    found
+}
+
+/// The least step that facing borders ask for on a face, model units.
+pub fn floor(made: &FaceInput, face: &Face) -> f64 {
+    made.input.plan.min_size.map_or(LEAST * face.size.0, |s| s.0).max(made.input.tolerance.point)
+}
+
+/// The piece of a segment between two nodes.
+#[derive(Clone, Copy)]
+struct Bit {
+    segment: usize,
+    /// Number in the mesh of its node at the lower fraction.
+    first: u32,
+    f: (f64, f64),
+}
+
+/// The pieces of a face's segments by their ends, lower node first; of quads two steps as one as well.
+fn bits(made: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), Bit> {
+    let mut bits = BTreeMap::new();
+    for segment in face.segments() {
+        let ids = made.nodes.of_segment(made.layout, segment, false);
+        let at = made.nodes.fractions(segment, false);
+        for step in 1..=if face.takes_quads() { 2 } else { 1 } {
+            for k in 0..ids.len().saturating_sub(step) {
+                job::look();
+                let (a, b) = (ids[k], ids[k + step]);
+                bits.entry((a.min(b), a.max(b))).or_insert(Bit { segment, first: a, f: (at[k], at[k + step]) });
+            }
+        }
+    }
+    bits
+}
+
+/// A divided border that is looked at.
+struct ProximityScan<'a> {
+    made: &'a FaceInput<'a>,
+    face: &'a Face,
+    outline: &'a Outline,
+    /// Numbers of its nodes in the mesh.
+    ids: &'a [u32],
+    bits: BTreeMap<(u32, u32), Bit>,
+}
+
+/// A corner of the border, with half the tangent of half its angle.
+struct Corner {
+    p: DVec3,
+    opens: f64,
+}
+
+impl ProximityScan<'_> {
+    fn polygon(&self) -> Vec<Narrow> {
+        let edges: Vec<[u32; 2]> = self.outline.edges().collect();
+        match points(&self.outline.xy, &edges) {
+            Ok(all) if !self.face.method.is_coarse() => self.facing(&all),
+            Err(PointsFault::Crosses(..)) => self.crossings(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn bit(&self, [a, b]: [u32; 2]) -> Option<Bit> {
+        let [a, b] = [self.ids[a as usize], self.ids[b as usize]];
+        self.bits.get(&(a.min(b), a.max(b))).copied()
+    }
+
+    /// Of two edges that cross or touch, those that are not much shorter than the other.
+    fn crossings(&self) -> Vec<Narrow> {
+        let xy = &self.outline.xy;
+        let ends = |e: &[u32; 2]| (xy[e[0] as usize], xy[e[1] as usize]);
+        let mut edges: Vec<[u32; 2]> = self.outline.edges().collect();
+        let left = |e: &[u32; 2]| ends(e).0.x.min(ends(e).1.x);
+        edges.sort_by(|a, b| left(a).total_cmp(&left(b)).then(a.cmp(b)));
+        let mut found = Vec::new();
+        for (k, one) in edges.iter().enumerate() {
+            job::look();
+            let (a, b) = ends(one);
+            for other in edges[k + 1..].iter().take_while(|o| left(o) <= a.x.max(b.x)) {
+                if meet(xy, *one, *other) {
+                    let lengths = [one, other].map(|e| self.outline.length(*e));
+                    let longer = lengths[0].max(lengths[1]);
+                    let halved = [one, other].into_iter().zip(lengths).filter(|(_, l)| *l > HALF * longer);
+                    found.extend(halved.filter_map(|(e, length)| self.half(*e, length)));
+                }
+            }
+        }
+        found
+    }
+
+    fn half(&self, edge: [u32; 2], length: f64) -> Option<Narrow> {
+        let bit = self.bit(edge).filter(|_| length > TOUCHING * self.made.input.tolerance.point)?;
+        Some(Narrow { segment: bit.segment, f: 0.5 * (bit.f.0 + bit.f.1), size: HALF * length, must: true })
+    }
+
+    /// Steps that are long for what stands over them.
+    fn facing(&self, all: &Triangles) -> Vec<Narrow> {
+        let p = &self.outline.p;
+        let kept = inside(all, self.outline);
+        let floor = floor(self.made, self.face);
+        let point = SHORTEST * self.made.input.tolerance.point;
+        let deepest = if self.made.input.plan.min_size.is_some() { floor } else { point.min(floor) };
+        let across = if self.face.elements == Elements::Triangles { ACROSS } else { ACROSS_QUADS };
+        let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
+        for t in (0..kept.len()).filter(|t| kept[*t]) {
+            job::look();
+            let (c, given) = (all.corners[t], all.given[t]);
+            for k in 0..3 {
+                // With two sides of the border it is a corner.
+                if given != 1 << k {
+                    continue;
+                }
+                let (over, edge) = (c[k], [c[(k + 1) % 3], c[(k + 2) % 3]]);
+                let [a, b] = edge.map(|n| p[n as usize]);
+                let gap = distance_to_segment(p[over as usize], a, b);
+                if gap > 0.0 && self.outline.length(edge) > SLACK * (across * gap).max(deepest) {
+                    close.push((over, edge, gap));
+                }
+            }
+        }
+        if close.is_empty() {
+            return Vec::new();
+        }
+        let (corners, at) = (self.corners(), self.edges_at());
+        // The two sides of a seam, and of what is run twice, are one border in space: it does not face itself.
+        let mut beside: BTreeSet<(u32, u32)> = BTreeSet::new();
+        for edge in self.outline.edges() {
+            let [a, b] = edge.map(|n| self.ids[n as usize]);
+            beside.extend([(a, b), (b, a)]);
+        }
+        let mut joined: Vec<usize> = (0..p.len()).collect();
+        for [a, b] in self.outline.edges() {
+            join(&mut joined, a as usize, b as usize);
+        }
+        let mut narrow = Vec::new();
+        for (over, [a, b], gap) in close {
+            let (q, ends) = (p[over as usize], [p[a as usize], p[b as usize]]);
+            let along = ends[1] - ends[0];
+            let t = ((q - ends[0]).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            let foot = ends[0] + along * t;
+            let own = self.ids[over as usize];
+            if [a, b].map(|n| self.ids[n as usize]).into_iter().any(|end| end == own || beside.contains(&(own, end))) {
+                continue;
+            }
+            let same = root(&mut joined, over as usize) == root(&mut joined, a as usize);
+            if same && corners.iter().any(|c| c.p != q && gap >= c.opens * (q.distance(c.p) + foot.distance(c.p))) {
+                continue;
+            }
+            narrow.push((over, [a, b], t, gap));
+        }
+        let mut found = Vec::new();
+        // Each step is seen from both sides of the gap.
+        let deep = narrow.iter().filter(|n| across * n.3 < floor).count() <= 2 * FEW;
+        for (over, [a, b], t, gap) in narrow {
+            let length = self.outline.length([a, b]);
+            let least = if deep { deepest.max(floor.min(DEEPER * length)) } else { floor };
+            let size = (across * gap).max(least);
+            let mut ask = |edge: [u32; 2], t: f64| {
+                if self.outline.length(edge) > SLACK * size
+                    && let Some(bit) = self.bit(edge)
+                {
+                    // Bits run along their segment, edges either way.
+                    let t = if bit.first == self.ids[edge[0] as usize] { t } else { 1.0 - t };
+                    found.push(Narrow { segment: bit.segment, f: bit.f.0 + (bit.f.1 - bit.f.0) * t, size, must: false });
+                }
+            };
+            ask([a, b], t);
+            for other in &at[over as usize] {
+                ask([over, *other], 0.0);
+            }
+        }
+        found
+    }
+
+    /// For each node the other ends of its edges.
+    fn edges_at(&self) -> Vec<Vec<u32>> {
+        let mut at = vec![Vec::new(); self.outline.p.len()];
+        for [a, b] in self.outline.edges() {
+            at[a as usize].push(b);
+            at[b as usize].push(a);
+        }
+        at
+    }
+
+    /// Nodes whose edges meet at an angle. At a pole the border goes on at another place of the same node; where that is the other side
+    /// of a seam there is no corner.
+    fn corners(&self) -> Vec<Corner> {
+        let p = &self.outline.p;
+        let at = self.edges_at();
+        let mut found = Vec::new();
+        for (n, own) in at.iter().enumerate() {
+            let here = |o: &&u32| p[**o as usize] == p[n];
+            let across = own.iter().filter(here).flat_map(|o| &at[*o as usize]);
+            let mut others: Vec<u32> = own.iter().chain(across).filter(|o| !here(o)).map(|o| self.ids[*o as usize]).collect();
+            others.sort_unstable();
+            others.dedup();
+            let node = |id: u32| self.made.points[id as usize];
+            let ways: Vec<DVec3> = others.iter().filter_map(|o| (node(*o) - p[n]).try_normalize()).collect();
+            let pairs = (0..ways.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+            let cosine = pairs.map(|(i, j)| ways[i].dot(ways[j])).fold(-1.0, f64::max);
+            if cosine > SMOOTH {
+                let opens = ((1.0 - cosine).max(0.0) / (1.0 + cosine)).sqrt().min(1.0);
+                found.push(Corner { p: p[n], opens: CORNER * opens });
+            }
+        }
+        found
+    }
+}
+
+/// Whether two edges of the geometry have more in common than an end.
+fn meet(xy: &[glam::DVec2], one: [u32; 2], other: [u32; 2]) -> bool {
+    let [a, b] = one.map(|n| xy[n as usize]);
+    let [c, d] = other.map(|n| xy[n as usize]);
+    if a.min(b).cmpgt(c.max(d)).any() || c.min(d).cmpgt(a.max(b)).any() {
+        return false;
+    }
+    let shared = one.iter().find(|n| other.contains(n));
+    if let Some(n) = shared {
+        let far = |e: [u32; 2]| xy[if e[0] == *n { e[1] } else { e[0] } as usize];
+        let (at, a, b) = (xy[*n as usize], far(one), far(other));
+        return orient(at, a, b) == 0.0 && (a - at).dot(b - at) > 0.0;
+    }
+    let parted = |a, b, c, d| {
+        let (s, t) = (orient(a, b, c), orient(a, b, d));
+        s > 0.0 && t > 0.0 || s < 0.0 && t < 0.0
+    };
+    !parted(a, b, c, d) && !parted(c, d, a, b)
+}

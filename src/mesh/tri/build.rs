@@ -1,0 +1,201 @@
+//! A face from its border to its triangles.
+
+use crate::mesh::chart::outline::inside;
+use crate::mesh::tri::trouble::Trouble;
+use std::collections::VecDeque;
+
+use glam::{DVec2, DVec3};
+
+use crate::base::fault::Result;
+use crate::base::job::{self, Job};
+use crate::base::triangulate_points::{Triangles, points};
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
+use crate::mesh::request::plan::TALL;
+use crate::mesh::tri::front::{Cell, FrontInput, STRAIGHT, grow};
+use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer, OptimizeSettings};
+use crate::mesh::tri::quadtree;
+use crate::mesh::tri::quadtree::Plot;
+use crate::mesh::tri::triangulation::Triangulation;
+
+/// Where inner nodes come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lattice {
+    /// A crystal of equilateral triangles, grown from the border.
+    Crystal,
+    /// A crystal of squares, grown from the border.
+    Squares,
+    /// The corners of a quadtree's cells.
+    Tree,
+}
+
+/// What a face is made from.
+pub struct Task<'a> {
+    /// The surface.
+    pub ground: &'a dyn ParametricSurface,
+    /// The wanted lengths.
+    pub field: &'a dyn SizeField,
+    /// The border.
+    pub outline: &'a Outline,
+    /// How triangles are improved.
+    pub care: OptimizeSettings,
+    /// Where inner nodes come from.
+    pub lattice: Lattice,
+    /// Most inner nodes.
+    pub most: usize,
+    /// Limits: what breaks one is divided.
+    pub guard: Option<&'a dyn LimitCheck>,
+}
+
+/// The triangles of a face.
+pub struct Triangulated {
+    /// They and their nodes.
+    pub triangulation: Triangulation,
+    /// Whether none of them breaks a limit, as far as is known.
+    pub keeps: bool,
+}
+
+/// Triangulates a face; the outer result is an interruption.
+pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangulated, Trouble>> {
+    let triangulation = match initial_triangulation(task, job)? {
+        Ok(triangulation) => triangulation,
+        Err(trouble) => return Ok(Err(trouble)),
+    };
+    let mut optimizer = MeshOptimizer::new(triangulation, task.ground, task.field, task.care);
+    optimizer.settle();
+    job.go_on()?;
+    // Where lengths were wrong, the rest of the work waits for better ones.
+    let mut bad = task.guard.map_or(Vec::new(), |guard| optimizer.broken(guard, &[]));
+    if optimizer.are_few(&bad) {
+        if bad.len() * FEW_BAD <= optimizer.triangulation.tri.len() {
+            optimizer.improve(job)?;
+        }
+        if let Some(guard) = task.guard {
+            bad = optimizer.divide(guard, bad, job)?;
+        }
+    }
+    optimizer.set_upright();
+    let mut triangulation = optimizer.triangulation;
+    triangulation.compact();
+    Ok(Ok(Triangulated { triangulation, keeps: bad.is_empty() }))
+}
+
+/// The Delaunay triangles of a face in its chart, over its border and the nodes of its lattice; nothing is improved yet.
+pub fn initial_triangulation(task: &Task, job: &Job) -> Result<std::result::Result<Triangulation, Trouble>> {
+    let outline = task.outline;
+    let edges: Vec<[u32; 2]> = outline.edges().collect();
+    let coarse = match points(&outline.xy, &edges) {
+        Ok(triangles) => triangles,
+        Err(fault) => return Ok(Err(Trouble::Border(fault))),
+    };
+    let kept = inside(&coarse, outline);
+    if !kept.contains(&true) {
+        return Ok(Err(Trouble::Empty));
+    }
+    if expected(task, &coarse, &kept) > task.most as f64 {
+        return Ok(Err(Trouble::Full));
+    }
+    let grown = match task.lattice {
+        Lattice::Crystal | Lattice::Squares => {
+            let seeds = seeds(&coarse, &kept, outline);
+            let cell = if task.lattice == Lattice::Squares { Cell::Square } else { Cell::Triangle };
+            grow(&FrontInput { ground: task.ground, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
+        }
+        Lattice::Tree => match quadtree::nodes(&Plot { ground: task.ground, field: task.field, outline, most: task.most }) {
+            Ok(grown) => grown,
+            Err(trouble) => return Ok(Err(trouble)),
+        },
+    };
+    if grown.full {
+        return Ok(Err(Trouble::Full));
+    }
+    job.go_on()?;
+    let mut xy = outline.xy.clone();
+    xy.extend(&grown.xy);
+    let all = match points(&xy, &edges) {
+        Ok(triangles) => triangles,
+        Err(fault) => return Ok(Err(Trouble::Border(fault))),
+    };
+    job.go_on()?;
+    let kept = inside(&all, outline);
+    let mut p = outline.p.clone();
+    p.extend(&grown.p);
+    let mut size: Vec<f64> = job::looking(outline.p.iter().zip(&outline.xy)).map(|(p, xy)| task.field.size(*xy, *p)).collect();
+    size.extend(&grown.size);
+    drop(grown);
+    Ok(Ok(Triangulation::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
+}
+
+/// Where more than one triangle in so many breaks a limit, dividing them mends most of the face as well.
+const FEW_BAD: usize = 100;
+
+/// About how many nodes each of some tasks on one outline asks for; `None` where the outline crosses itself or bounds nothing.
+pub fn expected_nodes<const N: usize>(tasks: [&Task; N]) -> Option<[f64; N]> {
+    let outline = tasks.first()?.outline;
+    let edges: Vec<[u32; 2]> = outline.edges().collect();
+    let coarse = points(&outline.xy, &edges).ok()?;
+    let kept = inside(&coarse, outline);
+    kept.contains(&true).then(|| tasks.map(|task| expected(task, &coarse, &kept)))
+}
+
+/// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
+fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
+    let corner = |n: u32| (task.outline.xy[n as usize], task.outline.p[n as usize]);
+    // Breadth first: what is left when there are too many is small.
+    let mut open: VecDeque<_> = (0..kept.len()).filter(|t| kept[*t]).map(|t| coarse.corners[t].map(corner)).collect();
+    let (mut total, mut left) = (0.0, MAX_SAMPLES + open.len());
+    while let Some(c) = open.pop_front() {
+        let middle = (c.iter().map(|c| c.0).sum::<DVec2>() / 3.0, c.iter().map(|c| c.1).sum::<DVec3>() / 3.0);
+        let size = task.field.size(middle.0, middle.1);
+        let area = (c[1].1 - c[0].1).cross(c[2].1 - c[0].1).length();
+        // Half a node a triangle of side `size`, whose area is √3/4 of its square, or one a square.
+        let cell = if task.lattice == Lattice::Squares { 1.0 } else { TALL };
+        let nodes = 0.5 * area / (cell * size * size);
+        let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * SIZE_RATIO_EQUAL < size);
+        if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < FEW && !varies() {
+            total += nodes;
+            continue;
+        }
+        left -= 1;
+        let mid = |i: usize, j: usize| (0.5 * (c[i].0 + c[j].0), 0.5 * (c[i].1 + c[j].1));
+        let [a, b, d] = [mid(1, 2), mid(2, 0), mid(0, 1)];
+        open.extend([[c[0], d, b], [c[1], a, d], [c[2], b, a], [a, b, d]]);
+    }
+    total
+}
+
+/// Triangles that are divided when nodes are counted ahead, beside those between border nodes.
+const MAX_SAMPLES: usize = 10_000;
+/// Nodes up to which lengths are taken as one over a triangle.
+const FEW: f64 = 8.0;
+/// Ratio of lengths that count as one.
+const SIZE_RATIO_EQUAL: f64 = 1.25;
+
+/// Places to start from: the middles of the largest triangles between border nodes first, in the direction of the longest
+/// straight run of the border.
+fn seeds(coarse: &Triangles, kept: &[bool], outline: &Outline) -> Vec<(DVec2, DVec3)> {
+    let along = main_direction(outline);
+    let area = |t: usize| {
+        let [a, b, c] = coarse.corners[t].map(|n| outline.p[n as usize]);
+        (b - a).cross(c - a).length_squared()
+    };
+    let mut order: Vec<(f64, usize)> = job::looking(0..kept.len()).filter(|t| kept[*t]).map(|t| (area(t), t)).collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let middle = |t: usize| coarse.corners[t].map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0;
+    order.into_iter().map(|(_, t)| (middle(t), along)).collect()
+}
+
+/// The direction that most of the border runs in, with all directions folded by a sixth of a turn about the mean normal.
+fn main_direction(outline: &Outline) -> DVec3 {
+    let mut best = (0.0, DVec3::ZERO);
+    let mut run = (0.0, DVec3::ZERO);
+    for [a, b] in outline.edges() {
+        let d = outline.p[b as usize] - outline.p[a as usize];
+        let Some(unit) = d.try_normalize() else { continue };
+        run = if unit.dot(run.1) > STRAIGHT { (run.0 + d.length(), run.1) } else { (d.length(), unit) };
+        if run.0 > best.0 {
+            best = run;
+        }
+    }
+    best.1
+}

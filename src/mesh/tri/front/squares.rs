@@ -1,0 +1,202 @@
+//! The first row of a crystal of squares: round the border, a node over each of its nodes, so that the cells beside it stand
+//! upright on it.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::math;
+use crate::mesh::tri::front::{FAR, Front, STRAIGHT};
+
+/// Nearest distance between two nodes of crystals, as a share of the wanted length: one in the middle of a square would have
+/// 0.707 to its corners.
+const APART: f64 = 0.75;
+/// The same to nodes of the first row: half a step, so that what is left between two rows is as often too narrow as too wide.
+const HALF: f64 = 0.55;
+/// The same between nodes of the first row.
+const BESIDE: f64 = 0.65;
+/// Angle at the border, over a straight one, from which it counts as bent outwards.
+const BENT: f64 = 1.02;
+/// Nearest distance of a node to an edge of the border, as a share of the wanted length.
+const CLEAR: f64 = 0.6;
+/// Steps of the crystal over the wanted length where it follows those of the border.
+const FOLLOWED: std::ops::Range<f64> = 0.7..1.08;
+/// Angles that a cell may have at the border where it bends outwards, radians: 57° to 126°.
+const CORNER: std::ops::Range<f64> = 1.0..2.2;
+/// Edges of a straight run that a crystal follows.
+const RUN: usize = 3;
+/// Cosine between runs that stand upright on each other.
+const UPRIGHT: f64 = 0.02;
+/// A right angle, radians.
+const RIGHT: f64 = std::f64::consts::FRAC_PI_2;
+
+/// Edges of a border that run straight on.
+#[derive(Clone, Copy, Default)]
+struct Run {
+    along: DVec3,
+    length: f64,
+    edges: usize,
+    /// A node of it.
+    node: u32,
+}
+
+impl Front<'_> {
+    /// A node over each node of the border, and those between where it turns outwards; gives the one over the longest
+    /// straight run, from which the crystal starts.
+    pub(crate) fn layer_of_squares(&mut self) -> Option<u32> {
+        let outline = self.input.outline;
+        let runs = self.runs();
+        let longest = runs.iter().copied().reduce(|a, b| if b.length > a.length { b } else { a })?;
+        let upright = |r: &&Run| r.along.dot(longest.along).abs() < UPRIGHT;
+        let across = runs.iter().filter(upright).copied().reduce(|a, b| if b.length > a.length { b } else { a });
+        self.steps = [self.followed(Some(longest)), self.followed(across)];
+        let mut before = vec![u32::MAX; outline.p.len()];
+        outline.loops.iter().for_each(|e| before[e[1] as usize] = e[0]);
+        let mut first = None;
+        for &[a, b] in &outline.loops {
+            let Some(from) = outline.p.get(before[a as usize] as usize).copied() else { continue };
+            let here = self.grown.p.len() as u32;
+            self.over(a, outline.p[b as usize], from, longest.along);
+            if a == longest.node && self.grown.p.len() as u32 > here {
+                first = Some(here);
+            }
+        }
+        self.open.clear();
+        self.row = self.grown.p.len() as u32;
+        first
+    }
+
+    /// Whether a place is too near to a node, or between two of the first row.
+    pub(crate) fn near_square(&self, p: DVec3, size: f64) -> bool {
+        // The middle of a cell is as far from its corners as its steps are long.
+        let steps = DVec2::from(self.steps).length() * std::f64::consts::FRAC_1_SQRT_2;
+        let (near, far) = (HALF * HALF * size * size, APART * steps * size);
+        let mut beside = 0;
+        let over = |tag: u32, at: DVec3| (p - at).dot(self.arms[tag as usize]) < HALF * size;
+        let row = |tag: u32| tag < self.row;
+        self.nodes.any(p, far, size, |node, square| {
+            beside += 1;
+            square < near || beside > 1 || node.tag != u32::MAX && !row(node.tag)
+        }) || self.nodes.any(p, size, size, |node, _| row(node.tag) && over(node.tag, node.p))
+    }
+
+    /// Straight runs of the loops; the node of each is in its middle.
+    fn runs(&self) -> Vec<Run> {
+        let outline = self.input.outline;
+        let (mut runs, mut nodes): (Vec<Run>, Vec<u32>) = (Vec::new(), Vec::new());
+        for &[a, b] in &outline.loops {
+            let side = outline.p[b as usize] - outline.p[a as usize];
+            let Some(along) = side.try_normalize() else { continue };
+            match runs.last_mut() {
+                Some(run) if run.along.dot(along) > STRAIGHT && nodes.last() == Some(&a) => {
+                    run.length += side.length();
+                    run.edges += 1;
+                }
+                _ => {
+                    nodes.clear();
+                    runs.push(Run { along, length: side.length(), edges: 1, node: a });
+                }
+            }
+            nodes.push(b);
+            if let Some(run) = runs.last_mut() {
+                run.node = nodes[(nodes.len() - 1) / 2];
+            }
+        }
+        runs
+    }
+
+    /// The steps of a run over the wanted length, where the crystal can take them over.
+    fn followed(&self, run: Option<Run>) -> f64 {
+        let Some(run) = run.filter(|run| run.edges >= RUN) else { return 1.0 };
+        let outline = self.input.outline;
+        let size = self.input.field.size(outline.xy[run.node as usize], outline.p[run.node as usize]);
+        let share = run.length / run.edges as f64 / size;
+        if FOLLOWED.contains(&share) { share } else { 1.0 }
+    }
+
+    /// Nodes over a node of the border between its next and its last one: as many cells as fill the angle best.
+    fn over(&mut self, node: u32, next: DVec3, last: DVec3, along: DVec3) {
+        let outline = self.input.outline;
+        let (p, xy) = (outline.p[node as usize], outline.xy[node as usize]);
+        let spot = self.input.ground.spot(xy);
+        let normal = spot.normal();
+        let (out, back) = ((next - p).reject_from_normalized(normal), (last - p).reject_from_normalized(normal));
+        let (Some(unit), true) = (out.try_normalize(), back != DVec3::ZERO) else { return };
+        let turn = math::atan2(normal.dot(out.cross(back)), out.dot(back));
+        let turn = if turn <= 0.0 { turn + 4.0 * RIGHT } else { turn };
+        let frame = Frame::new(along, normal);
+        let cells = frame.map_or((turn / RIGHT).round().clamp(1.0, 4.0) as usize, |f| f.cells(turn, unit, -back.normalize_or_zero()));
+        let size = self.input.field.size(xy, p);
+        let aside = normal.cross(unit);
+        let bent = turn > BENT * 2.0 * RIGHT && cells == 2;
+        let way = |k: usize| {
+            let (sin, cos) = math::sin_cos(turn * k as f64 / cells as f64);
+            let way = unit * cos + aside * sin;
+            // Between corners the row turns half as fast as the border.
+            frame.filter(|_| bent).map_or(way, |frame| (way + frame.nearest(way)).normalize_or_zero())
+        };
+        let segment = |way: DVec3| {
+            let lengthwise = way.dot(along).abs();
+            if lengthwise > 1.0 - UPRIGHT {
+                self.steps[0]
+            } else if lengthwise < UPRIGHT {
+                self.steps[1]
+            } else {
+                1.0
+            }
+        };
+        let arms: Vec<DVec3> = (1..cells).map(|k| way(k) * (size * segment(way(k)))).collect();
+        let between: Vec<DVec3> = arms.windows(2).map(|w| w[0] + w[1]).collect();
+        for arm in arms.iter().chain(&between) {
+            let Some(step) = spot.step(*arm) else { continue };
+            let to = self.input.ground.clamp(xy + step);
+            let new = self.input.ground.spot(to);
+            let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
+            let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
+            let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
+            let far = new.p.distance(spot.p) > FAR * arm.length() || self.is_on_edge(to);
+            if !near && !taken && !far {
+                let ahead = if ahead == DVec3::ZERO { arm.reject_from_normalized(new.normal()).normalize_or_zero() } else { ahead };
+                self.take(to, new.p, size, ahead);
+                self.arms.push(arm.normalize_or_zero());
+            }
+        }
+    }
+}
+
+/// The directions of a crystal in the tangent plane of a place.
+#[derive(Clone, Copy)]
+struct Frame {
+    along: DVec3,
+    aside: DVec3,
+}
+
+impl Frame {
+    fn new(along: DVec3, normal: DVec3) -> Option<Self> {
+        let along = along.reject_from_normalized(normal).try_normalize()?;
+        Some(Self { along, aside: normal.cross(along) })
+    }
+
+    /// The number of quarter turns from the crystal to the nearest of its four directions.
+    fn quarter(&self, way: DVec3) -> f64 {
+        (math::atan2(way.dot(self.aside), way.dot(self.along)) / RIGHT).round()
+    }
+
+    fn nearest(&self, way: DVec3) -> DVec3 {
+        match self.quarter(way).rem_euclid(4.0) as u32 {
+            0 => self.along,
+            1 => self.aside,
+            2 => -self.along,
+            _ => -self.aside,
+        }
+    }
+
+    /// How many cells fill the angle `turn` at a node of the border, between the edge that leaves it and the one that comes.
+    ///
+    /// Where it bends outwards, edges count as the nearest of the crystal's four directions: a round hole then is a square to
+    /// the cells round it, and no row of them meets the crystal askew.
+    fn cells(&self, turn: f64, leaves: DVec3, comes: DVec3) -> usize {
+        let turned = (self.quarter(comes) - self.quarter(leaves)).rem_euclid(4.0);
+        let squared = 2.0 + if turned > 2.0 { turned - 4.0 } else { turned };
+        let bent = turn > BENT * 2.0 * RIGHT && squared >= 2.0 && CORNER.contains(&(turn / squared));
+        (if bent { squared } else { (turn / RIGHT).round().clamp(1.0, 4.0) }) as usize
+    }
+}

@@ -1,0 +1,234 @@
+//! A face between lines of constant u and v [Jeong & Park 2000]: whole cells in two triangles or a few more, what
+//! borders cross by one constrained triangulation, and cells cut until every triangle keeps the limits for sure.
+
+pub mod beside;
+pub mod corners;
+pub mod cut;
+pub mod summary;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::mesh::tri::isoline_mesh::beside::sorted;
+use crate::mesh::tri::isoline_mesh::corners::{Corners, polygon};
+use crate::mesh::tri::isoline_mesh::cut::Cut;
+use glam::{DVec2, DVec3};
+
+use crate::base::fault::Result;
+use crate::base::job::Job;
+use crate::base::work;
+use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::outline::Outline;
+use crate::mesh::chart::parametric_surface::ParametricSurface;
+use crate::mesh::request::decider::{Decider, Tally};
+use crate::mesh::request::limits::Limits;
+use crate::mesh::request::sources::Sources;
+use crate::mesh::tri::fill::{Filling, fill};
+use crate::mesh::tri::isoline::Cells;
+use crate::mesh::tri::limit_table;
+use crate::mesh::tri::limit_table::{LimitRatio, Normals};
+use crate::mesh::tri::tree::Class;
+use crate::mesh::tri::triangulation::Triangulation;
+use crate::mesh::tri::trouble::Trouble;
+
+/// Work of a cell and of a node of a border in one try, in evaluations of the surface: all are sorted and looked through anew.
+const CELL_WORK: u64 = 20;
+const NODE_WORK: u64 = 8;
+
+/// What a face is laid out by.
+pub struct IsolineInput<'a> {
+    /// The surface in its chart.
+    pub chart: &'a Chart,
+    /// The border.
+    pub outline: &'a Outline,
+    /// Chord error and angle.
+    pub limits: &'a Limits,
+    /// Longest side of a cell, model units.
+    pub size: f64,
+    /// Places where it is shorter.
+    pub rules: &'a Sources,
+    /// Floor of all sizes, model units; 0: none.
+    pub floor: f64,
+    /// Most inner nodes.
+    pub most: usize,
+    /// Points nearer to each other are one, model units.
+    pub point: f64,
+}
+
+/// Why there is no mesh.
+#[derive(Clone, Copy, Debug)]
+pub enum Failure {
+    /// As with any method.
+    Trouble(Trouble),
+    /// A limit asks for less than the floor: the length it asks for, and where.
+    Floor(f64, DVec3),
+    /// A limit is not met: how often it is exceeded, and where.
+    Missed(LimitRatio, DVec3),
+}
+
+/// A face laid out.
+pub struct IsolineMesh {
+    /// Its triangles.
+    pub triangulation: Triangulation,
+    /// Its cells.
+    pub tally: Tally,
+    /// What decided how small they are.
+    pub deciders: Vec<Decider>,
+}
+
+type Tried<T> = std::result::Result<T, Failure>;
+
+/// Times that what does not keep the limits is cut.
+const ROUNDS: usize = 64;
+
+/// Lays a face out; the outer result is an interruption.
+pub fn lay(ask: &IsolineInput, job: &Job) -> Result<Tried<IsolineMesh>> {
+    let outline = ask.outline;
+    let at: Vec<DVec2> = outline.xy.iter().map(|xy| DVec2::from(ask.chart.uv(*xy))).collect();
+    let mut segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| at[n as usize])).collect();
+    // Single nodes inside count as segments without length.
+    let mut alone = vec![true; at.len()];
+    outline.edges().flatten().for_each(|n| alone[n as usize] = false);
+    segments.extend((0..at.len()).filter(|n| alone[*n]).map(|n| [at[n]; 2]));
+    let kinks = if ask.limits.chord.is_some() { kinks(ask.chart) } else { Default::default() };
+    let cells = Cells::new(&segments, outline.loops.len(), kinks);
+    let mut work = Work { ask, at, cells, known: BTreeMap::new(), fillings: BTreeMap::new(), normals: Normals::default(), worst: None };
+    let mut again = work.settle(vec![0]);
+    for _ in 0..ROUNDS {
+        job.go_on()?;
+        if let Err(failure) = again {
+            return Ok(Err(failure));
+        }
+        match work.round() {
+            Ok(Some(laid)) => return Ok(Ok(laid)),
+            other => again = other.map(|_| ()),
+        }
+    }
+    Ok(again.and_then(|()| Err(work.missed())))
+}
+
+/// Values of u and of v at which directions jump; over seams they come again.
+fn kinks(chart: &Chart) -> [Vec<f64>; 2] {
+    let (us, vs) = chart.surface().kinks();
+    [us, vs].map(|all| all.iter().flat_map(|x| [x - 1.0, *x, x + 1.0]).collect())
+}
+
+/// The points of a polygon and what fills it.
+type Known = (Vec<DVec3>, Option<Filling>);
+
+struct Work<'a> {
+    ask: &'a IsolineInput<'a>,
+    /// Places of the border's nodes in (u, v).
+    at: Vec<DVec2>,
+    cells: Cells<'a>,
+    /// Points by the bits of their (u, v).
+    known: BTreeMap<(u64, u64), DVec3>,
+    /// By cell.
+    fillings: BTreeMap<u32, Known>,
+    normals: Normals,
+    /// The worst triangle seen in the last round.
+    worst: Option<(LimitRatio, DVec3)>,
+}
+
+impl Work<'_> {
+    fn missed(&self) -> Failure {
+        let (load, at) = self.worst.unwrap_or_default();
+        Failure::Missed(load, at)
+    }
+
+    fn place(&self, at: DVec2) -> DVec2 {
+        self.ask.chart.clamp(self.ask.chart.xy(at.into()))
+    }
+
+    fn point(&mut self, at: DVec2) -> DVec3 {
+        let key = (at.x.to_bits(), at.y.to_bits());
+        if let Some(p) = self.known.get(&key) {
+            return *p;
+        }
+        let p = self.ask.chart.spot(self.place(at)).p;
+        self.known.insert(key, p);
+        p
+    }
+
+    /// One try: the triangles, or cells cut where they do not keep the limits.
+    fn round(&mut self) -> Tried<Option<IsolineMesh>> {
+        let outline = self.ask.outline;
+        work::spend(CELL_WORK * self.cells.all().len() as u64 + NODE_WORK * self.at.len() as u64);
+        let mut corners = self.corners();
+        let mut triangulation = Triangulation::default();
+        (triangulation.p, triangulation.xy, triangulation.fixed) = (outline.p.clone(), outline.xy.clone(), outline.p.len() as u32);
+        for (k, corner) in corners.all.iter().enumerate() {
+            if corner.dropped {
+                continue;
+            }
+            corners.node[k] = corner.border;
+            if corner.border.is_none() && !self.unfit(corner.at) {
+                corners.node[k] = Some(triangulation.p.len() as u32);
+                triangulation.p.push(self.point(corner.at));
+                triangulation.xy.push(self.place(corner.at));
+            }
+        }
+        if triangulation.p.len() > self.ask.most {
+            return Err(Failure::Trouble(Trouble::Full));
+        }
+        let (sure, bad) = self.whole(&corners, &triangulation);
+        if !bad.is_empty() {
+            return self.cut(bad).map(|()| None);
+        }
+        let (all, kept) = self.triangulated(&triangulation, &sure)?;
+        let sure: BTreeSet<[u32; 3]> = sure.into_iter().map(sorted).collect();
+        let bad = self.beside(&triangulation, (&all, &kept), &sure);
+        if self.worst.is_some() {
+            if bad.is_empty() {
+                return Err(self.missed());
+            }
+            return self.cut(bad).map(|()| None);
+        }
+        triangulation.size = vec![self.ask.size; triangulation.p.len()];
+        let tally = self.tally(&corners);
+        let deciders = self.deciders(&corners, &triangulation);
+        let mut triangulation = Triangulation::new(triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed, &all, &kept);
+        lock(&mut triangulation, outline);
+        triangulation.lift_flat();
+        Ok(Some(IsolineMesh { triangulation, tally, deciders }))
+    }
+
+    /// Triangles of the cells that no border crosses, and the cells of which some do not keep the limits.
+    fn whole(&mut self, corners: &Corners, triangulation: &Triangulation) -> (Vec<[u32; 3]>, Vec<(u32, Cut)>) {
+        let (mut sure, mut bad) = (Vec::new(), Vec::new());
+        for k in 0..self.cells.all().len() as u32 {
+            let cell = &self.cells.all()[k as usize];
+            if !cell.is_leaf() || cell.class != Class::Interior {
+                continue;
+            }
+            let bounds = (cell.low, cell.high);
+            let Some(round) = polygon(corners, bounds) else { continue };
+            let nodes: Vec<u32> = round.iter().filter_map(|c| corners.node[*c]).collect();
+            let p: Vec<DVec3> = nodes.iter().map(|n| triangulation.p[*n as usize]).collect();
+            if self.fillings.get(&k).is_none_or(|(known, _)| *known != p) {
+                let at: Vec<DVec2> = round.iter().map(|c| corners.all[*c].at).collect();
+                let load = |c: [usize; 3]| {
+                    limit_table::load_of_long(self.ask.chart, triangulation, c.map(|i| nodes[i]), self.ask.limits, &self.normals).worst()
+                };
+                let filling = fill(&at, &p, f64::INFINITY, &load);
+                self.fillings.insert(k, (p, filling));
+            }
+            let Some((_, Some(filling))) = self.fillings.get(&k) else { continue };
+            if filling.load <= 1.0 {
+                sure.extend(filling.triangles.iter().map(|t| t.map(|i| nodes[i])));
+            } else if let Some((axis, _)) = self.best_cut(k, bounds) {
+                bad.push((k, (axis, 2)));
+            }
+        }
+        (sure, bad)
+    }
+}
+
+/// Only edges of borders may not change.
+fn lock(triangulation: &mut Triangulation, outline: &Outline) {
+    let given: BTreeSet<[u32; 2]> = outline.edges().map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    for t in 0..triangulation.tri.len() {
+        let c = triangulation.tri[t];
+        let edge = |k: usize| [c[(k + 1) % 3].min(c[(k + 2) % 3]), c[(k + 1) % 3].max(c[(k + 2) % 3])];
+        triangulation.locked[t] = (0..3).filter(|k| given.contains(&edge(*k))).fold(0, |bits, k| bits | 1 << k);
+    }
+}

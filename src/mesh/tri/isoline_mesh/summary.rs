@@ -1,0 +1,54 @@
+//! What is told of a face laid out: its cells, how far their marks agree with the winding, and what decided their sizes.
+
+use std::collections::BTreeMap;
+
+use crate::base::job;
+use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::tri::isoline_mesh::Work;
+use crate::mesh::tri::isoline_mesh::corners::Corners;
+use crate::mesh::tri::marks::{corners, marks};
+use crate::mesh::tri::tree::Class;
+use crate::mesh::tri::triangulation::Triangulation;
+
+impl Work<'_> {
+    /// Counts of cells, and at how many corners beside borders the marks say what the winding does.
+    pub(crate) fn tally(&self, known: &Corners) -> Tally {
+        let mut tally = Tally::default();
+        let loops = self.ask.outline.loops.len() as u32;
+        for cell in self.cells.all().iter().filter(|c| c.is_leaf()) {
+            job::look();
+            match cell.class {
+                Class::Exterior => continue,
+                Class::Interior => tally.whole += 1,
+                Class::Partial => tally.crossed += 1,
+            }
+            // The face is on the left of its loops.
+            let turned = cell.segments.iter().filter(|s| **s < loops).map(|s| self.cells.segment(*s)).map(|[a, b]| [b, a]);
+            let found = marks((cell.low, cell.high), turned);
+            if cell.class != Class::Partial || found == [0; 4] {
+                continue;
+            }
+            for (mark, at) in found.iter().zip(corners((cell.low, cell.high))) {
+                let Some(k) = known.of(at).filter(|k| known.all[*k].border.is_none()) else { continue };
+                let kept = known.node[k].is_some() || self.cells.holds(at);
+                tally.corners += 1;
+                tally.agree += usize::from((*mark == 2) == kept);
+            }
+        }
+        tally
+    }
+
+    /// What decided, with the number of nodes inside.
+    pub(crate) fn deciders(&self, corners: &Corners, triangulation: &Triangulation) -> Vec<Decider> {
+        let mut found: BTreeMap<Why, Decider> = BTreeMap::new();
+        for (corner, node) in corners.all.iter().zip(&corners.node) {
+            job::look();
+            let Some(n) = node.filter(|n| *n >= triangulation.fixed) else { continue };
+            let smallest = |k: &u32| self.cells.all()[*k as usize].width().element_product();
+            let leaf = self.cells.around(corner.at).into_iter().min_by(|a, b| smallest(a).total_cmp(&smallest(b)));
+            let why = leaf.map_or(Why::Size, |k| self.cells.all()[k as usize].why);
+            found.entry(why).or_insert(Decider { why, nodes: 0, at: triangulation.p[n as usize] }).nodes += 1;
+        }
+        found.into_values().collect()
+    }
+}

@@ -1,0 +1,24 @@
+//! Free faces of triangles: placed by a front or a quadtree, or laid between isolines; optimised, refined, coarsened.
+
+pub mod build;
+pub mod cells;
+pub mod coarse;
+pub mod coarsen;
+pub mod fill;
+pub mod fit;
+pub mod front;
+pub mod graded_size;
+pub mod isoline;
+pub mod isoline_mesh;
+pub mod large;
+pub mod limit_table;
+pub mod longest;
+pub mod marks;
+pub mod optimize;
+pub mod pending;
+pub mod quadtree;
+pub mod shape;
+pub mod too_large;
+pub mod tree;
+pub mod triangulation;
+pub mod trouble;

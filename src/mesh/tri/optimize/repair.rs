@@ -1,0 +1,264 @@
+//! Bad triangles mended, worst first: a corner moved, a side flipped, or a patch made anew with a node more or less.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::job;
+use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::base::work;
+use crate::mesh::chart::outline::area2;
+use crate::mesh::tri::optimize::MeshOptimizer;
+use crate::mesh::tri::optimize::flips::GAIN;
+use crate::mesh::tri::shape::Star;
+use crate::mesh::tri::triangulation::Patch;
+
+/// Share of the quality that is there which a first guess must have to be searched on.
+const MIN_START_RATIO: f64 = 0.6;
+/// Work of a bad triangle that is looked at, and of a patch that is planned anew, in evaluations of the surface.
+const MEND_WORK: u64 = 20;
+const PLAN_WORK: u64 = 20;
+/// What a change must gain where all is fair.
+const MIN_GAIN: f64 = 0.01;
+
+impl MeshOptimizer<'_> {
+    /// Works on triangles below the wanted quality, the worst first; how many changes were made.
+    pub fn repair(&mut self) -> usize {
+        let changed = self.changed.take();
+        let mut bad: Vec<(f64, u32)> =
+            self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
+        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut changes = 0;
+        for (_, t) in bad {
+            job::look();
+            for _ in 0..3 {
+                if !self.triangulation.alive(t) || self.worth(t) >= self.care.wanted {
+                    break;
+                }
+                if !self.repair_triangle(t) {
+                    self.tried.give_up(t);
+                    break;
+                }
+                changes += 1;
+            }
+        }
+        changes
+    }
+
+    fn repair_triangle(&mut self, t: u32) -> bool {
+        work::spend(MEND_WORK);
+        self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
+    }
+
+    /// What a change must gain where the worst triangle is so good.
+    fn gain(&self, worst: f64) -> f64 {
+        if worst < self.care.fair { GAIN } else { MIN_GAIN }
+    }
+
+    /// What a triangle is worth: its quality less what its longest side takes.
+    pub(crate) fn worth(&self, t: u32) -> f64 {
+        let c = self.triangulation.tri[t as usize];
+        let shape = self.triangulation.shape(c);
+        let mut worth = shape;
+        for k in 0..3 {
+            let (i, j) = (c[k], c[(k + 1) % 3]);
+            if self.triangulation.is_free(i) || self.triangulation.is_free(j) {
+                let size =
+                    if self.triangulation.is_free(i) { self.triangulation.size[i as usize] } else { self.triangulation.size[j as usize] };
+                let length = self.triangulation.p[i as usize].distance(self.triangulation.p[j as usize]);
+                worth = worth.min(shape * (size * self.care.longest / length).min(1.0));
+            }
+        }
+        worth
+    }
+
+    /// Moves a corner to where its worst triangle is best.
+    fn shift_corners(&mut self, t: u32) -> bool {
+        let mut any = false;
+        let since = self.tried.since(t);
+        for node in self.triangulation.tri[t as usize] {
+            if !self.triangulation.is_free(node) {
+                continue;
+            }
+            self.fill_rim(node);
+            if !self.tried.is_new(self.ring.node.iter().copied().chain([node]), since) {
+                continue;
+            }
+            let (xy, p) = (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]);
+            let before = self.rim.worst(xy, p);
+            let star = self.rim.best(self.ground, xy, p);
+            if star.worst > before + self.gain(before) && self.star_keeps(&self.ring.node, node, &star) {
+                self.place(node, star.xy, star.p);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Tries patches round a triangle with a node more or less; takes the best.
+    fn rebuild(&mut self, t: u32) -> bool {
+        let mut best: Option<(f64, Patch, Plan)> = None;
+        let since = self.tried.since(t);
+        for (tri, keep) in self.candidates(t) {
+            if !self.tried.is_new(tri.iter().flat_map(|t| self.triangulation.tri[*t as usize]), since) {
+                continue;
+            }
+            let before = tri.iter().map(|t| self.worth(*t)).fold(f64::INFINITY, f64::min);
+            let mut patch = std::mem::take(&mut self.patch);
+            let fits = self.triangulation.patch(&tri, &mut patch);
+            if fits.is_some()
+                && let Some((after, plan)) =
+                    self.plan(&patch, keep, Worth { least: before * MIN_START_RATIO, more: before + best.as_ref().map_or(0.0, |b| b.0) })
+                && after > before + self.gain(before)
+                && best.as_ref().is_none_or(|b| after - before > b.0)
+                && self.plan_keeps(&patch, &plan)
+            {
+                best = Some((after - before, patch.clone(), plan));
+            }
+            self.patch = patch;
+        }
+        let Some((_, patch, plan)) = best else { return false };
+        match plan {
+            Plan::Star(star, node) => self.restar(&patch, node, &star),
+            Plan::Fan(k) => {
+                self.triangulation.refan(&patch, k);
+                self.wake_patch(&patch);
+            }
+        }
+        true
+    }
+
+    /// Whether a triangle keeps the limits, with its first corner moved to a place.
+    pub(crate) fn keeps(&self, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
+        self.guard.is_none_or(|guard| guard.keeps(&self.triangulation, corners, first))
+    }
+
+    /// The same of the triangles from a place to the sides of a rim.
+    fn star_keeps(&self, rim: &[u32], node: u32, star: &Star) -> bool {
+        let n = rim.len();
+        (0..n).all(|i| self.keeps([node, rim[i], rim[(i + 1) % n]], Some((star.xy, star.p))))
+    }
+
+    fn plan_keeps(&self, patch: &Patch, plan: &Plan) -> bool {
+        let rim = &patch.rim;
+        let n = rim.len();
+        match plan {
+            Plan::Star(star, node) => self.star_keeps(rim, node.unwrap_or(u32::MAX), star),
+            Plan::Fan(k) => (1..n - 1).all(|i| self.keeps([rim[*k], rim[(k + i) % n], rim[(k + i + 1) % n]], None)),
+        }
+    }
+
+    /// Sets of triangles round a triangle: two at each side for a new node, stars of corners without it, stars of two
+    /// neighbouring corners as one.
+    pub(crate) fn candidates(&mut self, t: u32) -> Vec<(Vec<u32>, Keep)> {
+        let mut sets = Vec::new();
+        let c = self.triangulation.tri[t as usize];
+        let across = self.triangulation.across[t as usize];
+        for (k, next) in across.into_iter().enumerate() {
+            if self.triangulation.locked[t as usize] >> k & 1 == 0 && next != NO_TRIANGLE {
+                sets.push((vec![t, next], Keep::New));
+            }
+        }
+        let open: Vec<u32> = (0..3).filter(|k| self.triangulation.locked[t as usize] >> k & 1 == 0).map(|k| across[k]).collect();
+        if open.len() >= 2 {
+            sets.push((std::iter::once(t).chain(open).collect(), Keep::New));
+        }
+        for k in 0..3 {
+            if let Some([_, _, tip, _]) = self.quad(t, k)
+                && self.triangulation.is_free(tip)
+            {
+                self.triangulation.ring(tip, &mut self.ring);
+                sets.push((self.ring.tri.iter().copied().chain([t]).collect(), Keep::One(tip)));
+            }
+        }
+        for k in 0..3 {
+            let (a, b) = (c[k], c[(k + 1) % 3]);
+            if self.triangulation.is_free(a) {
+                self.triangulation.ring(a, &mut self.ring);
+                sets.push((self.ring.tri.clone(), Keep::None));
+            }
+            if self.triangulation.is_free(a) && self.triangulation.is_free(b) {
+                self.triangulation.ring(a, &mut self.ring);
+                let mut tri = self.ring.tri.clone();
+                self.triangulation.ring(b, &mut self.ring);
+                tri.extend(self.ring.tri.iter().filter(|t| !tri.contains(t)).copied().collect::<Vec<_>>());
+                sets.push((tri, Keep::One(a.min(b))));
+            }
+        }
+        sets
+    }
+
+    /// The best that can be made of a patch, where that may be worth it.
+    pub(crate) fn plan(&mut self, patch: &Patch, keep: Keep, worth: Worth) -> Option<(f64, Plan)> {
+        work::spend(PLAN_WORK);
+        self.rim.fill(patch.rim.iter().map(|n| (self.triangulation.p[*n as usize], self.triangulation.xy[*n as usize])));
+        if let Keep::None = keep {
+            return self.best_fan(patch);
+        }
+        if self.rim.ceiling() <= worth.more {
+            return None;
+        }
+        let (xy, p) = self.rim.middle();
+        let xy = self.ground.clamp(xy);
+        self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.care.longest;
+        // A rim that is far too large or too small for one node is not searched for its best place.
+        let p = self.ground.point(xy);
+        if self.rim.worst(xy, p) < worth.least {
+            return None;
+        }
+        let star = self.rim.best(self.ground, xy, p);
+        let node = if let Keep::One(node) = keep { Some(node) } else { None };
+        (star.worst > 0.0).then_some((star.worst, Plan::Star(star, node)))
+    }
+
+    /// The fan of the rim's node that gives the best worst triangle.
+    fn best_fan(&self, patch: &Patch) -> Option<(f64, Plan)> {
+        let n = patch.rim.len();
+        let (p, xy) = (self.rim.points(), self.rim.places());
+        let mut best: Option<(f64, usize)> = None;
+        for k in 0..n {
+            let mut worst = f64::INFINITY;
+            for i in 1..n - 1 {
+                let (a, b) = ((k + i) % n, (k + i + 1) % n);
+                if area2(xy[k], xy[a], xy[b]) <= 0.0 {
+                    worst = -1.0;
+                    break;
+                }
+                let far = p[k].distance(p[a]);
+                let longest = self.triangulation.size[patch.rim[a] as usize] * self.care.longest;
+                let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
+                worst = worst.min(self.triangulation.shape([k, a, b].map(|i| patch.rim[i])) * share);
+            }
+            if worst > 0.0 && best.is_none_or(|b| worst > b.0) {
+                best = Some((worst, k));
+            }
+        }
+        best.map(|(worst, k)| (worst, Plan::Fan(k)))
+    }
+}
+
+/// What a patch made anew must be worth: its first guess, and its best.
+#[derive(Clone, Copy)]
+pub(crate) struct Worth {
+    pub least: f64,
+    pub more: f64,
+}
+
+impl Worth {
+    /// Anything.
+    pub const ANY: Self = Self { least: f64::NEG_INFINITY, more: f64::NEG_INFINITY };
+}
+
+/// Which node a patch keeps.
+#[derive(Clone, Copy)]
+pub(crate) enum Keep {
+    /// A new one in its middle.
+    New,
+    /// One of those inside.
+    One(u32),
+    /// None: a fan from its rim.
+    None,
+}
+
+pub(crate) enum Plan {
+    Star(Star, Option<u32>),
+    Fan(usize),
+}

@@ -1,0 +1,102 @@
+//! Where edges of a mesh meet faces that do not have them: by the curves and surfaces themselves, wherever the nodes are.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use crate::base::par;
+use crate::mesh::verify::contacts::Scan;
+use crate::model::SurfaceId;
+use crate::network::Chain;
+use crate::surface::meet::{SurfaceMeeting, with_curve};
+use crate::surface::{Surface, with_loops};
+
+/// A segment of an edge and a face near it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Task {
+    pub segment: usize,
+    pub face: usize,
+}
+
+/// Where a segment of an edge meets a face.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Met {
+    /// Runs on it: middle and length, model units.
+    pub runs: Vec<(DVec3, f64)>,
+    /// Points, with `true` where the segment goes on beyond.
+    pub points: Vec<(DVec3, bool)>,
+    /// The ends of the segment that the face has, and how far from one of them it may leave the face slowly.
+    pub known: ([Option<DVec3>; 2], f64),
+}
+
+/// A segment as a part of an edge: the place of the edge, arc lengths on it.
+type Place = (usize, (f64, f64));
+
+/// The meetings of each task; `None` where no curve carries the edge or they could not be found.
+pub(crate) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
+    let pieces = &scan.layout.pieces;
+    let wanted: BTreeSet<usize> = tasks.iter().map(|t| t.segment).collect();
+    let mut places: BTreeMap<usize, Place> = BTreeMap::new();
+    for edge in 0..scan.layout.edges.len() {
+        for u in pieces.of_track[edge].iter().filter(|u| wanted.contains(&u.segment)) {
+            places.entry(u.segment).or_insert((edge, u.s));
+        }
+    }
+    let edges: BTreeSet<usize> = places.values().map(|p| p.0).collect();
+    let edges: Vec<usize> = edges.into_iter().collect();
+    let (model, tolerance) = (&scan.input.model, scan.input.tolerance);
+    let ways = par::map(edges.len(), |n| model.edge_chain(scan.layout.edges[edges[n]], scan.input.network, tolerance).ok().flatten());
+    let ways: BTreeMap<usize, Chain> = edges.into_iter().zip(ways).filter_map(|(edge, way)| Some((edge, way?))).collect();
+    let surfaces: BTreeSet<SurfaceId> = tasks.iter().map(|t| scan.surface_of(t.face)).collect();
+    let surfaces: Vec<SurfaceId> = surfaces.into_iter().collect();
+    let bordered = par::map(surfaces.len(), |n| with_loops(&model.surfaces[surfaces[n].index()].surface, tolerance).ok());
+    let surfaces: BTreeMap<SurfaceId, Surface> = surfaces.into_iter().zip(bordered).filter_map(|(id, s)| Some((id, s?))).collect();
+    // An edge meets a surface once, whatever the segments of the one and the faces of the other.
+    let pair = |task: &Task| Some((places.get(&task.segment)?.0, scan.surface_of(task.face)));
+    let pairs: BTreeSet<(usize, SurfaceId)> = tasks.iter().filter_map(pair).collect();
+    let pairs: Vec<(usize, SurfaceId)> = pairs.into_iter().collect();
+    let found = par::map(pairs.len(), |n| {
+        let (way, surface) = (ways.get(&pairs[n].0)?, surfaces.get(&pairs[n].1)?);
+        with_curve(way, std::slice::from_ref(surface), tolerance).ok()
+    });
+    let found: BTreeMap<(usize, SurfaceId), Vec<SurfaceMeeting>> =
+        pairs.into_iter().zip(found).filter_map(|(pair, found)| Some((pair, found?))).collect();
+    let of = |task: &Task| {
+        let place = places.get(&task.segment)?;
+        let way = ways.get(&place.0)?;
+        Some(on_segment(scan, *task, (*place, way), found.get(&(place.0, scan.surface_of(task.face)))?))
+    };
+    tasks.iter().map(of).collect()
+}
+
+/// What of the meetings of an edge lies on one of its segments, off the nodes that the face has itself.
+fn on_segment(scan: &Scan, task: Task, ((edge, (first, last)), way): (Place, &Chain), found: &[SurfaceMeeting]) -> Met {
+    /// Borders that were glued may go through each other so many times as far from their ends as they are apart.
+    const GLUED: f64 = 4.0;
+    /// What touches a face at its end is within the tolerance of it for so many times the root of tolerance times length.
+    const TOUCH: f64 = 8.0;
+    let along = &scan.along[task.segment];
+    let near = GLUED * scan.layout.faces[task.face].near.max(scan.input.tolerance.point);
+    let track = &scan.layout.parts[edge].track;
+    let (start, length) = (track.point(0.0), way.length());
+    let against = way.start().distance(start) > way.end().distance(start);
+    let s = |f: f64| if against { (1.0 - f) * length } else { f * length };
+    let known = [along[0], along[along.len() - 1]].map(|n| scan.has(n, task.face).then(|| scan.p(n)));
+    let is_known = |p: DVec3| known.iter().flatten().any(|k| k.distance(p) <= near);
+    let slow = TOUCH * (scan.input.tolerance.point * length).sqrt();
+    let mut met = Met { known: (known, slow), ..Met::default() };
+    for m in found {
+        let here = s(m.f);
+        match m.shared_to.map(s) {
+            Some(there) => {
+                let (low, high) = (here.min(there).max(first), here.max(there).min(last));
+                if high - low > near {
+                    met.runs.push((track.point(0.5 * (low + high)), high - low));
+                }
+            }
+            None if here < first - near || here > last + near || is_known(m.point) => {}
+            None => met.points.push((m.point, here > first + near && here < last - near)),
+        }
+    }
+    met
+}

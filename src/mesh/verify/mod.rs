@@ -1,0 +1,9 @@
+//! What must hold of every mesh before it is handed on.
+
+pub mod contact_bodies;
+pub mod contact_edges;
+pub mod contact_leaves;
+pub mod contacts;
+pub mod extent;
+pub mod face_check;
+pub mod turned;
