@@ -7,7 +7,7 @@ use std::process::Command;
 
 use glam::{DVec2, DVec3};
 use lofting::mesh::Mesh;
-use lofting::mesh::data::face_geometry::Shape;
+use lofting::mesh::data::face_geometry::FaceNodes;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::run::Outcome;
@@ -71,7 +71,7 @@ fn written_limit(script: &Path, mesh: &str) -> Option<f64> {
 fn sampled(mesh: &Mesh) -> f64 {
     let mut worst = 0.0_f64;
     for (geometry, face) in mesh.geometries.0.iter().zip(&mesh.faces) {
-        let Shape::Free(free) = &geometry.shape else { panic!("{} is not made freely", mesh.name) };
+        let FaceNodes::Free(free, _) = &geometry.nodes else { panic!("{} is not made freely", mesh.name) };
         let own = &mesh.triangles[face.triangles.start as usize..face.triangles.end as usize];
         for (places, nodes) in free.triangles.iter().zip(own) {
             let uv = places.map(|n| DVec2::from(free.uv[n as usize]));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::mesh::Mesh;
-use lofting::mesh::data::face_geometry::{FaceGeometry, Shape};
+use lofting::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use lofting::mesh::mapped::grid::Grid;
 use lofting::session::live::{Depth, Live};
 
@@ -49,7 +49,7 @@ fn under_limits(shape: &str) -> Vec<Arc<Mesh>> {
 
 /// Cells along u and along v.
 fn cells(geometry: &FaceGeometry) -> [usize; 2] {
-    let Shape::Grid(grid) = &geometry.shape else { panic!("not mapped") };
+    let FaceNodes::Grid(grid, _) = &geometry.nodes else { panic!("not mapped") };
     let (nu, nv) = grid.size();
     [nu, nv]
 }

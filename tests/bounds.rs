@@ -6,8 +6,7 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_through, circle, ellipse, helix, line, offset, polyline, spline};
 use lofting::geometry::{Curve, Ends, Motion, Spline, enclosure};
-use lofting::mesh::data::face_geometry::Frame;
-use lofting::mesh::data::face_geometry::{FaceGeometry, Shape};
+use lofting::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use lofting::mesh::deviation::sides::distance;
 use lofting::mesh::deviation::triangle::chord;
 use lofting::mesh::pipeline::build::build as mesh_of;
@@ -510,18 +509,17 @@ fn meshed(surface: &Surface, chord: f64, elements: Elements) -> Mesh {
 /// Triangles of a face, a quad as two, by the (u, v) and points of their corners.
 fn flat_triangles(mesh: &Mesh, face: &FaceRange, geometry: &FaceGeometry) -> Vec<[((f64, f64), DVec3); 3]> {
     let mut places: Vec<(u32, (f64, f64))> = Vec::new();
-    match (&geometry.shape, &geometry.frame) {
-        (Shape::Grid(grid), Frame::Grid(frame)) => {
+    match &geometry.nodes {
+        FaceNodes::Grid(grid, frame) => {
             let (nu, nv) = grid.size();
             (0..=nv).for_each(|j| (0..=nu).for_each(|i| places.push((frame.node(i, j), grid.uv(i, j)))));
         }
-        (Shape::Lattice(lattice), Frame::Lattice(frame)) => {
+        FaceNodes::Lattice(lattice, frame) => {
             let n = lattice.size();
             (0..=n).for_each(|j| (0..=n - j).for_each(|i| places.push((frame.node(i, j), lattice.uv(i, j)))));
         }
-        (Shape::Blocks(blocks), Frame::Blocks(ids)) => places.extend(ids.iter().copied().zip(blocks.uv.iter().copied())),
-        (Shape::Free(free), Frame::Free(ids)) => places.extend(ids.iter().copied().zip(free.uv.iter().copied())),
-        _ => panic!("another geometry"),
+        FaceNodes::Blocks(blocks, ids) => places.extend(ids.iter().copied().zip(blocks.uv.iter().copied())),
+        FaceNodes::Free(free, ids) => places.extend(ids.iter().copied().zip(free.uv.iter().copied())),
     }
     let own = |n: u32| places.iter().filter(move |p| p.0 == n).map(|p| p.1).collect::<Vec<_>>();
     let (triangles, quads) =

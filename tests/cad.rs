@@ -12,7 +12,7 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::io::iges::{Options, open};
-use lofting::mesh::data::face_geometry::Shape;
+use lofting::mesh::data::face_geometry::FaceNodes;
 use lofting::mesh::pipeline::build::build;
 use lofting::mesh::{Input, Mesh, Plan};
 use lofting::model::topology::Named;
@@ -139,7 +139,7 @@ fn census(mesh: &Mesh, near: f64) -> Census {
 fn turned(mesh: &Mesh) -> usize {
     let mut count = 0;
     for geometry in &mesh.geometries.0 {
-        let (Shape::Free(free), lofting::mesh::data::face_geometry::Frame::Free(ids)) = (&geometry.shape, &geometry.frame) else {
+        let FaceNodes::Free(free, ids) = &geometry.nodes else {
             continue;
         };
         for t in &free.triangles {

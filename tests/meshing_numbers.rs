@@ -9,7 +9,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::line;
 use lofting::mesh::Mesh;
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot, UniformSize};
-use lofting::mesh::data::face_geometry::Shape;
+use lofting::mesh::data::face_geometry::FaceNodes;
 use lofting::mesh::quad::net::Net;
 use lofting::mesh::quad::smooth::Smoother;
 use lofting::network::Chain;
@@ -360,7 +360,7 @@ fn random(state: &mut u64) -> f64 {
 fn turn(mesh: &Mesh) -> f64 {
     let mut most = 0.0_f64;
     for geometry in &mesh.geometries.0 {
-        let Shape::Grid(grid) = &geometry.shape else { panic!("not mapped") };
+        let FaceNodes::Grid(grid, _) = &geometry.nodes else { panic!("not mapped") };
         let (nu, nv) = grid.size();
         for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (i, j))) {
             let (a, c) = (grid.uv(i, j), grid.uv(i + 1, j + 1));

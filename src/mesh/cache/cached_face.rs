@@ -12,7 +12,7 @@ use crate::mesh::chart::face_border::FaceBorder;
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
-use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::data::face_mesh::FreeInside;
 use crate::mesh::request::decider::{Decider, Tally, Why};
 use crate::mesh::request::sources::{Body, Source, Sources};
 
@@ -20,12 +20,12 @@ use crate::mesh::request::sources::{Body, Source, Sources};
 #[derive(Clone, Debug, PartialEq)]
 pub struct CachedFace {
     free: Free,
-    made: Vec<DVec3>,
+    points: Vec<DVec3>,
     deciders: Vec<Decider>,
     tally: Option<Tally>,
 }
 
-crate::plain!(CachedFace { free, made, deciders, tally });
+crate::plain!(CachedFace { free, points, deciders, tally });
 crate::plain!(Decider { why, nodes, at });
 crate::plain!(Tally { whole, crossed, corners, agree });
 crate::content!(Source { body, radius, size, steep, tag });
@@ -100,13 +100,13 @@ type Parts = (Free, Vec<DVec3>, Vec<Decider>, Option<Tally>);
 
 impl CachedFace {
     /// Of a face that was made.
-    pub fn of(ready: &FaceMesh, free: &Free) -> Self {
-        Self { free: free.clone(), made: ready.made.clone(), deciders: ready.deciders.clone(), tally: ready.tally }
+    pub fn of(free: &Free, inside: &FreeInside) -> Self {
+        Self { free: free.clone(), points: inside.points.clone(), deciders: inside.deciders.clone(), tally: inside.tally }
     }
 
     /// Its parts for a border of so many nodes; `None` where it is of another one.
     pub fn parts(&self, border: usize) -> Option<Parts> {
-        (self.free.border == border).then(|| (self.free.clone(), self.made.clone(), self.deciders.clone(), self.tally))
+        (self.free.border == border).then(|| (self.free.clone(), self.points.clone(), self.deciders.clone(), self.tally))
     }
 
     /// As bytes.
@@ -119,7 +119,7 @@ impl CachedFace {
         let taken: Self = bytes::read(from)?;
         let nodes = taken.free.uv.len();
         let known = |n: &u32| (*n as usize) < nodes;
-        let sound = taken.free.border + taken.made.len() == nodes
+        let sound = taken.free.border + taken.points.len() == nodes
             && taken.free.triangles.iter().flatten().all(known)
             && taken.free.quads.iter().flatten().all(known);
         sound.then_some(taken)

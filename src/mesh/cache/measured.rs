@@ -5,7 +5,7 @@ use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::cache::reuse::Reuse;
 use crate::mesh::data::face_geometry::FaceGeometry;
-use crate::mesh::data::face_geometry::Frame;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::mesh::{FaceRange, Mesh};
 use crate::mesh::deviation::measure;
 
@@ -29,10 +29,11 @@ impl Mesh {
 
     /// Everything that the chord error of a face follows from, by content.
     fn face_key(&self, face: &FaceRange, geometry: &FaceGeometry, tolerance: &Tolerance) -> Digest {
-        let FaceGeometry { surface, shape, frame, flipped: _ } = geometry;
+        let FaceGeometry { surface, nodes, flipped: _ } = geometry;
         let mut to = StableHasher::new("chord").with(surface);
-        (shape, tolerance).tell(&mut to);
-        if let Frame::Grid(frame) = frame {
+        nodes.hash_places(&mut to);
+        tolerance.tell(&mut to);
+        if let FaceNodes::Grid(_, frame) = nodes {
             frame.poles.tell(&mut to);
         }
         // Elements follow each other as the shape has them, so their corners tell where its nodes are and which diagonals were taken.

@@ -3,13 +3,12 @@
 use crate::base::bytes::{Bytes, Plain, Put};
 use crate::base::fault::Cure;
 use crate::mesh::border::touch::{Kind, Touch};
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometries, FaceGeometry, Free, Shape};
+use crate::mesh::data::face_geometry::{FaceGeometries, FaceGeometry, FaceNodes, Free};
 use crate::mesh::data::mesh::{FaceRange, Group, Mesh};
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::grid::Grid;
 use crate::mesh::mapped::trilateral::Lattice;
-use crate::mesh::mapped::trilateral::{Blocks, LatticeFrame};
+use crate::mesh::mapped::trilateral::{Blocks, LatticeIds};
 use crate::mesh::report::built::Built;
 use crate::mesh::report::explain::Explanation;
 use crate::mesh::size::remark::Remark;
@@ -21,63 +20,38 @@ crate::plain!(Grid { u, v, sides, straight });
 crate::plain!(Lattice { sides });
 crate::plain!(Free { uv, border, triangles, quads });
 crate::plain!(Blocks { uv, inner, quads, sides });
-crate::plain!(grid::Frame { sides, poles, first });
-crate::plain!(LatticeFrame { sides, first });
+crate::plain!(grid::GridIds { sides, poles, first });
+crate::plain!(LatticeIds { sides, first });
 
 /// A geometry without its surface, which is told by its place in a list.
 #[derive(Debug)]
-struct Sheet {
+struct PlacedFace {
     surface: u32,
-    shape: Shape,
-    frame: Frame,
+    nodes: FaceNodes,
     flipped: bool,
 }
 
-crate::plain!(Sheet { surface, shape, frame, flipped });
+crate::plain!(PlacedFace { surface, nodes, flipped });
 
-impl Put for Shape {
+impl Put for FaceNodes {
     fn put(&self, to: &mut Vec<u8>) {
         match self {
-            Self::Grid(grid) => (0u8, grid).put(to),
-            Self::Lattice(lattice) => (1u8, lattice).put(to),
-            Self::Blocks(blocks) => (2u8, blocks).put(to),
-            Self::Free(free) => (3u8, free).put(to),
+            Self::Grid(grid, ids) => (0u8, (grid, ids)).put(to),
+            Self::Lattice(lattice, ids) => (1u8, (lattice, ids)).put(to),
+            Self::Blocks(blocks, ids) => (2u8, (blocks, ids)).put(to),
+            Self::Free(free, ids) => (3u8, (free, ids)).put(to),
         }
     }
 }
 
-impl Plain for Shape {
+impl Plain for FaceNodes {
     const LEAST: usize = 1;
     fn take(from: &mut Bytes) -> Option<Self> {
         Some(match u8::take(from)? {
-            0 => Self::Grid(Plain::take(from)?),
-            1 => Self::Lattice(Plain::take(from)?),
-            2 => Self::Blocks(Plain::take(from)?),
-            3 => Self::Free(Plain::take(from)?),
-            _ => return None,
-        })
-    }
-}
-
-impl Put for Frame {
-    fn put(&self, to: &mut Vec<u8>) {
-        match self {
-            Self::Grid(frame) => (0u8, frame).put(to),
-            Self::Lattice(frame) => (1u8, frame).put(to),
-            Self::Blocks(places) => (2u8, places).put(to),
-            Self::Free(places) => (3u8, places).put(to),
-        }
-    }
-}
-
-impl Plain for Frame {
-    const LEAST: usize = 1;
-    fn take(from: &mut Bytes) -> Option<Self> {
-        Some(match u8::take(from)? {
-            0 => Self::Grid(Plain::take(from)?),
-            1 => Self::Lattice(Plain::take(from)?),
-            2 => Self::Blocks(Plain::take(from)?),
-            3 => Self::Free(Plain::take(from)?),
+            0 => Self::Grid(Plain::take(from)?, Plain::take(from)?),
+            1 => Self::Lattice(Plain::take(from)?, Plain::take(from)?),
+            2 => Self::Blocks(Plain::take(from)?, Plain::take(from)?),
+            3 => Self::Free(Plain::take(from)?, Plain::take(from)?),
             _ => return None,
         })
     }
@@ -175,8 +149,8 @@ pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
     geometries.0.len().put(&mut to);
     for geometry in &geometries.0 {
         let surface = surfaces.iter().position(|s| s.is(&geometry.surface))? as u32;
-        let FaceGeometry { surface: _, shape, frame, flipped } = geometry;
-        (surface, (shape, (frame, flipped))).put(&mut to);
+        let FaceGeometry { surface: _, nodes, flipped } = geometry;
+        (surface, (nodes, flipped)).put(&mut to);
     }
     Some(to)
 }
@@ -192,9 +166,9 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     let (line_mids, (triangle_mids, quad_mids)): Mids = Plain::take(&mut from)?;
     let (faces, groups) = Plain::take(&mut from)?;
     let (said, remarks) = Plain::take(&mut from)?;
-    let sheets: Vec<Sheet> = Plain::take(&mut from)?;
-    let geometries = sheets.into_iter().map(|Sheet { surface, shape, frame, flipped }| {
-        Some(FaceGeometry { surface: (*surfaces.get(surface as usize)?).clone(), shape, frame, flipped })
+    let placed: Vec<PlacedFace> = Plain::take(&mut from)?;
+    let geometries = placed.into_iter().map(|PlacedFace { surface, nodes, flipped }| {
+        Some(FaceGeometry { surface: (*surfaces.get(surface as usize)?).clone(), nodes, flipped })
     });
     let geometries = FaceGeometries(geometries.collect::<Option<_>>()?);
     let mesh = Mesh {
@@ -241,19 +215,19 @@ fn is_sound(mesh: &Mesh) -> bool {
 fn fits(geometry: &FaceGeometry, nodes: u32) -> bool {
     let node = |ids: &[u32]| ids.iter().all(|n| *n < nodes);
     let last = |first: u32, inner: u64| u64::from(first) + inner <= u64::from(nodes);
-    match (&geometry.shape, &geometry.frame) {
-        (Shape::Grid(grid), Frame::Grid(frame)) => {
+    match &geometry.nodes {
+        FaceNodes::Grid(grid, frame) => {
             let same =
                 (0..4).all(|k| frame.sides[k].len() == grid.sides[k].len() && frame.sides[k].len() == frame.sides[(k + 2) % 4].len());
             same && frame.sides.iter().all(|side| side.len() > 1 && node(side)) && last(frame.first, frame.inner())
         }
-        (Shape::Lattice(lattice), Frame::Lattice(frame)) => {
+        FaceNodes::Lattice(lattice, frame) => {
             let n = frame.sides[0].len();
             let same = (0..3).all(|k| frame.sides[k].len() == n && lattice.sides[k].len() == n);
-            let inner = || LatticeFrame::inner(n - 1).count() as u64;
+            let inner = || LatticeIds::inner(n - 1).count() as u64;
             same && n > 1 && frame.sides.iter().all(|side| node(side)) && last(frame.first, inner())
         }
-        (Shape::Blocks(blocks), Frame::Blocks(places)) => {
+        FaceNodes::Blocks(blocks, places) => {
             let own = |ids: &[u32]| ids.iter().all(|n| (*n as usize) < blocks.uv.len());
             places.len() == blocks.uv.len()
                 && node(places)
@@ -261,12 +235,11 @@ fn fits(geometry: &FaceGeometry, nodes: u32) -> bool {
                 && blocks.quads.iter().all(|quad| own(quad))
                 && blocks.sides.iter().all(|side| own(side))
         }
-        (Shape::Free(free), Frame::Free(places)) => {
+        FaceNodes::Free(free, places) => {
             places.len() == free.uv.len()
                 && node(places)
                 && free.border <= places.len()
                 && free.triangles.iter().flatten().chain(free.quads.iter().flatten()).all(|n| (*n as usize) < free.uv.len())
         }
-        _ => false,
     }
 }

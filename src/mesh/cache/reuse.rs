@@ -13,8 +13,7 @@ use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::base::fault::Result;
 use crate::base::work;
 use crate::mesh::cache::cached_face::CachedFace;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{Free, Shape};
+use crate::mesh::data::face_geometry::{FaceNodes, Free};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::divide::verdict::Verdict;
@@ -201,15 +200,16 @@ impl CacheView<'_> {
     /// nodes on borders.
     pub fn face(&self, ready: &FaceMesh, border: &[DVec3], even: f64) -> Digest {
         let mut to = self.on("face", ready.surface);
-        (&ready.geometry.shape, ready.elements, even).tell(&mut to);
+        ready.geometry.nodes.hash_places(&mut to);
+        (ready.elements, even).tell(&mut to);
         let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).tell(&mut to));
-        match &ready.geometry.frame {
-            Frame::Grid(frame) => frame.sides.iter().for_each(|side| points(side)),
-            Frame::Lattice(frame) => frame.sides.iter().for_each(|side| points(side)),
-            Frame::Blocks(places) => points(&places[ready.inner as usize..]),
-            Frame::Free(places) => points(places),
+        match &ready.geometry.nodes {
+            FaceNodes::Grid(_, frame) => frame.sides.iter().for_each(|side| points(side)),
+            FaceNodes::Lattice(_, frame) => frame.sides.iter().for_each(|side| points(side)),
+            FaceNodes::Blocks(_, places) => points(&places[ready.inner as usize..]),
+            FaceNodes::Free(_, places) => points(places),
         }
-        if let Frame::Grid(frame) = &ready.geometry.frame {
+        if let FaceNodes::Grid(_, frame) = &ready.geometry.nodes {
             frame.poles.tell(&mut to);
         }
         to.finish()
@@ -223,13 +223,14 @@ crate::content!(Blocks { uv, inner, quads, sides });
 crate::content!(Limits { chord, angle, near });
 crate::content!(RowDemand { size, least, length, bend });
 
-impl StableHash for Shape {
-    fn tell(&self, to: &mut StableHasher) {
+impl FaceNodes {
+    /// Hashes where the nodes lie, whatever their ids.
+    pub fn hash_places(&self, to: &mut StableHasher) {
         match self {
-            Self::Grid(grid) => (0u8, grid).tell(to),
-            Self::Lattice(lattice) => (1u8, lattice).tell(to),
-            Self::Blocks(blocks) => (2u8, blocks).tell(to),
-            Self::Free(free) => (3u8, free).tell(to),
+            Self::Grid(grid, _) => (0u8, grid).tell(to),
+            Self::Lattice(lattice, _) => (1u8, lattice).tell(to),
+            Self::Blocks(blocks, _) => (2u8, blocks).tell(to),
+            Self::Free(free, _) => (3u8, free).tell(to),
         }
     }
 }

@@ -6,9 +6,8 @@ use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::face_border::FaceBorder;
 use crate::mesh::chart::face_border::border;
 use crate::mesh::chart::outline::Outline;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometry, Free, Shape};
-use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes, Free};
+use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::size_requests::SizeRequests;
 use glam::DVec3;
@@ -46,33 +45,24 @@ pub(crate) fn outlined(made: &FaceInput, face: &Face) -> Option<(FaceBorder, Cha
     Some((border, chart, outline))
 }
 
-/// A face of these places and elements; `ids` and edges of its loops.
-pub(crate) fn prepared(
-    made: &FaceInput,
-    face: &Face,
-    free: Free,
-    (mut ids, around): (Vec<u32>, Vec<[u32; 2]>),
-    inner: Vec<DVec3>,
-) -> FaceMesh {
+/// A face of these places and elements, with the ids of the border nodes.
+pub(crate) fn prepared(made: &FaceInput, face: &Face, free: Free, mut ids: Vec<u32>, inside: FreeInside) -> FaceMesh {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let (triangles, quads) = (free.triangles.len() as u64, free.quads.len() as u64);
     ids.resize(free.uv.len(), 0);
     FaceMesh {
         surface: face.surface,
-        geometry: FaceGeometry { surface: surface.clone(), shape: Shape::Free(free), frame: Frame::Free(ids), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Free(free, ids), flipped: face.flipped },
         elements: face.elements,
         first: 0,
-        inner: inner.len() as u64,
+        inner: inside.points.len() as u64,
         triangles,
         quads,
-        made: inner,
-        around,
-        deciders: Vec::new(),
-        tally: None,
+        inside: Some(inside),
     }
 }
 
 /// A face without anything in it, for as long as only its border matters.
 pub fn empty(made: &FaceInput, face: &Face) -> FaceMesh {
-    prepared(made, face, Free::default(), (Vec::new(), Vec::new()), Vec::new())
+    prepared(made, face, Free::default(), Vec::new(), FreeInside::default())
 }

@@ -1,10 +1,7 @@
-//! Where the nodes of a mapped face lie in (u, v): a grid between four divided sides, or a lattice between three.
+//! Faces of a mesh on their surfaces: where their nodes lie, and which nodes of the mesh they are.
 
-use crate::mesh::mapped::grid;
-use crate::mesh::mapped::grid::Grid;
-use crate::mesh::mapped::trilateral::Lattice;
-use crate::mesh::mapped::trilateral::LatticeFrame;
-
+use crate::mesh::mapped::grid::{Grid, GridIds};
+use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds, lattice_points};
 use crate::surface::Surface;
 
 /// FaceGeometries of the faces of a mesh, in the order of its faces; they ride along for measuring and never decide whether two
@@ -23,10 +20,8 @@ impl PartialEq for FaceGeometries {
 pub struct FaceGeometry {
     /// The surface.
     pub surface: Surface,
-    /// Where its nodes lie.
-    pub shape: Shape,
-    /// Which nodes of the mesh they are.
-    pub frame: Frame,
+    /// Where its nodes lie, and which nodes of the mesh they are.
+    pub nodes: FaceNodes,
     /// The other side is up.
     pub flipped: bool,
 }
@@ -34,22 +29,22 @@ pub struct FaceGeometry {
 impl FaceGeometry {
     /// The same face in a mesh where its nodes come `by` later.
     pub fn shifted(mut self, by: u32) -> Self {
-        self.frame.shift(by);
+        self.nodes.shift(by);
         self
     }
 }
 
-/// How a face is divided.
+/// How a face is divided: where its nodes lie in (u, v), with their ids in the mesh.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum FaceNodes {
     /// One grid.
-    Grid(Grid),
+    Grid(Grid, GridIds),
     /// One lattice of triangles.
-    Lattice(Lattice),
-    /// Three grids of quads that meet inside a triangle, by the (u, v) of their nodes.
-    Blocks(crate::mesh::mapped::trilateral::Blocks),
-    /// Elements that no map gave, by the (u, v) of their nodes.
-    Free(Free),
+    Lattice(Lattice, LatticeIds),
+    /// Three grids of quads that meet inside a triangle; ids by place in their list of (u, v).
+    Blocks(Blocks, Vec<u32>),
+    /// Elements that no map gave; ids by place in their list of (u, v), border first.
+    Free(Free, Vec<u32>),
 }
 
 /// Triangles and quads over (u, v): nodes of the border first, then inner ones.
@@ -65,60 +60,57 @@ pub struct Free {
     pub quads: Vec<[u32; 4]>,
 }
 
-/// Global node ids of a face.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Frame {
-    /// Of a grid.
-    Grid(grid::Frame),
-    /// Of a lattice.
-    Lattice(LatticeFrame),
-    /// Of three blocks: ids by place among the blocks' nodes.
-    Blocks(Vec<u32>),
-    /// Of a free face: ids by place, border first.
-    Free(Vec<u32>),
-}
-
-impl Frame {
+impl FaceNodes {
     /// Moves all ids up.
     pub fn shift(&mut self, by: u32) {
         let lists: Vec<&mut Vec<u32>> = match self {
-            Self::Grid(frame) => {
-                frame.first += by;
-                frame.sides.iter_mut().collect()
+            Self::Grid(_, ids) => {
+                ids.first += by;
+                ids.sides.iter_mut().collect()
             }
-            Self::Lattice(frame) => {
-                frame.first += by;
-                frame.sides.iter_mut().collect()
+            Self::Lattice(_, ids) => {
+                ids.first += by;
+                ids.sides.iter_mut().collect()
             }
-            Self::Blocks(places) | Self::Free(places) => vec![places],
+            Self::Blocks(_, ids) | Self::Free(_, ids) => vec![ids],
         };
         lists.into_iter().flatten().for_each(|id| *id += by);
     }
-}
 
-/// Cells of a lattice, of blocks or of a free face by places in their lists of (u, v).
-pub fn each_cell(shape: &Shape, mut visit: impl FnMut(&[usize])) {
-    match shape {
-        Shape::Lattice(lattice) => {
-            LatticeFrame::triangles(lattice.size()).for_each(|t| visit(&t.map(|(i, j)| lattice.index(i, j))));
+    /// (u, v) of the nodes in a list; none of a grid, whose rows and columns tell.
+    pub fn listed_uv(&self) -> Vec<(f64, f64)> {
+        match self {
+            Self::Grid(..) => Vec::new(),
+            Self::Lattice(lattice, _) => lattice_points(lattice),
+            Self::Blocks(blocks, _) => blocks.uv.clone(),
+            Self::Free(free, _) => free.uv.clone(),
         }
-        Shape::Blocks(blocks) => blocks.quads.iter().for_each(|q| visit(&q.map(|n| n as usize))),
-        Shape::Free(free) => {
-            free.triangles.iter().for_each(|t| visit(&t.map(|n| n as usize)));
-            free.quads.iter().for_each(|q| visit(&q.map(|n| n as usize)));
-        }
-        Shape::Grid(_) => {}
     }
-}
 
-/// Global ids by place in the list of (u, v).
-pub fn ids(shape: &Shape, frame: &Frame) -> Vec<u32> {
-    match (shape, frame) {
-        (Shape::Lattice(lattice), Frame::Lattice(frame)) => {
-            let n = lattice.size();
-            (0..=n).flat_map(|j| (0..=n - j).map(move |i| (i, j))).map(|(i, j)| frame.node(i, j)).collect()
+    /// Ids by place in the list of (u, v); none of a grid.
+    pub fn listed_ids(&self) -> Vec<u32> {
+        match self {
+            Self::Grid(..) => Vec::new(),
+            Self::Lattice(lattice, ids) => {
+                let n = lattice.size();
+                (0..=n).flat_map(|j| (0..=n - j).map(move |i| (i, j))).map(|(i, j)| ids.node(i, j)).collect()
+            }
+            Self::Blocks(_, ids) | Self::Free(_, ids) => ids.clone(),
         }
-        (_, Frame::Blocks(places) | Frame::Free(places)) => places.clone(),
-        _ => Vec::new(),
+    }
+
+    /// Visits the cells by places in the list of (u, v); none of a grid.
+    pub fn each_listed_cell(&self, mut visit: impl FnMut(&[usize])) {
+        match self {
+            Self::Grid(..) => {}
+            Self::Lattice(lattice, _) => {
+                LatticeIds::triangles(lattice.size()).for_each(|t| visit(&t.map(|(i, j)| lattice.index(i, j))));
+            }
+            Self::Blocks(blocks, _) => blocks.quads.iter().for_each(|q| visit(&q.map(|n| n as usize))),
+            Self::Free(free, _) => {
+                free.triangles.iter().for_each(|t| visit(&t.map(|n| n as usize)));
+                free.quads.iter().for_each(|q| visit(&q.map(|n| n as usize)));
+            }
+        }
     }
 }

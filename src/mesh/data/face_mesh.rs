@@ -1,13 +1,12 @@
 //! Faces ready to be filled: their geometries, the ids of their border nodes, and how many nodes and elements they make.
 
-use crate::mesh::data::face_geometry::Frame;
 use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::mesh::data::face_geometry::{FaceGeometry, Shape};
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::mapped::grid;
-use crate::mesh::mapped::trilateral::LatticeFrame;
+use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::decider::{Decider, Tally};
 use crate::mesh::request::plan::Elements;
 use crate::model::SurfaceId;
@@ -30,11 +29,18 @@ pub struct FaceMesh {
     pub triangles: u64,
     /// Number of quads.
     pub quads: u64,
-    /// Points of the inner nodes, where they are not made from the geometry alone.
-    pub made: Vec<DVec3>,
-    /// Edges of the loops by place in the geometry, with the face on their left; of free faces.
-    pub around: Vec<[u32; 2]>,
-    /// What decided the sizes inside; of free faces.
+    /// What is known of a free face beside its elements.
+    pub inside: Option<FreeInside>,
+}
+
+/// What a free face has beside its elements.
+#[derive(Clone, Debug, Default)]
+pub struct FreeInside {
+    /// Points of the inner nodes.
+    pub points: Vec<DVec3>,
+    /// Edges of the loops by place in the list of (u, v), with the face on their left.
+    pub loops: Vec<[u32; 2]>,
+    /// What decided the sizes inside.
     pub deciders: Vec<Decider>,
     /// Its cells between lines of constant u and v, where it was made of such.
     pub tally: Option<Tally>,
@@ -63,29 +69,29 @@ impl FaceMesh {
     /// Gives the inner nodes their ids.
     pub fn number(&mut self, first: u32) {
         self.first = first;
-        match &mut self.geometry.frame {
-            Frame::Grid(frame) => frame.first = first,
-            Frame::Lattice(frame) => frame.first = first,
-            Frame::Free(places) => {
+        match &mut self.geometry.nodes {
+            FaceNodes::Grid(_, frame) => frame.first = first,
+            FaceNodes::Lattice(_, frame) => frame.first = first,
+            FaceNodes::Free(_, places) => {
                 let border = places.len() - self.inner as usize;
                 places[border..].iter_mut().zip(first..).for_each(|(place, id)| *place = id);
             }
-            Frame::Blocks(places) => places[..self.inner as usize].iter_mut().zip(first..).for_each(|(place, id)| *place = id),
+            FaceNodes::Blocks(_, places) => places[..self.inner as usize].iter_mut().zip(first..).for_each(|(place, id)| *place = id),
         }
     }
 
     /// Points of the inner nodes.
     pub fn points(&self, surface: &Surface, out: &mut [DVec3]) {
-        match &self.geometry.shape {
-            Shape::Free(_) => out.copy_from_slice(&self.made),
-            Shape::Grid(grid) => grid.inner_points(surface, out),
-            Shape::Lattice(lattice) => {
-                for (p, (i, j)) in out.iter_mut().zip(LatticeFrame::inner(lattice.size())) {
+        match &self.geometry.nodes {
+            FaceNodes::Free(..) => out.copy_from_slice(self.inside.as_ref().map_or(&[], |inside| &inside.points)),
+            FaceNodes::Grid(grid, _) => grid.inner_points(surface, out),
+            FaceNodes::Lattice(lattice, _) => {
+                for (p, (i, j)) in out.iter_mut().zip(LatticeIds::inner(lattice.size())) {
                     let (u, v) = lattice.uv(i, j);
                     *p = surface.point(u, v);
                 }
             }
-            Shape::Blocks(blocks) => {
+            FaceNodes::Blocks(blocks, _) => {
                 for (p, (u, v)) in out.iter_mut().zip(&blocks.uv) {
                     *p = surface.point(*u, *v);
                 }
@@ -96,33 +102,31 @@ impl FaceMesh {
     /// For each cell of a grid of triangles whether its other diagonal is the better one. `node` gives points of border and
     /// inner nodes, `even` the distance below which both diagonals of a cell are as good.
     pub fn diagonals(&self, surface: &Surface, node: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
-        match (&self.geometry.frame, &self.geometry.shape) {
-            (Frame::Grid(frame), Shape::Grid(grid)) if self.elements == Elements::Triangles => {
-                grid::diagonals(grid, frame, surface, node, even)
-            }
+        match &self.geometry.nodes {
+            FaceNodes::Grid(grid, frame) if self.elements == Elements::Triangles => grid::diagonals(grid, frame, surface, node, even),
             _ => Vec::new(),
         }
     }
 
     /// Elements by global ids, with these [`Self::diagonals`].
     pub fn fill(&self, diagonals: &[bool], triangles: &mut [[u32; 3]], quads: &mut [[u32; 4]]) {
-        match (&self.geometry.frame, &self.geometry.shape) {
-            (Frame::Grid(frame), Shape::Grid(_)) => {
+        match &self.geometry.nodes {
+            FaceNodes::Grid(_, frame) => {
                 grid::fill(frame, self.elements, self.geometry.flipped, diagonals, triangles, quads);
             }
-            (Frame::Lattice(frame), Shape::Lattice(lattice)) => {
-                for (slot, t) in triangles.iter_mut().zip(LatticeFrame::triangles(lattice.size())) {
+            FaceNodes::Lattice(lattice, frame) => {
+                for (slot, t) in triangles.iter_mut().zip(LatticeIds::triangles(lattice.size())) {
                     let [a, b, c] = t.map(|(i, j)| frame.node(i, j));
                     *slot = if self.geometry.flipped { [a, c, b] } else { [a, b, c] };
                 }
             }
-            (Frame::Blocks(places), Shape::Blocks(blocks)) => {
+            FaceNodes::Blocks(blocks, places) => {
                 for (slot, q) in quads.iter_mut().zip(&blocks.quads) {
                     let [a, b, c, d] = q.map(|n| places[n as usize]);
                     *slot = if self.geometry.flipped { [a, d, c, b] } else { [a, b, c, d] };
                 }
             }
-            (Frame::Free(places), Shape::Free(free)) => {
+            FaceNodes::Free(free, places) => {
                 for (slot, t) in triangles.iter_mut().zip(&free.triangles) {
                     let [a, b, c] = t.map(|n| places[n as usize]);
                     *slot = if self.geometry.flipped { [a, c, b] } else { [a, b, c] };
@@ -132,7 +136,6 @@ impl FaceMesh {
                     *slot = if self.geometry.flipped { [a, d, c, b] } else { [a, b, c, d] };
                 }
             }
-            _ => {}
         }
     }
 }

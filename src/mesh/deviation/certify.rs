@@ -9,12 +9,9 @@ use glam::{DVec2, DVec3};
 use crate::base::par;
 use crate::base::range::Interval3;
 use crate::base::tolerance::EPSILON;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometry, Shape};
-use crate::mesh::data::face_geometry::{each_cell, ids};
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::triangle::over_sides;
 use crate::mesh::mapped::grid::Grid;
-use crate::mesh::mapped::trilateral::lattice_points;
 use crate::surface::quick::Bends;
 use crate::surface::{Domain, Enclosure, Surface, foot_within};
 
@@ -65,8 +62,8 @@ impl Proof {
 /// Whether all elements of a mapped face (a quad as its two triangles) keep a distance from its surface, model units;
 /// `triangles` are those of the face.
 pub fn of_face((surface, limit): (&Surface, f64), geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
-    match (&geometry.shape, &geometry.frame) {
-        (Shape::Grid(grid), Frame::Grid(frame)) => {
+    match &geometry.nodes {
+        FaceNodes::Grid(grid, frame) => {
             let field = Field { surface, u: grid.u, v: grid.v, slanted: false, limit };
             let columns = Columns::new(&field, grid);
             let starts = crate::mesh::mapped::grid::triangle_rows(frame, !triangles.is_empty());
@@ -76,13 +73,12 @@ pub fn of_face((surface, limit): (&Surface, f64), geometry: &FaceGeometry, trian
             });
             rows.into_iter().fold(Proof::Kept, Proof::and)
         }
-        (Shape::Free(_), _) => Proof::Kept,
-        (shape, frame) => {
+        FaceNodes::Free(..) => Proof::Kept,
+        listed => {
             let field = Field { surface, u: (0.0, 1.0), v: (0.0, 1.0), slanted: surface.domain() == Domain::Triangle, limit };
-            let uv = if let Shape::Blocks(blocks) = shape { blocks.uv.clone() } else { lattice(shape) };
-            let ids = ids(shape, frame);
+            let (uv, ids) = (listed.listed_uv(), listed.listed_ids());
             let mut halves = Vec::new();
-            each_cell(shape, |corners| {
+            listed.each_listed_cell(|corners| {
                 let own: &[[usize; 3]] = if corners.len() == 4 { &[[0, 1, 2], [0, 2, 3]] } else { &[[0, 1, 2]] };
                 halves.extend(own.iter().map(|half| half.map(|k| corners[k])));
             });
@@ -93,10 +89,6 @@ pub fn of_face((surface, limit): (&Surface, f64), geometry: &FaceGeometry, trian
             proofs.into_iter().fold(Proof::Kept, Proof::and)
         }
     }
-}
-
-fn lattice(shape: &Shape) -> Vec<(f64, f64)> {
-    if let Shape::Lattice(lattice) = shape { lattice_points(lattice) } else { Vec::new() }
 }
 
 /// What depends on u alone, for each column of a straight grid.
@@ -122,7 +114,7 @@ fn widened(low: f64, high: f64, (least, most): (f64, f64)) -> (f64, f64) {
 struct Row<'a> {
     field: &'a Field<'a>,
     grid: &'a Grid,
-    frame: &'a crate::mesh::mapped::grid::Frame,
+    frame: &'a crate::mesh::mapped::grid::GridIds,
     nodes: &'a [DVec3],
 }
 

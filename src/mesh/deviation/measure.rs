@@ -5,18 +5,15 @@
 //! square of the size). One more point is where the quadratic function is largest that has the same heights in the corners and in the middles
 //! of the sides. Of each row the triangles that seem farthest are followed to their feet.
 
-use crate::mesh::data::face_geometry::{each_cell, ids};
 use crate::mesh::mapped::grid::triangle_rows;
 use glam::{DVec2, DVec3};
 
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometry, Shape};
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::deviation::triangle::stationary;
 use crate::mesh::mapped::grid::Grid;
-use crate::mesh::mapped::trilateral::lattice_points;
 use crate::surface::quick::PowerForm;
 use crate::surface::{Domain, Surface, foot_within};
 
@@ -31,8 +28,8 @@ const FOLLOWED: usize = 64;
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
 pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
-    match (&geometry.shape, &geometry.frame) {
-        (Shape::Grid(grid), Frame::Grid(frame)) => {
+    match &geometry.nodes {
+        FaceNodes::Grid(grid, frame) => {
             let (nu, nv) = grid.size();
             let starts = triangle_rows(frame, !triangles.is_empty());
             let rows = par::map(nv, |j| {
@@ -42,17 +39,11 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
             });
             rows.into_iter().fold(0.0, f64::max)
         }
-        (shape, frame) if surface.is_flat() => from_plane(surface, &ids(shape, frame), nodes, tolerance),
-        (shape, frame) => {
-            let uv = match shape {
-                Shape::Lattice(lattice) => lattice_points(lattice),
-                Shape::Blocks(blocks) => blocks.uv.clone(),
-                Shape::Free(free) => free.uv.clone(),
-                Shape::Grid(_) => Vec::new(),
-            };
-            let ids = ids(shape, frame);
+        listed if surface.is_flat() => from_plane(surface, &listed.listed_ids(), nodes, tolerance),
+        listed => {
+            let (uv, ids) = (listed.listed_uv(), listed.listed_ids());
             let mut halves: Vec<[usize; 3]> = Vec::new();
-            each_cell(shape, |c| {
+            listed.each_listed_cell(|c| {
                 halves.push([c[0], c[1], c[2]]);
                 if let [a, _, b, d] = *c {
                     halves.push([a, b, d]);
@@ -86,7 +77,7 @@ fn from_plane(surface: &Surface, ids: &[u32], nodes: &[DVec3], tolerance: &Toler
 struct GridRow<'a> {
     surface: &'a Surface,
     grid: &'a Grid,
-    frame: &'a crate::mesh::mapped::grid::Frame,
+    frame: &'a crate::mesh::mapped::grid::GridIds,
     nodes: &'a [DVec3],
     tolerance: &'a Tolerance,
 }

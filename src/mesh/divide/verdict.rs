@@ -8,8 +8,7 @@ use crate::base::math::widest_angle;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::layout::Face;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::Shape;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::deviation::certify;
@@ -117,7 +116,7 @@ fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finishe
 
 /// Which directions bend enough to be worth refining: the larger one, and the other when it adds half as much.
 fn directions(finished: &Finished) -> [bool; 2] {
-    let Frame::Grid(frame) = &finished.ready.geometry.frame else {
+    let FaceNodes::Grid(_, frame) = &finished.ready.geometry.nodes else {
         return [true; 2];
     };
     let (nu, nv) = frame.size();
@@ -130,8 +129,8 @@ fn directions(finished: &Finished) -> [bool; 2] {
 fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict) {
     let most = finished.face.size.0 * SIZE_ROOM + near;
     let node = |id: u32| mesh.nodes[id as usize];
-    match &finished.ready.geometry.frame {
-        Frame::Grid(frame) => {
+    match &finished.ready.geometry.nodes {
+        FaceNodes::Grid(_, frame) => {
             let (nu, nv) = frame.size();
             let mut longest = [0.0_f64; 2];
             if !finished.written[0] {
@@ -153,10 +152,10 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
             }
             verdict.size = longest.map(|square| square.sqrt() / most);
         }
-        Frame::Lattice(frame) => {
+        FaceNodes::Lattice(_, frame) => {
             let n = frame.sides[0].len() - 1;
             let mut longest = 0.0_f64;
-            for (i, j) in crate::mesh::mapped::trilateral::LatticeFrame::inner(n) {
+            for (i, j) in crate::mesh::mapped::trilateral::LatticeIds::inner(n) {
                 let p = node(frame.node(i, j));
                 for q in [(i + 1, j), (i, j + 1), (i + 1, j - 1)] {
                     longest = longest.max(p.distance_squared(node(frame.node(q.0, q.1))));
@@ -165,9 +164,8 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
             verdict.size = [longest.sqrt() / most; 2];
         }
         // What is made freely keeps its limits by itself.
-        Frame::Free(_) => {}
-        Frame::Blocks(places) => {
-            let Shape::Blocks(blocks) = &finished.ready.geometry.shape else { return };
+        FaceNodes::Free(..) => {}
+        FaceNodes::Blocks(blocks, places) => {
             let inner = blocks.inner as u32;
             let mut longest = 0.0_f64;
             for q in &blocks.quads {
@@ -190,9 +188,9 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
 
 /// Turns of the normal over each cell: between its corners, and between places inside where cells are large.
 fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64), verdict: &mut Verdict) {
-    let worst = match &finished.ready.geometry.shape {
-        Shape::Grid(grid) => turns_of_grid(surface, grid),
-        shape => [0.0, 0.0, turn_of_cells(surface, shape)],
+    let worst = match &finished.ready.geometry.nodes {
+        FaceNodes::Grid(grid, _) => turns_of_grid(surface, grid),
+        nodes => [0.0, 0.0, turn_of_cells(surface, nodes)],
     };
     let most = worst.iter().fold(0.0_f64, |m, t| m.max(*t));
     let over = most / limit;
@@ -255,17 +253,12 @@ fn inside(grid: &Grid, (i, j): (usize, usize), (x, y): (f64, f64)) -> (f64, f64)
 }
 
 /// The largest turn over the cells of a lattice, of blocks or of a free face.
-fn turn_of_cells(surface: &Surface, shape: &Shape) -> f64 {
-    let uv = match shape {
-        Shape::Lattice(lattice) => crate::mesh::mapped::trilateral::lattice_points(lattice),
-        Shape::Blocks(blocks) => blocks.uv.clone(),
-        Shape::Free(free) => free.uv.clone(),
-        Shape::Grid(_) => Vec::new(),
-    };
+fn turn_of_cells(surface: &Surface, nodes: &FaceNodes) -> f64 {
+    let uv = nodes.listed_uv();
     let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
     let few = uv.len() < MAX_SAMPLES * MAX_SAMPLES;
     let mut worst = 0.0_f64;
-    crate::mesh::data::face_geometry::each_cell(shape, |corners| {
+    nodes.each_listed_cell(|corners| {
         let mut own: Vec<DVec3> = corners.iter().map(|c| normals[*c]).collect();
         if few {
             // The middles of sides and diagonals.

@@ -10,13 +10,12 @@ use crate::base::par;
 use crate::mesh::border::layout::Uneven;
 use crate::mesh::border::layout::{Face, FaceSide};
 use crate::mesh::chart::face_input::FaceInput;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::Shape;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::data::quality::least_angle;
 use crate::mesh::deviation::triangle;
-use crate::mesh::mapped::trilateral::LatticeFrame;
+use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::plan::{Elements, Method};
 use crate::mesh::size::border_spacing::FILLED;
@@ -109,7 +108,7 @@ pub fn is_twisted(ready: &FaceMesh, mesh: &Mesh) -> bool {
 
 /// How many elements of a free face are seen from their backs along the normals of the surface in their middles, and how many there are.
 fn backs(ready: &FaceMesh, mesh: &Mesh) -> (usize, usize) {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.geometry.shape, &ready.geometry.frame) else { return (0, 0) };
+    let FaceNodes::Free(free, ids) = &ready.geometry.nodes else { return (0, 0) };
     let surface = &ready.geometry.surface;
     let back = |corners: &[u32]| {
         let share = 1.0 / corners.len() as f64;
@@ -183,8 +182,8 @@ struct Cell {
 
 /// Some cells of a map.
 fn cells(ready: &FaceMesh) -> Option<Vec<Cell>> {
-    match (&ready.geometry.shape, &ready.geometry.frame) {
-        (Shape::Grid(grid), Frame::Grid(frame)) => {
+    match &ready.geometry.nodes {
+        FaceNodes::Grid(grid, frame) => {
             let (nu, nv) = grid.size();
             let node = |(i, j): (usize, usize)| (frame.node(i, j), grid.uv(i, j));
             let some = |n: usize| [0, n / 2, n - 1];
@@ -196,18 +195,18 @@ fn cells(ready: &FaceMesh) -> Option<Vec<Cell>> {
             };
             Some(at.map(cell).collect())
         }
-        (Shape::Lattice(lattice), Frame::Lattice(frame)) => {
+        FaceNodes::Lattice(lattice, frame) => {
             let n = lattice.size();
             let node = |(i, j): (usize, usize)| (frame.node(i, j), lattice.uv(i, j));
             let (third, half) = (n / 3, n / 2);
             let near = |(i, j): (usize, usize)| {
                 [(third, third), (0, 0), (n - 1, 0), (0, n - 1), (half, 0), (0, half), (n - 1 - half, half)].contains(&(i, j))
             };
-            let all = LatticeFrame::triangles(n).filter(|t| near(t[0]));
+            let all = LatticeIds::triangles(n).filter(|t| near(t[0]));
             let corner = |at: (usize, usize)| [(0, 0), (n - 1, 0), (0, n - 1)].contains(&at);
             Some(all.map(|t| Cell { nodes: t.map(node).to_vec(), corner: corner(t[0]) }).collect())
         }
-        (Shape::Blocks(blocks), Frame::Blocks(places)) => {
+        FaceNodes::Blocks(blocks, places) => {
             let node = |n: u32| (places[n as usize], blocks.uv[n as usize]);
             let count = blocks.quads.len();
             let apart = count.div_ceil(BLOCKS).max(1);
@@ -222,9 +221,9 @@ fn cells(ready: &FaceMesh) -> Option<Vec<Cell>> {
 
 /// The sharpest corner of a face: between the first steps of its sides; at a pole all round it.
 fn corners(view: &View, face: &Face, ready: &FaceMesh) -> f64 {
-    let Frame::Grid(frame) = &ready.geometry.frame else {
-        let sides: Vec<&[u32]> = match &ready.geometry.frame {
-            Frame::Lattice(frame) => frame.sides.iter().map(Vec::as_slice).collect(),
+    let FaceNodes::Grid(_, frame) = &ready.geometry.nodes else {
+        let sides: Vec<&[u32]> = match &ready.geometry.nodes {
+            FaceNodes::Lattice(_, frame) => frame.sides.iter().map(Vec::as_slice).collect(),
             _ => return least_of_blocks(view, face, ready),
         };
         let ends = [(sides[0], false, sides[2], false), (sides[0], true, sides[1], false), (sides[1], true, sides[2], true)];
@@ -242,7 +241,7 @@ fn corners(view: &View, face: &Face, ready: &FaceMesh) -> f64 {
 
 /// The corners of three sides that blocks of quads fill.
 fn least_of_blocks(view: &View, face: &Face, ready: &FaceMesh) -> f64 {
-    let (Shape::Blocks(blocks), Frame::Blocks(places)) = (&ready.geometry.shape, &ready.geometry.frame) else { return f64::INFINITY };
+    let FaceNodes::Blocks(blocks, places) = &ready.geometry.nodes else { return f64::INFINITY };
     let side = |k: usize| blocks.sides[k].iter().map(|n| places[*n as usize]).collect::<Vec<u32>>();
     let s = [side(0), side(1), side(2)];
     let ends = [(0, false, 2, false), (0, true, 1, false), (1, true, 2, true)];
@@ -262,7 +261,7 @@ fn between(view: &View, (a, a_last): (&[u32], bool), (b, b_last): (&[u32], bool)
 
 /// The angle all round a pole: that of a few of its triangles, for all.
 fn round_pole(view: &View, ready: &FaceMesh, side: usize) -> f64 {
-    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.geometry.shape, &ready.geometry.frame) else { return f64::INFINITY };
+    let FaceNodes::Grid(grid, frame) = &ready.geometry.nodes else { return f64::INFINITY };
     let (nu, nv) = grid.size();
     let n = if side.is_multiple_of(2) { nu } else { nv };
     let next = |k: usize| match side {

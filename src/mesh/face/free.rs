@@ -12,7 +12,7 @@ use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
-use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::request::plan::Elements;
 
 /// Fills the face: of quads, or of triangles that keep its limits.
@@ -32,7 +32,7 @@ pub(crate) fn grown(made: &FaceInput, face: &Face, (border, chart, outline): (Fa
     let triangles: Vec<[u32; 3]> = triangulation.tri.iter().copied().filter(|t| !flat(t)).collect();
     let mut uv = border.uv;
     uv.extend(triangulation.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
-    let inner = triangulation.p[fixed..].to_vec();
+    let points = triangulation.p[fixed..].to_vec();
     let free = Free { uv, border: fixed, triangles, ..Free::default() };
-    Ok(FaceMesh { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) })
+    Ok(prepared(made, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally }))
 }

@@ -5,13 +5,12 @@ use crate::mesh::border::layout::middle;
 use crate::mesh::border::layout::{Face, Layout, side_parameters};
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::border::nodes::line;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometry, Shape};
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::grid::Grid;
 use crate::mesh::mapped::trilateral::Lattice;
-use crate::mesh::mapped::trilateral::{Blocks, LatticeFrame};
+use crate::mesh::mapped::trilateral::{Blocks, LatticeIds};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::Elements;
 
@@ -37,21 +36,18 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
     }
     let poles = [0, 1, 2, 3].map(|k| face.sides[k].uses.is_empty());
     let [a, b, c, d] = lines;
-    let frame = grid::Frame { sides: [a.ids, b.ids, c.ids, d.ids], poles, first: 0 };
+    let frame = grid::GridIds { sides: [a.ids, b.ids, c.ids, d.ids], poles, first: 0 };
     let (triangles, quads) = frame.elements(face.elements);
     let grid = Grid::new(patch.u, patch.v, values, input.tolerance);
     Ok(FaceMesh {
         inner: frame.inner(),
-        geometry: FaceGeometry { surface: surface.clone(), shape: Shape::Grid(grid), frame: Frame::Grid(frame), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Grid(grid, frame), flipped: face.flipped },
         surface: face.surface,
         elements: face.elements,
         first: 0,
         triangles,
         quads,
-        made: Vec::new(),
-        around: Vec::new(),
-        deciders: Vec::new(),
-        tally: None,
+        inside: None,
     })
 }
 
@@ -67,8 +63,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         return Ok(FaceMesh {
             geometry: FaceGeometry {
                 surface: surface.clone(),
-                shape: Shape::Lattice(Lattice { sides: values }),
-                frame: Frame::Lattice(LatticeFrame { sides: ids, first: 0 }),
+                nodes: FaceNodes::Lattice(Lattice { sides: values }, LatticeIds { sides: ids, first: 0 }),
                 flipped: face.flipped,
             },
             surface: face.surface,
@@ -77,10 +72,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
             inner,
             triangles: n * n,
             quads: 0,
-            made: Vec::new(),
-            around: Vec::new(),
-            deciders: Vec::new(),
-            tally: None,
+            inside: None,
         });
     }
     let Some(blocks) = Blocks::new(&values) else {
@@ -95,19 +87,11 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         inner: blocks.inner as u64,
         triangles: 0,
         quads: blocks.quads.len() as u64,
-        geometry: FaceGeometry {
-            surface: surface.clone(),
-            shape: Shape::Blocks(blocks),
-            frame: Frame::Blocks(places),
-            flipped: face.flipped,
-        },
+        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Blocks(blocks, places), flipped: face.flipped },
         surface: face.surface,
         elements: face.elements,
         first: 0,
-        made: Vec::new(),
-        around: Vec::new(),
-        deciders: Vec::new(),
-        tally: None,
+        inside: None,
     })
 }
 

@@ -12,8 +12,7 @@ use crate::mesh::border::inside;
 use crate::mesh::border::layout::Layout;
 use crate::mesh::border::layout::Uneven;
 use crate::mesh::chart::face_input::FaceInput;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::Shape;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::divide::verdict::Verdict;
@@ -62,7 +61,8 @@ fn same_elements(made: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<To
 
 /// Turns the diagonal of a cell of a mapped face that is this edge; whether it is one, and the other one does.
 fn take_other(made: &FaceInput, ready: &FaceMesh, of: &std::ops::Range<usize>, (mesh, limits): (&mut Mesh, &Limits), edge: Edge) -> bool {
-    let (Shape::Grid(grid), Frame::Grid(frame), Elements::Triangles) = (&ready.geometry.shape, &ready.geometry.frame, ready.elements)
+    let (FaceNodes::Grid(grid, _), FaceNodes::Grid(_, frame), Elements::Triangles) =
+        (&ready.geometry.nodes, &ready.geometry.nodes, ready.elements)
     else {
         return false;
     };
@@ -117,14 +117,14 @@ pub fn ask(layout: &mut Layout, prepared: &[FaceMesh], together: &[Together], as
         if rows[f].size != [1.0; 2] || *times == TIMES {
             continue;
         }
-        match &prepared[f].geometry.frame {
-            Frame::Grid(frame) => {
+        match &prepared[f].geometry.nodes {
+            FaceNodes::Grid(_, frame) => {
                 let (nu, nv) = frame.size();
                 rows[f].size = [nu, nv].map(|n| if n == 1 { MORE } else { 1.0 });
             }
-            Frame::Lattice(_) if face.method == Method::Auto => (face.uneven, anew) = (Some(Uneven::Together), true),
-            Frame::Lattice(_) | Frame::Blocks(_) => rows[f].size = [MORE; 2],
-            Frame::Free(_) => {
+            FaceNodes::Lattice(..) if face.method == Method::Auto => (face.uneven, anew) = (Some(Uneven::Together), true),
+            FaceNodes::Lattice(..) | FaceNodes::Blocks(..) => rows[f].size = [MORE; 2],
+            FaceNodes::Free(..) => {
                 face.halved += 1;
                 anew = true;
             }

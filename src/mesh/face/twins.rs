@@ -8,8 +8,7 @@ use std::collections::BTreeSet;
 
 use crate::base::par;
 use crate::mesh::chart::face_input::FaceInput;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::Shape;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::surface::Surface;
@@ -45,7 +44,7 @@ pub(crate) fn divide(made: &FaceInput, prepared: &mut [FaceMesh], mesh: &Mesh) -
 
 /// Edges inside a face, by their places in its chart, that are one edge of the mesh with another one, which stays.
 fn own_twins(ready: &FaceMesh) -> Vec<Edge> {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.geometry.shape, &ready.geometry.frame) else { return Vec::new() };
+    let FaceNodes::Free(free, ids) = &ready.geometry.nodes else { return Vec::new() };
     let border = ids.len() - ready.inner as usize;
     let mut on_border = ids[..border].to_vec();
     on_border.sort_unstable();
@@ -68,7 +67,7 @@ fn own_twins(ready: &FaceMesh) -> Vec<Edge> {
 
 /// The length of the way over the surface from one end of an edge to the other, by two chords.
 fn way(ready: &FaceMesh, (a, b): Edge) -> f64 {
-    let Shape::Free(free) = &ready.geometry.shape else { return 0.0 };
+    let FaceNodes::Free(free, _) = &ready.geometry.nodes else { return 0.0 };
     let point = |(u, v): (f64, f64)| ready.geometry.surface.point(u, v);
     let (p, q) = (free.uv[a as usize], free.uv[b as usize]);
     let top = point(middle(p, q));
@@ -81,7 +80,7 @@ fn middle(p: (f64, f64), q: (f64, f64)) -> (f64, f64) {
 
 /// The place in the chart of an edge inside a face.
 fn local(ready: &FaceMesh, edge: Edge) -> Option<Edge> {
-    let (Shape::Free(free), Frame::Free(ids)) = (&ready.geometry.shape, &ready.geometry.frame) else { return None };
+    let FaceNodes::Free(free, ids) = &ready.geometry.nodes else { return None };
     let sides = free.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
     let mut found = sides.filter(|(a, b)| ordered(ids[*a as usize], ids[*b as usize]) == edge);
     found.next().map(|(a, b)| ordered(a, b))
@@ -131,12 +130,12 @@ fn lines(made: &FaceInput) -> BTreeSet<Edge> {
 
 /// Whether edges of a face can be divided: one made freely of triangles.
 fn divides(ready: &FaceMesh) -> bool {
-    matches!(&ready.geometry.shape, Shape::Free(free) if free.quads.is_empty())
+    matches!(&ready.geometry.nodes, FaceNodes::Free(free, _) if free.quads.is_empty())
 }
 
 /// Divides an edge between two triangles, given by its places in the chart; whether it is there.
 fn divide_edge(ready: &mut FaceMesh, (a, b): Edge) -> bool {
-    let (Shape::Free(free), Frame::Free(ids)) = (&mut ready.geometry.shape, &mut ready.geometry.frame) else { return false };
+    let (FaceNodes::Free(free, ids), Some(inside)) = (&mut ready.geometry.nodes, &mut ready.inside) else { return false };
     let side = |t: &[u32; 3]| (0..3).find(|k| ordered(t[*k], t[(k + 1) % 3]) == (a, b));
     let found: Vec<(usize, usize)> = free.triangles.iter().enumerate().filter_map(|(n, t)| side(t).map(|k| (n, k))).collect();
     if found.len() != 2 {
@@ -155,7 +154,7 @@ fn divide_edge(ready: &mut FaceMesh, (a, b): Edge) -> bool {
     let new = free.uv.len() as u32;
     free.uv.push(uv);
     ids.push(u32::MAX);
-    ready.made.push(surface.point(uv.0, uv.1));
+    inside.points.push(surface.point(uv.0, uv.1));
     for (n, k) in found {
         let t = free.triangles[n];
         let (from, to, tip) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);

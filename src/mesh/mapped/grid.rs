@@ -13,7 +13,7 @@ const ROWS: usize = 16;
 
 /// Global node ids of a grid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct GridIds {
     /// Nodes of the sides v = min, u = max, v = max, u = min, ascending; at a pole all the same.
     pub sides: [Vec<u32>; 4],
     /// Which sides are poles.
@@ -29,7 +29,7 @@ enum Cell {
     Triangle([u32; 3]),
 }
 
-impl Frame {
+impl GridIds {
     /// Cells along u and along v.
     pub fn size(&self) -> (usize, usize) {
         (self.sides[0].len() - 1, self.sides[1].len() - 1)
@@ -81,7 +81,7 @@ impl Frame {
 }
 
 /// Writes the elements of a grid; `diagonals` (triangles only) has one entry a cell: `true` joins (i + 1, j) and (i, j + 1).
-pub fn fill(frame: &Frame, kind: Elements, flipped: bool, diagonals: &[bool], triangles: &mut [[u32; 3]], quads: &mut [[u32; 4]]) {
+pub fn fill(frame: &GridIds, kind: Elements, flipped: bool, diagonals: &[bool], triangles: &mut [[u32; 3]], quads: &mut [[u32; 4]]) {
     let (nu, nv) = frame.size();
     if kind != Elements::Triangles && frame.poles == [false; 4] {
         quad_rows(frame, flipped, quads);
@@ -121,7 +121,7 @@ fn turned([a, b, c, d]: [u32; 4], flipped: bool) -> [u32; 4] {
 }
 
 /// All cells as quads, from two rows of node ids at a time.
-fn quad_rows(frame: &Frame, flipped: bool, quads: &mut [[u32; 4]]) {
+fn quad_rows(frame: &GridIds, flipped: bool, quads: &mut [[u32; 4]]) {
     let nu = frame.size().0;
     par::chunks_mut(quads, nu * ROWS, |chunk, part| {
         let first = chunk * ROWS;
@@ -142,7 +142,7 @@ fn quad_rows(frame: &Frame, flipped: bool, quads: &mut [[u32; 4]]) {
 /// The better diagonal has its middle nearer to the surface; where both are as near (within `even`, model units) the one
 /// with the larger least angle; else the one from (i, j). Where a border turns back along itself diagonals end at the turn: from the
 /// node before it, which is the one after it, they would be one edge twice.
-pub fn diagonals(grid: &Grid, frame: &Frame, surface: &Surface, nodes: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
+pub fn diagonals(grid: &Grid, frame: &GridIds, surface: &Surface, nodes: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
     let (nu, nv) = grid.size();
     let mut other = vec![false; nu * nv];
     par::chunks_mut(&mut other, nu, |j, row| {
@@ -304,7 +304,7 @@ impl Grid {
 }
 
 /// First triangle of each row of cells of a grid meshed with triangles; empty for quads.
-pub fn triangle_rows(frame: &crate::mesh::mapped::grid::Frame, triangles: bool) -> Vec<usize> {
+pub fn triangle_rows(frame: &crate::mesh::mapped::grid::GridIds, triangles: bool) -> Vec<usize> {
     let (nu, nv) = frame.size();
     if !triangles {
         return Vec::new();
@@ -322,7 +322,7 @@ pub fn triangle_rows(frame: &crate::mesh::mapped::grid::Frame, triangles: bool) 
 mod tests {
     use super::*;
 
-    fn frame(nu: u32, nv: u32, poles: [bool; 4]) -> Frame {
+    fn frame(nu: u32, nv: u32, poles: [bool; 4]) -> GridIds {
         let id = |i: u32, j: u32| {
             let (i, j) = (if poles[3] && i == 0 || poles[1] && i == nu { 0 } else { i }, j);
             let i = if poles[0] && j == 0 || poles[2] && j == nv { 0 } else { i };
@@ -335,10 +335,10 @@ mod tests {
             (0..=nu).map(|i| id(i, nv)).collect(),
             (0..=nv).map(|j| id(0, j)).collect(),
         ];
-        Frame { sides, poles, first: 100_000 }
+        GridIds { sides, poles, first: 100_000 }
     }
 
-    fn made(frame: &Frame, kind: Elements) -> (Vec<[u32; 3]>, Vec<[u32; 4]>) {
+    fn made(frame: &GridIds, kind: Elements) -> (Vec<[u32; 3]>, Vec<[u32; 4]>) {
         let (t, q) = frame.elements(kind);
         let (mut triangles, mut quads) = (vec![[u32::MAX; 3]; t as usize], vec![[u32::MAX; 4]; q as usize]);
         let n = frame.size().0 * frame.size().1;

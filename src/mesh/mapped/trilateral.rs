@@ -2,14 +2,14 @@
 
 /// Node ids of a lattice: its three sides ascending, and its first inner node.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LatticeFrame {
+pub struct LatticeIds {
     /// Nodes along v = 0, along the slant (ascending v), along u = 0.
     pub sides: [Vec<u32>; 3],
     /// First inner node; the others follow row by row, u fastest.
     pub first: u32,
 }
 
-impl LatticeFrame {
+impl LatticeIds {
     fn n(&self) -> usize {
         self.sides[0].len() - 1
     }
@@ -289,10 +289,10 @@ mod tests {
     fn inner_ids_count_up() {
         for n in 1..8 {
             let side = vec![0; n + 1];
-            let frame = LatticeFrame { sides: [side.clone(), side.clone(), side], first: 10 };
-            let ids: Vec<u32> = LatticeFrame::inner(n).map(|(i, j)| frame.node(i, j)).collect();
+            let frame = LatticeIds { sides: [side.clone(), side.clone(), side], first: 10 };
+            let ids: Vec<u32> = LatticeIds::inner(n).map(|(i, j)| frame.node(i, j)).collect();
             assert_eq!(ids, (10..10 + ids.len() as u32).collect::<Vec<_>>(), "{n}");
-            assert_eq!(LatticeFrame::triangles(n).count(), n * n);
+            assert_eq!(LatticeIds::triangles(n).count(), n * n);
         }
     }
 

@@ -6,9 +6,7 @@ use crate::base::job;
 use crate::base::par;
 use crate::mesh::border::layout::Layout;
 use crate::mesh::border::nodes::Nodes;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometry, Shape};
-use crate::mesh::data::face_geometry::{each_cell, ids};
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
@@ -62,9 +60,9 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[FaceMesh],
     }
     for (ready, (triangles, quads)) in prepared.iter().zip(element_ranges(prepared)) {
         let surface = &input.model.surfaces[ready.surface.index()].surface;
-        let places = Places { geometry: &ready.geometry, frame: &ready.geometry.frame };
+        let places = Places(&ready.geometry.nodes);
         let mut made: Vec<Edge> = Vec::new();
-        let free = matches!(ready.geometry.shape, Shape::Free(_));
+        let free = matches!(ready.geometry.nodes, FaceNodes::Free(..));
         let corner = &mesh.nodes;
         let mut mid = |a: u32, b: u32, uv: &dyn Fn(u32, u32) -> (f64, f64)| {
             table.mid(a, b, || {
@@ -127,10 +125,7 @@ fn middle_of(surface: &Surface, edge: &Edge) -> DVec3 {
 }
 
 /// (u, v) of the corners of elements, cell by cell.
-struct Places<'a> {
-    geometry: &'a FaceGeometry,
-    frame: &'a Frame,
-}
+struct Places<'a>(&'a FaceNodes);
 
 /// Gives (u, v) in the middle of the edge between two nodes of a cell.
 type Middle<'a> = &'a dyn Fn(u32, u32) -> (f64, f64);
@@ -139,7 +134,7 @@ impl Places<'_> {
     /// Visits the elements of a face in the order of the mesh: corner nodes, and where the middles of their edges lie.
     fn each(&self, ready: &FaceMesh, triangles: &[[u32; 3]], mut visit: impl FnMut(&[u32], Middle, bool), quads: &[[u32; 4]]) {
         let (mut t, mut q) = (triangles.iter(), quads.iter());
-        if let (Shape::Grid(grid), Frame::Grid(frame)) = (&self.geometry.shape, self.frame) {
+        if let FaceNodes::Grid(grid, frame) = self.0 {
             let (nu, nv) = grid.size();
             for j in 0..nv {
                 for i in 0..nu {
@@ -162,14 +157,8 @@ impl Places<'_> {
             }
             return;
         }
-        let uv = match &self.geometry.shape {
-            Shape::Lattice(lattice) => crate::mesh::mapped::trilateral::lattice_points(lattice),
-            Shape::Blocks(blocks) => blocks.uv.clone(),
-            Shape::Free(free) => free.uv.clone(),
-            Shape::Grid(_) => Vec::new(),
-        };
-        let ids = ids(&self.geometry.shape, self.frame);
-        each_cell(&self.geometry.shape, |cell| {
+        let (uv, ids) = (self.0.listed_uv(), self.0.listed_ids());
+        self.0.each_listed_cell(|cell| {
             let middle = |a: u32, b: u32| {
                 let of = |id: u32| cell.iter().find(|n| ids[**n] == id).map_or((0.0, 0.0), |n| uv[*n]);
                 mean(of(a), of(b))

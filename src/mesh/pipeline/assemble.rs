@@ -3,6 +3,7 @@
 use crate::mesh::border::layout::closes;
 use crate::mesh::cache::reuse::{recall_face, recall_steps};
 use crate::mesh::chart::face_input::empty;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::divide::too_large::refuse_counts;
 use crate::mesh::face::mapped::refuse_triangles;
 use crate::mesh::request::work::too_many;
@@ -22,7 +23,6 @@ use crate::mesh::border::nodes::Nodes;
 use crate::mesh::cache::reuse::{CacheView, Inside, recalled};
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_geometry::FaceGeometries;
-use crate::mesh::data::face_geometry::Frame;
 use crate::mesh::data::face_mesh;
 use crate::mesh::data::face_mesh::{FaceMesh, FaceRanges};
 use crate::mesh::data::mesh::{FaceRange, Mesh};
@@ -415,7 +415,7 @@ fn fill(input: &Input, border: &[DVec3], prepared: &[FaceMesh], (keyed, again): 
         let (t, q);
         (t, triangles) = triangles.split_at_mut(ready.triangles as usize);
         (q, quads) = quads.split_at_mut(ready.quads as usize);
-        let free = matches!(ready.geometry.frame, Frame::Free(_));
+        let free = matches!(ready.geometry.nodes, FaceNodes::Free(..));
         let key = keyed.filter(|_| !free).map(|(known, keys)| (known, keys[k]));
         work.push(Fill { ready, key, again, nodes: own, triangles: t, quads: q, result: Ok(()) });
     }

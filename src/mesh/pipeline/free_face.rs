@@ -11,8 +11,8 @@ use crate::mesh::chart::face_input::prepared;
 use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::halved::odd;
 use crate::mesh::chart::rings;
-use crate::mesh::data::face_geometry::Shape;
-use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::data::face_geometry::FaceNodes;
+use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::face::free::grown;
 use crate::mesh::request::work::{too_much_work, work_on};
 use crate::mesh::tri::fit::near;
@@ -29,9 +29,9 @@ pub fn prepare(made: &FaceInput, face: &Face, (known, job): (Option<&CacheView>,
         (known, cached_face::key(known, made, face, (&border, &outline), (&odd, &near(made, face, &outline))))
     });
     if let Some((known, key)) = key
-        && let Some((free, inner, deciders, tally)) = known.free(key).and_then(|taken| taken.parts(border.uv.len()))
+        && let Some((free, points, deciders, tally)) = known.free(key).and_then(|taken| taken.parts(border.uv.len()))
     {
-        return Ok(FaceMesh { deciders, tally, ..prepared(made, face, free, (border.ids, border.edges), inner) });
+        return Ok(prepared(made, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally }));
     }
     let all = || grown(made, face, (border, chart, outline), job);
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
@@ -39,8 +39,8 @@ pub fn prepare(made: &FaceInput, face: &Face, (known, job): (Option<&CacheView>,
     let again = if face.method.is_coarse() { face.halved.min(FEWER) } else { 0 };
     let most = work_on([surface].into_iter()) >> again;
     let ready = Budget::new(most).within(all).map_err(|Exceeded| too_much_work(made.input, surface.origin()))??;
-    if let (Some((known, key)), Shape::Free(free)) = (key, &ready.geometry.shape) {
-        known.keep_free(key, CachedFace::of(&ready, free));
+    if let (Some((known, key)), FaceNodes::Free(free, _), Some(inside)) = (key, &ready.geometry.nodes, &ready.inside) {
+        known.keep_free(key, CachedFace::of(free, inside));
     }
     Ok(ready)
 }

@@ -17,7 +17,7 @@ use crate::mesh::chart::halves::Halves;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
-use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::deviation::triangle;
 use crate::mesh::quad::net::Net;
 use crate::mesh::request::decider::Decider;
@@ -55,7 +55,7 @@ pub(crate) fn prepare(
     let fixed = net.fixed as usize;
     let mut uv = border.uv;
     uv.extend(net.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
-    let inner = net.p[fixed..].to_vec();
+    let points = net.p[fixed..].to_vec();
     let mut free = Free { uv, border: fixed, ..Free::default() };
     for face in net.face {
         match face {
@@ -63,7 +63,7 @@ pub(crate) fn prepare(
             quad => free.quads.push(quad),
         }
     }
-    Ok(FaceMesh { deciders, ..prepared(made, face, free, (border.ids, border.edges), inner) })
+    Ok(prepared(made, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally: None }))
 }
 
 /// A trouble with nodes of the whole border.

@@ -2,7 +2,7 @@
 
 use crate::base::origin::Origin;
 use crate::mesh::border::layout::Layout;
-use crate::mesh::data::face_geometry::Frame;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::report::reasons;
 use crate::mesh::request::input::Input;
@@ -85,8 +85,8 @@ impl Explanation {
         let mut notes = Self::default();
         for (face, ready) in layout.faces.iter().zip(prepared) {
             let first = input.model.patches_of(face.surface).next().map_or(0, |p| p.index());
-            let sides = match &ready.geometry.frame {
-                Frame::Grid(frame) => {
+            let sides = match &ready.geometry.nodes {
+                FaceNodes::Grid(_, frame) => {
                     let steps = |k: usize| if frame.poles[k] { 0 } else { frame.sides[k].len() as u32 - 1 };
                     (0..4).map(steps).collect()
                 }
@@ -95,11 +95,11 @@ impl Explanation {
             notes.faces.push(FaceNote {
                 surface: face.surface,
                 patch: face.patch.index() - first,
-                method: match &ready.geometry.frame {
-                    Frame::Free(_) if face.method == Method::Quadtree => "quadtree",
-                    Frame::Free(_) if face.method == Method::Display => "display",
-                    Frame::Free(_) if face.method == Method::Isoline => "isoline",
-                    Frame::Free(_) => "delaunay",
+                method: match &ready.geometry.nodes {
+                    FaceNodes::Free(..) if face.method == Method::Quadtree => "quadtree",
+                    FaceNodes::Free(..) if face.method == Method::Display => "display",
+                    FaceNodes::Free(..) if face.method == Method::Isoline => "isoline",
+                    FaceNodes::Free(..) => "delaunay",
                     _ => "mapped",
                 },
                 elements: elements_name(ready.elements),
@@ -140,7 +140,9 @@ impl Explanation {
             let told = foreseen.map_or_else(String::new, |angle| format!(" (angles of {}° foreseen)", angle.to_degrees().round()));
             let why = face.why.as_ref().map_or(told, |why| format!(" (a face {why})"));
             let size = face.size.1.map_or_else(String::new, |clause| format!("; by {}", reasons::clause(input, clause)));
-            let inside = reasons::of_face(input, &prepared[k].deciders) + &prepared[k].tally.map_or_else(String::new, reasons::of_cells);
+            let inside = prepared[k].inside.as_ref().map_or_else(String::new, |inside| {
+                reasons::of_face(input, &inside.deciders) + &inside.tally.map_or_else(String::new, reasons::of_cells)
+            });
             format!("face {} of {name}: {}{why}, {}, sides {}{size}{inside}", f.patch, f.method, f.elements, sides.join(" "))
         };
         let mut lines: Vec<String> = self.faces.iter().enumerate().map(face).collect();

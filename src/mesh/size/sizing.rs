@@ -449,7 +449,7 @@ impl Sizing {
 
     /// Notes which clauses decide sizes inside free faces.
     pub fn take_refined(&mut self, input: &Input, prepared: &[FaceMesh]) {
-        for decider in prepared.iter().flat_map(|ready| &ready.deciders) {
+        for decider in prepared.iter().filter_map(|ready| ready.inside.as_ref()).flat_map(|inside| &inside.deciders) {
             if let Why::Refined(clause) = decider.why {
                 self.taken[input.plan.rules.len() + clause] = true;
             }

@@ -12,8 +12,7 @@ use crate::base::tolerance::{MEASURE_ACCURACY, NUDGE};
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::border::nodes::line;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::Shape;
+use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
@@ -202,26 +201,25 @@ pub(crate) fn misplaced(input: &Input, (face, ready): (&Face, &FaceMesh), mesh: 
         (off > near || off.is_nan()).then_some((n, off))
     };
     let inner = |all: usize| (0..all).step_by(all.div_ceil(PROBES).max(1));
-    match (&ready.geometry.shape, &ready.geometry.frame) {
-        (Shape::Grid(grid), Frame::Grid(frame)) => {
+    match &ready.geometry.nodes {
+        FaceNodes::Grid(grid, frame) => {
             let (nu, nv) = grid.size();
             let rows = (0..=nu).flat_map(|i| [(i, 0), (i, nv)]).chain((0..=nv).flat_map(|j| [(0, j), (nu, j)]));
             let within = inner(nu * nv).map(|k| (k % nu, k / nu));
             rows.chain(within).map(|(i, j)| (frame.node(i, j), grid.uv(i, j))).find_map(off)
         }
-        (Shape::Lattice(lattice), Frame::Lattice(frame)) => {
+        FaceNodes::Lattice(lattice, frame) => {
             let n = lattice.size();
             let rows = (0..=n).flat_map(|k| [(k, 0), (0, k), (k, n - k)]);
             rows.map(|(i, j)| (frame.node(i, j), lattice.uv(i, j))).find_map(off)
         }
-        (Shape::Blocks(blocks), Frame::Blocks(ids)) => {
+        FaceNodes::Blocks(blocks, ids) => {
             let all = inner(blocks.inner).chain(blocks.inner..ids.len());
             all.map(|k| (ids[k], blocks.uv[k])).find_map(off)
         }
-        (Shape::Free(free), Frame::Free(ids)) => {
+        FaceNodes::Free(free, ids) => {
             let all = (0..free.border).chain(inner(ids.len() - free.border).map(|k| k + free.border));
             all.map(|k| (ids[k], free.uv[k])).find_map(off)
         }
-        _ => None,
     }
 }

@@ -17,8 +17,7 @@ use crate::base::tolerance::{TOLD_APART, WHOLE_NUMBER};
 use crate::mesh::border::layout::closes;
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::border::nodes::Nodes;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{FaceGeometry, Shape};
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
@@ -287,30 +286,30 @@ const SHARP: f64 = WHOLE_NUMBER;
 /// What the elements of a face cover in the parameter plane, if they lie side by side: over rows by their places, and others by their
 /// side where they are turned over in the parameter plane, which alone tells nothing beside a pole.
 fn unfolded(ready: &FaceMesh, mesh: &Mesh) -> Option<Extent> {
-    let FaceGeometry { shape, frame, surface, .. } = &ready.geometry;
+    let FaceGeometry { nodes, surface, .. } = &ready.geometry;
     let ascends = |side: &Vec<f64>| side.windows(2).all(|w| w[1] > w[0]);
     let mut covered = Extent::default();
-    match (shape, frame) {
-        (Shape::Grid(grid), _) if grid.sides.iter().all(ascends) => {
+    match nodes {
+        FaceNodes::Grid(grid, _) if grid.sides.iter().all(ascends) => {
             let (nu, nv) = grid.size();
             covered.add_quad([(0, 0), (nu, 0), (nu, nv), (0, nv)].map(|(i, j)| grid.uv(i, j).into()));
         }
-        (Shape::Lattice(lattice), _) if lattice.sides.iter().all(ascends) => {
+        FaceNodes::Lattice(lattice, _) if lattice.sides.iter().all(ascends) => {
             let n = lattice.size();
             let [a, b, c] = [(0, 0), (n, 0), (0, n)].map(|(i, j)| lattice.uv(i, j).into());
             covered.add(a, b, c);
         }
-        (Shape::Blocks(blocks), Frame::Blocks(ids)) => {
+        FaceNodes::Blocks(blocks, ids) => {
             let of = (blocks.uv.as_slice(), ids.as_slice(), mesh);
             job::looking(&blocks.quads).all(|q| faces_up(surface, of, q, &mut covered)).then_some(())?;
         }
-        (Shape::Free(free), Frame::Free(ids)) => {
+        FaceNodes::Free(free, ids) => {
             let of = (free.uv.as_slice(), ids.as_slice(), mesh);
             let sound = job::looking(&free.triangles).all(|t| faces_up(surface, of, t, &mut covered))
                 && job::looking(&free.quads).all(|q| faces_up(surface, of, q, &mut covered));
             sound.then_some(())?;
         }
-        _ => return None,
+        FaceNodes::Grid(..) | FaceNodes::Lattice(..) => return None,
     }
     Some(covered)
 }
@@ -343,11 +342,11 @@ fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), 
 /// What is wrong with where the elements of a face lie on its surface.
 fn off_surface(input: &Input, (layout, nodes): (&Layout, &Nodes), (face, ready): (&Face, &FaceMesh), mesh: &Mesh) -> Option<Defect> {
     let Some(covered) = unfolded(ready, mesh) else { return Some(Defect::Folded) };
-    let left_out = match (&ready.geometry.shape, &ready.geometry.frame) {
-        (Shape::Free(free), Frame::Free(ids)) if closes(face) => {
+    let left_out = match (&ready.geometry.nodes, &ready.inside) {
+        (FaceNodes::Free(free, ids), Some(inside)) if closes(face) => {
             let triangles = free.triangles.iter().map(|t| t.as_slice());
             let elements = triangles.chain(free.quads.iter().map(|q| q.as_slice()));
-            let Some(out) = extent::left_out(elements, (&free.uv, ids, free.border), &ready.around) else { return Some(Defect::Torn) };
+            let Some(out) = extent::left_out(elements, (&free.uv, ids, free.border), &inside.loops) else { return Some(Defect::Torn) };
             out
         }
         _ => Extent::default(),

@@ -5,8 +5,7 @@ use glam::DVec3;
 
 use crate::base::fault::{MeshFault, Result};
 use crate::base::par;
-use crate::mesh::data::face_geometry::Frame;
-use crate::mesh::data::face_geometry::{Free, Shape};
+use crate::mesh::data::face_geometry::{FaceNodes, Free};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
@@ -30,8 +29,8 @@ pub fn refuse_turned(input: &Input, prepared: &[FaceMesh], mesh: &Mesh, recall: 
 
 /// Fails when a face that is made freely has concave quads, with their number and the first place.
 pub fn refuse_concave(input: &Input, prepared: &[FaceMesh], mesh: &Mesh) -> Result<()> {
-    let found = prepared.iter().map(|ready| match (&ready.geometry.shape, &ready.geometry.frame) {
-        (Shape::Free(free), Frame::Free(places)) => concave_quads(free, places, mesh),
+    let found = prepared.iter().map(|ready| match &ready.geometry.nodes {
+        FaceNodes::Free(free, places) => concave_quads(free, places, mesh),
         _ => None,
     });
     first_fault(input, prepared, found.collect())
@@ -42,7 +41,7 @@ fn first_fault(input: &Input, prepared: &[FaceMesh], found: Vec<Option<Turned>>)
         if let Some((count, uv)) = bad {
             let surface = &input.model.surfaces[ready.surface.index()].surface;
             let at = surface.point(uv.0, uv.1);
-            let free = matches!(ready.geometry.shape, Shape::Free(_));
+            let free = matches!(ready.geometry.nodes, FaceNodes::Free(..));
             return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at, free }.into());
         }
     }
@@ -61,7 +60,7 @@ fn concave_quads(free: &Free, places: &[u32], mesh: &Mesh) -> Option<Turned> {
 
 /// Cells on a coarse selection of rows and columns whose normal stands against the surface's.
 fn turned(surface: &Surface, ready: &FaceMesh, mesh: &Mesh) -> Option<Turned> {
-    let (Shape::Grid(grid), Frame::Grid(frame)) = (&ready.geometry.shape, &ready.geometry.frame) else {
+    let FaceNodes::Grid(grid, frame) = &ready.geometry.nodes else {
         return None;
     };
     let (nu, nv) = frame.size();
