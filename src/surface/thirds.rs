@@ -232,3 +232,64 @@ fn highest(a: &[[f64; 4]; 4], w: &[[f64; 4]; 4], reach: f64, light: f64) -> [f64
     }
     [s[3][0], s[2][1], s[1][2], s[0][3]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::origin::Origin;
+    use crate::base::tolerance::Tolerance;
+    use crate::geometry::nurbs::weighted;
+    use crate::surface::SurfaceKind;
+    use crate::surface::rail::OneSided;
+
+    /// A number from 0 to 1 that looks random.
+    fn noise(k: usize) -> f64 {
+        (k.wrapping_mul(2_654_435_761) >> 7 & 0xffff) as f64 / 65_536.0
+    }
+
+    /// A bent net of degree 6 by 5 with an inner knot, and weights that differ by `spread`.
+    fn net(seed: usize, spread: f64) -> NurbsSurface {
+        let knots = ([vec![0.0; 7], vec![0.4], vec![1.0; 7]].concat(), [vec![0.0; 6], vec![1.0; 6]].concat());
+        let pole = |k: usize| {
+            let place = DVec3::new((k % 8) as f64, (k / 8) as f64, 0.0);
+            let off = DVec3::new(noise(seed + 3 * k), noise(seed + 3 * k + 1), 4.0 * noise(seed + 3 * k + 2));
+            weighted(place + off, 1.0 + spread * noise(seed + 7 * k + 1000))
+        };
+        NurbsSurface { degree: (6, 5), knots, poles: (0..48).map(pole).collect(), counts: (8, 6) }
+    }
+
+    #[test]
+    fn no_third_derivative_is_above_its_bound() {
+        const H: f64 = 1e-4;
+        for case in 0..12 {
+            let net = net(case * 977, 1.5 * (case % 3) as f64);
+            let surface = net.clone().surface(SurfaceKind::Nurbs, Origin::NONE, &Tolerance::new(1e-6, 10.0));
+            let thirds = Thirds::new(&net, (&[0.0, 0.4, 1.0], &[0.0, 1.0]), &|u, v| surface.normal(u, v));
+            let (mut tightest, mut looked) = (f64::INFINITY, 0);
+            for k in 0..200 {
+                let at = |n: usize| noise(case + 31 * k + n);
+                let (u, v) = (0.02 + 0.96 * at(1), 0.02 + 0.96 * at(2));
+                if (u - 0.4).abs() < 2.0 * H {
+                    continue;
+                }
+                let jet = |u: f64, v: f64| net.jet(u, v, (OneSided::After, OneSided::After));
+                let slope = |a: DVec3, b: DVec3| (b - a) / (2.0 * H);
+                let (left, right, below, above) = (jet(u - H, v), jet(u + H, v), jet(u, v - H), jet(u, v + H));
+                let found =
+                    [slope(left.duu, right.duu), slope(below.duu, above.duu), slope(left.dvv, right.dvv), slope(below.dvv, above.dvv)];
+                let along = DVec3::new(at(3) - 0.5, at(4) - 0.5, at(5) - 0.5).normalize();
+                let half = DVec2::new(0.02 * at(6), 0.02 * at(7));
+                let most = thirds.most((DVec2::new(u, v) - half, DVec2::new(u, v) + half), along);
+                for (third, most) in found.iter().zip(most) {
+                    let own = third.dot(along).abs();
+                    assert!(own <= most * (1.0 + 1e-4) + 1e-3, "case {case}, at {u} {v}: {own} is above {most}");
+                    if own > 1.0 {
+                        (tightest, looked) = (tightest.min(most / own), looked + 1);
+                    }
+                }
+            }
+            // The bounds say something: somewhere they are near what there is.
+            assert!(looked > 100 && tightest < 4.0, "case {case}: {looked} {tightest}");
+        }
+    }
+}

@@ -49,6 +49,34 @@ pub enum LostPart {
     Face(Origin),
 }
 
+/// A limit of a mesh, by its setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshLimit {
+    /// Length of edges.
+    Size,
+    /// Distance of elements from their surface.
+    ChordError,
+    /// Turn of the normal over an element.
+    AngleError,
+}
+
+impl MeshLimit {
+    /// The word of the setting.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Size => "size",
+            Self::ChordError => "chord_error",
+            Self::AngleError => "angle_error",
+        }
+    }
+}
+
+impl std::fmt::Display for MeshLimit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
 /// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshFault {
@@ -124,7 +152,7 @@ pub enum MeshFault {
         /// The count and its expression.
         count: (u32, Origin),
         /// The setting it breaks.
-        limit: &'static str,
+        limit: MeshLimit,
         /// The expression of that setting.
         says: Origin,
         /// The least count that keeps it.
@@ -235,7 +263,7 @@ pub enum MeshFault {
     /// E707: a limit that the floor of the size keeps from being met.
     FloorKeeps {
         /// The setting.
-        limit: &'static str,
+        limit: MeshLimit,
         /// Its expression.
         says: Origin,
         /// The floor and its expression.
@@ -374,7 +402,7 @@ pub enum MeshFault {
     /// E703 without a count: a limit that is still broken after the last refinement.
     NotReached {
         /// The setting.
-        limit: &'static str,
+        limit: MeshLimit,
         /// Its expression.
         says: Origin,
         /// The surface.
@@ -524,7 +552,7 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         F::NotReached { limit, says, surface, reached, at } => {
             let reached = match *limit {
                 _ if !reached.is_finite() => "nothing bounds what is there,".to_owned(),
-                "angle_error" => say.angle(*reached),
+                MeshLimit::AngleError => say.angle(*reached),
                 _ => say.length(*reached),
             };
             Report::new("E703", format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))

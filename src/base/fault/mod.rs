@@ -36,7 +36,7 @@ pub use edit::Edit;
 pub use files::{FileFault, Malformed, Share};
 pub use join::JoinFault;
 pub use loops::{LoopFault, LoopRole};
-pub use mesh::{Close, Cure, LostPart, MeshFault};
+pub use mesh::{Close, Cure, LostPart, MeshFault, MeshLimit};
 pub use nets::NetFault;
 pub use network::{CurveEnd, NetworkFault, round_down, round_up};
 pub use no_flow::NoFlow;

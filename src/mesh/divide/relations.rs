@@ -1,6 +1,6 @@
 //! The faces as equations between counts, and what their contradictions are called.
 
-use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::fault::{Fault, MeshFault, MeshLimit, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::layout::{Face, Layout};
@@ -18,7 +18,7 @@ struct Row {
     face: usize,
     segment: Stretch,
     /// The limit behind `least`, once the finished face has asked for more.
-    limit: &'static str,
+    limit: MeshLimit,
 }
 
 /// Equations of all faces; unknowns are the segments of the layout, then the rows.
@@ -98,7 +98,7 @@ impl Relations {
     fn row(&mut self, face: usize, demand: &RowDemand, least: u32) -> usize {
         let least = whole(demand.least).max(least);
         let segment = Stretch { least, demand: whole(demand.size).max(least), written: None, length: demand.length, even: false };
-        self.rows.push(Row { face, segment, limit: "" });
+        self.rows.push(Row { face, segment, limit: MeshLimit::Size });
         let row = self.first_row + self.rows.len() - 1;
         self.of_face[face].push(row);
         row
@@ -199,12 +199,8 @@ impl Relations {
         let plan = input.plan;
         let row = needs.checked_sub(self.first_row).map(|r| &self.rows[r]);
         let at = row.map_or_else(|| layout.point(needs, 0.5), |r| crate::mesh::border::layout::middle(input, &layout.faces[r.face]));
-        let chord = plan.chord_error.map(|c| ("chord_error", c.1));
-        let angle = plan.angle_error.map(|a| ("angle_error", a.1));
-        let asked = match row.map(|r| r.limit) {
-            Some("angle_error") => angle.or(chord),
-            _ => chord.or(angle),
-        };
+        let angle = plan.angle_error.filter(|_| row.is_some_and(|r| r.limit == MeshLimit::AngleError));
+        let asked = angle.map(|angle| (MeshLimit::AngleError, angle.1)).or_else(|| plan.bend_limit());
         match asked {
             Some((limit, says)) if least > 3 || row.is_some() => MeshFault::CountTooCoarse { count, limit, says, needed: least, at }.into(),
             _ => MeshFault::CountTooFew { count, needed: least, at }.into(),
@@ -216,11 +212,8 @@ impl Relations {
         let worst = (0..verdicts.len()).max_by(|a, b| verdicts[*a].worst().total_cmp(&verdicts[*b].worst())).unwrap_or(0);
         let face = &layout.faces[worst];
         let surface = input.model.surfaces[face.surface.index()].surface.origin();
-        let (limit, says) = match verdicts[worst].broken {
-            "angle_error" => ("angle_error", input.plan.angle_error.map(|a| a.1)),
-            "chord_error" => ("chord_error", input.plan.chord_error.map(|c| c.1)),
-            _ => ("size", input.plan.size.map(|s| s.1)),
-        };
+        let limit = verdicts[worst].broken;
+        let says = input.plan.limit(limit).map(|value| value.1);
         let at = crate::mesh::border::layout::middle(input, face);
         MeshFault::NotReached { limit, says: says.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }.into()
     }

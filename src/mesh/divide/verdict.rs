@@ -1,6 +1,7 @@
 //! Checks finished faces against size, chord error and angle, and says what is missing in which direction.
 
 use crate::base::digest::StableHash;
+use crate::base::fault::MeshLimit;
 use glam::DVec3;
 
 use crate::base::digest::StableHasher;
@@ -32,14 +33,14 @@ pub struct Verdict {
     /// For chord error and angle.
     pub limit: [f64; 2],
     /// The limit behind.
-    pub broken: &'static str,
+    pub broken: MeshLimit,
     /// What was measured for it.
     pub reached: f64,
 }
 
 impl Verdict {
     /// Nothing is asked.
-    pub const FINE: Self = Self { size: [1.0; 2], limit: [1.0; 2], broken: "size", reached: 0.0 };
+    pub const FINE: Self = Self { size: [1.0; 2], limit: [1.0; 2], broken: MeshLimit::Size, reached: 0.0 };
 
     /// No limit is broken.
     pub fn keeps_limits(&self) -> bool {
@@ -111,7 +112,7 @@ fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finishe
         _ => (over, directions(finished)),
     };
     verdict.limit = share.map(|dominates| if dominates { over.sqrt().min(2.0) } else { 1.0 });
-    (verdict.broken, verdict.reached) = ("chord_error", over * limit / SEEN);
+    (verdict.broken, verdict.reached) = (MeshLimit::ChordError, over * limit / SEEN);
 }
 
 /// Which directions bend enough to be worth refining: the larger one, and the other when it adds half as much.
@@ -205,7 +206,7 @@ fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64)
         if worst[0] == 0.0 && worst[1] == 0.0 {
             verdict.limit = verdict.limit.map(|f| f.max(over.min(2.0)));
         }
-        (verdict.broken, verdict.reached) = ("angle_error", most);
+        (verdict.broken, verdict.reached) = (MeshLimit::AngleError, most);
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::{MeshFault, MeshLimit, Result};
 use crate::base::job::{self, Job};
 use crate::mesh::chart::halves::Halves;
 use crate::mesh::chart::halves::NONE;
@@ -72,13 +72,13 @@ pub(crate) struct Maker<'a> {
 struct Worst {
     over: f64,
     at: DVec3,
-    limit: &'static str,
+    limit: MeshLimit,
 }
 
 impl Maker<'_> {
     pub(crate) fn fitted(&self, field: &mut GradedSize, job: &Job) -> Fitted {
         let plan = self.fit.made.input.plan;
-        let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
+        let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: MeshLimit::Size };
         for round in 0..TRIES {
             let mut net = match self.net(field, job)? {
                 Ok(net) => net,
@@ -106,11 +106,7 @@ impl Maker<'_> {
             }
             job.go_on()?;
         }
-        let says = match worst.limit {
-            "size" => plan.size,
-            "chord_error" => plan.chord_error,
-            _ => plan.angle_error,
-        };
+        let says = plan.limit(worst.limit);
         let reached = worst.over * says.map_or(self.fit.face.size.0, |s| s.0);
         let (says, surface) = (says.map_or(plan.origin, |s| s.1), self.fit.surface.origin());
         Err(MeshFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
@@ -209,7 +205,7 @@ impl Maker<'_> {
 
     /// Lowers lengths where the longest side or an element breaks a limit; what breaks one of chord error or angle most, 0 where nothing does.
     fn lower(&self, field: &mut GradedSize, net: &Net, (side, loads): (Worst, &mut LimitTable)) -> Result<Worst> {
-        let mut worst = Worst { over: 0.0, limit: "chord_error", ..side };
+        let mut worst = Worst { over: 0.0, limit: MeshLimit::ChordError, ..side };
         if side.over > 1.0 {
             field.spacing *= (1.0 / side.over).clamp(MOST_LESS, LESS);
         }
@@ -232,7 +228,7 @@ impl Maker<'_> {
                 return Err(floor_keeps(self.fit.made.input, least / factor, at));
             }
             if load.worst() > worst.over {
-                worst = Worst { over: load.worst(), at, limit: if load.chord >= load.angle { "chord_error" } else { "angle_error" } };
+                worst = Worst { over: load.worst(), at, limit: load.limit() };
             }
             let smaller = (LOWER / factor).max(0.5);
             if let Some(background) = &mut field.background {
@@ -245,7 +241,7 @@ impl Maker<'_> {
     /// The side inside the face that is longest for its place.
     fn too_long(&self, net: &Net) -> Worst {
         let longest = &self.fit.longest;
-        let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: "size" };
+        let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: MeshLimit::Size };
         for f in 0..net.face.len() {
             let c = net.corners(f);
             for k in 0..c.len() {

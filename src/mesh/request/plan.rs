@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
+use crate::base::fault::MeshLimit;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::origin::Origin;
 use crate::model::imprint::Imprint;
@@ -198,6 +199,21 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// A limit as it is written, with its expression: model units or radians.
+    pub fn limit(&self, limit: MeshLimit) -> Option<(f64, Origin)> {
+        match limit {
+            MeshLimit::Size => self.size,
+            MeshLimit::ChordError => self.chord_error,
+            MeshLimit::AngleError => self.angle_error,
+        }
+    }
+
+    /// The limit on bends that is written, the chord error first, with its expression.
+    pub fn bend_limit(&self) -> Option<(MeshLimit, Origin)> {
+        let written = |limit: MeshLimit| self.limit(limit).map(|value| (limit, value.1));
+        written(MeshLimit::ChordError).or_else(|| written(MeshLimit::AngleError))
+    }
+
     /// What asks for the size: its expression, or the mesh where none is written.
     pub fn size_origin(&self) -> Origin {
         self.size.map_or(self.origin, |size| size.1)

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::fault::{Fault, MeshFault, MeshLimit, Result};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Place, Refine};
 use crate::mesh::request::sources::{Body, Least, Source, Sources, pieces};
@@ -62,8 +62,7 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
 /// E707: a limit asks for elements of a size below the floor.
 pub fn floor_keeps(input: &Input, needed: f64, at: DVec3) -> Fault {
     let plan = input.plan;
-    let chord = plan.chord_error.map(|c| ("chord_error", c.1));
-    let (limit, says) = chord.or(plan.angle_error.map(|a| ("angle_error", a.1))).unwrap_or(("size", plan.origin));
+    let (limit, says) = plan.bend_limit().unwrap_or((MeshLimit::Size, plan.origin));
     MeshFault::FloorKeeps { limit, says, floor: plan.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
 }
 

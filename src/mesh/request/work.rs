@@ -16,7 +16,7 @@ pub fn too_many(plan: &Plan, of: Origin, elements: Option<u64>) -> Fault {
 /// More work than a mesh may take, of a face or of all.
 pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
     let plan = input.plan;
-    let limit = plan.chord_error.or(plan.angle_error).map(|limit| limit.1);
+    let limit = plan.bend_limit().map(|limit| limit.1);
     MeshFault::TooMuchWork { of: limit.unwrap_or_else(|| plan.size_origin()), name: plan.name.clone(), surface }.into()
 }
 

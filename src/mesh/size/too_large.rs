@@ -71,7 +71,7 @@ pub(crate) fn of_segment(input: &Input, layout: &Layout, sizing: &Sizing, k: usi
     {
         let shortest = spacing.places().min_by(|a, b| spacing.length_at(*a).total_cmp(&spacing.length_at(*b))).unwrap_or(0.0);
         let who = sizing.wanted.sources.who(layout.point(k, shortest), decision.size.0);
-        let bends = plan.chord_error.or(plan.angle_error).map(|limit| limit.1);
+        let bends = plan.bend_limit().map(|limit| limit.1);
         if let Some(found) = who.map(|w| plan.refines[sizing.wanted.sources.items()[w.item as usize].tag as usize].size.1).or(bends) {
             return found;
         }

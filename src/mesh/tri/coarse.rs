@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::{MeshFault, MeshLimit, Result};
 use crate::base::job::Job;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
 use crate::mesh::request::limits::Limits;
@@ -47,9 +47,9 @@ impl Fit<'_> {
             Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
             Err(Failure::Missed(load, at)) => {
                 let (limit, says, over) = match (plan.chord_error, plan.angle_error) {
-                    (Some(says), _) if load.chord >= load.angle => ("chord_error", says, load.chord),
-                    (_, Some(says)) => ("angle_error", says, load.angle),
-                    _ => ("size", plan.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
+                    (Some(says), _) if load.chord >= load.angle => (MeshLimit::ChordError, says, load.chord),
+                    (_, Some(says)) => (MeshLimit::AngleError, says, load.angle),
+                    _ => (MeshLimit::Size, plan.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
                 };
                 Err(MeshFault::NotReached { limit, says: says.1, surface: self.surface.origin(), reached: over * says.0, at }.into())
             }

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::{MeshFault, MeshLimit, Result};
 use crate::base::job::Job;
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
@@ -263,13 +263,13 @@ impl Fit<'_> {
         let plan = self.made.input.plan;
         let (says, at) = (plan.size_origin(), self.outline.p[0]);
         let reached = self.longest.inside;
-        Err(MeshFault::NotReached { limit: "size", says, surface: self.surface.origin(), reached, at }.into())
+        Err(MeshFault::NotReached { limit: MeshLimit::Size, says, surface: self.surface.origin(), reached, at }.into())
     }
 
     /// Lengths by the bends at first, smaller where a triangle's bound says so.
     fn bent(&self, field: &mut GradedSize, job: &Job) -> Fitted {
         let floor = self.made.wanted.written;
-        let mut worst = (0.0, DVec3::ZERO, "chord_error");
+        let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
         let loads = RefCell::new(LimitTable::default());
         for _ in 0..ROUNDS {
             let guard = Bounded { fit: self, floor, loads: &loads };
@@ -290,24 +290,20 @@ impl Fit<'_> {
         }
         let (limit, at) = (worst.2, worst.1);
         let plan = self.made.input.plan;
-        let says = match limit {
-            "chord_error" => plan.chord_error,
-            "angle_error" => plan.angle_error,
-            _ => plan.size,
-        };
-        let reached = if limit == "size" { self.longest.inside } else { worst.0 * says.map_or(0.0, |s| s.0) };
+        let says = plan.limit(limit);
+        let reached = if limit == MeshLimit::Size { self.longest.inside } else { worst.0 * says.map_or(0.0, |s| s.0) };
         let says = says.map_or(plan.origin, |s| s.1);
         Err(MeshFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
     }
 
     /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
-    fn lower(&self, field: &mut GradedSize, triangulation: &Triangulation, loads: &mut LimitTable) -> Result<(f64, DVec3, &'static str)> {
+    fn lower(&self, field: &mut GradedSize, triangulation: &Triangulation, loads: &mut LimitTable) -> Result<(f64, DVec3, MeshLimit)> {
         let all: Vec<u32> = (0..triangulation.tri.len() as u32).collect();
         loads.update(self.chart, triangulation, &all, &self.limits);
         let mut stretched = vec![false; triangulation.tri.len()];
         self.longest.broken(triangulation, &all).into_iter().for_each(|t| stretched[t as usize] = true);
         let least = self.made.wanted.written;
-        let mut worst = (0.0, DVec3::ZERO, "chord_error");
+        let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
         for (t, stretched) in stretched.into_iter().enumerate() {
             let load = loads.of(t as u32);
             let over = load.worst().max(if stretched { 1.0 / LESS } else { 0.0 });
@@ -322,8 +318,7 @@ impl Fit<'_> {
                 return Err(floor_keeps(self.made.input, least / factor, middle));
             }
             if over > worst.0 {
-                let limit = if load.chord >= load.angle { "chord_error" } else { "angle_error" };
-                worst = (over, middle, if load.worst() > 1.0 { limit } else { "size" });
+                worst = (over, middle, if load.worst() > 1.0 { load.limit() } else { MeshLimit::Size });
             }
             let smaller = (LESS / factor).max(0.5);
             if let Some(background) = &mut field.background {

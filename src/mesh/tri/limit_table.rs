@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use glam::{DVec2, DVec3};
 
+use crate::base::fault::MeshLimit;
 use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::tolerance::PARALLEL;
@@ -33,6 +34,11 @@ impl LimitRatio {
     /// The worse of the two.
     pub fn worst(&self) -> f64 {
         self.chord.max(self.angle)
+    }
+
+    /// Which of the two is worse.
+    pub fn limit(&self) -> MeshLimit {
+        if self.chord >= self.angle { MeshLimit::ChordError } else { MeshLimit::AngleError }
     }
 }
 
