@@ -177,9 +177,9 @@ mod plate {
         let inside = |t: &[u32; 3]| tree.holds(t.map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0);
         let bare = figures(&outline.p, all.corners.iter().copied().filter(inside));
         let mesh = |smooth: usize| {
-            let care = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: 0.8, fair: 1.0, longest: 1.3 };
+            let settings = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: 0.8, fair: 1.0, longest: 1.3 };
             let (field, lattice) = (UniformSize(4.0 * 0.8), Lattice::Tree);
-            let task = Task { ground: &Flat, field: &field, outline: &outline, lattice, care, most: 100_000, guard: None };
+            let task = Task { chart_surface: &Flat, field: &field, outline: &outline, lattice, settings, most: 100_000, limit_check: None };
             let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
             figures(&triangulation.p, triangulation.tri.iter().copied())
         };

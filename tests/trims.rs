@@ -55,7 +55,7 @@ impl SizeField for Graded {
 
 const CARE: OptimizeSettings = OptimizeSettings { smooth: 20, beyond: 1.0, fine: FINEST, wanted: 0.9, fair: 1.0, longest: 1.25 };
 
-fn add_loop(outline: &mut Outline, ground: &dyn ParametricSurface, corners: &[DVec2], size: f64) {
+fn add_loop(outline: &mut Outline, chart_surface: &dyn ParametricSurface, corners: &[DVec2], size: f64) {
     let first = outline.xy.len() as u32;
     for k in 0..corners.len() {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
@@ -63,7 +63,7 @@ fn add_loop(outline: &mut Outline, ground: &dyn ParametricSurface, corners: &[DV
         for i in 0..n {
             let xy = a.lerp(b, i as f64 / n as f64);
             outline.xy.push(xy);
-            outline.p.push(ground.spot(xy).p);
+            outline.p.push(chart_surface.spot(xy).p);
         }
     }
     let last = outline.xy.len() as u32;
@@ -116,17 +116,25 @@ fn spiked_loops_make_sound_faces_or_say_why() {
     let hole = proptest::collection::vec(0.002_f64..1.0, 3..16);
     let shape = (radii, hole, 0.0_f64..6.0, 0.05_f64..0.9, 0.0_f64..0.6, any::<bool>());
     check(60, &shape, |(radii, hole, turn, size, height, graded)| {
-        let ground = Waves(height);
+        let chart_surface = Waves(height);
         let outer: Vec<f64> = radii.iter().map(|r| 4.0 * r).collect();
         let least = outer.iter().copied().fold(f64::INFINITY, f64::min);
         // The hole may touch or cross: then there is a reason.
         let inner: Vec<f64> = hole.iter().map(|r| least * r).collect();
         let mut outline = Outline::default();
-        add_loop(&mut outline, &ground, &star(DVec2::ZERO, &outer, 0.0), size);
-        add_loop(&mut outline, &ground, &star(DVec2::ZERO, &inner, turn), size);
+        add_loop(&mut outline, &chart_surface, &star(DVec2::ZERO, &outer, 0.0), size);
+        add_loop(&mut outline, &chart_surface, &star(DVec2::ZERO, &inner, turn), size);
         let (even, by_place) = (UniformSize(size), Graded(size));
         let field: &dyn SizeField = if graded { &by_place } else { &even };
-        let task = Task { ground: &ground, field, outline: &outline, lattice: Lattice::Crystal, care: CARE, most: 100_000, guard: None };
+        let task = Task {
+            chart_surface: &chart_surface,
+            field,
+            outline: &outline,
+            lattice: Lattice::Triangles,
+            settings: CARE,
+            most: 100_000,
+            limit_check: None,
+        };
         match triangulate(&task, &Job::new()).unwrap() {
             Ok(made) => sound(&made.triangulation, &outline, None),
             Err(_) => Ok(()),
@@ -140,25 +148,25 @@ fn holes_of_any_size_are_kept() {
     let hole = (0.0_f64..1.0, 0.0_f64..1.0, 0.01_f64..0.3, 3_usize..12);
     let shape = (proptest::collection::vec(hole, 0..5), 0.1_f64..0.8);
     check(60, &shape, |(holes, size)| {
-        let ground = Waves(0.0);
+        let chart_surface = Waves(0.0);
         let mut outline = Outline::default();
-        add_loop(&mut outline, &ground, &[DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(4.0, 4.0), DVec2::new(0.0, 4.0)], size);
+        add_loop(&mut outline, &chart_surface, &[DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(4.0, 4.0), DVec2::new(0.0, 4.0)], size);
         for (k, (x, y, r, n)) in holes.iter().enumerate() {
             // One hole a quarter (the fifth in the middle), off its border.
             let cell = if k < 4 { DVec2::new((k % 2) as f64, (k / 2) as f64) * 2.0 + 0.4 } else { DVec2::splat(1.8) };
             let room = if k < 4 { 1.2 } else { 0.4 };
             let r = r.min(room / 2.5);
             let center = cell + DVec2::new(r + x * (room - 2.0 * r), r + y * (room - 2.0 * r));
-            add_loop(&mut outline, &ground, &star(center, &vec![r; *n], 0.3), size);
+            add_loop(&mut outline, &chart_surface, &star(center, &vec![r; *n], 0.3), size);
         }
         let task = Task {
-            ground: &ground,
+            chart_surface: &chart_surface,
             field: &UniformSize(size),
             outline: &outline,
-            lattice: Lattice::Crystal,
-            care: CARE,
+            lattice: Lattice::Triangles,
+            settings: CARE,
             most: 100_000,
-            guard: None,
+            limit_check: None,
         };
         let triangulation = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?.triangulation;
         sound(&triangulation, &outline, Some(holes.len()))
@@ -168,21 +176,28 @@ fn holes_of_any_size_are_kept() {
 /// The plate of a published benchmark: twenty holes, one size.
 #[test]
 fn a_plate_with_holes_is_better_than_frontal_meshers() {
-    let ground = Waves(0.0);
+    let chart_surface = Waves(0.0);
     let mut outline = Outline::default();
     let size = 2.0;
     let corners = [DVec2::ZERO, DVec2::new(200.0, 0.0), DVec2::new(200.0, 100.0), DVec2::new(0.0, 100.0)];
-    add_loop(&mut outline, &ground, &corners, size);
+    add_loop(&mut outline, &chart_surface, &corners, size);
     for j in 0..4 {
         for i in 0..5 {
             let (x, y, r) = (20.0 + 40.0 * f64::from(i), 12.5 + 25.0 * f64::from(j), 4.0 + 0.5 * f64::from((i + 2 * j) % 5));
             let n = (std::f64::consts::TAU * r / size).ceil() as usize;
-            add_loop(&mut outline, &ground, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
+            add_loop(&mut outline, &chart_surface, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
         }
     }
-    let care = OptimizeSettings { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
-    let task =
-        Task { ground: &ground, field: &UniformSize(size), outline: &outline, lattice: Lattice::Crystal, care, most: 100_000, guard: None };
+    let settings = OptimizeSettings { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
+    let task = Task {
+        chart_surface: &chart_surface,
+        field: &UniformSize(size),
+        outline: &outline,
+        lattice: Lattice::Triangles,
+        settings,
+        most: 100_000,
+        limit_check: None,
+    };
     let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
     sound(&triangulation, &outline, Some(20)).unwrap();
     let all: Vec<f64> = (0..triangulation.tri.len() as u32).map(|t| triangulation.quality(t)).collect();
@@ -292,15 +307,15 @@ fn loops_that_nearly_touch_are_meshed_or_say_why() {
         };
         let settings = ["size: 10", "size: 25  method: quadtree", "size: 15  elements: mixed", "size: 12  chord_error: 1"][settings];
         let mut script = "units mm\n".to_owned();
-        let flat = "let ground = plane(at: (0, 0, 0), normal: (0, 0, 1))\nfn laid(c: curve) = c\n";
-        let wave = "let ground = extrude(arc((-10, -10, -5), (-10, 70, -5), through: (-10, 30, 10)), by: (120, 0, 0))\nfn laid(c: curve) = project(c, onto: ground, along: (0, 0, 1))\n";
+        let flat = "let chart_surface = plane(at: (0, 0, 0), normal: (0, 0, 1))\nfn laid(c: curve) = c\n";
+        let wave = "let chart_surface = extrude(arc((-10, -10, -5), (-10, 70, -5), through: (-10, 30, 10)), by: (120, 0, 0))\nfn laid(c: curve) = project(c, onto: chart_surface, along: (0, 0, 1))\n";
         script += if bent { wave } else { flat };
         writeln!(script, "curve rim = laid(polyline([{outer}], closed: true))").unwrap();
         let names: Vec<String> = (0..holes.len()).map(|k| format!("hole{k}")).collect();
         for (name, hole) in names.iter().zip(&holes) {
             writeln!(script, "curve {name} = laid({hole})").unwrap();
         }
-        writeln!(script, "surface s = trim(ground, outer: rim, holes: [{}])", names.join(", ")).unwrap();
+        writeln!(script, "surface s = trim(chart_surface, outer: rim, holes: [{}])", names.join(", ")).unwrap();
         writeln!(script, "mesh m of s {{ {settings} }}\ncheck \"area\": m.area == s.area within 15%").unwrap();
         let disk = Disk::new(None, Some(&folder), &[], Outputs::Written).unwrap();
         let run = || script::outcome("near.loft", script.as_bytes(), &[], &disk);

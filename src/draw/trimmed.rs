@@ -73,8 +73,16 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let size = (8.0 * fine / bend).sqrt().clamp(bounds.diagonal() / MOST as f64, bounds.diagonal() / show.least() as f64);
     let flat = surface.is_flat();
     let field = UniformSize(if flat { 4.0 * bounds.diagonal() } else { size });
-    let care = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
-    let task = Task { ground: &chart, field: &field, outline: &outline, lattice: Lattice::Crystal, care, most: MOST * MOST, guard: None };
+    let settings = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
+    let task = Task {
+        chart_surface: &chart,
+        field: &field,
+        outline: &outline,
+        lattice: Lattice::Triangles,
+        settings,
+        most: MOST * MOST,
+        limit_check: None,
+    };
     match triangulate(&task, &Job::new()) {
         Ok(Ok(made)) => {
             let triangulation = made.triangulation;

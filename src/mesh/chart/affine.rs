@@ -1,4 +1,4 @@
-//! A surface as ground: its parameters sheared and stretched so that lengths in the chart are those in space on average.
+//! A surface as chart_surface: its parameters sheared and stretched so that lengths in the chart are those in space on average.
 
 use glam::{DVec2, DVec3};
 

@@ -87,20 +87,20 @@ impl SizeField for UniformSize {
 }
 
 /// Foot of a point near a place of the chart: one or two Gauss–Newton steps, enough where the point is near the surface.
-pub fn foot(ground: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
-    let (xy, spot) = foot_spot(ground, from, wanted);
+pub fn foot(chart_surface: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> (DVec2, DVec3) {
+    let (xy, spot) = foot_spot(chart_surface, from, wanted);
     (xy, spot.p)
 }
 
 /// The same with the derivatives there.
-pub fn foot_spot(ground: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> (DVec2, Spot) {
+pub fn foot_spot(chart_surface: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> (DVec2, Spot) {
     let mut xy = from;
-    let mut spot = ground.spot(xy);
+    let mut spot = chart_surface.spot(xy);
     for _ in 0..2 {
         let d = wanted - spot.p;
         let Some(step) = spot.step(d) else { break };
-        xy = ground.clamp(xy + step);
-        spot = ground.spot(xy);
+        xy = chart_surface.clamp(xy + step);
+        spot = chart_surface.spot(xy);
         let moved = spot.dx * step.x + spot.dy * step.y;
         // A flat or nearly flat place is met at once.
         if (wanted - spot.p).dot(moved).abs() <= FOOT * moved.length_squared() {
@@ -111,10 +111,10 @@ pub fn foot_spot(ground: &dyn ParametricSurface, from: DVec2, wanted: DVec3) -> 
 }
 
 /// The same by a guess that a mean of places in the chart gave, for a step so long: near a pole it is no foot.
-pub fn foot_near(ground: &dyn ParametricSurface, guess: DVec2, wanted: DVec3, step: f64) -> (DVec2, Spot) {
-    let spot = ground.spot(guess);
+pub fn foot_near(chart_surface: &dyn ParametricSurface, guess: DVec2, wanted: DVec3, step: f64) -> (DVec2, Spot) {
+    let spot = chart_surface.spot(guess);
     let off = spot.step(wanted - spot.p).map_or(0.0, |d| (spot.dx * d.x + spot.dy * d.y).length_squared());
-    if off > AMISS * AMISS * step * step { foot_spot(ground, guess, wanted) } else { (guess, spot) }
+    if off > AMISS * AMISS * step * step { foot_spot(chart_surface, guess, wanted) } else { (guess, spot) }
 }
 
 /// Share of a step by which a guess of its end may be amiss.

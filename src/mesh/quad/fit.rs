@@ -30,7 +30,7 @@ use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
 use crate::mesh::tri::trouble::Trouble;
 use crate::mesh::tri::trouble::fault;
 
-/// Distance of the crystal's nodes over the size.
+/// Distance of the lattice's nodes over the size.
 const SPACING: f64 = 0.85;
 /// Rounds of smoothing.
 const SMOOTH: usize = 8;
@@ -92,10 +92,10 @@ fn fitting(
     let limits = Limits::of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
-    let care = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
+    let settings = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
-    let fit = Fit { made, face, surface, chart, outline, limits, longest, care };
+    let fit = Fit { made, face, surface, chart, outline, limits, longest, settings };
     let background = bent.then(|| fit.background_of_squares());
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);

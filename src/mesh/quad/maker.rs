@@ -121,21 +121,21 @@ impl Maker<'_> {
         let twice = Twice(wanted);
         let cells: &dyn SizeField = if quads { &twice } else { wanted };
         let lattice = if self.fit.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Squares };
-        let (ground, outline) = (self.fit.chart, &self.halves.outline);
+        let (chart_surface, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
-        let task = Task { ground, field: cells, outline, care: self.fit.care, lattice, most, guard: None };
+        let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };
         let triangulation = match initial_triangulation(&task, job)? {
             Ok(triangulation) => triangulation,
             Err(trouble) => return Ok(Err(trouble)),
         };
         allow(WORK_OF_QUADS * if quads { 2 } else { 1 } * triangulation.tri.len() as u64, &mut 0);
-        let mut optimizer = MeshOptimizer::new(triangulation, ground, cells, self.fit.care);
+        let mut optimizer = MeshOptimizer::new(triangulation, chart_surface, cells, self.fit.settings);
         optimizer.flip_all();
         let mut triangulation = optimizer.triangulation;
         // Where loops touch, nodes may have grown through the point into a hole.
         triangulation.compact();
         job.go_on()?;
-        let normal: Vec<DVec3> = triangulation.xy.iter().map(|xy| ground.spot(*xy).normal()).collect();
+        let normal: Vec<DVec3> = triangulation.xy.iter().map(|xy| chart_surface.spot(*xy).normal()).collect();
         let flat = Alone::flat(&triangulation, self.halves);
         let mate = pair(&triangulation, &normal, &flat, if quads { CELLS } else { MIXED });
         let mut net = Raw { triangulation: &triangulation, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
@@ -146,7 +146,7 @@ impl Maker<'_> {
             self.smooth(&mut net, cells, job)?;
             let Some(whole) = whole_sides(&net) else { return Ok(Err(Trouble::Odd)) };
             self.narrow_rows(&mut net, &whole, cells, job)?;
-            net = split(&net, &whole, (ground, wanted));
+            net = split(&net, &whole, (chart_surface, wanted));
             self.smooth(&mut net, wanted, job)?;
         }
         self.shorten(&mut net, wanted, job)?;
@@ -161,7 +161,7 @@ impl Maker<'_> {
             let side = |k: usize| (c[k] as usize, c[(k + 1) % c.len()] as usize);
             sides.extend((0..c.len()).filter(|k| whole >> k & 1 == 1).map(side).map(|(a, b)| (a.min(b), a.max(b))));
         }
-        if sides.is_empty() || self.fit.care.smooth == 0 {
+        if sides.is_empty() || self.fit.settings.smooth == 0 {
             return Ok(());
         }
         let longest = &self.fit.longest;
@@ -174,20 +174,20 @@ impl Maker<'_> {
 
     /// Shares long sides out, and crosses those that stay too long by more quads.
     fn shorten(&self, net: &mut Net, wanted: &dyn SizeField, job: &Job) -> Result<()> {
-        if self.fit.care.smooth == 0 {
+        if self.fit.settings.smooth == 0 {
             return Ok(());
         }
-        let (longest, ground) = (&self.fit.longest, self.fit.chart);
+        let (longest, chart_surface) = (&self.fit.longest, self.fit.chart);
         let over =
             |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32));
-        Smoother::new(net, ground, wanted).even_out(&over, SHARES, job)?;
+        Smoother::new(net, chart_surface, wanted).even_out(&over, SHARES, job)?;
         for _ in 0..OPENINGS {
-            let opened = open(net, (ground, wanted), &over);
+            let opened = open(net, (chart_surface, wanted), &over);
             if opened.is_empty() {
                 break;
             }
-            let mut smoother = Smoother::new(net, ground, wanted).only(&opened);
-            smoother.smooth(self.fit.care.smooth, job)?;
+            let mut smoother = Smoother::new(net, chart_surface, wanted).only(&opened);
+            smoother.smooth(self.fit.settings.smooth, job)?;
             smoother.repair(WANTED, MENDS, job)?;
             smoother.even_out(&over, SHARES, job)?;
         }
@@ -196,8 +196,8 @@ impl Maker<'_> {
 
     fn smooth(&self, net: &mut Net, field: &dyn SizeField, job: &Job) -> Result<()> {
         let mut smoother = Smoother::new(net, self.fit.chart, field);
-        smoother.smooth(self.fit.care.smooth, job)?;
-        if self.fit.care.smooth > 0 {
+        smoother.smooth(self.fit.settings.smooth, job)?;
+        if self.fit.settings.smooth > 0 {
             smoother.repair(WANTED, MENDS, job)?;
         }
         Ok(())

@@ -26,8 +26,8 @@ struct Opening {
 }
 
 /// Opens nodes at sides that are longer than allowed, no two of them beside each other; gives the nodes of the new quads.
-pub fn open(net: &mut Net, (ground, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<u32> {
-    let mut all = openings(net, (ground, field), over);
+pub fn open(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<u32> {
+    let mut all = openings(net, (chart_surface, field), over);
     all.sort_by(|a, b| b.over.total_cmp(&a.over).then((a.node, a.towards).cmp(&(b.node, b.towards))));
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); if all.is_empty() { 0 } else { net.p.len() }];
     if !all.is_empty() {
@@ -44,7 +44,7 @@ pub fn open(net: &mut Net, (ground, field): (&dyn ParametricSurface, &dyn SizeFi
         near.iter().for_each(|n| busy[*n] = true);
         let new = net.p.len() as u32;
         let step = (net.p[towards] - net.p[node]) * APART;
-        let place = |by: DVec3| foot_spot(ground, net.xy[node], net.p[node] + by);
+        let place = |by: DVec3| foot_spot(chart_surface, net.xy[node], net.p[node] + by);
         let (here, there) = (place(step), place(-step));
         net.p.push(there.1.p);
         net.xy.push(there.0);
@@ -66,8 +66,8 @@ pub fn open(net: &mut Net, (ground, field): (&dyn ParametricSurface, &dyn SizeFi
 }
 
 /// What may be opened, at either end of each side that is too long.
-fn openings(net: &mut Net, (ground, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<Opening> {
-    let smoother = Smoother::new(net, ground, field);
+fn openings(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<Opening> {
+    let smoother = Smoother::new(net, chart_surface, field);
     let net = &*smoother.net;
     let mut found = Vec::new();
     for c in &net.face {

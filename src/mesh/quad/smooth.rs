@@ -48,7 +48,7 @@ struct Place {
 pub struct Smoother<'a> {
     /// The net.
     pub net: &'a mut Net,
-    ground: &'a dyn ParametricSurface,
+    chart_surface: &'a dyn ParametricSurface,
     field: &'a dyn SizeField,
     /// Faces round each node: from `first[n]` to the next one.
     first: Vec<u32>,
@@ -61,7 +61,7 @@ pub struct Smoother<'a> {
 
 impl<'a> Smoother<'a> {
     /// Takes a net.
-    pub fn new(net: &'a mut Net, ground: &'a dyn ParametricSurface, field: &'a dyn SizeField) -> Self {
+    pub fn new(net: &'a mut Net, chart_surface: &'a dyn ParametricSurface, field: &'a dyn SizeField) -> Self {
         let n = net.p.len();
         let mut first = vec![0; n + 1];
         let corners =
@@ -74,7 +74,7 @@ impl<'a> Smoother<'a> {
             next[node] += 1;
         }
         let (active, fresh) = (vec![true; n], vec![true; n]);
-        Self { net, ground, field, first, of, active, fresh }
+        Self { net, chart_surface, field, first, of, active, fresh }
     }
 
     /// Only these nodes and those round them may have to move.
@@ -110,7 +110,7 @@ impl<'a> Smoother<'a> {
 
     /// The foot of a point near a node.
     fn foot(&self, node: usize, p: DVec3) -> Place {
-        let (xy, spot) = foot_spot(self.ground, self.net.xy[node], p);
+        let (xy, spot) = foot_spot(self.chart_surface, self.net.xy[node], p);
         Place { xy, p: spot.p, normal: spot.normal() }
     }
 
@@ -189,8 +189,8 @@ impl<'a> Smoother<'a> {
         let mut share = 1.0;
         for _ in 0..3 {
             // The mean in the chart is nearly the foot of the one in space.
-            let guess = self.ground.clamp(start.xy + (to - start.xy) * share);
-            let (xy, spot) = foot_near(self.ground, guess, start.p + step * share, step.length() * share);
+            let guess = self.chart_surface.clamp(start.xy + (to - start.xy) * share);
+            let (xy, spot) = foot_near(self.chart_surface, guess, start.p + step * share, step.length() * share);
             self.put(node, Place { xy, p: spot.p, normal: spot.normal() });
             let after = self.worst(node);
             if after >= ENOUGH {

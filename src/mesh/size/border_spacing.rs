@@ -651,7 +651,7 @@ fn spared(ready: (&Surface, Option<&PowerForm>), row: &Beside, apart: f64, (size
     (0..=last).map(reached).collect()
 }
 
-/// Spacing of the crystal as a share of the size, so that hardly an edge comes out longer than the size allows.
+/// Spacing of the lattice as a share of the size, so that hardly an edge comes out longer than the size allows.
 pub const SPACING: f64 = 0.8;
 
 /// First lengths over those that bends ask for: triangles are not all equilateral.

@@ -21,9 +21,9 @@ use crate::mesh::tri::triangulation::Triangulation;
 /// Where inner nodes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lattice {
-    /// A crystal of equilateral triangles, grown from the border.
-    Crystal,
-    /// A crystal of squares, grown from the border.
+    /// A lattice of equilateral triangles, grown from the border.
+    Triangles,
+    /// A lattice of squares, grown from the border.
     Squares,
     /// The corners of a quadtree's cells.
     Tree,
@@ -32,19 +32,19 @@ pub enum Lattice {
 /// What a face is made from.
 pub struct Task<'a> {
     /// The surface.
-    pub ground: &'a dyn ParametricSurface,
+    pub chart_surface: &'a dyn ParametricSurface,
     /// The wanted lengths.
     pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,
     /// How triangles are improved.
-    pub care: OptimizeSettings,
+    pub settings: OptimizeSettings,
     /// Where inner nodes come from.
     pub lattice: Lattice,
     /// Most inner nodes.
     pub most: usize,
     /// Limits: what breaks one is divided.
-    pub guard: Option<&'a dyn LimitCheck>,
+    pub limit_check: Option<&'a dyn LimitCheck>,
 }
 
 /// The triangles of a face.
@@ -61,17 +61,17 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangu
         Ok(triangulation) => triangulation,
         Err(trouble) => return Ok(Err(trouble)),
     };
-    let mut optimizer = MeshOptimizer::new(triangulation, task.ground, task.field, task.care);
+    let mut optimizer = MeshOptimizer::new(triangulation, task.chart_surface, task.field, task.settings);
     optimizer.settle();
     job.go_on()?;
     // Where lengths were wrong, the rest of the work waits for better ones.
-    let mut bad = task.guard.map_or(Vec::new(), |guard| optimizer.broken(guard, &[]));
+    let mut bad = task.limit_check.map_or(Vec::new(), |limit_check| optimizer.broken(limit_check, &[]));
     if optimizer.are_few(&bad) {
         if bad.len() * FEW_BAD <= optimizer.triangulation.tri.len() {
             optimizer.improve(job)?;
         }
-        if let Some(guard) = task.guard {
-            bad = optimizer.divide(guard, bad, job)?;
+        if let Some(limit_check) = task.limit_check {
+            bad = optimizer.divide(limit_check, bad, job)?;
         }
     }
     optimizer.set_upright();
@@ -96,12 +96,12 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Result<std::result::Resu
         return Ok(Err(Trouble::Full));
     }
     let grown = match task.lattice {
-        Lattice::Crystal | Lattice::Squares => {
+        Lattice::Triangles | Lattice::Squares => {
             let seeds = seeds(&coarse, &kept, outline);
             let cell = if task.lattice == Lattice::Squares { Cell::Square } else { Cell::Triangle };
-            grow(&FrontInput { ground: task.ground, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
+            grow(&FrontInput { chart_surface: task.chart_surface, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
         }
-        Lattice::Tree => match quadtree::nodes(&Plot { ground: task.ground, field: task.field, outline, most: task.most }) {
+        Lattice::Tree => match quadtree::nodes(&Plot { chart_surface: task.chart_surface, field: task.field, outline, most: task.most }) {
             Ok(grown) => grown,
             Err(trouble) => return Ok(Err(trouble)),
         },

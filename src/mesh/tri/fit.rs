@@ -69,7 +69,7 @@ pub(crate) struct Fit<'a> {
     pub(crate) outline: &'a Outline,
     pub(crate) limits: Limits,
     pub(crate) longest: Longest<'a>,
-    pub(crate) care: OptimizeSettings,
+    pub(crate) settings: OptimizeSettings,
 }
 
 /// Triangles, what decided their sizes, and the cells they were made of.
@@ -97,10 +97,10 @@ pub(crate) fn fitting(
         (SMOOTH, FINEST, WANTED, 1.0)
     };
     let smooth = made.input.plan.smooth.map_or(smooth, |n| n.0 as usize);
-    let care = OptimizeSettings { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
+    let settings = OptimizeSettings { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
-    let mut fit = Fit { made, face, surface, chart, outline, limits, longest, care };
+    let mut fit = Fit { made, face, surface, chart, outline, limits, longest, settings };
     if face.method.is_coarse() {
         let mut laid = fit.laid(&rules, job)?;
         match (face.method, &mut laid) {
@@ -118,8 +118,8 @@ pub(crate) fn fitting(
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     if !bent && !tree && !sources.is_empty() {
-        fit.care.beyond = 1.0;
-        fit.care.smooth = made.input.plan.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
+        fit.settings.beyond = 1.0;
+        fit.settings.smooth = made.input.plan.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
     }
     let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;
@@ -139,13 +139,22 @@ pub(crate) fn elements_ahead(made: &FaceInput, face: &Face) -> Option<[f64; 2]> 
     let (_, chart, outline) = outlined(made, face)?;
     let rules = near(made, face, &outline);
     let quads = face.elements == Elements::Quads;
-    let (lattice, spacing) = if quads { (Lattice::Squares, 1.0) } else { (Lattice::Crystal, if face.is_grown() { SPACING } else { 1.0 }) };
+    let (lattice, spacing) =
+        if quads { (Lattice::Squares, 1.0) } else { (Lattice::Triangles, if face.is_grown() { SPACING } else { 1.0 }) };
     let sources = Sources::new(rules.items().to_vec(), rules.slope() / spacing);
     let field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
     let even = UniformSize(spacing * face.size.0);
     let fields: [&dyn SizeField; 2] = [if sources.is_empty() { &even } else { &field }, &even];
-    let care = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
-    let task = |field| Task { ground: &chart, field, outline: &outline, care, lattice, most: made.input.plan.most_nodes(), guard: None };
+    let settings = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
+    let task = |field| Task {
+        chart_surface: &chart,
+        field,
+        outline: &outline,
+        settings,
+        lattice,
+        most: made.input.plan.most_nodes(),
+        limit_check: None,
+    };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))
 }
@@ -245,9 +254,17 @@ impl Fit<'_> {
         self.outline.edges().flat_map(sources).collect()
     }
 
-    fn task<'t>(&'t self, field: &'t dyn SizeField, guard: &'t dyn LimitCheck) -> Task<'t> {
-        let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Crystal };
-        Task { ground: self.chart, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: Some(guard) }
+    fn task<'t>(&'t self, field: &'t dyn SizeField, limit_check: &'t dyn LimitCheck) -> Task<'t> {
+        let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Triangles };
+        Task {
+            chart_surface: self.chart,
+            field,
+            outline: self.outline,
+            settings: self.settings,
+            lattice,
+            most: self.most(),
+            limit_check: Some(limit_check),
+        }
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
@@ -272,8 +289,8 @@ impl Fit<'_> {
         let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
         let loads = RefCell::new(LimitTable::default());
         for _ in 0..ROUNDS {
-            let guard = Bounded { fit: self, floor, loads: &loads };
-            let triangulation = match triangulate(&self.task(&*field, &guard), job)? {
+            let limit_check = Bounded { fit: self, floor, loads: &loads };
+            let triangulation = match triangulate(&self.task(&*field, &limit_check), job)? {
                 // Below a floor limits may be broken all the same; that is told.
                 Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.triangulation)),
                 Ok(made) => made.triangulation,

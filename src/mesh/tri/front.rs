@@ -1,4 +1,4 @@
-//! Inner nodes: a crystal of equilateral triangles or of squares that grows over the surface from a seed until it meets the border.
+//! Inner nodes: a lattice of equilateral triangles or of squares that grows over the surface from a seed until it meets the border.
 //!
 //! Each node proposes its neighbours at the wanted distance, in directions carried along from its parent; what comes too
 //! near to a known point or to the border is dropped. On a plane with one size this is the regular lattice; on curved
@@ -37,7 +37,7 @@ pub(crate) const SIGHT: f64 = 1.3;
 /// Nodes between two questions whether to go on.
 const WATCH: usize = 4096;
 
-/// What a crystal is made of.
+/// What a lattice is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
     /// Equilateral triangles: six neighbours a node.
@@ -49,12 +49,12 @@ pub enum Cell {
 /// What growing needs.
 pub struct FrontInput<'a> {
     /// The surface.
-    pub ground: &'a dyn ParametricSurface,
+    pub chart_surface: &'a dyn ParametricSurface,
     /// The wanted lengths.
     pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,
-    /// Places where a crystal may start, with a direction in space (zero: any).
+    /// Places where a lattice may start, with a direction in space (zero: any).
     pub seeds: &'a [(DVec2, DVec3)],
     /// What grows.
     pub cell: Cell,
@@ -85,7 +85,7 @@ struct Front<'a> {
     grown: PlacedNodes,
     along: Vec<DVec3>,
     open: VecDeque<u32>,
-    /// Steps of squares along and across the crystal, over the wanted length.
+    /// Steps of squares along and across the lattice, over the wanted length.
     steps: [f64; 2],
     /// The box of the border in the chart: what got through between two steps of it grows no further.
     within: (DVec2, DVec2),
@@ -152,7 +152,7 @@ impl Front<'_> {
     }
 
     fn seed(&mut self, xy: DVec2, along: DVec3) {
-        let spot = self.input.ground.spot(xy);
+        let spot = self.input.chart_surface.spot(xy);
         let size = self.input.field.size(xy, spot.p);
         if self.near_node(spot.p, size) || self.near_border(xy, xy, spot.p, size) {
             return;
@@ -175,7 +175,7 @@ impl Front<'_> {
     /// Proposes the neighbours of a node.
     fn enclosure(&mut self, node: usize) {
         let (xy, p, size) = (self.grown.xy[node], self.grown.p[node], self.grown.size[node]);
-        let spot = self.input.ground.spot(xy);
+        let spot = self.input.chart_surface.spot(xy);
         let normal = spot.normal();
         let ahead = self.along[node];
         let aside = normal.cross(ahead);
@@ -202,7 +202,7 @@ impl Front<'_> {
         }
         let Some(step) = spot.step(way * size) else { return };
         // The mean of the lengths wanted here and there.
-        let there = self.input.field.size(self.input.ground.clamp(xy + step), guess);
+        let there = self.input.field.size(self.input.chart_surface.clamp(xy + step), guess);
         let length = 0.5 * (size + there) * segment;
         if self.near_node(p + way * length, there) {
             return;
@@ -212,13 +212,13 @@ impl Front<'_> {
         if outside || self.near_border(xy, xy + step, p + way * length, there) {
             return;
         }
-        let mut to = self.input.ground.clamp(xy + step);
-        let mut new = self.input.ground.spot(to);
+        let mut to = self.input.chart_surface.clamp(xy + step);
+        let mut new = self.input.chart_surface.spot(to);
         // The surface bends away from its tangent plane: once more with the length that came out.
         let made = new.p.distance(p);
         if (made - length).abs() > BENT * length && made > 0.0 {
-            to = self.input.ground.clamp(xy + step * (length / made));
-            new = self.input.ground.spot(to);
+            to = self.input.chart_surface.clamp(xy + step * (length / made));
+            new = self.input.chart_surface.spot(to);
             if self.near_border(xy, to, new.p, there) {
                 return;
             }

@@ -29,19 +29,24 @@ impl Background {
     /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
     ///
     /// The grid is as fine as the lengths it is for: a first, coarse one tells those.
-    pub fn new(ground: &dyn ParametricSurface, (low, high): (DVec2, DVec2), growth: f64, of: &(impl Fn(DVec2) -> f64 + Sync)) -> Self {
-        let first = Self::with_lines(LINES.0, ground, (low, high), growth, of);
+    pub fn new(
+        chart_surface: &dyn ParametricSurface,
+        (low, high): (DVec2, DVec2),
+        growth: f64,
+        of: &(impl Fn(DVec2) -> f64 + Sync),
+    ) -> Self {
+        let first = Self::with_lines(LINES.0, chart_surface, (low, high), growth, of);
         let mean = first.size.iter().map(|h| 1.0 / (h * h)).sum::<f64>() / first.size.len() as f64;
         let wished = (high - low).max_element() * mean.sqrt() / APART;
         if wished <= LINES.0 as f64 {
             return first;
         }
-        Self::with_lines((wished as usize).min(LINES.1), ground, (low, high), growth, of)
+        Self::with_lines((wished as usize).min(LINES.1), chart_surface, (low, high), growth, of)
     }
 
     fn with_lines(
         most: usize,
-        ground: &dyn ParametricSurface,
+        chart_surface: &dyn ParametricSurface,
         (low, high): (DVec2, DVec2),
         growth: f64,
         of: &(impl Fn(DVec2) -> f64 + Sync),
@@ -51,8 +56,9 @@ impl Background {
         let lines = |x: f64| ((most as f64 * x / longest).ceil() as usize).clamp(4, most) + 1;
         let n = (lines(extent.x), lines(extent.y));
         let cell = DVec2::new(extent.x / (n.0 - 1) as f64, extent.y / (n.1 - 1) as f64);
-        let place = |k: usize| ground.clamp(low + cell * DVec2::new((k % n.0) as f64, (k / n.0) as f64));
-        let row = |j: usize| -> Vec<(DVec3, f64)> { (0..n.0).map(|i| place(j * n.0 + i)).map(|xy| (ground.spot(xy).p, of(xy))).collect() };
+        let place = |k: usize| chart_surface.clamp(low + cell * DVec2::new((k % n.0) as f64, (k / n.0) as f64));
+        let row =
+            |j: usize| -> Vec<(DVec3, f64)> { (0..n.0).map(|i| place(j * n.0 + i)).map(|xy| (chart_surface.spot(xy).p, of(xy))).collect() };
         let rows = par::map(n.1, row);
         let p = rows.iter().flatten().map(|node| node.0).collect();
         let size = rows.iter().flatten().map(|node| node.1).collect();

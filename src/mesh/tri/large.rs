@@ -56,9 +56,16 @@ impl Fit<'_> {
 
     /// About how many elements each field asks for.
     fn expected<const N: usize>(&self, fields: [&dyn SizeField; N]) -> [f64; N] {
-        let lattice = Lattice::Crystal;
-        let task =
-            |field| Task { ground: self.chart, field, outline: self.outline, care: self.care, lattice, most: self.most(), guard: None };
+        let lattice = Lattice::Triangles;
+        let task = |field| Task {
+            chart_surface: self.chart,
+            field,
+            outline: self.outline,
+            settings: self.settings,
+            lattice,
+            most: self.most(),
+            limit_check: None,
+        };
         expected_nodes(fields.map(task).each_ref()).map_or([0.0; N], |nodes| nodes.map(|n| 2.0 * n))
     }
 

@@ -61,13 +61,13 @@ pub struct MeshOptimizer<'a> {
     /// The triangles.
     pub triangulation: Triangulation,
     /// Their surface.
-    pub ground: &'a dyn ParametricSurface,
+    pub chart_surface: &'a dyn ParametricSurface,
     /// SizeRequests lengths.
     pub field: &'a dyn SizeField,
     /// How.
-    pub care: OptimizeSettings,
+    pub settings: OptimizeSettings,
     /// What mended triangles have to keep.
-    pub guard: Option<&'a dyn LimitCheck>,
+    pub limit_check: Option<&'a dyn LimitCheck>,
     ring: Ring,
     rim: Rim,
     patch: Patch,
@@ -87,15 +87,20 @@ pub struct MeshOptimizer<'a> {
 
 impl<'a> MeshOptimizer<'a> {
     /// Takes a triangulation.
-    pub fn new(triangulation: Triangulation, ground: &'a dyn ParametricSurface, field: &'a dyn SizeField, care: OptimizeSettings) -> Self {
+    pub fn new(
+        triangulation: Triangulation,
+        chart_surface: &'a dyn ParametricSurface,
+        field: &'a dyn SizeField,
+        settings: OptimizeSettings,
+    ) -> Self {
         let all = Pending::all(triangulation.p.len());
         let squeezed = vec![1.0; triangulation.p.len()];
         Self {
             triangulation,
-            ground,
+            chart_surface,
             field,
-            care,
-            guard: None,
+            settings,
+            limit_check: None,
             ring: Ring::default(),
             rim: Rim::default(),
             patch: Patch::default(),
@@ -111,8 +116,8 @@ impl<'a> MeshOptimizer<'a> {
     /// The first flips and rounds of smoothing: from here on nodes hardly move.
     pub fn settle(&mut self) {
         self.flip_all();
-        if self.care.smooth > 0 {
-            self.smooth(self.care.smooth);
+        if self.settings.smooth > 0 {
+            self.smooth(self.settings.smooth);
             self.flip_all();
             // What still moves a little is left; what is mended wakes its neighbours.
             self.active.clear();
@@ -142,7 +147,7 @@ impl<'a> MeshOptimizer<'a> {
 
     /// Works on bad triangles, after [`MeshOptimizer::settle`].
     pub fn improve(&mut self, job: &Job) -> Result<()> {
-        if self.care.smooth == 0 {
+        if self.settings.smooth == 0 {
             return Ok(());
         }
         for _ in 0..ROUNDS {
@@ -150,7 +155,7 @@ impl<'a> MeshOptimizer<'a> {
             if self.repair() == 0 {
                 break;
             }
-            self.smooth(self.care.smooth.min(4));
+            self.smooth(self.settings.smooth.min(4));
             self.flip_all();
         }
         self.mend_last(job)

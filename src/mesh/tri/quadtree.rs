@@ -36,7 +36,7 @@ const MAX_SAMPLES: usize = 16;
 /// What a tree is made for.
 pub struct Plot<'a> {
     /// The surface.
-    pub ground: &'a dyn ParametricSurface,
+    pub chart_surface: &'a dyn ParametricSurface,
     /// SizeRequests lengths.
     pub field: &'a dyn SizeField,
     /// The border.
@@ -63,14 +63,14 @@ pub fn nodes(task: &Plot) -> Result<PlacedNodes, Trouble> {
             return false;
         }
         let shortest = cell.segments.iter().map(|s| lengths[*s as usize]).fold(f64::INFINITY, f64::min);
-        let (long, middle, p) = span(task.ground, tree, cell);
+        let (long, middle, p) = span(task.chart_surface, tree, cell);
         long > (SIDE * task.field.size(middle, p)).min(shortest)
     };
     if let Err(halt) = tree.refine(&wants, 4 * task.most) {
         let cell = |k: u32| &tree.cells()[k as usize];
         return Err(match halt {
             Halt::Full => Trouble::Full,
-            Halt::Deep(k) => Trouble::Deep(span(task.ground, &tree, cell(k)).2),
+            Halt::Deep(k) => Trouble::Deep(span(task.chart_surface, &tree, cell(k)).2),
         });
     }
     tree.balance();
@@ -81,17 +81,17 @@ pub fn nodes(task: &Plot) -> Result<PlacedNodes, Trouble> {
 fn largest(task: &Plot, low: DVec2, high: DVec2) -> f64 {
     let at = |k: usize| (k as f64 + 0.5) / MAX_SAMPLES as f64;
     let size = |k: usize| {
-        let xy = task.ground.clamp(low + (high - low) * DVec2::new(at(k % MAX_SAMPLES), at(k / MAX_SAMPLES)));
-        task.field.size(xy, task.ground.spot(xy).p)
+        let xy = task.chart_surface.clamp(low + (high - low) * DVec2::new(at(k % MAX_SAMPLES), at(k / MAX_SAMPLES)));
+        task.field.size(xy, task.chart_surface.spot(xy).p)
     };
     (0..MAX_SAMPLES * MAX_SAMPLES).map(size).fold(0.0, f64::max).min((high - low).max_element())
 }
 
 /// Longer side of a cell in space, its middle in the chart and in space.
-fn span(ground: &dyn ParametricSurface, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
+fn span(chart_surface: &dyn ParametricSurface, tree: &Tree, cell: &Cell) -> (f64, DVec2, DVec3) {
     let side = tree.side(cell.level);
-    let middle = ground.clamp(tree.corner(cell.level, cell.at) + 0.5 * side);
-    let spot = ground.spot(middle);
+    let middle = chart_surface.clamp(tree.corner(cell.level, cell.at) + 0.5 * side);
+    let spot = chart_surface.spot(middle);
     ((spot.dx.length() * side.x).max(spot.dy.length() * side.y), middle, spot.p)
 }
 
@@ -118,7 +118,7 @@ fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> PlacedNodes {
         if leaves.iter().all(|c| c.class == Class::Partial) && !tree.holds(xy) {
             continue;
         }
-        let sides = leaves.iter().map(|c| (span(task.ground, tree, c).0, tree.side(c.level)));
+        let sides = leaves.iter().map(|c| (span(task.chart_surface, tree, c).0, tree.side(c.level)));
         let side = sides.reduce(|a, b| (a.0.min(b.0), a.1.min(b.1))).unwrap_or_default();
         let mut edges = leaves.iter().flat_map(|c| &c.segments).map(|s| segments[*s as usize]);
         if !edges.any(|edge| is_beside(xy, edge, side.1, ON_EDGE)) {
@@ -146,7 +146,7 @@ impl<'a> PlacedCells<'a> {
             let [a, b] = edge.map(|n| n as usize);
             let off = |k: u32| {
                 let t = f64::from(k) / f64::from(PLACES);
-                apart(task.ground.spot(outline.xy[a].lerp(outline.xy[b], t)).p, outline.p[a], outline.p[b])
+                apart(task.chart_surface.spot(outline.xy[a].lerp(outline.xy[b], t)).p, outline.p[a], outline.p[b])
             };
             (1..PLACES).any(|k| off(k) > BENT * outline.length(*edge))
         };
@@ -158,7 +158,7 @@ impl<'a> PlacedCells<'a> {
     /// Takes a corner of cells with these least sides, in space and in the chart, where nothing is too near.
     fn consider(&mut self, xy: DVec2, (side, in_chart): (f64, DVec2)) {
         let outline = self.task.outline;
-        let p = self.task.ground.spot(xy).p;
+        let p = self.task.chart_surface.spot(xy).p;
         let size = self.task.field.size(xy, p);
         let near = self.border.any(p, SIGHT * size, size, |sample, _| {
             let [a, b] = outline.edge(sample.tag).map(|n| outline.p[n as usize]);

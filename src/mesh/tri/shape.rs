@@ -146,19 +146,19 @@ impl Rim {
 
     /// Climbs from a place to one where the worst triangle is as good as it can be. On the way the surface is what its
     /// derivatives at the start say it is; where that tells too little, from there on what those at the end say.
-    pub fn best(&mut self, ground: &dyn ParametricSurface, from: DVec2, p: DVec3) -> Star {
+    pub fn best(&mut self, chart_surface: &dyn ParametricSurface, from: DVec2, p: DVec3) -> Star {
         let mut star = Star { p, xy: from, worst: self.worst(from, p) };
         for _ in 0..STARTS {
-            let seen = self.climb(ground, star);
+            let seen = self.climb(chart_surface, star);
             if seen.xy == star.xy {
                 break;
             }
             let truly = |xy: DVec2| {
-                let p = ground.point(xy);
+                let p = chart_surface.point(xy);
                 Star { p, xy, worst: self.worst(xy, p) }
             };
             // Where it is no better, half the way may be.
-            let places = [seen.xy, ground.clamp(0.5 * (star.xy + seen.xy))].into_iter();
+            let places = [seen.xy, chart_surface.clamp(0.5 * (star.xy + seen.xy))].into_iter();
             let Some(there) = places.map(truly).find(|there| there.worst > star.worst) else { break };
             star = there;
             if (star.worst - seen.worst).abs() <= TRUE {
@@ -169,9 +169,9 @@ impl Rim {
     }
 
     /// Steps towards the mean of the tips that the sides demand for, the worst ones first.
-    fn climb(&mut self, ground: &dyn ParametricSurface, mut star: Star) -> Star {
+    fn climb(&mut self, chart_surface: &dyn ParametricSurface, mut star: Star) -> Star {
         let from = star.xy;
-        let near = ground.near(from);
+        let near = chart_surface.near(from);
         let mut spot = near.spot(DVec2::ZERO);
         let mut demand = self.demand(star.p);
         let mut share = 1.0;
@@ -181,7 +181,7 @@ impl Rim {
                 break;
             }
             let Some(way) = spot.step(step) else { break };
-            let xy = ground.clamp(star.xy + way);
+            let xy = chart_surface.clamp(star.xy + way);
             let new = near.spot(xy - from);
             let worst = self.worst(xy, new.p);
             if worst > star.worst + GAIN {

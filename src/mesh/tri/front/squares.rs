@@ -1,4 +1,4 @@
-//! The first row of a crystal of squares: round the border, a node over each of its nodes, so that the cells beside it stand
+//! The first row of a lattice of squares: round the border, a node over each of its nodes, so that the cells beside it stand
 //! upright on it.
 
 use glam::{DVec2, DVec3};
@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use crate::base::math;
 use crate::mesh::tri::front::{FAR, Front, STRAIGHT};
 
-/// Nearest distance between two nodes of crystals, as a share of the wanted length: one in the middle of a square would have
+/// Nearest distance between two nodes of lattices, as a share of the wanted length: one in the middle of a square would have
 /// 0.707 to its corners.
 const APART: f64 = 0.75;
 /// The same to nodes of the first row: half a step, so that what is left between two rows is as often too narrow as too wide.
@@ -17,11 +17,11 @@ const BESIDE: f64 = 0.65;
 const BENT: f64 = 1.02;
 /// Nearest distance of a node to an edge of the border, as a share of the wanted length.
 const CLEAR: f64 = 0.6;
-/// Steps of the crystal over the wanted length where it follows those of the border.
+/// Steps of the lattice over the wanted length where it follows those of the border.
 const FOLLOWED: std::ops::Range<f64> = 0.7..1.08;
 /// Angles that a cell may have at the border where it bends outwards, radians: 57° to 126°.
 const CORNER: std::ops::Range<f64> = 1.0..2.2;
-/// Edges of a straight run that a crystal follows.
+/// Edges of a straight run that a lattice follows.
 const RUN: usize = 3;
 /// Cosine between runs that stand upright on each other.
 const UPRIGHT: f64 = 0.02;
@@ -40,7 +40,7 @@ struct Run {
 
 impl Front<'_> {
     /// A node over each node of the border, and those between where it turns outwards; gives the one over the longest
-    /// straight run, from which the crystal starts.
+    /// straight run, from which the lattice starts.
     pub(crate) fn layer_of_squares(&mut self) -> Option<u32> {
         let outline = self.input.outline;
         let runs = self.runs();
@@ -103,7 +103,7 @@ impl Front<'_> {
         runs
     }
 
-    /// The steps of a run over the wanted length, where the crystal can take them over.
+    /// The steps of a run over the wanted length, where the lattice can take them over.
     fn followed(&self, run: Option<Run>) -> f64 {
         let Some(run) = run.filter(|run| run.edges >= RUN) else { return 1.0 };
         let outline = self.input.outline;
@@ -116,7 +116,7 @@ impl Front<'_> {
     fn over(&mut self, node: u32, next: DVec3, last: DVec3, along: DVec3) {
         let outline = self.input.outline;
         let (p, xy) = (outline.p[node as usize], outline.xy[node as usize]);
-        let spot = self.input.ground.spot(xy);
+        let spot = self.input.chart_surface.spot(xy);
         let normal = spot.normal();
         let (out, back) = ((next - p).reject_from_normalized(normal), (last - p).reject_from_normalized(normal));
         let (Some(unit), true) = (out.try_normalize(), back != DVec3::ZERO) else { return };
@@ -147,8 +147,8 @@ impl Front<'_> {
         let between: Vec<DVec3> = arms.windows(2).map(|w| w[0] + w[1]).collect();
         for arm in arms.iter().chain(&between) {
             let Some(step) = spot.step(*arm) else { continue };
-            let to = self.input.ground.clamp(xy + step);
-            let new = self.input.ground.spot(to);
+            let to = self.input.chart_surface.clamp(xy + step);
+            let new = self.input.chart_surface.spot(to);
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
             let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
@@ -162,7 +162,7 @@ impl Front<'_> {
     }
 }
 
-/// The directions of a crystal in the tangent plane of a place.
+/// The directions of a lattice in the tangent plane of a place.
 #[derive(Clone, Copy)]
 struct Frame {
     along: DVec3,
@@ -175,7 +175,7 @@ impl Frame {
         Some(Self { along, aside: normal.cross(along) })
     }
 
-    /// The number of quarter turns from the crystal to the nearest of its four directions.
+    /// The number of quarter turns from the lattice to the nearest of its four directions.
     fn quarter(&self, way: DVec3) -> f64 {
         (math::atan2(way.dot(self.aside), way.dot(self.along)) / RIGHT).round()
     }
@@ -191,8 +191,8 @@ impl Frame {
 
     /// How many cells fill the angle `turn` at a node of the border, between the edge that leaves it and the one that comes.
     ///
-    /// Where it bends outwards, edges count as the nearest of the crystal's four directions: a round hole then is a square to
-    /// the cells round it, and no row of them meets the crystal askew.
+    /// Where it bends outwards, edges count as the nearest of the lattice's four directions: a round hole then is a square to
+    /// the cells round it, and no row of them meets the lattice askew.
     fn cells(&self, turn: f64, leaves: DVec3, comes: DVec3) -> usize {
         let turned = (self.quarter(comes) - self.quarter(leaves)).rem_euclid(4.0);
         let squared = 2.0 + if turned > 2.0 { turned - 4.0 } else { turned };

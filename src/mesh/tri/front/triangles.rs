@@ -1,4 +1,4 @@
-//! The first row of a crystal of triangles: a node in each corner that two of them fill, and one over each edge of the border.
+//! The first row of a lattice of triangles: a node in each corner that two of them fill, and one over each edge of the border.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ const WIDE: f64 = 2.618;
 
 impl Front<'_> {
     /// A row of nodes along the border, each the tip of an equilateral triangle over an edge; they do not grow further but
-    /// for the one over the longest straight run, from which the crystal starts.
+    /// for the one over the longest straight run, from which the lattice starts.
     pub(crate) fn layer(&mut self) -> Option<u32> {
         let outline = self.input.outline;
         self.corners();
@@ -25,14 +25,14 @@ impl Front<'_> {
             let Some(along) = side.try_normalize() else { continue };
             run = if along.dot(run.1) > STRAIGHT { (run.0 + side.length(), run.1) } else { (side.length(), along) };
             let middle = 0.5 * (xa + xb);
-            let spot = self.input.ground.spot(middle);
+            let spot = self.input.chart_surface.spot(middle);
             let size = self.input.field.size(middle, spot.p);
             let inward = spot.normal().cross(along);
             // Between the height of the edge's own triangle and that of the wanted one.
             let tall = (size * size - 0.25 * side.length_squared()).max(0.25 * size * size).sqrt();
             let Some(step) = spot.step(inward * tall) else { continue };
-            let to = self.input.ground.clamp(middle + step);
-            let new = self.input.ground.spot(to);
+            let to = self.input.chart_surface.clamp(middle + step);
+            let new = self.input.chart_surface.spot(to);
             let size = self.input.field.size(to, new.p);
             if new.p.distance(spot.p) > FAR * tall || self.is_on_edge(to) {
                 continue;
@@ -58,7 +58,7 @@ impl Front<'_> {
         for &[a, b] in &outline.loops {
             let Some(from) = outline.p.get(before[a as usize] as usize) else { continue };
             let (pa, pb, xy) = (outline.p[a as usize], outline.p[b as usize], outline.xy[a as usize]);
-            let spot = self.input.ground.spot(xy);
+            let spot = self.input.chart_surface.spot(xy);
             let normal = spot.normal();
             let (out, back) = ((pb - pa).reject_from_normalized(normal), (*from - pa).reject_from_normalized(normal));
             let turn = math::atan2(normal.dot(out.cross(back)), out.dot(back));
@@ -68,8 +68,8 @@ impl Front<'_> {
             let way = (out.normalize_or_zero() + back.normalize_or_zero()).normalize_or_zero();
             let size = self.input.field.size(xy, pa);
             let Some(step) = spot.step(way * size) else { continue };
-            let to = self.input.ground.clamp(xy + step);
-            let new = self.input.ground.spot(to);
+            let to = self.input.chart_surface.clamp(xy + step);
+            let new = self.input.chart_surface.spot(to);
             let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
             let far = new.p.distance(pa) > FAR * size || self.is_on_edge(to);

@@ -22,13 +22,13 @@ const MANY: usize = 12;
 
 impl<'a> MeshOptimizer<'a> {
     /// Triangles that break a limit, given those that did when it was looked at last.
-    pub fn broken(&mut self, guard: &dyn LimitCheck, before: &[u32]) -> Vec<u32> {
+    pub fn broken(&mut self, limit_check: &dyn LimitCheck, before: &[u32]) -> Vec<u32> {
         let nodes = self.unseen.take();
         let mut some = self.triangles_at(&nodes);
         some.extend(before.iter().filter(|t| self.triangulation.alive(**t)));
         some.sort_unstable();
         some.dedup();
-        guard.broken(&self.triangulation, &some)
+        limit_check.broken(&self.triangulation, &some)
     }
 
     /// Whether so few triangles break a limit that dividing them will do.
@@ -40,16 +40,16 @@ impl<'a> MeshOptimizer<'a> {
     ///
     /// Where changes can be asked about ahead, only rough triangles are mended while many are divided, for what mending breaks has
     /// to be divided again; when all keep their limits, the others are mended so that none breaks one anew.
-    pub fn divide(&mut self, guard: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
-        let (wanted, mut settled) = (self.care.wanted, false);
+    pub fn divide(&mut self, limit_check: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
+        let (wanted, mut settled) = (self.settings.wanted, false);
         for round in 0..DIVISIONS {
-            bad = self.broken(guard, &bad);
-            if bad.is_empty() && guard.foresees() && !settled && self.care.smooth > 0 {
+            bad = self.broken(limit_check, &bad);
+            if bad.is_empty() && limit_check.foresees() && !settled && self.settings.smooth > 0 {
                 settled = true;
-                (self.guard, self.care.wanted) = (Some(guard), wanted);
+                (self.limit_check, self.settings.wanted) = (Some(limit_check), wanted);
                 self.changed = Pending::all(self.triangulation.p.len());
                 self.mend_last(job)?;
-                bad = self.broken(guard, &bad);
+                bad = self.broken(limit_check, &bad);
             }
             if bad.is_empty() || !self.are_few(&bad) {
                 break;
@@ -69,11 +69,11 @@ impl<'a> MeshOptimizer<'a> {
                 break;
             }
             self.flip_all();
-            let rough = guard.foresees() && round > 0 && bad.len() * FEW_DIVISOR > self.triangulation.tri.len();
-            self.care.wanted = if rough { wanted - ROUGH } else { wanted };
+            let rough = limit_check.foresees() && round > 0 && bad.len() * FEW_DIVISOR > self.triangulation.tri.len();
+            self.settings.wanted = if rough { wanted - ROUGH } else { wanted };
             // What goes to and fro is mended within the limits from now on.
-            if round >= TOO_OFTEN && guard.foresees() && self.guard.is_none() {
-                self.guard = Some(guard);
+            if round >= TOO_OFTEN && limit_check.foresees() && self.limit_check.is_none() {
+                self.limit_check = Some(limit_check);
             }
             self.repair();
             job.go_on()?;

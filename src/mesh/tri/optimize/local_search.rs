@@ -58,14 +58,14 @@ impl MeshOptimizer<'_> {
     /// Works on the worst triangles below the wanted quality; how many places got better.
     fn last(&mut self, job: &Job) -> Result<usize> {
         let live = (0..self.triangulation.tri.len() as u32).filter(|t| self.triangulation.alive(*t));
-        let mut bad: Vec<(f64, u32)> = live.map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
+        let mut bad: Vec<(f64, u32)> = live.map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.settings.wanted).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let n = self.triangulation.tri.len();
         bad.truncate(1 + (n / SMALL.0).min(SMALL.1) + n / RARE);
         let mut better = 0;
         for (_, t) in bad {
             job.go_on()?;
-            let still = self.triangulation.alive(t) && self.worth(t) < self.care.wanted;
+            let still = self.triangulation.alive(t) && self.worth(t) < self.settings.wanted;
             better += usize::from(still && self.try_all(t));
         }
         Ok(better)
@@ -179,9 +179,9 @@ impl MeshOptimizer<'_> {
                 self.fill_rim(node);
                 let (xy, p) = (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]);
                 self.rim.worst(xy, p);
-                let Some(way) = self.ground.spot(xy).step(self.rim.demand(p) * SHARE) else { continue };
-                let xy = self.ground.clamp(xy + way);
-                let p = self.ground.point(xy);
+                let Some(way) = self.chart_surface.spot(xy).step(self.rim.demand(p) * SHARE) else { continue };
+                let xy = self.chart_surface.clamp(xy + way);
+                let p = self.chart_surface.point(xy);
                 if self.rim.worst(xy, p) > 0.0 {
                     (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]) = (xy, p);
                     moved = true;

@@ -24,13 +24,13 @@ impl MeshOptimizer<'_> {
     pub fn repair(&mut self) -> usize {
         let changed = self.changed.take();
         let mut bad: Vec<(f64, u32)> =
-            self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.care.wanted).collect();
+            self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.settings.wanted).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut changes = 0;
         for (_, t) in bad {
             job::look();
             for _ in 0..3 {
-                if !self.triangulation.alive(t) || self.worth(t) >= self.care.wanted {
+                if !self.triangulation.alive(t) || self.worth(t) >= self.settings.wanted {
                     break;
                 }
                 if !self.repair_triangle(t) {
@@ -50,7 +50,7 @@ impl MeshOptimizer<'_> {
 
     /// What a change must gain where the worst triangle is so good.
     fn gain(&self, worst: f64) -> f64 {
-        if worst < self.care.fair { GAIN } else { MIN_GAIN }
+        if worst < self.settings.fair { GAIN } else { MIN_GAIN }
     }
 
     /// What a triangle is worth: its quality less what its longest side takes.
@@ -64,7 +64,7 @@ impl MeshOptimizer<'_> {
                 let size =
                     if self.triangulation.is_free(i) { self.triangulation.size[i as usize] } else { self.triangulation.size[j as usize] };
                 let length = self.triangulation.p[i as usize].distance(self.triangulation.p[j as usize]);
-                worth = worth.min(shape * (size * self.care.longest / length).min(1.0));
+                worth = worth.min(shape * (size * self.settings.longest / length).min(1.0));
             }
         }
         worth
@@ -84,7 +84,7 @@ impl MeshOptimizer<'_> {
             }
             let (xy, p) = (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]);
             let before = self.rim.worst(xy, p);
-            let star = self.rim.best(self.ground, xy, p);
+            let star = self.rim.best(self.chart_surface, xy, p);
             if star.worst > before + self.gain(before) && self.star_keeps(&self.ring.node, node, &star) {
                 self.place(node, star.xy, star.p);
                 any = true;
@@ -128,7 +128,7 @@ impl MeshOptimizer<'_> {
 
     /// Whether a triangle keeps the limits, with its first corner moved to a place.
     pub(crate) fn keeps(&self, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
-        self.guard.is_none_or(|guard| guard.keeps(&self.triangulation, corners, first))
+        self.limit_check.is_none_or(|limit_check| limit_check.keeps(&self.triangulation, corners, first))
     }
 
     /// The same of the triangles from a place to the sides of a rim.
@@ -197,14 +197,14 @@ impl MeshOptimizer<'_> {
             return None;
         }
         let (xy, p) = self.rim.middle();
-        let xy = self.ground.clamp(xy);
-        self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.care.longest;
+        let xy = self.chart_surface.clamp(xy);
+        self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.settings.longest;
         // A rim that is far too large or too small for one node is not searched for its best place.
-        let p = self.ground.point(xy);
+        let p = self.chart_surface.point(xy);
         if self.rim.worst(xy, p) < worth.least {
             return None;
         }
-        let star = self.rim.best(self.ground, xy, p);
+        let star = self.rim.best(self.chart_surface, xy, p);
         let node = if let Keep::One(node) = keep { Some(node) } else { None };
         (star.worst > 0.0).then_some((star.worst, Plan::Star(star, node)))
     }
@@ -223,7 +223,7 @@ impl MeshOptimizer<'_> {
                     break;
                 }
                 let far = p[k].distance(p[a]);
-                let longest = self.triangulation.size[patch.rim[a] as usize] * self.care.longest;
+                let longest = self.triangulation.size[patch.rim[a] as usize] * self.settings.longest;
                 let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
                 worst = worst.min(self.triangulation.shape([k, a, b].map(|i| patch.rim[i])) * share);
             }

@@ -37,7 +37,7 @@ impl MeshOptimizer<'_> {
         self.fill_rim(node);
         let here = self.triangulation.p[node as usize];
         let before = self.rim.worst(self.triangulation.xy[node as usize], here);
-        if before > self.care.fine {
+        if before > self.settings.fine {
             return false;
         }
         let xy = self.triangulation.xy[node as usize];
@@ -58,16 +58,16 @@ impl MeshOptimizer<'_> {
         let demand = sum / (3.0 * weights) - here;
         // The same mean in the chart is nearly the foot of the one in space.
         let way = place / (3.0 * weights) - xy;
-        let mut share = self.care.beyond;
+        let mut share = self.settings.beyond;
         for _ in 0..3 {
             let step = demand * share;
             if step.length() < STILL * size {
                 return false;
             }
-            let (xy, spot) = foot_near(self.ground, self.ground.clamp(xy + way * share), here + step, step.length());
+            let (xy, spot) = foot_near(self.chart_surface, self.chart_surface.clamp(xy + way * share), here + step, step.length());
             let p = spot.p;
             // Where rounding has turned a triangle over already, that is no leave to turn others.
-            if self.rim.worst(xy, p) >= before.clamp(0.0, self.care.fine) {
+            if self.rim.worst(xy, p) >= before.clamp(0.0, self.settings.fine) {
                 self.place(node, xy, p);
                 return true;
             }
@@ -80,7 +80,7 @@ impl MeshOptimizer<'_> {
         let triangulation = &self.triangulation;
         triangulation.ring(node, &mut self.ring);
         self.rim.fill(self.ring.node.iter().map(|n| (triangulation.p[*n as usize], triangulation.xy[*n as usize])));
-        self.rim.longest = triangulation.size[node as usize] * self.care.longest;
+        self.rim.longest = triangulation.size[node as usize] * self.settings.longest;
     }
 
     pub(crate) fn place(&mut self, node: u32, xy: DVec2, p: DVec3) {

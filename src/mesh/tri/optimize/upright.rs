@@ -42,7 +42,7 @@ impl MeshOptimizer<'_> {
 
     fn lies_upright(&self, corners: [u32; 3]) -> bool {
         let middle = corners.iter().map(|n| self.triangulation.xy[*n as usize]).sum::<DVec2>() / 3.0;
-        self.up(corners).dot(self.ground.spot(middle).normal()) > 0.0
+        self.up(corners).dot(self.chart_surface.spot(middle).normal()) > 0.0
     }
 
     fn flip_upright(&mut self, t: u32) -> bool {
