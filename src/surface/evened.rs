@@ -29,7 +29,7 @@ const ACROSS: usize = 5;
 
 /// A monotone map of a parameter, both from 0 to 1: quadratic between stops.
 #[derive(Clone, Debug)]
-struct Pace {
+struct SpeedMap {
     /// The parameter of the net at the stops.
     old: Vec<f64>,
     /// The new one.
@@ -38,7 +38,7 @@ struct Pace {
     share: Vec<f64>,
 }
 
-impl Pace {
+impl SpeedMap {
     /// By the speed at each value, from some stops on, which are halved where it differs much; `mean` is the speed all in all.
     fn new(mut old: Vec<f64>, mean: f64, speed: &dyn Fn(f64) -> f64) -> Self {
         let held = |x: f64| speed(x).max(SLOW * mean);
@@ -85,7 +85,7 @@ impl Pace {
 #[derive(Debug)]
 pub struct Evened {
     surface: Surface,
-    paces: [Option<Pace>; 2],
+    speed_maps: [Option<SpeedMap>; 2],
     flipped: bool,
 }
 
@@ -97,18 +97,18 @@ impl Evened {
         if parts.domain != Domain::Loop || !parts.kinks.0.is_empty() || !parts.kinks.1.is_empty() {
             return None;
         }
-        let pace = |in_u: bool, closed: bool| if closed { None } else { net.pace(in_u) };
-        let paces = [pace(true, parts.closed.0), pace(false, parts.closed.1)];
-        if paces.iter().all(Option::is_none) || !trim.courses.iter().all(TrimCurve::is_upright) {
+        let speed_map = |in_u: bool, closed: bool| if closed { None } else { net.speed_map(in_u) };
+        let speed_maps = [speed_map(true, parts.closed.0), speed_map(false, parts.closed.1)];
+        if speed_maps.iter().all(Option::is_none) || !trim.courses.iter().all(TrimCurve::is_upright) {
             return None;
         }
         let mut shape = net.clone();
-        for (in_u, pace) in [(true, &paces[0]), (false, &paces[1])] {
-            if let Some(pace) = pace {
-                shape = shape.composed(in_u, pace);
+        for (in_u, speed_map) in [(true, &speed_maps[0]), (false, &speed_maps[1])] {
+            if let Some(speed_map) = speed_map {
+                shape = shape.composed(in_u, speed_map);
             }
         }
-        let mut evened = Self { surface: surface.clone(), paces, flipped: parts.flipped };
+        let mut evened = Self { surface: surface.clone(), speed_maps, flipped: parts.flipped };
         let trim = Arc::new(trim.with_courses(trim.courses.iter().map(|c| c.mapped(&|at| evened.place(at))).collect()));
         evened.surface = surface.remade(Parts { shape: Shape::Nurbs(shape), trim: Some(trim), ..parts.clone() });
         Some(evened)
@@ -121,15 +121,15 @@ impl Evened {
 
     /// The new parameters of a place by its old ones.
     pub fn place(&self, (u, v): (f64, f64)) -> (f64, f64) {
-        let by = |k: usize, x: f64| self.paces[k].as_ref().map_or(x, |pace| pace.place(x));
-        let v = if self.flipped && self.paces[1].is_some() { 1.0 - by(1, 1.0 - v) } else { by(1, v) };
+        let by = |k: usize, x: f64| self.speed_maps[k].as_ref().map_or(x, |speed_map| speed_map.place(x));
+        let v = if self.flipped && self.speed_maps[1].is_some() { 1.0 - by(1, 1.0 - v) } else { by(1, v) };
         (by(0, u), v)
     }
 }
 
 impl NurbsSurface {
     /// The map that makes the speed along a direction nearly even; `None` where it nearly is, or twice the degree would be too high.
-    fn pace(&self, in_u: bool) -> Option<Pace> {
+    fn speed_map(&self, in_u: bool) -> Option<SpeedMap> {
         let (knots, degree) = if in_u { (&self.knots.0, self.degree.0) } else { (&self.knots.1, self.degree.1) };
         let (along, across) = if in_u { self.counts } else { (self.counts.1, self.counts.0) };
         if 2 * degree > MAX_DEGREE {
@@ -158,16 +158,16 @@ impl NurbsSurface {
         };
         let inner = if in_u { self.breaks().0 } else { self.breaks().1 };
         let stops = [vec![0.0], inner, vec![1.0]].concat();
-        (stops.len() < STOPS).then(|| Pace::new(stops, mean, &speed))
+        (stops.len() < STOPS).then(|| SpeedMap::new(stops, mean, &speed))
     }
 
     /// The same surface by a new parameter in one direction.
-    fn composed(&self, in_u: bool, pace: &Pace) -> Self {
+    fn composed(&self, in_u: bool, speed_map: &SpeedMap) -> Self {
         let (degree, across) = if in_u { (self.degree.0, self.counts.1) } else { (self.degree.1, self.counts.0) };
         let most = 2 * degree;
         let mut lines: Vec<Vec<DVec4>> = Vec::new();
-        for (k, r) in pace.share.iter().enumerate() {
-            let (a, b) = (pace.old[k], pace.old[k + 1]);
+        for (k, r) in speed_map.share.iter().enumerate() {
+            let (a, b) = (speed_map.old[k], speed_map.old[k + 1]);
             let inner = a + (b - a) * r;
             let first = usize::from(k > 0);
             lines.extend((first..=most).map(|n| {
@@ -190,8 +190,8 @@ impl NurbsSurface {
                 line
             }));
         }
-        let last = pace.new.len() - 1;
-        let inner = pace.new[1..last].iter().flat_map(|x| vec![*x; most]);
+        let last = speed_map.new.len() - 1;
+        let inner = speed_map.new[1..last].iter().flat_map(|x| vec![*x; most]);
         let knots: Vec<f64> = vec![0.0; most + 1].into_iter().chain(inner).chain(vec![1.0; most + 1]).collect();
         let n = lines.len();
         if in_u {
@@ -217,18 +217,18 @@ mod tests {
             DVec4::new(x * w, y * w, sin_cos(x + 0.7 * y).0 * w, w)
         };
         let net = NurbsSurface { degree: (2, 3), knots: (knots_u, knots_v), poles: (0..24).map(pole).collect(), counts: (4, 6) };
-        assert!(net.pace(true).is_none());
-        let pace = net.pace(false).expect("runs unevenly");
-        let evened = net.composed(false, &pace);
+        assert!(net.speed_map(true).is_none());
+        let speed_map = net.speed_map(false).expect("runs unevenly");
+        let evened = net.composed(false, &speed_map);
         let lean = (OneSided::After, OneSided::After);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for k in 0..=1000 {
             let (u, v) = (0.37, f64::from(k) / 1000.0 * if k % 2 == 0 { 1.0 } else { 0.01 });
-            let jet = evened.jet(u, pace.place(v), lean);
+            let jet = evened.jet(u, speed_map.place(v), lean);
             assert!(jet.p.distance(net.jet(u, v, lean).p) < 1e-12, "{v}");
             (least, most) = (least.min(jet.dv.length()), most.max(jet.dv.length()));
         }
         assert!(most < 4.0 * least, "{least} {most}");
-        assert!((1..pace.new.len() - 1).all(|k| !evened.has_corner(false, pace.new[k])));
+        assert!((1..speed_map.new.len() - 1).all(|k| !evened.has_corner(false, speed_map.new[k])));
     }
 }

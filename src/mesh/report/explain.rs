@@ -169,7 +169,7 @@ impl Explanation {
                 (Because::Size, ..) => "the size".to_owned(),
                 (Because::Neighbours, ..) => "the rows or faces beside it".to_owned(),
             };
-            let spacing = sizing.spacings[*first].as_ref().map_or_else(String::new, |spacing| reasons::of_pace(input, spacing));
+            let spacing = sizing.spacings[*first].as_ref().map_or_else(String::new, |spacing| reasons::of_spacing(input, spacing));
             lines.push(format!(
                 "strip of {}: {} steps, by {why} (on {}){spacing}",
                 names.join(", "),

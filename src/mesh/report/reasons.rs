@@ -97,7 +97,7 @@ fn cause(input: &Input, why: Why) -> String {
 }
 
 /// "; steps 0.05 to 0.9: 80 % by size 0.05 near (5, 3, 0), 20 % by the size" of a segment whose steps vary.
-pub fn of_pace(input: &Input, spacing: &BorderSpacing) -> String {
+pub fn of_spacing(input: &Input, spacing: &BorderSpacing) -> String {
     let part = |(why, share): (Why, f64)| format!("{:.0} % by {}", 100.0 * share, cause(input, why));
     let parts: Vec<String> = spacing.shares().into_iter().map(part).collect();
     format!("; steps {:.3} to {:.3}: {}", spacing.least(), spacing.most(), parts.join(", "))
