@@ -2,11 +2,9 @@
 
 use glam::DVec3;
 
-use crate::mesh::border::lost;
-use crate::mesh::border::lost::Lost;
+use crate::mesh::border::lost::{self, Lost};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Elements, Method, Target};
-
 use crate::model::gather::Station;
 use crate::model::glue::preference;
 use crate::model::segments::{Part, SegmentUse, Segments, segments};

@@ -1,10 +1,9 @@
 //! Nodes on borders and curves: junctions, then the inner nodes of every segment, each once for all its faces.
 
-use crate::mesh::border::layout::Face;
 use glam::DVec3;
 
 use crate::base::par;
-use crate::mesh::border::layout::Layout;
+use crate::mesh::border::layout::{Face, Layout};
 
 /// Ids and fractions of the nodes of all segments.
 #[derive(Clone, Debug, Default)]

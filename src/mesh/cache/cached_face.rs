@@ -1,6 +1,5 @@
 //! Free faces taken over from earlier runs: what is made inside a border, under a key of all that it follows from.
 
-use crate::mesh::request::limits::Limits;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
@@ -14,6 +13,7 @@ use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::FreeInside;
 use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::{Body, Source, Sources};
 
 /// What is inside a border.

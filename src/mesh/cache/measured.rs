@@ -4,8 +4,7 @@ use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::cache::reuse::Reuse;
-use crate::mesh::data::face_geometry::FaceGeometry;
-use crate::mesh::data::face_geometry::FaceNodes;
+use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::mesh::{FaceRange, Mesh};
 use crate::mesh::deviation::measure;
 

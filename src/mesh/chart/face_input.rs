@@ -1,16 +1,16 @@
 //! Everything a face is made from, and its border in its chart.
 
+use glam::DVec3;
+
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::chart::affine::Chart;
-use crate::mesh::chart::face_border::FaceBorder;
-use crate::mesh::chart::face_border::border;
+use crate::mesh::chart::face_border::{FaceBorder, border};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes, Free};
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::size_requests::SizeRequests;
-use glam::DVec3;
 
 /// Everything a face is made from.
 pub struct FaceInput<'a> {

@@ -1,8 +1,9 @@
 //! A border of which every second node is left out: the border of cells that are halved afterwards.
 
+use glam::{DVec2, DVec3};
+
 use crate::base::job;
 use crate::mesh::chart::outline::Outline;
-use glam::{DVec2, DVec3};
 
 /// A border with that of its cells.
 #[derive(Clone, Debug, Default)]

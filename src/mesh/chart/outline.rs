@@ -1,10 +1,10 @@
 //! The border of a face in its chart: nodes, edges between them, lines inside.
 
-use crate::base::job;
-use crate::base::triangulate_points::{NO_TRIANGLE, Triangles};
 use glam::{DVec2, DVec3};
 
+use crate::base::job;
 use crate::base::tolerance::PARALLEL;
+use crate::base::triangulate_points::{NO_TRIANGLE, Triangles};
 
 /// A border: nodes that are given and edges that must be there.
 #[derive(Clone, Debug, Default)]

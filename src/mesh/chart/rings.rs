@@ -7,8 +7,7 @@ use glam::DVec2;
 
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
-use crate::mesh::chart::face_border::FaceBorder;
-use crate::mesh::chart::face_border::ONE_PLACE;
+use crate::mesh::chart::face_border::{FaceBorder, ONE_PLACE};
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::chart::outline::Outline;
 use crate::surface::Surface;

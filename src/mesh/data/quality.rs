@@ -2,10 +2,8 @@
 
 use glam::DVec3;
 
-use crate::base::job;
-use crate::base::math;
-use crate::base::par;
 use crate::base::tolerance::Tolerance;
+use crate::base::{job, math, par};
 use crate::mesh::data::mesh::Mesh;
 
 /// Elements that one thread measures at a time.

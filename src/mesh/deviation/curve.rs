@@ -1,7 +1,5 @@
 //! The least number of steps along a segment that keeps chord error and angle, and the nodes of these steps.
 
-use crate::mesh::request::limits::Limits;
-use crate::mesh::request::sources::distance_to_segment;
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
@@ -15,6 +13,8 @@ use crate::geometry::nurbs::projected;
 use crate::geometry::nurbs_edit::Bezier;
 use crate::mesh::border::counts::for_size;
 use crate::mesh::border::layout::Layout;
+use crate::mesh::request::limits::Limits;
+use crate::mesh::request::sources::distance_to_segment;
 use crate::model::Track;
 
 /// Halvings of a step's control polygon; each brings the bound four times closer to the truth.

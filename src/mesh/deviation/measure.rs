@@ -5,7 +5,6 @@
 //! square of the size). One more point is where the quadratic function is largest that has the same heights in the corners and in the middles
 //! of the sides. Of each row the triangles that seem farthest are followed to their feet.
 
-use crate::mesh::mapped::grid::triangle_rows;
 use glam::{DVec2, DVec3};
 
 use crate::base::par;
@@ -13,7 +12,7 @@ use crate::base::tolerance::Tolerance;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::deviation::triangle::stationary;
-use crate::mesh::mapped::grid::Grid;
+use crate::mesh::mapped::grid::{Grid, triangle_rows};
 use crate::surface::quick::PowerForm;
 use crate::surface::{Domain, Surface, foot_within};
 

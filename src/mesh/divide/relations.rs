@@ -9,8 +9,7 @@ use crate::mesh::divide::strips::{Conflict, Relation, Stretch};
 use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::Elements;
-use crate::mesh::size::sizing::Decision;
-use crate::mesh::size::sizing::{MOST, Sizing};
+use crate::mesh::size::sizing::{Decision, MOST, Sizing};
 
 /// A direction of a face as an unknown: what its rows want.
 #[derive(Clone, Debug)]

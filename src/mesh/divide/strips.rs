@@ -7,8 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::base::{job, work};
 use crate::mesh::border::counts::{largest, share};
-use crate::mesh::divide::parity;
-use crate::mesh::divide::parity::Sum;
+use crate::mesh::divide::parity::{self, Sum};
 use crate::model::glue::root;
 
 /// One segment (or one inner direction of a face without a side that could tell).

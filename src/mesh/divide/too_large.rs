@@ -9,8 +9,7 @@ use crate::mesh::divide::row_demand;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::plan::Elements;
-use crate::mesh::request::work::allow;
-use crate::mesh::request::work::too_many;
+use crate::mesh::request::work::{allow, too_many};
 use crate::mesh::size::sizing::Sizing;
 use crate::mesh::size::too_large::{of_segment, too_many_steps};
 

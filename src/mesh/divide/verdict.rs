@@ -1,10 +1,9 @@
 //! Checks finished faces against size, chord error and angle, and says what is missing in which direction.
 
-use crate::base::digest::StableHash;
-use crate::base::fault::MeshLimit;
 use glam::DVec3;
 
-use crate::base::digest::StableHasher;
+use crate::base::digest::{StableHash, StableHasher};
+use crate::base::fault::MeshLimit;
 use crate::base::math::widest_angle;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
@@ -12,8 +11,7 @@ use crate::mesh::border::layout::Face;
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
-use crate::mesh::deviation::certify;
-use crate::mesh::deviation::certify::Proof;
+use crate::mesh::deviation::certify::{self, Proof};
 use crate::mesh::deviation::measure;
 use crate::mesh::divide::row_demand::{RowDemand, SIZE_ROOM};
 use crate::mesh::mapped::grid::Grid;

@@ -7,8 +7,7 @@ use glam::DVec3;
 
 use crate::base::math::angle_between;
 use crate::base::par;
-use crate::mesh::border::layout::Uneven;
-use crate::mesh::border::layout::{Face, FaceSide};
+use crate::mesh::border::layout::{Face, FaceSide, Uneven};
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
@@ -18,8 +17,7 @@ use crate::mesh::deviation::triangle;
 use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::plan::{Elements, Method};
-use crate::mesh::size::border_spacing::FILLED;
-use crate::mesh::size::border_spacing::SPACING;
+use crate::mesh::size::border_spacing::{FILLED, SPACING};
 use crate::mesh::size::sizing::Sizing;
 use crate::surface::Surface;
 

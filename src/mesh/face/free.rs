@@ -1,19 +1,17 @@
 //! A free face: its border in its chart, its inside fitted to the limits.
 
-use crate::mesh::chart::face_border::FaceBorder;
-use crate::mesh::chart::face_input::FaceInput;
-use crate::mesh::chart::face_input::prepared;
-use crate::mesh::tri::fit::fitting;
-use crate::mesh::tri::trouble::fault;
-
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::face_border::FaceBorder;
+use crate::mesh::chart::face_input::{FaceInput, prepared};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::request::plan::Elements;
+use crate::mesh::tri::fit::fitting;
+use crate::mesh::tri::trouble::fault;
 
 /// Fills the face: of quads, or of triangles that keep its limits.
 pub(crate) fn grown(made: &FaceInput, face: &Face, (border, chart, outline): (FaceBorder, Chart, Outline), job: &Job) -> Result<FaceMesh> {

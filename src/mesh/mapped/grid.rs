@@ -1,10 +1,9 @@
 //! Mapped faces with four sides, of which some may be poles: a grid of quads, or of triangles by the better diagonal.
 
-use crate::base::tolerance::Tolerance;
 use glam::DVec3;
 
 use crate::base::par;
-
+use crate::base::tolerance::Tolerance;
 use crate::mesh::request::plan::Elements;
 use crate::surface::Surface;
 

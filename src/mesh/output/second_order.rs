@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::job;
-use crate::base::par;
+use crate::base::{job, par};
 use crate::mesh::border::layout::Layout;
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::data::face_geometry::FaceNodes;

@@ -1,11 +1,5 @@
 //! From a plan to a mesh: the entry points for the floors above.
 
-use crate::mesh::report::built::Built;
-use crate::mesh::request::input::Input;
-use crate::mesh::request::work::too_many;
-use crate::mesh::request::work::too_much_work;
-use crate::mesh::request::work::work_on;
-use crate::mesh::verify::contact_bodies::Body;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
@@ -24,8 +18,12 @@ use crate::mesh::cache::reuse::{CacheView, Reuse};
 use crate::mesh::data::mesh::Group;
 use crate::mesh::output::sets;
 use crate::mesh::pipeline::assemble::{Part, assemble};
+use crate::mesh::report::built::Built;
+use crate::mesh::request::input::Input;
+use crate::mesh::request::work::{too_many, too_much_work, work_on};
 use crate::mesh::size::remark::Remark;
-use crate::mesh::verify::{contact_bodies, contacts};
+use crate::mesh::verify::contact_bodies::{self, Body};
+use crate::mesh::verify::contacts;
 use crate::model::{PatchId, SurfaceId};
 use crate::surface::Domain;
 

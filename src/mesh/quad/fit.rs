@@ -1,8 +1,5 @@
 //! A free face of quads, or of quads and triangles.
 
-use crate::mesh::chart::halved::halved;
-use crate::mesh::quad::maker::{Maker, nodes};
-use crate::mesh::request::limits::Limits;
 use glam::DVec2;
 
 use crate::base::fault::Result;
@@ -11,24 +8,24 @@ use crate::base::triangulate_points::PointsFault;
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::face_border::FaceBorder;
-use crate::mesh::chart::face_input::FaceInput;
-use crate::mesh::chart::face_input::prepared;
-use crate::mesh::chart::halves::Halves;
-use crate::mesh::chart::halves::NONE;
+use crate::mesh::chart::face_input::{FaceInput, prepared};
+use crate::mesh::chart::halved::halved;
+use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::deviation::triangle;
+use crate::mesh::quad::maker::{Maker, nodes};
 use crate::mesh::quad::net::Net;
 use crate::mesh::request::decider::Decider;
+use crate::mesh::request::limits::Limits;
 use crate::mesh::request::plan::Elements;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::tri::fit::{Fit, WANTED_TREE, near};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
 use crate::mesh::tri::longest::{LONGEST, Longest};
 use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
-use crate::mesh::tri::trouble::Trouble;
-use crate::mesh::tri::trouble::fault;
+use crate::mesh::tri::trouble::{Trouble, fault};
 
 /// Distance of the lattice's nodes over the size.
 const SPACING: f64 = 0.85;

@@ -6,8 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::fault::{MeshFault, MeshLimit, Result};
 use crate::base::job::{self, Job};
-use crate::mesh::chart::halves::Halves;
-use crate::mesh::chart::halves::NONE;
+use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
 use crate::mesh::data::quality::is_concave;
 use crate::mesh::quad::net::{Net, Raw};

@@ -1,11 +1,10 @@
 //! Quads and triangles that know their neighbours.
 
-use crate::mesh::chart::halves::NONE;
 use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::mesh::chart::halves::Halves;
+use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::quad::pair::Alone;
 use crate::mesh::tri::triangulation::Triangulation;
 

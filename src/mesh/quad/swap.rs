@@ -1,7 +1,6 @@
 //! Fewer irregular nodes: the side between two faces of a net is put elsewhere across the polygon they fill.
 
-use crate::base::job;
-use crate::base::math;
+use crate::base::{job, math};
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::quad::net::{Net, least_sine, least_sine_of_triangle};
 

@@ -6,16 +6,14 @@ use std::f64::consts::FRAC_PI_6;
 use glam::DVec3;
 
 use crate::base::fault::Cure;
-use crate::base::job;
 use crate::base::math::angle_between;
-use crate::base::par;
 use crate::base::text::real;
+use crate::base::{job, par};
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
-use crate::mesh::face::foresee;
-use crate::mesh::face::foresee::{Foreseen, SHARP};
+use crate::mesh::face::foresee::{self, Foreseen, SHARP};
 use crate::mesh::request::plan::Method;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::mesh::size::remark::Remark;

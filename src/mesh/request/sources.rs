@@ -7,7 +7,6 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::work;
-
 use crate::network::Chain;
 
 /// What a source is.

@@ -2,9 +2,7 @@
 
 use crate::base::fault::{MeshFault, Result};
 use crate::base::text::real;
-use crate::mesh::border::layout::Uneven;
-use crate::mesh::border::layout::middle;
-use crate::mesh::border::layout::{Face, Layout};
+use crate::mesh::border::layout::{Face, Layout, Uneven, middle};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Elements, Method};
 use crate::surface::{Domain, Surface};

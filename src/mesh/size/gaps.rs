@@ -3,12 +3,12 @@
 //! An edge that two faces share lies on one of them, or on neither. Its nodes are then off the other face by up to the gap, and
 //! a triangle at them is off by that and by the bend: steps beside the gap have the limit less the gap for the bend.
 
-use crate::mesh::chart::face_border::places;
 use glam::DVec3;
 
 use crate::base::fault::{MeshFault, Result};
 use crate::base::par;
 use crate::mesh::border::layout::{Face, Layout};
+use crate::mesh::chart::face_border::places;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::model::segments::SegmentUse;

@@ -9,14 +9,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use crate::base::job;
-use crate::base::par;
 use crate::base::predicates::orient;
 use crate::base::triangulate_points::{PointsFault, Triangles, points};
+use crate::base::{job, par};
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::face_input::{FaceInput, outlined};
-use crate::mesh::chart::outline::Outline;
-use crate::mesh::chart::outline::inside;
+use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::request::plan::Elements;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::model::glue::{join, root};

@@ -1,13 +1,13 @@
 //! What is to be said about the rules of a mesh.
 
+use glam::DVec3;
+
 use crate::base::fault::{Cure, Fault, MeshFault, SurfaceFault, Touching};
 use crate::base::origin::Origin;
 use crate::mesh::border::lost::Lost;
-use crate::mesh::border::touch::Kind;
-use crate::mesh::border::touch::Touch;
+use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::{FREE_ONLY, KEYS, free_only_origin};
-use glam::DVec3;
 
 /// What is to be said about a mesh and the rules of its plan, by their places in it.
 #[derive(Clone, Debug, PartialEq)]

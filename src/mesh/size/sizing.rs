@@ -1,6 +1,5 @@
 //! Which setting decides each segment: rules by rank, written counts shared out, demands of size, chord and angle.
 
-use crate::mesh::size::remark::Remark;
 use std::f64::consts::FRAC_PI_3;
 
 use crate::base::digest::StableHasher;
@@ -20,10 +19,9 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::plan::{Elements, Plan, Rule, Target};
 use crate::mesh::request::recall::RecallSteps;
 use crate::mesh::request::size_requests::{SizeRequests, least_on};
-use crate::mesh::size::border_spacing;
-use crate::mesh::size::border_spacing::SPACING;
-use crate::mesh::size::border_spacing::{BorderSpacing, SpacingInput};
+use crate::mesh::size::border_spacing::{self, BorderSpacing, SPACING, SpacingInput};
 use crate::mesh::size::proximity::Narrow;
+use crate::mesh::size::remark::Remark;
 use crate::model::Course;
 use crate::model::segments::SegmentUse;
 use crate::network::Chain;

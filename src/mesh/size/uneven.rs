@@ -1,8 +1,7 @@
 //! Mapped faces that are better made freely: where a short piece of border would run through the whole face as a row of that
 //! width, and where their even rows meet borders of a free face that have, or need, much shorter steps.
 
-use crate::mesh::border::layout::Uneven;
-use crate::mesh::border::layout::{Face, FaceSide, Layout};
+use crate::mesh::border::layout::{Face, FaceSide, Layout, Uneven};
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::request::plan::{Elements, Method};
 use crate::mesh::size::sizing::Sizing;

@@ -1,7 +1,5 @@
 //! A face from its border to its triangles.
 
-use crate::mesh::chart::outline::inside;
-use crate::mesh::tri::trouble::Trouble;
 use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
@@ -9,14 +7,14 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::triangulate_points::{Triangles, points};
-use crate::mesh::chart::outline::Outline;
+use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::request::plan::TALL;
 use crate::mesh::tri::front::{Cell, FrontInput, STRAIGHT, grow};
 use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer, OptimizeSettings};
-use crate::mesh::tri::quadtree;
-use crate::mesh::tri::quadtree::Plot;
+use crate::mesh::tri::quadtree::{self, Plot};
 use crate::mesh::tri::triangulation::Triangulation;
+use crate::mesh::tri::trouble::Trouble;
 
 /// Where inner nodes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

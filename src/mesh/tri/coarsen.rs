@@ -19,8 +19,7 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::chart::outline::area2;
-use crate::mesh::tri::fill;
-use crate::mesh::tri::fill::{Filling, fill};
+use crate::mesh::tri::fill::{self, Filling, fill};
 use crate::mesh::tri::shape::{Star, quality};
 use crate::mesh::tri::triangulation::{Patch, Ring, Triangulation};
 

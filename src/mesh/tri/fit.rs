@@ -1,8 +1,6 @@
 //! Triangles of a face that keep its limits: made for wanted lengths, bounded, and made again with shorter ones where a bound
 //! is broken.
 
-use crate::mesh::size::border_spacing::FILLED;
-use crate::mesh::size::border_spacing::SPACING;
 use std::cell::RefCell;
 
 use glam::{DVec2, DVec3};
@@ -12,17 +10,16 @@ use crate::base::fault::{MeshFault, MeshLimit, Result};
 use crate::base::job::Job;
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
+use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
-use crate::mesh::deviation::poles;
-use crate::mesh::deviation::triangle;
-use crate::mesh::request::limits::Limits;
-
-use crate::mesh::chart::face_input::{FaceInput, outlined};
+use crate::mesh::deviation::{poles, triangle};
 use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::request::limits::Limits;
 use crate::mesh::request::plan::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
+use crate::mesh::size::border_spacing::{FILLED, SPACING};
 use crate::mesh::tri::build::{Lattice, Task, expected_nodes, triangulate};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
 use crate::mesh::tri::limit_table::{LimitTable, load};

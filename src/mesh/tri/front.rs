@@ -7,7 +7,6 @@
 pub mod squares;
 pub mod triangles;
 
-use crate::mesh::request::plan::TALL;
 use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
@@ -18,6 +17,7 @@ use crate::base::tolerance::NUDGE;
 use crate::base::work;
 use crate::mesh::chart::outline::{Outline, cross};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, Spot};
+use crate::mesh::request::plan::TALL;
 use crate::mesh::tri::cells::Cells;
 
 /// Nearest distance between two nodes, as a share of the wanted length.

@@ -8,9 +8,6 @@ pub mod summary;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::mesh::tri::isoline_mesh::beside::sorted;
-use crate::mesh::tri::isoline_mesh::corners::{Corners, polygon};
-use crate::mesh::tri::isoline_mesh::cut::Cut;
 use glam::{DVec2, DVec3};
 
 use crate::base::fault::Result;
@@ -24,8 +21,10 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::tri::fill::{Filling, fill};
 use crate::mesh::tri::isoline::Cells;
-use crate::mesh::tri::limit_table;
-use crate::mesh::tri::limit_table::{LimitRatio, Normals};
+use crate::mesh::tri::isoline_mesh::beside::sorted;
+use crate::mesh::tri::isoline_mesh::corners::{Corners, polygon};
+use crate::mesh::tri::isoline_mesh::cut::Cut;
+use crate::mesh::tri::limit_table::{self, LimitRatio, Normals};
 use crate::mesh::tri::tree::Class;
 use crate::mesh::tri::triangulation::Triangulation;
 use crate::mesh::tri::trouble::Trouble;

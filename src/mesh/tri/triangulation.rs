@@ -5,6 +5,7 @@ pub mod patch;
 pub mod undo;
 
 pub use crate::mesh::tri::triangulation::patch::Patch;
+
 use glam::{DVec2, DVec3};
 
 use crate::base::job;

@@ -1,14 +1,13 @@
 //! Why a free face was not made, and what is said of it.
 
+use glam::DVec3;
+
 use crate::base::fault::{Fault, MeshFault};
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
-use crate::mesh::border::layout::Face;
-use crate::mesh::border::layout::middle;
+use crate::mesh::border::layout::{Face, middle};
 use crate::mesh::chart::face_border::FaceBorder;
 use crate::mesh::chart::face_input::FaceInput;
-use glam::DVec3;
-
 use crate::mesh::tri::tree::MAX_DEPTH;
 
 /// What went wrong, in the user's words.

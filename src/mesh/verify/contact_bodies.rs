@@ -3,7 +3,6 @@
 //!
 //! Boxes of faces say which bodies are near each other, elements where faces may cross, curves and surfaces whether they do.
 
-use crate::mesh::border::layout::Layout;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
@@ -14,6 +13,7 @@ use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::tolerance::{FLAT, NEAR_MISS, SINGULAR, STATED};
 use crate::base::{job, par, work};
 use crate::mesh::border::inside;
+use crate::mesh::border::layout::Layout;
 use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;

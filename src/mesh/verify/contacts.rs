@@ -4,7 +4,6 @@
 //! nodes are. Faces that cross inside both do so where an element of one goes through one of the other, or, where they share no node,
 //! comes near one; faces cover each other beside an edge of one that lies on the other, or by a place inside one of them.
 
-use crate::mesh::border::touch::{Kind, Touch};
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
@@ -13,12 +12,12 @@ use crate::base::bbox::Box3;
 use crate::base::boxtree::{BoxTree, PAIR};
 use crate::base::fault::{CutFault, Fault, Result, SurfaceFault};
 use crate::base::limits::WORK_OF_A_SURFACE;
-use crate::base::par;
 use crate::base::tolerance::SINGULAR;
-use crate::base::work;
+use crate::base::{par, work};
 use crate::mesh::border::inside;
 use crate::mesh::border::layout::Layout;
 use crate::mesh::border::nodes::Nodes;
+use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
 use crate::mesh::verify::contact_edges::{Task, meetings};

@@ -10,8 +10,7 @@ use glam::DVec2;
 
 use crate::base::tolerance::{MEASURE_ACCURACY, NUDGE};
 use crate::mesh::border::layout::{Face, Layout};
-use crate::mesh::border::nodes::Nodes;
-use crate::mesh::border::nodes::line;
+use crate::mesh::border::nodes::{Nodes, line};
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;

@@ -10,20 +10,17 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use crate::base::fault::{Close, CutFault, Fault, MeshFault};
-use crate::base::job;
-use crate::base::par;
 use crate::base::text::real;
 use crate::base::tolerance::{TOLD_APART, WHOLE_NUMBER};
-use crate::mesh::border::layout::closes;
-use crate::mesh::border::layout::{Face, Layout};
+use crate::base::{job, par};
+use crate::mesh::border::layout::{Face, Layout, closes};
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Elements, Method};
-use crate::mesh::verify::extent;
-use crate::mesh::verify::extent::Extent;
+use crate::mesh::verify::extent::{self, Extent};
 use crate::surface::{Domain, Surface};
 
 /// The elements of one face, and what is known of it.

@@ -1,6 +1,5 @@
 //! E715: elements that are turned over against their neighbours or have no area.
 
-use crate::mesh::data::quality::is_concave;
 use glam::DVec3;
 
 use crate::base::fault::{MeshFault, Result};
@@ -8,6 +7,7 @@ use crate::base::par;
 use crate::mesh::data::face_geometry::{FaceNodes, Free};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
+use crate::mesh::data::quality::is_concave;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::recall::RecallFace;
 use crate::surface::Surface;

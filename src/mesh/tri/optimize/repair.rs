@@ -2,9 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::base::work;
+use crate::base::{job, work};
 use crate::mesh::chart::outline::area2;
 use crate::mesh::tri::optimize::MeshOptimizer;
 use crate::mesh::tri::optimize::flips::GAIN;
