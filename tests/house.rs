@@ -79,7 +79,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_800),
     ("surface", 25_150),
     ("model", 6_400),
-    ("mesh", 24_000),
+    ("mesh", 24_300),
     ("io", 16_500),
     ("draw", 3_000),
     ("lang", 29_250),
