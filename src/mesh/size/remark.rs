@@ -12,7 +12,7 @@ use glam::DVec3;
 /// What is to be said about a mesh and the rules of its plan, by their places in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
-    /// W701: a rule that decides nothing.
+    /// W701: a rule without effect.
     Unused {
         /// The rule.
         rule: usize,
