@@ -360,7 +360,7 @@ fn every_cited_source_stands_in_the_list() {
             found.push(format!("{SOURCES}: nothing cites {key}"));
         }
         if listed[..k].contains(key) {
-            found.push(format!("{SOURCES}: {key} stands there twice"));
+            found.push(format!("{SOURCES}: {key} is given twice"));
         }
     }
     report("what is cited stands in the list of sources, and what stands there is cited", found);
