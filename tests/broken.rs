@@ -206,12 +206,12 @@ const FIXED: &[&str] = &[
 
 /// What is offered on a page is typed, and then the report is gone and no error is new.
 #[test]
-fn fixes_of_pages_mend_them() {
+fn fixes_of_pages_remove_their_reports() {
     let (mut fixed, mut wrong) = (Vec::new(), Vec::new());
     for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
         let page = fs::read_to_string(format!("docs/codes/{}.md", info.code)).expect("a page can be read");
         let model = folder_of_page(info.code, &page).with_file_name("fixed.loft");
-        let (offered, said) = mended(&model, fences(&page, "loft")[0], true);
+        let (offered, said) = fixed_one_by_one(&model, fences(&page, "loft")[0], true);
         wrong.extend(said);
         if offered.iter().any(|code| code == info.code) {
             fixed.push(info.code);
@@ -224,12 +224,12 @@ fn fixes_of_pages_mend_them() {
 /// The same for scripts with many mistakes: what a repair brings to light was hidden behind it. A mistake of the grammar is
 /// hidden only behind a bracket, string or comment without end.
 #[test]
-fn fixes_of_broken_scripts_mend_them() {
+fn fixes_of_broken_scripts_remove_their_reports() {
     let mut wrong = Vec::new();
     let mut fixes = 0;
     for path in scripts("tests/broken", "loft") {
         let text = fs::read_to_string(&path).expect("a broken script can be read");
-        let (offered, said) = mended(&path, &text, false);
+        let (offered, said) = fixed_one_by_one(&path, &text, false);
         fixes += offered.len();
         wrong.extend(said);
     }
@@ -256,11 +256,11 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("E666", "`mesh "),
     ("E502", "both are closed: `outer:"),
     ("E201", "for example"),
-    // General forms, and two units in one value, which mend each other only together.
+    // General forms, and two units in one value, which are fixed only together.
     ("E102", "functions need no import"),
     ("E102", "what is allowed is written"),
-    ("E102", "a ratio has its `%` glued"),
-    ("E102", "a unit stands right behind its number: `8mm`"),
+    ("E102", "in a ratio `%` directly follows"),
+    ("E102", "a unit directly follows its number: `8mm`"),
 ];
 
 /// Whether a stretch in backquotes of a help is code to be typed: nothing in it is left open, and it is not a name of the script.
@@ -298,7 +298,7 @@ fn help_that_shows_code_is_a_fix() {
 }
 
 /// Applies each fix that is offered for a script, alone; the codes that had one, and what is wrong afterwards.
-fn mended(path: &Path, text: &str, whole: bool) -> (Vec<String>, Vec<String>) {
+fn fixed_one_by_one(path: &Path, text: &str, whole: bool) -> (Vec<String>, Vec<String>) {
     let key = |d: &Diagnostic| (d.code.0, d.message.clone());
     let (mut offered, mut wrong) = (Vec::new(), Vec::new());
     let (found, _) = reports(path, text);

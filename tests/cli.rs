@@ -181,7 +181,7 @@ fn outputs_that_are_one_file_are_an_error_before_anything_is_written() {
         assert!(folder.files() == before, "{name} wrote something");
     };
     check("twice", "export a to \"x.inp\"\nexport b to \"x.inp\"\n", "E812", "2 outputs are one file, \"x.inp\"");
-    check("case", "export a to \"x.inp\"\nexport b to \"X.INP\"\n", "E812", "capital and small letters");
+    check("case", "export a to \"x.inp\"\nexport b to \"X.INP\"\n", "E812", "upper and lower case");
     check("roundabout", "export a to \"x.inp\"\nexport b to \"d/../x.inp\"\n", "E812", "\"x.inp\" and \"d/../x.inp\" are one file");
     check("picture", "export s to \"x.svg\"\npicture p to \"./x.svg\"\n", "E812", "are one file");
     check("family", "export a for i in 0..3 to \"x.inp\"\n", "E812", "3 outputs of this family are one file, \"x.inp\"");

@@ -668,7 +668,7 @@ mod mistakes {
         check(build::nurbs(&three, &[1.0, 1.0], &ones, 2, NONE), "E306", &["as many as points, 3"]);
         check(build::line(at(f64::NAN, 0.0), at(1.0, 0.0), NONE), "E408", &["`a`"]);
         check(build::spline(&[three[0], at(0.0, f64::INFINITY)], &open, NONE), "E408", &["number 1 of `points`"]);
-        check(build::line(at(1e308, 0.0), at(1.0, 0.0), NONE), "E306", &["`a`", "either way"]);
+        check(build::line(at(1e308, 0.0), at(1.0, 0.0), NONE), "E306", &["`a`", "between -"]);
         check(build::arc_center(three[0], three[1], 1.0, DVec3::ZERO, NONE), "E409", &["normal"]);
         check(build::arc_center(three[0], three[1], 1.0, DVec3::new(1.0, 0.0, 1.0), NONE), "E306", &["normal", "45.0000°"]);
         check(build::spline(&three, &Spline { start: Ends::Clamped(DVec3::ZERO), ..open }, NONE), "E409", &["start"]);

@@ -331,7 +331,7 @@ fn the_maker_is_named_first_when_something_differs() {
     folder.write(&MODEL.replace("size: 500mm", "size: 400mm"));
     let said = folder.said();
     assert!(said.lines().nth(1).unwrap().contains("made by loft 0.0.9 mesher 0, compared by loft"), "{said}");
-    assert!(said.lines().nth(1).unwrap().contains("the mesher is another one"), "{said}");
+    assert!(said.lines().nth(1).unwrap().contains("the mesher has another version"), "{said}");
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn hand_edited_goldens_are_told_where_they_are_wrong() {
     check("case \"a\": n = 4\ncase \"A\": n = 5", "", "model.golden:3: there is a case \"A\" already");
     check("made of loft", "", "model.golden:2: expected `made by loft");
     check("", "curve c  length 1", "model.golden:3: `length` needs a number and its unit like `12.5 m`");
-    check("", "curve c  lenght 1 mm", "model.golden:3: `lenght` is no word of a curve line");
+    check("", "curve c  lenght 1 mm", "model.golden:3: `lenght` is not a word of a curve line");
     check("", "curv c  length 1 mm", "model.golden:3: no line of a golden file begins with `curv`");
     check("", "curve c  length 1 mm\ntolerance 1e-6", "model.golden:4: `tolerance` belongs into the head");
     check("", "[a", "model.golden:3: expected the name of a case");

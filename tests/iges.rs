@@ -218,7 +218,7 @@ fn files_that_stop_early_say_where() {
     for (bytes, expected) in [
         (&b""[..], "line 1: the file is empty"),
         (b"\n\n", "line 1: the file is empty"),
-        (b"solid cube\n facet normal 0 0 1\n", "line 1: this is no IGES file: column 73 holds none of the letters S, G, D, P and T"),
+        (b"solid cube\n facet normal 0 0 1\n", "line 1: this is not an IGES file: column 73 holds none of the letters S, G, D, P and T"),
     ] {
         assert_eq!(read(bytes, &OPTIONS).err().as_deref(), Some(expected));
     }

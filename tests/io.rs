@@ -355,9 +355,9 @@ fn odd_obj_files_are_read_or_refused_by_line() {
     let refused = [
         ("invalid-face-definition.obj", "line 15: a face needs at least 3 vertex indices, got 1"),
         ("invalid-relative-texture-index.obj", "line 2: there is no vertex 1, the file has 0"),
-        ("invalid-relative-vertex-index.obj", "line 1: index -4 reaches back beyond the 0 vertices so far"),
+        ("invalid-relative-vertex-index.obj", "line 1: index -4 counts back beyond the 0 vertices so far"),
         ("issue-140-zero-face-idx.obj", "line 16: vertex indices start at 1, got 0"),
-        ("test-nan.obj", "line 12: `nan` is no coordinate"),
+        ("test-nan.obj", "line 12: `nan` is not a coordinate"),
         ("tobj-invalid_index.obj", "line 12: there is no vertex 7, the file has 6"),
     ];
     for (name, facts) in truth.as_object().unwrap() {
@@ -398,7 +398,7 @@ fn broken_stl_files_are_refused_by_place() {
     let mut bytes = write(named("a.stl"), &sheet(2, 2, true, 1), &Options::default()).0;
     check(&bytes[..bytes.len() - 1], 0, "needs 484 bytes, but it has 483");
     bytes[100..104].copy_from_slice(&f32::NAN.to_le_bytes());
-    check(&bytes, 0, "triangle 1 has a coordinate that is no number");
+    check(&bytes, 0, "triangle 1 has a coordinate that is not a number");
     // A binary file may begin with the word of the other form.
     bytes[100..104].copy_from_slice(&1_f32.to_le_bytes());
     bytes[..5].copy_from_slice(b"solid");

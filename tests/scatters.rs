@@ -185,7 +185,7 @@ fn surfaces_that_stand_out_over_their_points_say_so() {
         told += usize::from(said);
         worst = worst.max(if said { 0.0 } else { out / (high - low) });
     }
-    assert!(worst <= 0.6, "a surface stands out {worst} of the range of its heights without a word");
+    assert!(worst <= 0.6, "a surface overshoots its heights by {worst} of their range without a word");
     assert!(told * 5 <= cases(100), "{told} of {}", cases(100));
 }
 

@@ -11,25 +11,25 @@ macro_rules! limits {
 }
 
 limits! {
-    /// Open brackets inside each other.
+    /// Nested open brackets.
     pub const NESTED_BRACKETS: usize = 256;
     /// Prefix or right-associative operators in a row.
     pub const OPERATORS_IN_A_ROW: usize = 64;
-    /// Operators, fields and indices that hang on each other: how tall the tree of an expression may grow.
+    /// Nested operators, fields and indices: the height of the tree of an expression.
     pub const EXPRESSION_HEIGHT: usize = 4_000;
-    /// Function calls inside each other.
+    /// Nested function calls.
     pub const CALL_DEPTH: usize = 1_000;
     /// Bytes of one script.
     pub const SOURCE_BYTES: u64 = 32 << 20;
     /// Bytes of one data file.
     pub const DATA_BYTES: u64 = 256 << 20;
-    /// Largest coordinate or length of a curve, model units either way: its fourth power must not overflow.
+    /// Largest coordinate or length of a curve, model units, positive or negative: its fourth power must not overflow.
     pub const COORDINATE: f64 = 1e50;
-    /// Turns of one helix, either way: each takes some kilobytes.
+    /// Turns of one helix, in either sense: each takes some kilobytes.
     pub const HELIX_TURNS: f64 = 10_000.0;
     /// Members of one list.
     pub const LIST_MEMBERS: usize = 10_000_000;
-    /// Members of all lists that are held at a time, with 3 for each list itself: 32 bytes each, under 1 GiB together with what they hold.
+    /// Members of all lists held at a time, with 3 for each list itself: 32 bytes each, under 1 GiB together with their contents.
     pub const MEMBERS_MADE: usize = 20_000_000;
     /// Elements of one mesh where `--max-elements` sets no other number.
     pub const MESH_ELEMENTS: u64 = 100_000_000;
@@ -59,15 +59,15 @@ limits! {
     pub const PICTURE_SIDE: u32 = 8_192;
     /// Pixels of one picture.
     pub const PICTURE_PIXELS: u64 = 1 << 25;
-    /// Lists inside each other.
+    /// Nested lists.
     pub const LIST_NESTING: usize = 1_000;
     /// Evaluation steps of one run.
     pub const EVALUATION_STEPS: u64 = 1_000_000_000;
-    /// Bytes of results in the folder of `--cache`; those that were not used for longest go first.
+    /// Bytes of results in the folder of `--cache`; those unused for longest are deleted first.
     pub const CACHE_BYTES: u64 = 4 << 30;
-    /// Reports of one code that one declaration or stage says one by one; further ones are counted.
+    /// Reports of one code that one declaration or stage gives one by one; further ones are counted.
     pub const REPORTS_OF_A_KIND: usize = 1_000;
-    /// Reports that the JSON of a run tells in full for one that stands for them on a screen; further ones are counted.
+    /// Reports that the JSON of a run lists in full where the screen shows one for all of them; further ones are counted.
     pub const REPORTS_TOLD: usize = 100_000;
     /// Reports printed in full in one run.
     pub const REPORTS_SHOWN: usize = 20;

@@ -44,7 +44,7 @@ const EXAMPLES: &[(&str, &[Example])] = &[
     (
         "explain",
         &[
-            ("loft explain E501", "what a code means, with a broken script and its repair"),
+            ("loft explain E501", "what a code means, with a broken script and how to fix it"),
             ("loft explain coons", "a word of the language, as `loft doc coons`"),
             ("loft explain roof.loft roof", "how a name of a model came about"),
         ],

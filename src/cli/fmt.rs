@@ -30,7 +30,7 @@ fn arguments(command: clap::Command) -> clap::Command {
         .arg(file.help("Scripts, folders with scripts, or `-` from standard input to standard output"))
         .arg(check.help("Writes nothing, lists what is not in canonical layout and fails if there is any"))
         .after_help(
-            "A declaration with a mistake is left as it is and the mistake is told; the others are laid out all the same.\n\
+            "A declaration with a mistake is left as it is and the mistake is reported; the others are formatted.\n\
              Exit status: 0 fine, 1 a mistake or, with --check, another layout, 2 wrong usage.",
         )
 }

@@ -9,12 +9,12 @@ pub const COMMAND: Command = Command { name: "man", about: "The manual page of l
 
 /// What the page says of how the program ends.
 const STATUS: &[(&str, &str)] = &[
-    ("0", "all is well; warnings leave it alone unless --strict makes them errors"),
+    ("0", "no error; warnings do not change it unless --strict makes them errors"),
     ("1", "the model has errors or failed checks, goldens differ, or a file could not be written"),
     ("2", "wrong usage"),
     ("3", "a bug in loft, caught"),
     ("130", "stopped by Ctrl-C"),
-    ("141", "whoever read standard output has gone"),
+    ("141", "standard output was closed"),
 ];
 
 fn arguments(command: clap::Command) -> clap::Command {
@@ -41,7 +41,7 @@ fn page() -> String {
     }
     out.push_str(".SH EXIT STATUS\n");
     STATUS.iter().for_each(|(code, what)| out.push_str(&format!(".TP\n.B {code}\n{}\n", escaped(what))));
-    out.push_str(".SH SEE ALSO\n\\fBloft doc\\fR tells of the words of the language, \\fBloft explain\\fR of the codes of its reports.\n");
+    out.push_str(".SH SEE ALSO\n\\fBloft doc\\fR describes the words of the language, \\fBloft explain\\fR the codes of its reports.\n");
     out
 }
 

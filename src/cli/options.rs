@@ -52,7 +52,7 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
         .arg(flag("each", "With --table: prints the whole summary of each row as well").requires("table").conflicts_with("json"))
         .arg(flag("json", "Prints the report as JSON"))
         .arg(flag("quiet", "Prints nothing but errors and warnings").short('q').conflicts_with_all(["json", "verbose", "each", "timings"]))
-        .arg(flag("keep-going", "Writes what is sound although something failed"));
+        .arg(flag("keep-going", "Writes what could be made although something failed"));
     add_shared(command)
 }
 

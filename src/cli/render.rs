@@ -44,7 +44,7 @@ fn arguments(command: clap::Command) -> clap::Command {
         )
         .arg(text("view", "VIEW", "").help(format!("{number} [default: isometric]\n[words: {views}]")).allow_hyphen_values(true))
         .arg(text("up", "X,Y,Z", "Direction that is up in the picture [default: z]").allow_hyphen_values(true))
-        .arg(text("shade", "SHADE", "What colours tell [default: plain]").value_parser(SHADES.to_vec()))
+        .arg(text("shade", "SHADE", "What colours show [default: plain]").value_parser(SHADES.to_vec()))
         .arg(text("zoom", "THING", "What fills the picture [default: everything drawn]").action(ArgAction::Append))
         .arg(text("size", "WxH", "Pixels across and down [default: 1200x800]"))
         .arg(text("title", "TEXT", "Words above the picture [default: the model's name]"))
@@ -109,7 +109,7 @@ fn wanted(matches: &ArgMatches) -> Result<Wanted, String> {
     let word = |name: &str| matches.get_one::<String>(name).map(String::as_str);
     let many = |name: &str| matches.get_many::<String>(name).into_iter().flatten().cloned().collect::<Vec<String>>();
     let out = matches.get_one::<PathBuf>("out").ok_or("`-o PICTURE` is missing")?;
-    let name = out.file_name().ok_or(format!("{} is no file name", out.display()))?.to_string_lossy().into_owned();
+    let name = out.file_name().ok_or(format!("{} is not a file name", out.display()))?.to_string_lossy().into_owned();
     let ending = crate::io::extension(&name);
     if !FORMATS.iter().any(|(known, _)| *known == ending) {
         return Err(format!("`-o {}`: a picture ends in .png or .svg", out.display()));

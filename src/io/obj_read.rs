@@ -133,7 +133,7 @@ impl Scan {
             }
             "vt" | "vn" | "vp" | "s" | "mg" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
             _ if self.skipped.len() >= STRANGE_WORDS => {
-                return Err(Malformed::at(line, 1, format!("`{}` begins no line of an OBJ, and many before did not", shortened(keyword))));
+                return Err(Malformed::at(line, 1, format!("`{}` is not a keyword of OBJ, and many before were not", shortened(keyword))));
             }
             _ => self.skipped.entry(shortened(keyword)).or_insert((line, 0)).1 += 1,
         }
@@ -154,7 +154,7 @@ impl Scan {
                         *place = x;
                     }
                 }
-                _ => return Err(Malformed::at(line, k as u64 + 2, format!("`{}` is no coordinate", shortened(word)))),
+                _ => return Err(Malformed::at(line, k as u64 + 2, format!("`{}` is not a coordinate", shortened(word)))),
             }
             n = k + 1;
         }
@@ -173,7 +173,7 @@ impl Scan {
             let bad = |why: String| Malformed::at(line, k as u64 + 2, why);
             let number: i64 = match word.split('/').next().unwrap_or("").parse() {
                 Ok(number) => number,
-                Err(_) => return Err(bad(format!("`{}` is no vertex index", shortened(word)))),
+                Err(_) => return Err(bad(format!("`{}` is not a vertex index", shortened(word)))),
             };
             let so_far = self.vertices.len() as i64;
             let index = if number < 0 { so_far + number } else { number - 1 };
@@ -181,7 +181,7 @@ impl Scan {
                 return Err(bad("vertex indices start at 1, got 0".to_owned()));
             }
             if index < 0 {
-                return Err(bad(format!("index {number} reaches back beyond the {so_far} vertices so far")));
+                return Err(bad(format!("index {number} counts back beyond the {so_far} vertices so far")));
             }
             indices.push(u32::try_from(index).map_err(|_| bad(format!("there is no vertex {number}")))?);
         }

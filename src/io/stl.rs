@@ -69,7 +69,7 @@ fn single_precision(deck: &Deck) -> io::Result<Option<Loss>> {
             if a != b && rounded(a) == rounded(b) {
                 let place = a.to_array().map(|x| x.to_string()).join(", ");
                 return Err(io::Error::other(format!(
-                    "binary STL has single precision, in which corners of a triangle at ({place}) {} are one: write it with \
+                    "binary STL has single precision, in which corners of a triangle at ({place}) {} coincide: write it with \
                      `encoding: text`, or move the model to the origin",
                     deck.unit
                 )));

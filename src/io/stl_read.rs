@@ -26,7 +26,7 @@ pub fn read(bytes: &[u8], name: &str) -> Result<(Mesh, Vec<Malformed>), Malforme
         _ if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) => text(bytes, name)?,
         Some(count) if bytes.len() >= HEADER => {
             let what = format!(
-                "the file says {count} triangles, which needs {} bytes, but it has {}",
+                "the file states {count} triangles, which needs {} bytes, but it has {}",
                 HEADER as u64 + RECORD as u64 * u64::from(count),
                 bytes.len()
             );
@@ -55,7 +55,7 @@ fn binary(records: &[u8]) -> Result<Corners, Malformed> {
                 *x = f64::from(f32::from_le_bytes(*bytes));
             }
             if !p.iter().all(|x: &f64| x.is_finite()) {
-                let what = format!("triangle {} has a coordinate that is no number", k + 1);
+                let what = format!("triangle {} has a coordinate that is not a number", k + 1);
                 return Err(Malformed { line: 0, column: Some((HEADER + RECORD * k + 1) as u64), what });
             }
             corners.push(p.into());

@@ -113,7 +113,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<&str, Malformed> {
     let what = if control.is_some() {
         format!("the byte {byte:#04x} does not belong in a text file")
     } else {
-        format!("the byte {byte:#04x} is no UTF-8 text; save the file as UTF-8")
+        format!("the byte {byte:#04x} is not UTF-8 text; save the file as UTF-8")
     };
     Err(Malformed::at(line, column, what))
 }

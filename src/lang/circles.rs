@@ -97,8 +97,8 @@ impl Cx<'_> {
     fn stay_out(&self, (module, index): (ModuleId, u32)) -> String {
         let name = self.declaration_name(module, index);
         match self.machine.at(module).script.declarations[index as usize].keyword {
-            Keyword::Point => format!("`let {name} = …`: a `let` point is none of the network's"),
-            _ => format!("`let {name} = …`: a `let` curve stays out of the network, so it may be made from all of it"),
+            Keyword::Point => format!("`let {name} = …`: a `let` point does not belong to the network"),
+            _ => format!("`let {name} = …`: a `let` curve does not belong to the network, so it may be made from all of it"),
         }
     }
 }

@@ -15,7 +15,7 @@ pub struct CodeInfo {
     pub title: &'static str,
     /// The first version that reports it; none when a later one will.
     pub since: Option<&'static str>,
-    /// Its page in Markdown: a small broken script, its message and its repair.
+    /// Its page in Markdown: a small broken script, its message and how to fix it.
     pub page: &'static str,
 }
 
@@ -64,16 +64,16 @@ codes! {
     now "E214", "no-such-field", "a value has no such field";
     now "E215", "index-outside", "an index lies outside its list";
     now "E216", "calls-too-deep", "functions call each other too deep";
-    now "E217", "limit", "a list or the work of a run grows beyond its limit";
+    now "E217", "limit", "a list or the work of a run exceeds its limit";
     now "E218", "param-outside", "a param lies outside what it allows";
     now "E219", "no-such-param", "there is no such param";
     now "W220", "unit-power", "`2m^2` is the square of 2m, not 2m2";
     now "E221", "equality-without-within", "two quantities are compared by `==` without `within`";
-    now "W222", "tolerance-of-module", "a module's own tolerance decides nothing";
+    now "W222", "tolerance-of-module", "a module's own tolerance has no effect";
     now "W223", "snap-moves-far", "`snap` moves an end by more than a hundredth of its curve";
-    now "W224", "group-not-meshed", "no mesh that is written holds anything of a group";
+    now "W224", "group-not-meshed", "no exported mesh has a member of a group";
     now "W225", "points-merged", "scattered points are given twice";
-    now "W226", "points-exceeded", "a surface stands out far over its scattered points";
+    now "W226", "points-exceeded", "a surface overshoots its scattered points";
     now "W227", "loose-box", "a box may be too large";
     now "E230", "not-in-this-version", "a word of a later version";
     now "E301", "argument-missing", "an argument is missing";
@@ -103,11 +103,11 @@ codes! {
     now "E503", "chain-broken", "links of a chain do not join";
     now "E504", "chain-repeats-link", "a chain runs over a link twice";
     now "E505", "chain-ambiguous", "a chain can run in more than one way";
-    now "E506", "node-cluster-ambiguous", "nearby meetings cannot be told apart";
-    now "E507", "no-meeting", "things do not meet";
-    now "E508", "several-meetings", "things meet more than once";
+    now "E506", "node-cluster-ambiguous", "it is ambiguous which nearby points are one node";
+    now "E507", "no-meeting", "two things do not meet";
+    now "E508", "several-meetings", "two things meet more than once";
     now "E509", "shared-run", "curves share a run where one meeting is wanted";
-    now "E510", "in-use", "something that is removed is still stood upon";
+    now "E510", "in-use", "something to be removed is still used";
     now "E511", "snap-cannot-move", "two ends that `snap` cannot move";
     now "N512", "shared-run-noted", "two curves share a run";
     now "N513", "moved-by-snap", "an end was moved by `snap`";
@@ -119,20 +119,20 @@ codes! {
     now "E605", "family-crosses", "curves of one family cross each other";
     now "W606", "patch-singular", "a patch has a point without a normal";
     now "W607", "patch-folded", "a patch folds over";
-    now "N608", "transfinite-oscillation", "a transfinite surface swings beyond its curves";
+    now "N608", "transfinite-oscillation", "a transfinite surface may oscillate between its curves";
     now "N609", "end-trimmed", "the end of a curve was trimmed to the border";
     now "E611", "loop-self-intersects", "a loop crosses itself";
     now "E612", "loop-outside", "a hole lies outside its outer loop or cuts it";
     now "E613", "loop-outside-surface", "a loop leaves its surface";
     now "W614", "sliver-patch", "a patch is a sliver";
     now "N615", "shell-open", "a shell has free edges";
-    now "E616", "shell-not-orientable", "the faces of a shell cannot be turned to one side";
+    now "E616", "shell-not-orientable", "the faces of a shell cannot be oriented alike";
     now "E617", "shell-nonmanifold", "more than two faces share an edge";
     now "E618", "not-adjacent", "two things share no edge";
     now "E621", "axis-not-straight", "an axis is not a straight curve";
     now "E622", "generatrix-on-axis", "a generatrix lies on its axis";
     now "E623", "generatrix-crosses-axis", "a generatrix crosses its axis";
-    now "E624", "sweep-degenerate", "a sweep or extrusion has no width";
+    now "E624", "sweep-degenerate", "a sweep or extrusion has no area";
     now "E631", "sections-not-parallel", "sections are not parallel";
     now "E632", "axis-off-section", "the axis misses a section";
     now "E633", "section-not-normal", "a section is not normal to its guide";
@@ -143,7 +143,7 @@ codes! {
     now "N638", "guide-extended", "a guide was extended";
     now "W639", "sweep-self-intersects", "a sweep crosses itself";
     now "E640", "sections-different-guides", "sections touch different guides";
-    now "E641", "net-incomplete", "a net of profiles and guides has holes";
+    now "E641", "net-incomplete", "a net of profiles and guides is incomplete";
     now "E642", "sections-cross", "sections cross each other";
     now "E643", "guide-order-differs", "guides meet sections in different orders";
     now "W644", "section-scaled", "a section was scaled to its guides";
@@ -154,30 +154,30 @@ codes! {
     now "E655", "plane-not-flat", "the boundary of a plane is not flat";
     now "E656", "shell-not-closed", "a measure needs a closed shell";
     now "E657", "surfaces-coincide", "surfaces run along each other";
-    now "E658", "meets-without-end", "unbounded planes meet in a line without end";
+    now "E658", "meets-without-end", "unbounded planes meet in an infinite line";
     now "E659", "cut-open", "a curve that should divide a surface ends inside it";
     now "E660", "keep-off", "the point to keep is in no part of the surface";
     now "E661", "loops-meet", "two holes of a face meet";
     now "E662", "hole-in-hole", "a hole lies inside another one";
-    now "E663", "curve-given-twice", "one curve is given twice where each is wanted once";
+    now "E663", "curve-given-twice", "a curve is given twice";
     now "W664", "offset-folds", "an offset folds over";
     now "E665", "points-on-one-line", "points that should span a surface lie on one line";
-    now "E666", "imprint-overlap", "faces that are to be joined cover each other";
+    now "E666", "imprint-overlap", "faces to be joined overlap";
     now "W667", "faces-touch", "faces of a mesh touch without sharing nodes";
     now "W668", "points-steep", "scattered points rise very steeply";
     now "W669", "surface-crosses-itself", "a surface crosses itself";
-    now "E670", "offset-not-smooth", "the normals of a surface jump where it is moved along them";
+    now "E670", "offset-not-smooth", "a surface to be offset is not smooth";
     now "E671", "wall-edge", "the walls of two faces do not meet at their edge";
-    now "E672", "set-in-part", "a set would hold a part of a curve";
+    now "E672", "set-in-part", "a set would contain only a part of a curve";
     now "E673", "blend-too-large", "a ball is too large for the edge that it rounds";
     now "E674", "blend-no-edge", "two surfaces have no edge that can be rounded";
-    now "E675", "points-over-points", "scattered points lie over one another";
+    now "E675", "points-over-points", "scattered points lie above one another";
     now "E676", "no-net", "a surface has no B-spline form of its own";
-    now "N677", "near-its-curves", "a surface keeps to its curves within a stated distance";
-    now "W701", "rule-decides-nothing", "a rule decides nothing";
+    now "N677", "near-its-curves", "a surface deviates from its curves within a limit";
+    now "W701", "rule-decides-nothing", "a rule has no effect";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";
-    now "E704", "only-quads-impossible", "only quads is impossible here";
+    now "E704", "only-quads-impossible", "`elements: quads` is impossible here";
     now "E705", "face-cannot-be-mapped", "a face cannot be mapped";
     now "W706", "rule-overridden", "a rule is overridden by an equal one";
     now "E707", "below-min-size", "a size or limit is below `min_size`";
@@ -185,18 +185,18 @@ codes! {
     now "N712", "edge-too-short", "an edge became a corner";
     now "E713", "cdt-constraint-crosses", "borders of a face cross";
     now "E714", "face-empty", "a face has nothing inside";
-    now "E715", "element-inverted", "an element is turned inside out";
-    now "E716", "quadtree-too-deep", "a quadtree grows too deep";
-    later "E717", "tessellation-limit", "a tessellation grows beyond its limit";
+    now "E715", "element-inverted", "an element is inverted";
+    now "E716", "quadtree-too-deep", "a quadtree is too deep";
+    later "E717", "tessellation-limit", "a tessellation exceeds its limit";
     now "E718", "face-folded", "a face folds over";
-    now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements are wide";
-    now "E721", "cuts-too-near", "curves that divide a surface are too near to each other";
-    now "E722", "no-row", "surfaces that are to be one do not follow one another";
+    now "E720", "closes-too-near", "a face closes on itself more narrowly than its elements";
+    now "E721", "cuts-too-near", "curves that divide a surface are too close together";
+    now "E722", "no-row", "surfaces to be joined do not follow one another";
     now "W724", "sharp-elements", "a mesh has elements with sharp angles";
     now "W725", "too-small-for-mesh", "something is too small for a mesh";
     now "W726", "faces-unusable", "faces of a file could not be used";
     now "W728", "empty-selection", "a selection is empty";
-    now "W729", "holds-of-nothing", "a check holds of nothing";
+    now "W729", "holds-of-nothing", "a check tests an empty list";
     now "E801", "cannot-read", "a file cannot be read";
     now "E802", "outside-folders", "a path leaves the allowed folders";
     now "E803", "malformed-data", "a table or entity is malformed";
@@ -212,7 +212,7 @@ codes! {
     now "E813", "output-over-input", "an output would replace a file that is read";
     now "E901", "check-failed", "a check failed";
     now "E902", "golden-differs", "a golden differs";
-    now "E903", "raised", "the script itself says that something is wrong";
+    now "E903", "raised", "the script reports an error";
     now "E904", "incomplete-part", "what is exported lacks faces of its file";
     now "E999", "bug", "a bug in loft";
 }
@@ -222,7 +222,7 @@ pub fn find(code: &str) -> Option<&'static CodeInfo> {
     CODES.iter().find(|c| c.code.eq_ignore_ascii_case(code))
 }
 
-/// The page of a code: what it means, a small broken script, its message and its repair.
+/// The page of a code: what it means, a small broken script, its message and how to fix it.
 pub fn explain(code: &str) -> Option<&'static str> {
     find(code).map(|c| c.page)
 }

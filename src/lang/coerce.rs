@@ -274,11 +274,11 @@ impl Cx<'_> {
                 let label = found.strip_prefix("a ").or_else(|| found.strip_prefix("an ")).unwrap_or(&found).to_owned();
                 let text = format!("{subject} is {wanted}, got {found}");
                 let help = match (ty, value) {
-                    (Ty::Choice(_), Value::Text(t)) => Some((format!("a word stands bare: `{t}`"), Some(t.to_string()))),
+                    (Ty::Choice(_), Value::Text(t)) => Some((format!("a word is written without quotes: `{t}`"), Some(t.to_string()))),
                     (Ty::Curve | Ty::Surface, Value::List(_)) => match self.as_many(code, id) {
                         Some((place, short, typed)) => {
                             let draft = self.error(code, "E211", text, span, label);
-                            return draft.help(format!("`{short}` holds many")).put(place, typed).stop();
+                            return draft.help(format!("`{short}` declares several")).put(place, typed).stop();
                         }
                         None => Some((format!("take one member, for example `{}[0]`", self.source(code, id)), None)),
                     },

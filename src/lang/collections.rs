@@ -284,7 +284,7 @@ impl Cx<'_> {
                 let found = self.kind(&value);
                 let text = match keyword {
                     Keyword::Export => format!("{found} cannot be exported"),
-                    _ => format!("a {word} is of {wanted}, got {found}"),
+                    _ => format!("a {word} takes {wanted}, got {found}"),
                 };
                 gather.take::<()>(Err(self.error(code, "E211", text, code.span(thing), found).stop()));
                 break;
@@ -444,7 +444,7 @@ impl Cx<'_> {
             None => Ok(found),
             Some((value, origin)) => {
                 let (kind, span) = (self.kind(value), self.span_of(*origin).map_or_else(Span::default, |s| s.1));
-                let text = format!("`on` speaks of links, curves, edges and faces, got {kind}");
+                let text = format!("`on` takes links, curves, edges and faces, got {kind}");
                 Err(self.error(code, "E211", text, span, kind).stop())
             }
         }

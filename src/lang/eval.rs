@@ -261,8 +261,8 @@ impl Cx<'_> {
     #[cold]
     pub(super) fn too_deep(&mut self, code: Code<'_>, id: ExprId) -> Halt {
         let span = code.span(id);
-        self.error(code, "E216", "calls inside each other too deep", span, "no end in sight here")
-            .help(format!("a function may call itself at most {} times deep; give it an `if` that ends it", limits::CALL_DEPTH))
+        self.error(code, "E216", "calls are nested too deep", span, "the recursion does not end here")
+            .help(format!("at most {} calls may be nested; give the function an `if` that ends the recursion", limits::CALL_DEPTH))
             .stop()
     }
 

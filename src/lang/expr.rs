@@ -76,7 +76,7 @@ impl Cx<'_> {
                 Ok(Value::Text(text.into()))
             }
             Expr::Slice { .. } => {
-                Err(self.error(code, "E102", "a run stands inside `[ ]`", code.span(id), "runs from where to where").stop())
+                Err(self.error(code, "E102", "a run is written inside `[ ]`", code.span(id), "runs from where to where").stop())
             }
             _ => Err(Halt::Bug("a simple expression in the wrong place")),
         }
@@ -186,7 +186,7 @@ impl Cx<'_> {
                 q.value * bare
             } else {
                 let item = items.get(k).copied().unwrap_or(id);
-                let text = format!("the coordinates of one point differ: {} beside {}", dim_words(q.dim), dim_words(dim));
+                let text = format!("the coordinates of a point have one dimension, got {} beside {}", dim_words(q.dim), dim_words(dim));
                 return Err(self.error(code, "E211", text, code.span(item), dim_words(q.dim)).stop());
             };
         }
@@ -276,8 +276,8 @@ impl Cx<'_> {
                 None => return Ok(list),
             }
         }
-        let draft = self.error(code, "E217", "lists inside each other too deep", code.span(id), "one more here");
-        Err(draft.help(format!("the limit is {} lists inside each other", limits::LIST_NESTING)).stop())
+        let draft = self.error(code, "E217", "lists are nested too deep", code.span(id), "one level more here");
+        Err(draft.help(format!("the limit is {} nested lists", limits::LIST_NESTING)).stop())
     }
 
     /// Binds the name to each member in turn.

@@ -95,7 +95,7 @@ impl Cx<'_> {
             let (ty, subject) = (IMPORT[k].ty, format!("`{}`", IMPORT[k].key));
             let idle = if k == 0 { !TABLES.contains(&ending) } else { ending == "json" };
             if idle {
-                let text = format!("{subject} says nothing about a {ending} file");
+                let text = format!("{subject} does not apply to a {ending} file");
                 let draft = self.error(code, "E303", text, code.span(arg.value), "no such argument here");
                 let of = if k == 0 { "tables: .csv .dat .txt" } else { "files of lengths, which are bare numbers in them" };
                 gather.take::<()>(Err(draft.note(format!("it is for {of}")).stop()));

@@ -53,8 +53,11 @@ impl Cx<'_> {
             let owner = Some((id, i as u32));
             let text = self.names.text(bound.name).to_owned();
             if let Some(first) = found {
-                let diagnostic =
-                    Diagnostic::new("E202", "units are said once", file, bound.span, "again here").label(file, first.span, "first here");
+                let diagnostic = Diagnostic::new("E202", "`units` may be declared only once", file, bound.span, "again here").label(
+                    file,
+                    first.span,
+                    "first here",
+                );
                 self.machine.filed.push((owner, diagnostic));
                 continue;
             }

@@ -369,10 +369,10 @@ impl Cx<'_> {
         let (a, b) = (words(self, left), words(self, right));
         let doing = match at.op {
             Binary::Plus => format!("{a} and {b} cannot be added"),
-            Binary::Minus => format!("{b} cannot be taken from {a}"),
+            Binary::Minus => format!("{b} cannot be subtracted from {a}"),
             Binary::Times => format!("{a} and {b} cannot be multiplied"),
             Binary::Divide => format!("{a} cannot be divided by {b}"),
-            Binary::Power => format!("{a} has no power of {b}"),
+            Binary::Power => format!("{a} cannot be raised to the power of {b}"),
             Binary::Meet => format!("{a} and {b} do not meet"),
             _ => format!("{a} and {b} cannot be compared"),
         };

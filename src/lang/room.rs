@@ -112,7 +112,7 @@ impl Cx<'_> {
         let (what, limit) = if n > limits::LIST_MEMBERS {
             (format!("a list of {n} members"), "10^7 members")
         } else if !self.machine.room.has(n.saturating_mul(each)) {
-            (format!("a list of {n} members more"), "2 x 10^7 members at a time")
+            (format!("a list of {n} more members"), "2 x 10^7 members at a time")
         } else {
             return self.steps(n);
         };
@@ -158,7 +158,7 @@ impl Cx<'_> {
             true => Ok(()),
             false => {
                 let what = "comparing lists of more than 2 x 10^7 members".to_owned();
-                Err(ValueFault::Limit { what, limit: "2 x 10^7 members, those of lists inside lists included".into() }.into())
+                Err(ValueFault::Limit { what, limit: "2 x 10^7 members, nested lists included".into() }.into())
             }
         }
     }
@@ -178,8 +178,8 @@ impl Cx<'_> {
 
     #[cold]
     fn no_room(&mut self, code: Code<'_>, id: ExprId) -> Halt {
-        self.error(code, "E217", "the lists of this run have too many members together", code.span(id), "more than fit")
-            .help("the limit is 2 x 10^7 members at a time, those of lists inside lists included")
+        self.error(code, "E217", "the lists of this run have too many members in total", code.span(id), "beyond the limit")
+            .help("the limit is 2 x 10^7 members at a time, nested lists included")
             .stop()
     }
 

@@ -126,8 +126,11 @@ impl Cx<'_> {
         for again in found.iter().skip(1) {
             let (first, second) = (script.declarations[found[0] as usize].keyword_span, script.declarations[*again as usize].keyword_span);
             let word = super::later::keyword_word(keyword);
-            let diagnostic =
-                Diagnostic::new("E202", format!("`{word}` is said once"), file, second, "again here").label(file, first, "first here");
+            let diagnostic = Diagnostic::new("E202", format!("`{word}` may be declared only once"), file, second, "again here").label(
+                file,
+                first,
+                "first here",
+            );
             self.machine.filed.push((Some((module, *again)), diagnostic));
         }
         found.first().copied()
@@ -225,7 +228,7 @@ impl Cx<'_> {
                 && noted.insert(owner)
             {
                 diagnostic.notes.extend(skipped.get(&owner).map(|members| self.not_built(owner, members)));
-                diagnostic.notes.extend(unmeshed.get(&owner).map(|names| told("not meshed either, as the model is not whole", names)));
+                diagnostic.notes.extend(unmeshed.get(&owner).map(|names| told("not meshed either, since the model is incomplete", names)));
                 let name = || self.declaration_name(owner.0, owner.1);
                 diagnostic.notes.extend(without.get(&owner).map(|names| told(&format!("meshed without `{}`", name()), names)));
             }
@@ -246,8 +249,8 @@ impl Cx<'_> {
                 if declaration.keyword == Keyword::Tolerance {
                     let code = Code { nodes: &declaration.nodes, module: ModuleId::at(m), declaration: index as u32 };
                     let point = self.tolerance.map_or(0.0, |t| t.point);
-                    let text = format!("the tolerance of this module decides nothing: the main script's, {}, holds", self.length(point));
-                    self.error(code, "W222", text, declaration.span, "only asked where this script is run itself").say();
+                    let text = format!("the tolerance of this module has no effect: the main script's, {}, applies", self.length(point));
+                    self.error(code, "W222", text, declaration.span, "applies only where this script is run itself").say();
                 }
             }
         }

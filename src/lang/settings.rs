@@ -53,43 +53,43 @@ const SIZE: Ty = Ty::Size;
 pub const MESH: &[Setting] = &[
     Setting {
         key: "size",
-        docs: "Longest edge wanted: kept on borders and curves, by 5 % at most exceeded inside a free face. Nodes of free faces, and those \
-               of borders that only free faces share, are 0.8 of it apart.",
+        docs: "Target edge length: never exceeded on borders, by at most 5 % inside free faces. Nodes of free faces, and of borders that \
+               only free faces share, are 0.8 of it apart.",
         default: "a 20th of the diagonal of what is meshed",
         ty: SIZE,
     },
     Setting {
         key: "chord_error",
-        docs: "Largest distance between mesh and surface; as all lengths of a mesh it may be a share of the diagonal of the box around what is meshed: `0.01%`.",
+        docs: "Largest distance between mesh and surface; like all lengths of a mesh it may be a percentage of the diagonal of the box around what is meshed: `0.01%`.",
         default: "",
         ty: SIZE,
     },
     Setting { key: "angle_error", docs: "Largest turn of the normal across an element.", default: "", ty: Ty::Quantity(Dim::ANGLE) },
     Setting {
         key: "min_size",
-        docs: "Floor of the size, also of what `chord_error` and `angle_error` ask for; a written one that keeps them from being met, or that \
-               a size is below, is an error. Written counts and short edges of the model stand below it.",
-        default: "a hundredth of the size, which written sizes and limits go below",
+        docs: "Smallest edge length, also within `chord_error` and `angle_error`. A written one that prevents these, or is above a written \
+               size, is an error. Written counts and short edges of the model may go below it.",
+        default: "a hundredth of the size; written sizes and limits may go below it",
         ty: SIZE,
     },
     Setting {
         key: "growth",
         docs: "Ratio of neighbouring sizes on free faces and their borders: away from a place with small steps the size grows by \
-               `growth - 1` of the distance. Mapped faces have even rows, which nothing grades.",
+               `growth - 1` of the distance. Rows of mapped faces are even and not graded.",
         default: "1.3",
         ty: Ty::Number,
     },
     Setting {
         key: "smooth",
-        docs: "Most rounds of smoothing on free faces; a node that lies still is left earlier. 0 leaves nodes where they grew.",
-        default: "5; 4 within `chord_error` or `angle_error`; 8 of quads and where lengths grow from short pieces; 30 with `quadtree`",
+        docs: "Largest number of smoothing rounds on free faces; a node that no longer moves is done earlier. 0 does not smooth.",
+        default: "5; 4 within `chord_error` or `angle_error`; 8 for quads and where lengths grow from short pieces; 30 with `quadtree`",
         ty: Ty::Count,
     },
     Setting { key: "elements", docs: "Kind of elements.", default: "triangles", ty: Ty::Choice(ELEMENTS) },
     Setting { key: "order", docs: "1, or 2 with mid nodes.", default: "1", ty: Ty::Count },
     Setting {
         key: "method",
-        docs: "How faces are meshed: `auto` (`mapped` where it fits and its elements are well shaped, else `delaunay`), `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of constant u and v, as large as `chord_error` and `size` let them be) or `display` (few and long triangles within `chord_error`).",
+        docs: "How faces are meshed: `auto` (`mapped` where it fits and its elements are well shaped, else `delaunay`), `mapped`, `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of constant u and v, as large as `chord_error` and `size` allow) or `display` (few and long triangles within `chord_error`).",
         default: "auto",
         ty: Ty::Choice(METHODS),
     },
@@ -97,14 +97,14 @@ pub const MESH: &[Setting] = &[
     Setting {
         key: "imprint",
         docs: "Faces that touch without a shared border share nodes there: edges that lie on a face, and the curves in which faces cross, \
-               are lines of the faces' meshes. Faces that cover each other are E666.",
+               are lines of the faces' meshes. Faces that overlap are E666.",
         default: "false",
         ty: Ty::Bool,
     },
     Setting {
         key: "flip",
-        docs: "Faces show their other sides. Without it faces that close point out of what they enclose; a list of faces that stay open \
-               keeps the sides that it was given.",
+        docs: "Reverses the normals of faces. Without it faces that close point outwards; a list of faces that stays open keeps the \
+               normals it was given.",
         default: "false",
         ty: Ty::Bool,
     },
@@ -128,12 +128,12 @@ pub const ON: &[Setting] = &[
 pub const NEAR: &[Setting] = &[
     Setting {
         key: "size",
-        docs: "Target edge length up to the radius; further out it grows as `growth` says. It only refines: where several sizes are asked \
-               for the smallest counts. A mapped face takes the least size on it for all its rows, and a written `count` stays.",
+        docs: "Target edge length up to the radius; further out it grows as `growth` says. It only refines: of several sizes the \
+               smallest applies. A mapped face takes the least size on it for all its rows, and a written `count` stays.",
         default: "",
         ty: SIZE,
     },
-    Setting { key: "radius", docs: "How far around the size holds.", default: "0", ty: SIZE },
+    Setting { key: "radius", docs: "Distance up to which the size applies.", default: "0", ty: SIZE },
 ];
 
 /// `in box(a, b) { … }` inside a mesh.
@@ -143,20 +143,20 @@ pub const IN: &[Setting] = &[Setting { key: "size", docs: "Target edge length in
 pub const SHELL: &[Setting] = &[
     Setting {
         key: "snap",
-        docs: "Edges of faces that came with borders of their own (imported, fitted) are one within this distance.",
+        docs: "Distance within which edges of faces with separate borders (imported, fitted) are glued.",
         default: "ten times the widest gap within the borders of a face, at least the tolerance",
         ty: LENGTH,
     },
     Setting {
         key: "imprint",
         docs: "Faces are cut by each other where they touch or cross, as by the function `imprint`; more than two may then share an edge. \
-               A mesh of the shell joins what touches along lines that cut nothing off, too.",
+               A mesh of the shell also joins faces that touch along lines which cut off no part.",
         default: "false",
         ty: Ty::Bool,
     },
     Setting {
         key: "flip",
-        docs: "The other side is shown. Without it a closed shell points out of its material, whatever the order and direction of its \
+        docs: "Reverses the normals. Without it a closed shell points out of its material, whatever the order and direction of its \
                faces, and an open one follows its first face.",
         default: "false",
         ty: Ty::Bool,
@@ -174,14 +174,14 @@ pub const EXPORT: &[Setting] = &[
     },
     Setting {
         key: "incomplete",
-        docs: "What lacks faces of an imported file that could not be used is written all the same; without it that is E904.",
+        docs: "Writes parts of an imported file even where some of its faces could not be used; without it that is E904.",
         default: "false",
         ty: Ty::Bool,
     },
     Setting { key: "schema", docs: "Application protocol of a STEP file.", default: "ap242", ty: Ty::Choice(SCHEMAS) },
     Setting {
         key: "shells",
-        docs: "What shells are in an IGES file: `solids` where they close, else shells, of faces that share their edges; or `faces`, trimmed surfaces each by itself.",
+        docs: "How shells are written to an IGES file: as `solids` where they close, else as shells, with shared edges; or as `faces`, separate trimmed surfaces.",
         default: "solids",
         ty: Ty::Choice(SHELLS),
     },
@@ -209,7 +209,7 @@ pub const IMPORT: &[Setting] = &[
 pub const PICTURE: &[Setting] = &[
     Setting {
         key: "view",
-        docs: "Where the eye is: a word, or the direction from the model to the eye, as in `(1, -2, 0.5)`.",
+        docs: "Position of the eye: a word, or the direction from the model to the eye, as in `(1, -2, 0.5)`.",
         default: "isometric",
         ty: Ty::OneOf(&[Ty::Choice(VIEWS), Ty::Direction]),
     },
@@ -220,7 +220,7 @@ pub const PICTURE: &[Setting] = &[
     Setting { key: "height", docs: "Pixels down.", default: "800", ty: Ty::Count },
     Setting {
         key: "shade",
-        docs: "What colours of faces tell: nothing but light (`plain`), which surface (`names`), which side the normal points to (`side`), \
+        docs: "What the colours of faces show: light only (`plain`), the surface (`names`), the side of the normal (`side`), \
                quality or longest side of elements (`quality`, `size`), reflected stripes that break where the tangent plane does \
                (`zebra`), the larger principal curvature (`curvature`).",
         default: "plain",
@@ -241,14 +241,14 @@ pub const PICTURE: &[Setting] = &[
     },
     Setting {
         key: "labels",
-        docs: "Names stand beside surfaces, curves, links, nodes and points.",
+        docs: "Names of surfaces, curves, links, nodes and points are shown.",
         default: "whether curves or points are drawn",
         ty: Ty::Bool,
     },
     Setting { key: "title", docs: "Words above the picture, none with `\"\"`.", default: "the model and what is drawn", ty: Ty::Text },
-    Setting { key: "axes", docs: "The directions of x, y and z stand in a corner.", default: "true", ty: Ty::Bool },
-    Setting { key: "ruler", docs: "A bar shows a length.", default: "true", ty: Ty::Bool },
-    Setting { key: "legend", docs: "Colours and lines are explained.", default: "true", ty: Ty::Bool },
+    Setting { key: "axes", docs: "The directions of x, y and z are shown in a corner.", default: "true", ty: Ty::Bool },
+    Setting { key: "ruler", docs: "A scale bar is shown.", default: "true", ty: Ty::Bool },
+    Setting { key: "legend", docs: "A legend of colours and lines is shown.", default: "true", ty: Ty::Bool },
 ];
 
 /// Every block that takes settings: how it is written, and its table.

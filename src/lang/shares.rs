@@ -35,8 +35,8 @@ impl Cx<'_> {
             meshed.diagonal = Some(diagonal);
             if diagonal <= 0.0 || diagonal.is_nan() {
                 let span = self.span_of(setting.origin).map_or_else(Span::default, |s| s.1);
-                let text = format!("`{}` is a share of what is meshed, which has no extent", setting.key);
-                return Err(self.error(code, "E306", text, span, "a share of nothing").stop());
+                let text = format!("`{}` is a percentage of the diagonal of what is meshed, which is 0", setting.key);
+                return Err(self.error(code, "E306", text, span, "a percentage of 0").stop());
             }
             setting.value = Value::length(value * diagonal);
         }
@@ -49,12 +49,12 @@ impl Cx<'_> {
         let (share, found) = (self.span_of(setting.origin), said.iter().map(|expr| code.span(*expr)).collect::<Vec<_>>());
         let span = found.first().copied().unwrap_or_default();
         let words = found.iter().map(|span| format!("`{}`", self.sources.text(file, *span))).collect::<Vec<_>>().join(" and ");
-        let holds = if found.len() == 1 { "holds" } else { "hold" };
-        let text = format!("`{}` is a share of what is meshed, and {words} {holds} nothing", setting.key);
-        let draft = self.error(code, "E306", text, span, "chooses nothing");
-        let labels = found.iter().skip(1).map(|span| Label { file, span: *span, text: "nor does this".to_owned() });
-        let label = share.map(|(file, span)| Label { file, span, text: "a share of it".to_owned() });
-        let help = "a choice that holds something, or a length";
+        let holds = if found.len() == 1 { "contains" } else { "contain" };
+        let text = format!("`{}` is a percentage of the diagonal of what is meshed, and {words} {holds} nothing", setting.key);
+        let draft = self.error(code, "E306", text, span, "is empty");
+        let labels = found.iter().skip(1).map(|span| Label { file, span: *span, text: "so is this".to_owned() });
+        let label = share.map(|(file, span)| Label { file, span, text: "a percentage of it".to_owned() });
+        let help = "choose something that is not empty, or give a length";
         draft.labels(labels.chain(label)).help(help).stop()
     }
 

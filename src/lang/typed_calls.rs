@@ -13,8 +13,8 @@ use super::units;
 use super::value::Value;
 
 /// Why the typed form is another one.
-const LISTED: &str = "these stand in one list";
-const NAMED: &str = "what is left out is told by names";
+const LISTED: &str = "give these as one list";
+const NAMED: &str = "name the arguments behind one that is left out";
 
 impl Cx<'_> {
     /// Puts the typed form of a call into what was said about its arguments since `said`: that is one report then.

@@ -91,7 +91,7 @@ fn members_of(kind: &str) -> String {
 /// A setting for a terminal.
 fn text_of_setting(block: &str, setting: &Setting) -> String {
     let default = if setting.default.is_empty() { String::new() } else { format!(" [default: {}]", setting.default) };
-    format!("{}: {}{default}\n\n  {}\n  Stands in `{block}`.\n", setting.key, setting.ty.signature(), setting.docs)
+    format!("{}: {}{default}\n\n  {}\n  Used in `{block}`.\n", setting.key, setting.ty.signature(), setting.docs)
 }
 
 /// A word for a terminal.

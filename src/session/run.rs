@@ -505,5 +505,5 @@ impl<'r> Run<'r> {
 /// E217 of a run that goes over `--max-work`.
 fn too_much_work(over: &TooMuchWork) -> Diagnostic {
     Diagnostic::without_place("E217", over.to_string())
-        .help("a larger limit; or fewer parts, larger elements and looser errors, and points that are not far off by mistake")
+        .help("set a larger limit, or use fewer parts, larger elements and larger errors; look for points that are far off by mistake")
 }

@@ -34,7 +34,7 @@ pub fn rows(file: &str, bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<R
     let table = read(bytes, &reading).map_err(|at| format!("line {}{}: {}", at.line, column(at.column), at.what))?;
     let header = table.header.unwrap_or_default();
     if let Some((_, name)) = header.iter().enumerate().find(|(i, name)| header[..*i].contains(name)) {
-        return Err(format!("the column {name:?} stands there twice"));
+        return Err(format!("the column {name:?} is given twice"));
     }
     if let Some((name, _)) = sets.iter().find(|(name, _)| header.contains(name)) {
         return Err(format!("`{name}` is set by the table and by --set"));

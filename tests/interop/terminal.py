@@ -33,7 +33,7 @@ STEPS = [
     (["curve south = line((0, 0, 0), (4m, 0, 1m))", "Enter"], [r"curve south: line, 4123.11 mm"]),
     (["roof.area > 12m2", "Enter"], [r"^true$"]),
     ([":why roof", "Enter"], [r"roof depends on\n  south\n  north", r"what depends on roof:\n  fine"]),
-    ([":remove south", "Enter"], [r"E510 × `south` carries `roof`", r"help: remove fine, roof first, or `:remove! south` to take all 3"]),
+    ([":remove south", "Enter"], [r"E510 × `south` is used by `roof`", r"help: remove fine, roof first, or `:remove! south` to remove all 3"]),
     ([":remove! south", "Enter"], [r"removed south, roof, fine"]),
     (["roof.area", "Enter"], [r"E201 × `roof` is not defined"]),
     ([":undo", "Enter"], [r"surface roof: ruled"]),

@@ -247,7 +247,7 @@ fn across_axes() -> Vec<(&'static str, String, Vec<f64>, &'static str)> {
     let spline = "B_SPLINE_CURVE_WITH_KNOTS('',3,(#20,#21,#22,#23),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),.UNSPECIFIED.);\n\
                   #20=CARTESIAN_POINT('',(0.,0.,-3.));\n#21=CARTESIAN_POINT('',(4.,0.,-1.));\n#22=CARTESIAN_POINT('',(-4.,0.,1.));\n\
                   #23=CARTESIAN_POINT('',(0.,0.,3.))";
-    let told = "nothing tells which of them is meant; the one that runs up the axis is taken";
+    let told = "it is ambiguous which is meant; the one that runs up the axis is used";
     // x and z of the spline, by t from 0 to 1/2: that is half of it, and the other half is its image.
     let at = |t: f64| (12.0 * t * (1.0 - t) * (1.0 - 2.0 * t), -3.0 + 6.0 * t);
     let n = 20_000;

@@ -91,21 +91,21 @@ impl Describe for BlendFault {
             Self::TooLarge { blend, a, b, radius, largest, at } => {
                 let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
                 let message = format!(
-                    "a ball with a radius of {} does not fit between {x} and {y} beside {}; the largest radius is {}",
+                    "a ball with a radius of {} does not fit between {x} and {y} near {}; the largest radius is {}",
                     say.length(*radius),
                     say.point(*at),
                     say.length(floored(*largest))
                 );
                 Report::new("E673", message)
                     .at(*blend, "too large here")
-                    .help("take a smaller `radius:`, or surfaces that run on farther from the edge")
+                    .help("take a smaller `radius:`, or surfaces that extend farther from the edge")
             }
             Self::NoEdge { a, b, why } => no_edge((*a, *b), why, say).at(*a, "this surface").at(*b, "and this one"),
         }
     }
 }
 
-/// Three digits of a length, rounded down: what is told fits.
+/// Three digits of a length, rounded down, so that the stated radius fits.
 fn floored(length: f64) -> f64 {
     const DIGITS: f64 = 1e2;
     let unit = crate::base::math::pow(10.0, crate::base::math::log10(length).floor()) / DIGITS;
@@ -122,33 +122,33 @@ fn no_edge((a, b): (Origin, Origin), why: &NoBlend, say: &dyn Say) -> Report {
         }
         NoBlend::Several { middles } => {
             let places = say.points(middles).join(", ");
-            report(format!("{x} and {y} meet in {} edges, near {places}: a rounding is for one", middles.len()))
+            report(format!("{x} and {y} meet in {} edges, near {places}: a rounding needs one", middles.len()))
                 .help("cut one of them first, `trim(s, by: …, keep: …)`, so that one edge is left")
         }
         NoBlend::Corner { at } => report(format!("the edge of {x} and {y} has a corner at {}", say.point(*at)))
             .help("round the corner of the curve first, or divide the surfaces there and blend them one by one"),
         NoBlend::Tangent { at } => {
-            report(format!("{x} and {y} run into each other smoothly at {}: there is no edge to round", say.point(*at)))
+            report(format!("{x} and {y} are tangent to each other at {}: there is no edge to round", say.point(*at)))
         }
         NoBlend::EndsInside { surface, at } => {
             let name = say.quoted(*surface, "a surface");
-            report(format!("the rounding of {x} and {y} ends inside {name} at {}: it cuts nothing off there", say.point(*at)))
+            report(format!("the rounding of {x} and {y} ends inside {name} at {}, so it cuts off no part of it", say.point(*at)))
                 .help(format!("let {name} end where the edge does, at right angles to it, or close the edge"))
         }
         NoBlend::Leaves { surface, at } => {
             let name = say.quoted(*surface, "a surface");
-            report(format!("the rounding of {x} and {y} runs over the border of {name} at {}", say.point(*at)))
-                .help(format!("take a smaller `radius:`, or blend before {name} gets that border"))
+            report(format!("the rounding of {x} and {y} crosses the border of {name} at {}", say.point(*at)))
+                .help(format!("take a smaller `radius:`, or blend before {name} is cut there"))
         }
         NoBlend::KeepOnEdge { surface, at } => {
             let name = say.quoted(*surface, "a surface");
             report(format!(
-                "`keep:` does not tell which side of {name} stays: seen along it the point is on the edge, at {}",
+                "`keep:` does not determine which side of {name} stays: along the surface the point is on the edge, at {}",
                 say.point(*at)
             ))
-            .help(format!("{name} runs on beyond the edge: a point away from the edge in the directions of both surfaces"))
+            .help(format!("{name} extends past the edge: choose a point away from the edge along both surfaces"))
         }
-        NoBlend::NoRadius { at } => report(format!("no ball touches both {x} and {y} beside {}", say.point(*at)))
-            .help("`-s` turns the side of a surface on which it rolls"),
+        NoBlend::NoRadius { at } => report(format!("no ball touches both {x} and {y} near {}", say.point(*at)))
+            .help("`-s` puts the ball on the other side of a surface"),
     }
 }

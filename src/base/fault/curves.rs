@@ -250,7 +250,7 @@ impl Describe for CurveFault {
             Self::Knots { what, .. } => knots(*what, &name),
             Self::Weight { index, weight, .. } => Report::new("E407", format!("weight {index} of {name} is {weight}, it must be above 0"))
                 .label(Subject::Item("weights", *index), "not above 0")
-                .help("a weight of 1 leaves its pole as it is")
+                .help("a weight of 1 is neutral")
                 .edit(Subject::Argument("weights"), Edit::Member(*index, Some("1".to_owned()))),
             Self::NonFinite { argument, index, .. } => {
                 let (subject, which) = match index {
@@ -269,7 +269,7 @@ impl Describe for CurveFault {
                     .note("this should never appear: please report it with the script")
             }
             Self::ZeroAngle { argument, .. } => Report::new("E411", format!("`{argument}` is zero, so {name} has no length"))
-                .label(Subject::Argument(argument), "turns by nothing"),
+                .label(Subject::Argument(argument), "an angle of 0"),
             Self::AngleTooLarge { argument, angle, .. } => {
                 Report::new("E412", format!("`{argument}` is {}, more than one turn", say.angle(*angle)))
                     .label(Subject::Argument(argument), "at most 360°")
@@ -277,7 +277,7 @@ impl Describe for CurveFault {
                     .edit(Subject::Argument(argument), Edit::Put("360deg".to_owned()))
             }
             Self::NotConverged { of, what, at } => {
-                Report::new("E413", format!("{what} could not be settled near {}", say.point(*at))).at(*of, "on this curve")
+                Report::new("E413", format!("{what} could not be determined near {}", say.point(*at))).at(*of, "on this curve")
             }
             Self::CornerTooNarrow { argument, wanted, largest, at, .. } => narrow_corner(say, argument, (*wanted, *largest), *at),
             Self::NoCorner { at: None, .. } => {
@@ -296,14 +296,14 @@ impl Describe for CurveFault {
             Self::CornerNotFlat { at, out, .. } => {
                 let message = format!("the sides of the corner at {} leave its plane by {}", say.point(*at), say.length(*out));
                 Report::new("E416", message)
-                    .label(Subject::Call, "an arc touches sides that lie in a plane")
+                    .label(Subject::Call, "an arc needs sides in one plane")
                     .help("round the corner before the sides are bent out of its plane, or cut it with `chamfer`")
             }
         }
     }
 }
 
-/// Digits of a largest size that is told.
+/// Digits of a largest size in a message.
 const TOLD_DIGITS: i32 = 3;
 
 fn narrow_corner(say: &dyn Say, argument: &'static str, (wanted, largest): (f64, f64), at: DVec3) -> Report {
@@ -312,7 +312,7 @@ fn narrow_corner(say: &dyn Say, argument: &'static str, (wanted, largest): (f64,
         let message = format!("no {what} fits the corner at {}: the curve turns straight back there", say.point(at));
         return Report::new("E414", message).label(Subject::Argument(argument), "does not fit at any size");
     }
-    // Rounded down, so that what is told fits; by less than it was searched for, so that 5 mm stays 5 mm.
+    // Rounded down, so that the stated size fits; by less than it was searched for, so that 5 mm stays 5 mm.
     let step = math::pow(10.0, math::log10(largest).floor() + 1.0 - f64::from(TOLD_DIGITS));
     let told = (largest * (1.0 + NEAREST) / step).floor() * step;
     let message = format!("a {what} of {} does not fit the corner at {}", say.length(wanted), say.point(at));
@@ -320,7 +320,7 @@ fn narrow_corner(say: &dyn Say, argument: &'static str, (wanted, largest): (f64,
     Report::new("E414", message)
         .label(Subject::Argument(argument), format!("at most {put} there"))
         .help(format!("{argument}: {put}"))
-        .note(format!("the largest {size} is that for which the corner and those it shares a side with all fit"))
+        .note(format!("with the largest {size}, this corner and those it shares a side with all fit"))
         .edit(Subject::Argument(argument), Edit::Put(put))
 }
 
@@ -336,7 +336,7 @@ fn zero_length(say: &dyn Say, of: Origin, (length, tolerance): (f64, f64)) -> Re
 
 fn duplicate_points(fault: &CurveFault, say: &dyn Say) -> Report {
     let CurveFault::DuplicatePoints { of, index, count, at, distance, tolerance } = fault else {
-        return Report::new("E403", "two points are one");
+        return Report::new("E403", "two points coincide");
     };
     let next = (index + 1) % count;
     let name = say.quoted(*of, "this curve");
@@ -363,8 +363,8 @@ fn knots(what: KnotFault, name: &str) -> Report {
                 .label(Subject::Item("knots", index), "decreases")
         }
         KnotFault::TooOften { knot, times, allowed } => {
-            Report::new("E406", format!("knot {knot} of {name} stands {times} times, {allowed} are the most here"))
-                .label(Subject::Argument("knots"), "the curve would fall apart there")
+            Report::new("E406", format!("knot {knot} of {name} occurs {times} times; at most {allowed} are allowed here"))
+                .label(Subject::Argument("knots"), "the curve would be discontinuous there")
         }
         KnotFault::Count { needed, given, points, degree } => {
             Report::new("E406", format!("{points} points of degree {degree} need {needed} knots, got {given}"))
@@ -373,7 +373,7 @@ fn knots(what: KnotFault, name: &str) -> Report {
         }
         KnotFault::EmptyDomain { knot } => {
             Report::new("E406", format!("the knots of {name} leave no domain: it starts and ends at {knot}"))
-                .label(Subject::Argument("knots"), "no two different ones in the middle")
+                .label(Subject::Argument("knots"), "no two different knots in the middle")
         }
     }
 }

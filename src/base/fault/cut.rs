@@ -151,7 +151,7 @@ impl Describe for CutFault {
             Self::RunAlong { a, b, at, tolerance } => Report::new(
                 "E657",
                 format!(
-                    "{} and {} run along each other near {}, so they meet in no curve that is sure",
+                    "{} and {} run along each other near {}, so the curve in which they meet is not well defined",
                     say.quoted(*a, "one surface"),
                     say.quoted(*b, "the other"),
                     say.point(*at)
@@ -162,19 +162,19 @@ impl Describe for CutFault {
             .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
             Self::NotDivided { surface, what, at } => {
                 let name = say.quoted(*surface, "the surface");
-                Report::new("E999", format!("a bug in loft: {name} is not divided right, for {what} at {}", say.point(*at)))
+                Report::new("E999", format!("a bug in loft: {name} is divided wrongly: {what} at {}", say.point(*at)))
                     .at(*surface, "this surface")
-                    .help("please report it with this script; curves moved by a little may do meanwhile")
+                    .help("please report it with this script; moving the curves a little may help meanwhile")
             }
             Self::NothingParted { surface, at, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
-                Report::new(
-                    "E721",
-                    format!("a cut of {name} cannot be followed all the way near {at}: what lies on its two sides is one part"),
-                )
-                .at(*surface, "this surface")
-                .help("a smaller `tolerance` tells curves apart that are near to each other, and bends of them")
-                .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
+                Report::new("E721", format!("a cut of {name} cannot be followed to its end near {at}: both of its sides are one part"))
+                    .at(*surface, "this surface")
+                    .help("a smaller `tolerance` separates curves, and bends of a curve, that are close together")
+                    .note(format!(
+                        "points closer together than four times the model's tolerance of {} count as one",
+                        say.length(*tolerance)
+                    ))
             }
             Self::CutsTooNear { surface, cuts: [one, other], at, apart, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
@@ -186,24 +186,28 @@ impl Describe for CutFault {
                 if other != one && other != surface {
                     report = report.at(*other, "and this one");
                 }
-                report
-                    .help("move one of them away or onto the other, or give a smaller `tolerance`")
-                    .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
+                report.help("move one of them away or onto the other, or set a smaller `tolerance`").note(format!(
+                    "points closer together than four times the model's tolerance of {} count as one",
+                    say.length(*tolerance)
+                ))
             }
             Self::PartsNotWhole { surface, cuts, whole, parts, tolerance } => {
                 let name = say.quoted(*surface, "the surface");
-                let message =
-                    format!("the parts of {name} make up {:.4} % of its area: curves that divide it come too near", 100.0 * parts / whole);
+                let message = format!(
+                    "the parts of {name} make up {:.4} % of its area: curves that divide it come too close together",
+                    100.0 * parts / whole
+                );
                 let report = cuts.iter().fold(Report::new("E721", message).at(*surface, "this surface"), |r, cut| r.at(*cut, "this curve"));
-                report
-                    .help("a smaller `tolerance` tells curves apart that are near to each other")
-                    .note(format!("what is less than four times the model's tolerance of {} apart is taken as one", say.length(*tolerance)))
+                report.help("a smaller `tolerance` separates curves that are close together").note(format!(
+                    "points closer together than four times the model's tolerance of {} count as one",
+                    say.length(*tolerance)
+                ))
             }
             Self::CutOpen { cutter, surface, ends, outside } => {
                 let places = say.points(ends);
                 let why = match ends.len() {
                     _ if *outside => "all of it lies beyond the border".to_owned(),
-                    0 => "it runs from border to border, and what lies on its two sides is one part".to_owned(),
+                    0 => "it runs from border to border, but both of its sides are one part".to_owned(),
                     1 => format!("it ends inside at {}", places[0]),
                     _ => format!("both its ends lie inside, at {}", places.join(" and ")),
                 };
@@ -225,8 +229,8 @@ impl Describe for CutFault {
                 };
                 report.at(*surface, "this surface").note(format!("the model's tolerance is {}", say.length(*tolerance)))
             }
-            Self::WithoutEnd { of } => Report::new("E658", "two unbounded planes meet in a line without end")
-                .at(*of, "no curve has its length")
+            Self::WithoutEnd { of } => Report::new("E658", "two unbounded planes meet in an infinite line")
+                .at(*of, "a curve has a finite length")
                 .help("bound one of them: `plane(curves)` is the face inside curves"),
         }
     }

@@ -246,7 +246,7 @@ impl FileFault {
                 named.fold(report, |report, edit| report.edit(Subject::Entity(*of), edit))
             }
             Self::Outside { of, path } => Report::new("E802", format!("\"{path}\" lies outside the allowed folders"))
-                .at(*of, "only the script's folder and what is below it are open, links followed")
+                .at(*of, "only the script's folder and folders below it are allowed, links resolved")
                 .help("move the file there, or run with `--allow PATH`"),
             Self::Malformed { of, path, at } => {
                 Report::new("E803", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
@@ -256,7 +256,7 @@ impl FileFault {
             }
             Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, (path, *total), (faces, *share), *whole),
             Self::TooLarge { of, path, bytes, limit } => {
-                Report::new("E811", format!("\"{path}\" has {}, more than the {} that are read", mebibytes(*bytes), mebibytes(*limit)))
+                Report::new("E811", format!("\"{path}\" has {}, more than the limit of {}", mebibytes(*bytes), mebibytes(*limit)))
                     .at(*of, "named here")
             }
             _ => self.describe_writing(),
@@ -295,16 +295,16 @@ impl FileFault {
             Self::OverInput { of, path, what } => Report::new("E813", format!("\"{path}\" is {what}, which this would replace"))
                 .at(*of, "written here")
                 .help("give the output another name"),
-            Self::TooMuchWork { of, path } => Report::new("E217", format!("\"{path}\" takes more work than it may"))
+            Self::TooMuchWork { of, path } => Report::new("E217", format!("\"{path}\" exceeds its work limit"))
                 .at(*of, "to be written here")
-                .help("fewer or simpler things in one file, and points that are not far off by mistake"),
+                .help("write fewer or simpler things to one file; look for points that are far off by mistake"),
             Self::Incomplete { of, output, path, part, missing } => {
                 let path = format!("\"{path}\"");
                 let edit = Edit::Instead { put: format!("{path} {{ incomplete: true }}"), of: path };
                 let faces = if *missing == 1 { "a face".to_owned() } else { format!("{missing} faces") };
                 Report::new("E904", format!("this would be written with holes: `{part}` lacks {faces} that could not be used"))
                     .at(*of, "incomplete")
-                    .help("`incomplete: true` in the export writes it all the same")
+                    .help("`incomplete: true` in the export writes it anyway")
                     .edit(Subject::Entity(*output), edit)
             }
             Self::CannotWrite { of, path, why } => {
@@ -323,8 +323,8 @@ fn unusable(of: Origin, (path, total): (&str, usize), (faces, share): (&[Malform
     let count = if total == 1 { "the only face".to_owned() } else { format!("{} of {total} faces", faces.len()) };
     let share = match share {
         Some(Share::Stated(share)) => format!("{:.0} % of the area", 100.0 * share),
-        Some(Share::AtLeast(share)) => format!("at least {:.0} % of the area, which is what their loops span", 100.0 * share),
-        None => "their share of the area is not known".to_owned(),
+        Some(Share::AtLeast(share)) => format!("at least {:.0} % of the area, by their loops", 100.0 * share),
+        None => "their share of the area is unknown".to_owned(),
     };
     let report = Report::new("W726", format!("{count} of \"{path}\" could not be used ({share})")).at(of, "imported here");
     let told = if whole { faces.len() } else { faces.len().min(FACES_TOLD) };
@@ -343,12 +343,12 @@ fn same_file(outputs: &[(Origin, String)], members: Option<usize>) -> Report {
         let place = outputs.first().map_or(Origin::NONE, |(of, _)| *of);
         return Report::new("E812", message)
             .at(place, "the same for several members")
-            .help("put what tells them apart into the name, as in \"part_{i}.inp\"");
+            .help("give each member its own name, as in \"part_{i}.inp\"");
     }
     let other = outputs.iter().map(|(_, path)| path.as_str()).find(|path| *path != first);
     let message = match other {
         Some(other) if other.to_lowercase() == first.to_lowercase() => {
-            format!("\"{first}\" and \"{other}\" are one file where capital and small letters are not told apart")
+            format!("\"{first}\" and \"{other}\" are one file where upper and lower case are not distinguished")
         }
         Some(other) => format!("\"{first}\" and \"{other}\" are one file"),
         None => format!("{} outputs are one file, \"{first}\"", outputs.len()),

@@ -175,14 +175,14 @@ fn closed_among(given: &[Origin], (closed, open): (&[Origin], &[Origin]), role: 
     let name = |o: &Origin| say.name(*o);
     let quoted: Vec<String> = closed.iter().take(SHOWN).map(|o| say.quoted(*o, "a curve")).collect();
     let many = match quoted.as_slice() {
-        [one] => format!("{one} is closed by itself, and a loop of several curves"),
-        [a, b] => format!("{a} and {b} are both closed, and a loop of several curves"),
+        [one] => format!("{one} is closed by itself"),
+        [a, b] => format!("{a} and {b} are both closed"),
         all if closed.len() > SHOWN => {
-            format!("{} and {} more are all closed, and a loop of several curves", all.join(", "), closed.len() - SHOWN)
+            format!("{} and {} more are all closed", all.join(", "), closed.len() - SHOWN)
         }
-        all => format!("{} are all closed, and a loop of several curves", all.join(", ")),
+        all => format!("{} are all closed", all.join(", ")),
     };
-    let mut report = Report::new("E502", format!("{many} runs through each of them once"));
+    let mut report = Report::new("E502", format!("{many}; a loop of several curves consists of open ones"));
     for of in closed.iter().take(SHOWN) {
         report = report.at(*of, "closed");
     }
@@ -246,7 +246,7 @@ fn meet(fault: &LoopFault, say: &dyn Say) -> Report {
     })
 }
 
-/// Places of a meeting, and curves of a loop, that are told.
+/// Places of a meeting, and curves of a loop, that are listed.
 const SHOWN: usize = 4;
 
 fn repeated(a: (Origin, usize), b: (Origin, Option<usize>), trimming: Origin, say: &dyn Say) -> Report {

@@ -80,7 +80,7 @@ impl std::fmt::Display for MeshLimit {
 /// What can go wrong with a mesh or deserves a word. Lengths are model units, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshFault {
-    /// W701: a rule that decides nothing.
+    /// W701: a rule without effect.
     RuleUnused {
         /// The clause.
         rule: Origin,
@@ -418,6 +418,11 @@ fn steps(n: u32) -> String {
     if n == 1 { "1 element".to_owned() } else { format!("{n} elements") }
 }
 
+/// The verb behind [`steps`].
+fn is(n: u32) -> &'static str {
+    if n == 1 { "is" } else { "are" }
+}
+
 impl Describe for MeshFault {
     fn describe(&self, say: &dyn Say) -> Report {
         describe_rules(self, say).unwrap_or_else(|| describe_faces(self, say))
@@ -434,34 +439,34 @@ fn many(count: u64) -> String {
 fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
     use MeshFault as F;
     Some(match fault {
-        F::RuleUnused { rule, why } => Report::new("W701", format!("this rule decides nothing: {why}"))
-            .at(*rule, "has no effect")
+        F::RuleUnused { rule, why } => Report::new("W701", format!("this rule has no effect: {why}"))
+            .at(*rule, "this rule")
             .help("remove it")
             .edit(Subject::Entity(*rule), Edit::DropRule(None)),
         F::SetInPart { group, mesh, curve, at } => {
             let (set, curve) = (say.quoted(*group, "a group"), say.quoted(*curve, "a curve"));
-            Report::new("E672", format!("{set} would hold a part of {curve} only: it ends inside a border at {}", say.point(*at)))
+            Report::new("E672", format!("{set} would contain only a part of {curve}, which ends inside a border at {}", say.point(*at)))
                 .at(*group, "this group")
                 .at(*mesh, "has no node where the curve ends")
                 .help(format!("list {curve} in the mesh too, so that its ends become nodes"))
         }
         F::TooMany { of, name, elements, limit } => {
             let size = elements.map_or_else(|| format!("more than {}", many(*limit)), many);
-            Report::new("E217", format!("the mesh `{name}` of {size} elements is too much"))
+            Report::new("E217", format!("the mesh `{name}` would have {size} elements"))
                 .at(*of, "asked for here")
-                .help(format!("a larger value; the limit is {limit} elements, `--max-elements` sets another"))
+                .help(format!("use a larger value; the limit is {limit} elements, `--max-elements` sets another"))
         }
         F::TooMuchWork { of, name, surface } => {
-            let report = Report::new("E217", format!("the mesh `{name}` takes more work than it may")).at(*of, "asked for here");
-            let most = format!("most of it goes into {}", say.quoted(*surface, "this face"));
+            let report = Report::new("E217", format!("the mesh `{name}` exceeds its work limit")).at(*of, "asked for here");
+            let most = format!("most of it is used for {}", say.quoted(*surface, "this face"));
             let report = if surface.is_some() { report.at(*surface, most) } else { report };
             report
-                .note("this limit follows from the elements asked for; `--max-work` does not change it")
-                .help("a value that suits the size of the face, and points that are not far off by mistake")
+                .note("this limit follows from the number of elements; `--max-work` does not change it")
+                .help("use a value that suits the size of the face; look for points that are far off by mistake")
         }
-        F::TooManySteps { of, name, limit } => Report::new("E217", format!("the steps of the mesh `{name}` along a border are too many"))
+        F::TooManySteps { of, name, limit } => Report::new("E217", format!("the mesh `{name}` has too many steps along a border"))
             .at(*of, "asked for here")
-            .help(format!("fewer steps; the limit is {limit} from corner to corner")),
+            .help(format!("use fewer steps; the limit is {limit} from corner to corner")),
         F::CountsDiffer { a, b, surface, at } => {
             let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
             for (count, origin) in [a, b] {
@@ -486,46 +491,46 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help("drop one of the counts, or say `elements: triangles` with equal counts")
         }
         F::CountTooCoarse { count, limit, says, needed, at } => {
-            Report::new("E703", format!("{} are too coarse for `{limit}` at {}", steps(count.0), say.point(*at)))
+            Report::new("E703", format!("{} {} too coarse for `{limit}` at {}", steps(count.0), is(count.0), say.point(*at)))
                 .at(count.1, steps(count.0))
                 .at(*says, format!("asks for at least {needed}"))
                 .help(format!("count: {needed}"))
                 .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
         }
         F::CountTooFew { count, needed, at } => {
-            Report::new("E703", format!("{} would fall on each other at {}", steps(count.0), say.point(*at)))
+            Report::new("E703", format!("with {}, edges would coincide at {}", steps(count.0), say.point(*at)))
                 .at(count.1, steps(count.0))
-                .note("a closed curve takes at least 3 steps; of two curves with the same ends the longer takes at least 2")
+                .note("a closed curve needs at least 3 elements; of two curves with the same ends, the longer needs at least 2")
                 .help(format!("count: {needed}"))
                 .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
         }
-        F::CountBelowLinks { count, links } => Report::new("E703", format!("{} cannot be shared out to {links} links", steps(count.0)))
+        F::CountBelowLinks { count, links } => Report::new("E703", format!("{} {} too few for {links} links", steps(count.0), is(count.0)))
             .at(count.1, steps(count.0))
             .help(format!("count: {links}"))
             .edit(Subject::Entity(count.1), Edit::Put(links.to_string())),
         F::RuleOverridden { key, earlier, later } => {
-            Report::new("W706", format!("`{key}` is set twice for the same part of the mesh; the later rule holds"))
+            Report::new("W706", format!("`{key}` is set twice for the same part of the mesh; the later rule applies"))
                 .at(*earlier, "has no effect")
-                .at(*later, "holds")
+                .at(*later, "applies")
                 .help("remove the first of the two")
                 .edit(Subject::Entity(*earlier), Edit::DropRule(Some(key)))
         }
         F::Sharp { of, name, angle, at, surface, faces, cure } => {
             let more = match *faces {
                 0 | 1 => String::new(),
-                2 => ", and one more face has such".to_owned(),
-                n => format!(", and {} more faces have such", n - 1),
+                2 => ", and one more face has such angles".to_owned(),
+                n => format!(", and {} more faces have such angles", n - 1),
             };
             let help = match cure {
-                Cure::Auto => "without `method: mapped` the face is made freely, with larger angles".to_owned(),
-                Cure::Rows => "the steps of this face are written out: another `count` or `bias` on its sides".to_owned(),
+                Cure::Auto => "without `method: mapped` the face is meshed freely, with larger angles".to_owned(),
+                Cure::Rows => "change the `count` or `bias` on the sides of this face".to_owned(),
                 Cure::Size(size) => {
-                    format!("`size: {}` on this face, or `method: delaunay`, which takes as short steps", typed(say, *size))
+                    format!("`size: {}` on this face, or `method: delaunay`, which uses steps as short", typed(say, *size))
                 }
                 Cure::Method => "`method: delaunay` on this face".to_owned(),
                 Cure::Near => "a smaller `size` on this face, or `near` this place".to_owned(),
             };
-            // A face without a name is told by the place.
+            // A face without a name is identified by the place.
             let (on, place) = match surface.as_str() {
                 "" => (format!("at {}", say.point(*at)), "the sharpest is".to_owned()),
                 name => (format!("on `{name}`"), format!("the sharpest is at {},", say.point(*at))),
@@ -538,20 +543,20 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         F::Lost { of, name, what, length, at, more } => lost(say, (*of, name), *what, (*length, *at, *more)),
         F::BelowFloor { size, floor } => {
             Report::new("E707", format!("the size {} is below `min_size`, {}", say.length(size.0), say.length(floor.0)))
-                .at(size.1, "smaller than the floor")
-                .at(floor.1, "the floor of all sizes")
+                .at(size.1, "below the minimum")
+                .at(floor.1, "the smallest size allowed")
                 .help(format!("lower `min_size` to {} or less", say.length(size.0)))
         }
         F::FloorKeeps { limit, says, floor, needed, at } => {
             let (place, size) = (say.point(*at), say.length(*needed));
-            Report::new("E707", format!("`min_size` keeps `{limit}` from being met at {place}, which takes edges of {size}"))
-                .at(*says, format!("asks for {size}"))
-                .at(floor.1, format!("edges are not made shorter than {}", say.length(floor.0)))
+            Report::new("E707", format!("`min_size` prevents `{limit}` at {place}, which needs edges of {size}"))
+                .at(*says, format!("needs {size}"))
+                .at(floor.1, format!("edges are at least {}", say.length(floor.0)))
                 .help(format!("`min_size` below {size}, or a larger `{limit}`"))
         }
         F::NotReached { limit, says, surface, reached, at } => {
             let reached = match *limit {
-                _ if !reached.is_finite() => "nothing bounds what is there,".to_owned(),
+                _ if !reached.is_finite() => "no finite bound was found".to_owned(),
                 MeshLimit::AngleError => say.angle(*reached),
                 _ => say.length(*reached),
             };
@@ -563,13 +568,10 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         F::GapTooWide { gap, limit, surface, at } => {
             let off = say.length(*gap);
             let whose = say.quoted(*surface, "a face");
-            Report::new(
-                "E703",
-                format!("`chord_error` cannot be kept on {whose}: an edge glued to it runs {off} beside it at {}", say.point(*at)),
-            )
-            .at(limit.1, format!("{} leaves nothing beside the gap", say.length(limit.0)))
-            .at(*surface, "this face")
-            .help(format!("a `chord_error` well above {off}"))
+            Report::new("E703", format!("`chord_error` cannot be kept on {whose}: an edge glued to it is {off} away at {}", say.point(*at)))
+                .at(limit.1, format!("{} is not above the gap", say.length(limit.0)))
+                .at(*surface, "this face")
+                .help(format!("a `chord_error` well above {off}"))
         }
         _ => return None,
     })
@@ -581,9 +583,9 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
     match fault {
         F::QuadsImpossible { mesh, places } => {
             let total: u64 = places.iter().map(|p| p.1).sum();
-            let one = if total == 1 { "one element has" } else { "elements have" };
+            let triangles = if total == 1 { "element must be a triangle" } else { "elements must be triangles" };
             let mut report =
-                Report::new("E704", format!("only quads is impossible here: {total} {one} to be triangles")).at(*mesh, "`elements: quads`");
+                Report::new("E704", format!("`elements: quads` is impossible here: {total} {triangles}")).at(*mesh, "`elements: quads`");
             for (surface, count, at) in places.iter().take(8) {
                 let plural = if *count == 1 { "" } else { "s" };
                 report = report.at(*surface, format!("{count} triangle{plural} at {}", say.point(*at)));
@@ -591,15 +593,16 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             report.help("elements: mixed").edit(Subject::Entity(*mesh), Edit::Set("elements", "mixed".to_owned()))
         }
         F::OddCount { count, surface, at } => {
-            let mut report = Report::new("E704", format!("only quads is impossible here: an odd number of steps at {}", say.point(*at)));
+            let mut report =
+                Report::new("E704", format!("`elements: quads` is impossible here: an odd number of steps at {}", say.point(*at)));
             if count.1.is_some() {
                 let even = (count.0 + 1).to_string();
                 report = report.at(count.1, steps(count.0)).help(format!("count: {even}")).edit(Subject::Entity(count.1), Edit::Put(even));
             }
-            report.at(*surface, "has no map, so that its border takes an even number of steps in all")
+            report.at(*surface, "is meshed freely, so its border needs an even number of steps in all")
         }
         F::TrianglesOnly { of, method, surface, at } => {
-            Report::new("E704", format!("only quads is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))
+            Report::new("E704", format!("`elements: quads` is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))
                 .at(*of, "`elements: quads`")
                 .at(*surface, "this face")
                 .help("method: delaunay")
@@ -618,10 +621,10 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 say.point(*at)
             ),
         )
-        .at(stated.1, format!("edges within {} are one", say.length(stated.0)))
+        .at(stated.1, format!("edges within {} are glued", say.length(stated.0)))
         .at(*a, "this border")
         .at(*b, "and this one")
-        .help("glue over a larger distance, or build both on the same curve"),
+        .help("set a larger `snap`, or build both on the same curve"),
         F::EdgeTooShort { of, length, at, more } => Report::new(
             "N712",
             format!(
@@ -636,22 +639,22 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 }
             ),
         )
-        .at(*of, "has two corners that are almost one"),
+        .at(*of, "has two corners that almost coincide"),
         F::FaceTooThin { surface, at, more } => Report::new(
             "N712",
             format!(
-                "{} is thinner than what is glued and became an edge at {}{}",
+                "{} is thinner than the gluing distance and became an edge at {}{}",
                 say.quoted(*surface, "a face"),
                 say.point(*at),
                 if *more == 0 { String::new() } else { format!(", as {more} others did") }
             ),
         )
-        .at(*surface, "has no inside left"),
+        .at(*surface, "has no interior left"),
         F::Inverted { surface, count, uv, at, free } => Report::new(
             "E715",
             format!(
-                "{count} element{} of {} turned over or without area, the first at {} (u {}, v {})",
-                if *count == 1 { "" } else { "s" },
+                "{count} {} inverted or without area in {}, the first at {} (u {}, v {})",
+                if *count == 1 { "element is" } else { "elements are" },
                 say.quoted(*surface, "a face"),
                 say.point(*at),
                 decimals(uv.0, 3),
@@ -667,38 +670,38 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         F::BordersCross { surface, at, size } => Report::new(
             "E713",
             format!(
-                "borders of {} divided by steps of {} cross or touch at {}",
+                "borders of {} divided into steps of {} cross or touch at {}",
                 say.quoted(*surface, "a face"),
                 say.length(*size),
                 say.point(*at)
             ),
         )
         .at(*surface, "this face")
-        .help("keep the borders further apart, or divide them more finely there"),
+        .help("move the borders further apart, or divide them more finely there"),
         F::Folded { surface, method, at, turn } => {
             let (name, at) = (say.quoted(*surface, "a face"), say.point(*at));
             let why = match turn {
                 Some(turn) => format!("{name} folds over at {at}, where its normal turns by {}", say.angle(*turn)),
                 None => format!("{name} has no normal at {at}"),
             };
-            Report::new("E718", format!("{why}: elements made by `method: {method}` do not lie side by side on it"))
+            Report::new("E718", format!("{why}: elements of `method: {method}` overlap there"))
                 .at(*surface, "this face")
                 .help("add a curve across the fold, or divide the surface in two")
         }
         F::ClosesTooNear { surface, method, at, close: Close::Turn } => Report::new(
             "E720",
             format!(
-                "a border of {} turns back along itself at {}, and elements made by `method: {method}` do not keep apart beside it",
+                "a border of {} turns back along itself at {}, where elements of `method: {method}` would coincide",
                 say.quoted(*surface, "a face"),
                 say.point(*at)
             ),
         )
         .at(*surface, "this face")
-        .help("move the points of that border so that it runs one way, or a smaller `size`"),
+        .help("move the points of that border so that it does not turn back, or set a smaller `size`"),
         F::ClosesTooNear { surface, method, at, close } => Report::new(
             "E720",
             format!(
-                "{} closes on itself more narrowly at {} than elements made by `method: {method}` keep apart",
+                "{} closes on itself at {}, where elements of `method: {method}` would coincide",
                 say.quoted(*surface, "a face"),
                 say.point(*at)
             ),
@@ -706,13 +709,13 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         .at(*surface, "this face")
         .help(match *method {
             "mapped" => "a smaller `size`",
-            _ if *close == Close::Tip => "`method: mapped` goes round the tip in rows",
+            _ if *close == Close::Tip => "`method: mapped` meshes the tip in rows",
             _ => "a smaller `size`, or `method: mapped`",
         }),
         F::FallTogether { surfaces: [first, second], at } => Report::new(
             "E720",
             format!(
-                "{} and {} fall together at {}: one edge or element stands for two there",
+                "{} and {} coincide at {}: both would have the same edge or element there",
                 say.quoted(*first, "a face"),
                 say.quoted(*second, "another face"),
                 say.point(*at)
@@ -720,19 +723,19 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         )
         .at(*first, "this face")
         .at(*second, "and this one have the same nodes there")
-        .help("a `count` of 2 or more on the borders that run beside that place, or a smaller `size`"),
+        .help("a `count` of 2 or more on the borders near that place, or a smaller `size`"),
         F::Unsound { mesh: (mesh, name), surface, method, elements: [triangles, quads], what, at } => Report::new(
             "E999",
-            format!("a bug in loft: the mesh `{name}` is not right on {}: {what}, at {}", say.quoted(*surface, "a face"), say.point(*at)),
+            format!("a bug in loft: the mesh `{name}` is wrong on {}: {what}, at {}", say.quoted(*surface, "a face"), say.point(*at)),
         )
         .at(*mesh, "this mesh was not made")
-        .at(*surface, format!("this face, made by `method: {method}` of {triangles} triangles and {quads} quads"))
-        .help("please report it with this script; another `method` or `size` may do meanwhile"),
+        .at(*surface, format!("this face, {triangles} triangles and {quads} quads of `method: {method}`"))
+        .help("please report it with this script; another `method` or `size` may work meanwhile"),
         F::TreeTooDeep { surface, at, levels } => Report::new(
             "E716",
             format!("the quadtree of {} needs more than {levels} levels at {}", say.quoted(*surface, "a face"), say.point(*at)),
         )
-        .at(*surface, "has a piece of border there that is less than a millionth of the size")
+        .at(*surface, "has a piece of border there shorter than a millionth of the size")
         .help("method: delaunay"),
         F::FaceEmpty { surface, at } => {
             Report::new("E714", format!("{} has nothing inside its border at {}", say.quoted(*surface, "a face"), say.point(*at)))
@@ -765,7 +768,7 @@ fn lost(say: &dyn Say, (of, mesh): (Origin, &str), what: LostPart, (length, at, 
         LostPart::Hole { hole, surface } => {
             let of = say.quoted(surface, "its surface");
             let hole = say.quoted(hole, "a hole");
-            (format!("{hole}, a hole of {of} only {} round,", say.length(length)), "point", "no hole there")
+            (format!("{hole}, a hole of {of} with a circumference of only {},", say.length(length)), "point", "no hole there")
         }
         LostPart::Curve(curve) => {
             (format!("{}, only {} long,", say.quoted(curve, "a curve"), say.length(length)), "point", "no line there")
@@ -774,10 +777,10 @@ fn lost(say: &dyn Say, (of, mesh): (Origin, &str), what: LostPart, (length, at, 
     };
     let report = Report::new("W725", format!("{part} became a {as_what} of `{mesh}` at {}", say.point(at)));
     let report = match what {
-        LostPart::Hole { hole, surface } => report.at(hole, "is filled in the mesh").at(surface, "has it as a hole"),
-        LostPart::Curve(curve) => report.at(curve, "is no longer than what is one point"),
-        LostPart::Face(surface) => report.at(surface, "is no wider than what is one point"),
+        LostPart::Hole { hole, surface } => report.at(hole, "is filled in the mesh").at(surface, "has this hole"),
+        LostPart::Curve(curve) => report.at(curve, "is not longer than the gluing distance"),
+        LostPart::Face(surface) => report.at(surface, "is not wider than the gluing distance"),
     };
     let report = if more > 0 { report.note(format!("so did {more} other{}", if more == 1 { "" } else { "s" })) } else { report };
-    report.at(of, format!("has {left}")).help("a smaller `tolerance`, or `snap` of its shell, or a model without it")
+    report.at(of, format!("has {left}")).help("set a smaller `tolerance`, or `snap` of its shell, or remove it from the model")
 }

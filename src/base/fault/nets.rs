@@ -147,7 +147,7 @@ impl Describe for NetFault {
             Self::OneSection { a, b, at, closing } => Report::new(
                 "E642",
                 format!(
-                    "{} and {} are one within the tolerance, at {}",
+                    "{} and {} coincide within the tolerance, at {}",
                     say.quoted(*a, "a section"),
                     say.quoted(*b, "the next one"),
                     say.point(*at)
@@ -180,24 +180,24 @@ impl Describe for NetFault {
             Self::Smoothed { surface, section, off, at, spans, given } => Report::new(
                 "N677",
                 format!(
-                    "{} leaves {} by {} at {}, and no section by more",
+                    "{} deviates from {} by {} at {}, the most of all sections",
                     say.quoted(*surface, "the surface"),
                     say.quoted(*section, "a section"),
                     say.length(*off),
                     say.point(*at)
                 ),
             )
-            .at(*section, "left most")
+            .at(*section, "largest deviation")
             .note(match spans {
-                1 => format!("one span across; {given} would go through all sections"),
-                n => format!("{n} spans across; {given} would go through all sections"),
+                1 => format!("one span across; through all sections there would be {given}"),
+                n => format!("{n} spans across; through all sections there would be {given}"),
             }),
             Self::AsNet { net, surface, off, proved } => Report::new("N677", {
                 let (net, surface, off) = (say.quoted(*net, "the net"), say.quoted(*surface, "its surface"), say.length(*off));
                 let bound = if *proved { "nowhere" } else { "at no sampled place" };
                 format!("{net} is {bound} farther than {off} from {surface}")
             })
-            .at(*net, "a B-spline in its place"),
+            .at(*net, "a B-spline approximation"),
             Self::Order { curve, guide, a, b, first, second } => Report::new(
                 "E643",
                 format!(
@@ -210,7 +210,7 @@ impl Describe for NetFault {
                     say.point(*second)
                 ),
             )
-            .at(*curve, "meets them in an order of its own")
+            .at(*curve, "meets them in another order")
             .at(*a, "should come before")
             .at(*b, "this one")
             .help("let every curve meet the other family in one order, or leave this one out"),

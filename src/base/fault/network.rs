@@ -257,7 +257,7 @@ impl Describe for NetworkFault {
                 let mut report = Report::new(
                     "E506",
                     format!(
-                        "{count} points near {} are pairwise closer than {} but spread over {}: it is not clear which are one node",
+                        "{count} points near {} are pairwise closer than {} but spread over {}: it is ambiguous which of them are one node",
                         say.point(points.first().map_or(DVec3::ZERO, |p| p.0)),
                         say.length(*tolerance),
                         say.length(*diameter)
@@ -274,7 +274,7 @@ impl Describe for NetworkFault {
                 Report::new(
                     "E611",
                     format!(
-                        "the boundary comes too near to itself: {} and {} are {} apart at {}, within the tolerance of {}",
+                        "the boundary comes too close to itself: {} and {} are {} apart at {}, within the tolerance of {}",
                         say.quoted(*a, "one curve"),
                         if a == b { "itself".to_owned() } else { say.quoted(*b, "another one") },
                         say.length(*apart),
@@ -341,8 +341,11 @@ fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn 
     }
     report
         .at(asked, "ends closer than this are joined")
-        .help(format!("end it where it belongs, or declare a `snap` below {}", typed(say, moved)))
-        .note(format!("`snap` is for ends measured twice; more than {} % of the curve makes another curve of it", 100.0 * SNAP_SHARE))
+        .help(format!("correct this end, or declare a `snap` below {}", typed(say, moved)))
+        .note(format!(
+            "`snap` is for small errors of measurement; a move by more than {} % of the length changes the curve",
+            100.0 * SNAP_SHARE
+        ))
 }
 
 /// A number of two digits, or a whole one.
@@ -363,10 +366,12 @@ fn snap_fixed([a, b]: [&CurveEnd; 2], (snap, asked): (f64, Origin), settled: Opt
         .at(a.of, a.verb())
         .at(b.of, b.verb())
         .at(asked, "ends closer than this are joined")
-        .help(format!("write one of them through points, end both at one point, or declare a `snap` below {below}"));
+        .help(format!("define one of them through points, end both at one point, or declare a `snap` below {below}"));
     match settled {
-        Some(of) => report
-            .note(format!("{} stays, since other curves are made from it, which `snap` comes to afterwards", say.quoted(of, "the first"))),
+        Some(of) => report.note(format!(
+            "{} cannot move any more: other curves are made from it, and `snap` treats those later",
+            say.quoted(of, "the first")
+        )),
         None => report,
     }
 }
@@ -386,12 +391,12 @@ fn ends_miss(a: &CurveEnd, b: &CurveEnd, (near, tolerance): (bool, f64), say: &d
         .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
         .note(format!("the other curve {} at {there}", if b.last { "ends" } else { "starts" }));
     if !near {
-        return report.help(format!("a curve is missing from {here} to {there}, or one that is here ends elsewhere"));
+        return report.help(format!("add a curve from {here} to {there}, or correct one of these ends"));
     }
     report
         .help(format!("end both at one point, or declare `snap {wanted}`"))
         .edit(Subject::Entity(a.of), Edit::Declare("snap", wanted.clone()))
-        .note(format!("a tolerance of {wanted} would take them as one point"))
+        .note(format!("within a tolerance of {wanted} they would be one point"))
 }
 
 fn boundary_open(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> Report {
@@ -456,7 +461,7 @@ fn chain_ambiguous(of: Origin, at: DVec3, candidates: &[Origin], say: &dyn Say) 
         "E505",
         format!("after {} at {} more than one curve fits: {}", say.quoted(of, "a curve"), say.point(at), names.join(", ")),
     )
-    .at(of, "the ways part at its end");
+    .at(of, "several curves start at its end");
     for &candidate in candidates {
         report = report.at(candidate, "could follow");
     }
@@ -521,11 +526,11 @@ fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> R
 fn in_use(of: Origin, users: &[Origin], say: &dyn Say) -> Report {
     let names: Vec<String> = users.iter().map(|&u| say.quoted(u, "an unnamed entity")).collect();
     let name = say.name(of);
-    let mut report = Report::new("E510", format!("{} carries {}", say.quoted(of, "this"), names.join(", "))).at(of, "to be removed");
+    let mut report = Report::new("E510", format!("{} is used by {}", say.quoted(of, "this"), names.join(", "))).at(of, "to be removed");
     for &user in users {
-        report = report.at(user, "stands on it");
+        report = report.at(user, "uses it");
     }
-    report.help(format!("remove {} first, or `:remove! {name}` to take all", names.join(", then ")))
+    report.help(format!("remove {} first, or `:remove! {name}` to remove all", names.join(", then ")))
 }
 
 fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: &dyn Say) -> Report {

@@ -30,7 +30,7 @@ pub enum NoFlow {
         nearest: Origin,
         /// Smallest distance of the two, model units.
         gap: f64,
-        /// Where that is, on the lonely curve.
+        /// Where that is, on the curve that meets no other.
         at: DVec3,
     },
     /// All crossings but some are there.
@@ -82,7 +82,7 @@ pub(super) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
             .label(Subject::Call, "needs four borders, or three, or two with common ends")
             .help("coons(south, east, north, west)"),
         NoFlow::NoFamilies { a, b, at } => report(format!(
-            "these {} curves fit into no two families: {} and {} meet at {} and would have to run the same way",
+            "these {} curves do not form two families: {} and {} meet at {} but would run the same way",
             curves.len(),
             say.quoted(*a, "one curve"),
             say.quoted(*b, "another one"),

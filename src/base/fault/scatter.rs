@@ -81,33 +81,32 @@ impl Describe for ScatterFault {
             }
             Self::OneLine { surface, count, from, to } => {
                 let ((a, b), which) = (say.pair(*from, *to), say.quoted(*surface, "this surface"));
-                let message =
-                    format!("the {count} points of {which} span no surface: seen along its direction all lie on the line from {a} to {b}");
+                let message = format!(
+                    "the {count} points of {which} span no surface: projected along its direction, all lie on the line from {a} to {b}"
+                );
                 label(Report::new("E665", message), "all on one line").help("add points beside that line, or choose another `along:`")
             }
             Self::Over { surface, a, b, tolerance } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
                 let message = format!(
-                    "two points of {which} lie over one another: {a} and {b} are at one place of its plane, within {}",
+                    "two points of {which} lie above one another: {a} and {b} have the same place in its plane, within {}",
                     say.length(*tolerance)
                 );
-                label(Report::new("E675", message), "a height has one value at a place")
-                    .help("choose `along:` so that each place is met once; divide a closed cloud into parts that have such a direction")
+                label(Report::new("E675", message), "a place has one height")
+                    .help("choose `along:` so that no place has two points, or divide a closed cloud into parts for which that is possible")
             }
             Self::Steep { surface, a, b, steep } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
                 let message = format!("{which} rises {steep:.0} times as far as it runs from {a} to {b}");
                 label(Report::new("W668", message), "very steep")
-                    .help("points of two sheets are no surface over one plane: leave one sheet out, or choose another `along:`")
+                    .help("points of two sheets are not one surface over a plane: leave one sheet out, or choose another `along:`")
             }
             Self::StandsOut { surface, at, off, range } => {
                 let which = say.quoted(*surface, "this surface");
                 let (off, at, range) = (say.length(*off), say.point(*at), say.length(*range));
-                let message =
-                    format!("{which} stands out {off} beyond the heights of all its points, at {at}; the heights differ by {range}");
-                label(Report::new("W226", message), "neighbours with very different heights").help(
-                    "leave out points that stand close together at different heights, or give more of them where the surface stands out",
-                )
+                let message = format!("{which} overshoots the heights of its points by {off} at {at}; the heights span {range}");
+                label(Report::new("W226", message), "neighbours with very different heights")
+                    .help("leave out points that are close together at different heights, or add points where the surface overshoots")
             }
         }
     }

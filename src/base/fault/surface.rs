@@ -444,7 +444,7 @@ fn describe_flow(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
         F::EndTrimmed { curve, border, end, length } => Report::new(
             "N609",
             format!(
-                "{} stands out {} over {} to {}; that end is left out",
+                "{} extends {} past {} to {}; the overhang is ignored",
                 say.quoted(*curve, "a curve"),
                 say.length(*length),
                 say.quoted(*border, "the border"),
@@ -473,14 +473,14 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
         F::ShellOpen { shell, edges, length, at } => Report::new(
             "N615",
             format!(
-                "{} is open: {edges} free edge{}, {} long together; the longest passes {}",
+                "{} is open: {edges} free edge{}, {} long in total; the longest passes through {}",
                 say.quoted(*shell, "the shell"),
                 if *edges == 1 { "" } else { "s" },
                 say.length(*length),
                 say.point(*at)
             ),
         )
-        .at(*shell, "not a closed skin"),
+        .at(*shell, "not closed"),
         F::ShellGlued { shell, says, a, b, gap, at } => Report::new(
             "N513",
             format!(
@@ -492,22 +492,22 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                 say.point(*at)
             ),
         )
-        .at(says.unwrap_or(*shell), if says.is_some() { "asked for here" } else { "its faces came with borders of their own" }),
+        .at(says.unwrap_or(*shell), if says.is_some() { "asked for here" } else { "its faces have separate borders" }),
         F::ImprintOverlap { imprint, a, b, names, at } => Report::new("E666", {
             let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
-            format!("{one} and {other} cover each other at {}: what they share would be meshed twice", say.point(*at))
+            format!("{one} and {other} overlap at {}: the common region would be meshed twice", say.point(*at))
         })
         .at(*imprint, "joins faces along lines")
         .at(*a, "this face")
         .at(*b, "and this one")
         .help(match pieces(names) {
-            Some(pieces) => format!("`mesh m of {pieces}` has what they share once"),
-            None => "the pieces that `imprint` makes of them have what they share once".to_owned(),
+            Some(pieces) => format!("`mesh m of {pieces}` meshes the common region once"),
+            None => "mesh the pieces that `imprint` makes of them: the common region is one of them".to_owned(),
         }),
         F::FacesTouch { within, a, b, names, how, at, imprint } => {
             let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
             let (text, first, second) = match how {
-                Touching::Overlap => (format!("{one} and {other} lie on each other at"), "this face", "and this one"),
+                Touching::Overlap => (format!("{one} and {other} overlap at"), "this face", "and this one"),
                 Touching::Edge { length } if *length > 0.0 => {
                     let length = say.length(*length);
                     (format!("an edge of {one} lies on {other} without sharing nodes, {length} long, at"), "its edge", "lies on this face")
@@ -521,7 +521,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                     (format!("the body of {one} lies inside that of {other}, which has no void there, at"), "this body", "lies in this one")
                 }
                 Touching::Unknown => (
-                    format!("whether {one} and {other} cross was not found out within the limits of the search, near"),
+                    format!("whether {one} and {other} cross could not be determined within the search limits, near"),
                     "this face",
                     "and this one",
                 ),
@@ -532,34 +532,34 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
                 .at(*within, "they are not joined here")
                 .help(match how {
                     Touching::Overlap => match pieces(names) {
-                        Some(pieces) => format!("`{pieces}` are their pieces, what they share once"),
-                        None => "the pieces that `imprint` makes of them have what they share once".to_owned(),
+                        Some(pieces) => format!("`{pieces}` are their pieces, with the common region once"),
+                        None => "mesh the pieces that `imprint` makes of them: the common region is one of them".to_owned(),
                     },
                     Touching::Edge { length } if *length <= 0.0 => {
-                        format!("nodes of a mesh are joined in a point that it lists: `mesh m of …, {}`", say.point(*at))
+                        format!("list the point in the mesh, then both share a node there: `mesh m of …, {}`", say.point(*at))
                     }
-                    Touching::Inside => "one mesh of both fills this room twice: cut or leave out one of them, or mesh them apart".to_owned(),
-                    Touching::Unknown => "look at them with `meet`, or leave one of them out".to_owned(),
+                    Touching::Inside => "one mesh of both fills this space twice: cut or leave out one of them, or mesh them separately".to_owned(),
+                    Touching::Unknown => "check them with `meet`, or leave one of them out".to_owned(),
                     _ if !imprint => "`imprint: true` in the settings joins them".to_owned(),
-                    Touching::Meeting => "the line along which they meet cuts nothing off: a mesh of the shell has its nodes on both".to_owned(),
+                    Touching::Meeting => "the line along which they meet cuts off no part; in a mesh of the shell both have its nodes".to_owned(),
                     _ => match pieces(names) {
-                        Some(pieces) => format!("`imprint: true` joins along whole edges and what corners cut of them, and no corner is where this part ends: mesh `{pieces}`"),
-                        None => "`imprint: true` joins along whole edges and what corners cut of them, and no corner is where this part ends: mesh the pieces that `imprint` makes of them".to_owned(),
+                        Some(pieces) => format!("`imprint: true` joins whole edges, or parts of them between corners, and this part ends at no corner: mesh `{pieces}`"),
+                        None => "`imprint: true` joins whole edges, or parts of them between corners, and this part ends at no corner: mesh the pieces that `imprint` makes of them".to_owned(),
                     },
                 })
         }
         F::ShellNotOrientable { shell, a, b, at } => Report::new(
             "E616",
             format!(
-                "{} has only one side: {} and {} cannot agree at {}",
+                "{} has only one side: {} and {} cannot be oriented alike at {}",
                 say.quoted(*shell, "the shell"),
                 say.quoted(*a, "one surface"),
                 say.quoted(*b, "another one"),
                 say.point(*at)
             ),
         )
-        .at(*shell, "cannot be given an outside")
-        .help("take the surfaces of the ring apart into two shells"),
+        .at(*shell, "has no outside")
+        .help("split the ring of surfaces into two shells"),
         F::ShellNonManifold { shell, users, at } => {
             let mut report = Report::new(
                 "E617",
@@ -569,7 +569,7 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
             for user in users {
                 report = report.at(*user, "uses the edge");
             }
-            report.help("make two shells of them")
+            report.help("make two shells")
         }
         F::NotAdjacent { a, b, gap, at } => Report::new(
             "E618",
@@ -587,13 +587,13 @@ fn describe_model(fault: &SurfaceFault, say: &dyn Say) -> Report {
             if free.is_empty() {
                 let shell_name = say.quoted(*shell, "the shell");
                 let text = format!("the {wanted} of {shell_name} needs a closed shell, but more than two of its faces share an edge");
-                return Report::new("E656", text).at(*shell, "branches").help("make a shell of the faces around what is measured");
+                return Report::new("E656", text).at(*shell, "branches").help("make a shell of only the faces that enclose it");
             }
             let length: f64 = free.iter().map(|edge| edge.2).sum();
             let mut report = Report::new(
                 "E656",
                 format!(
-                    "the {wanted} of {} needs a closed shell, but it has {} free edge{}, {} long together",
+                    "the {wanted} of {} needs a closed shell, but it has {} free edge{}, {} long in total",
                     say.quoted(*shell, "an open shell"),
                     free.len(),
                     if free.len() == 1 { "" } else { "s" },

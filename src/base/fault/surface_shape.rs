@@ -5,9 +5,10 @@ use super::{Edit, Report, Say, Subject};
 use crate::base::text::{decimals, real};
 
 /// Help where sections fold.
-const IN_ORDER: &str = "give the sections in the order in which the surface passes them, none crossing its neighbours";
-/// Help where what is carried runs along its way.
-const ACROSS: &str = "draw the profile across its way, where that begins (`-path` begins at the other end), and smaller than it bends";
+const IN_ORDER: &str = "list the sections in the order of the surface, none crossing its neighbours";
+/// Help where a profile is swept along itself.
+const ACROSS: &str =
+    "draw the profile across the path, at its start (`-path` starts at the other end), and smaller than the bends of the path";
 
 /// W606–N608, E611, W614, E62x, W651, E655, W669: one surface.
 pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Report> {
@@ -16,7 +17,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
     Some(match fault {
         F::PatchSingular { surface, uv: place, at, made } => {
             Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
-                .at(*surface, "its two directions fall together there")
+                .at(*surface, "u and v tangents are parallel there")
                 .help(match made {
                     Construction::Curves => "let no two borders be tangent to each other at a corner, or take the corner as `pole:`",
                     Construction::Sections => IN_ORDER,
@@ -33,7 +34,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
                 say.point(*at)
             ),
         )
-        .at(*surface, "the map runs back over itself there")
+        .at(*surface, "the parametrisation folds there")
         .help(match made {
             Construction::Curves => "add a curve across the fold, or divide the surface in two",
             Construction::Sections => IN_ORDER,
@@ -42,17 +43,17 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
         F::CrossesItself { surface, uv: places, at } => {
             let (name, at) = (say.quoted(*surface, "this surface"), say.point(*at));
             let message = match places {
-                Some((a, b)) => format!("{name} crosses itself at {at}: {} and {} are one place", uv(*a), uv(*b)),
+                Some((a, b)) => format!("{name} crosses itself at {at}: {} and {} are the same point", uv(*a), uv(*b)),
                 None => format!("{name} crosses itself at {at}: two of its faces cross there"),
             };
             Report::new("W669", message)
                 .at(*surface, "passes through itself there")
-                .help("a mesh of it has no nodes on the line of crossing: move the curves apart, or make parts that meet along that line")
+                .help("a mesh of it has no nodes on the crossing line: move the curves apart, or build parts that meet along that line")
         }
         F::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(
             "N608",
             format!(
-                "{} may swing out between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
+                "{} may oscillate between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
                 say.quoted(*surface, "this surface")
             ),
         )
@@ -62,7 +63,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
             let (which, whose) = (say.quoted(*of, "the loop"), say.quoted(*surface, "the surface"));
             Report::new(
                 "E612",
-                format!("{which} goes round {whose} through {} and has border on both sides: it bounds nothing alone", say.point(*at)),
+                format!("{which} runs around {whose} through {}, with a border on each side: it bounds no part alone", say.point(*at)),
             )
             .at(*trimming, "trimmed here")
             .at(*of, "this loop")
@@ -101,7 +102,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
         )
         .at(*a, "this curve")
         .at(*b, "crosses this one")
-        .help("take the corners in the order in which one walks round the face"),
+        .help("list the corners in order around the face"),
         F::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(
             "W614",
             format!(
@@ -115,7 +116,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
             ),
         )
         .at(*surface, "the kinks of opposite borders split it here")
-        .help("move the kinks to the same share of the length on both borders"),
+        .help("move the kinks to the same fraction of the length on both borders"),
         F::NoNet { surface, trimmed } => {
             let (why, help) = match trimmed {
                 true => ("is trimmed", "take `nurbs` of the surface that it was cut from, and trim that"),
@@ -134,7 +135,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
         .edit(Subject::Call, Edit::Set("axis", "line((0, 0, 0), (0, 0, 1))".to_owned())),
         F::GeneratrixOnAxis { profile, from, to } => {
             let (from, to) = say.pair(*from, *to);
-            Report::new("E622", format!("{} lies in the axis from {from} to {to}", say.quoted(*profile, "the profile")))
+            Report::new("E622", format!("{} lies on the axis from {from} to {to}", say.quoted(*profile, "the profile")))
                 .at(*profile, "sweeps no area there")
                 .help("leave that stretch out: `profile[A..B]`")
         }
@@ -148,7 +149,7 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
             ),
         )
         .at(*profile, "meets the axis")
-        .help(format!("turn one side of it only: `{}[0%..{}%]`", named_or(say.name(*profile), "profile"), decimals(fraction * 100.0, 6)))
+        .help(format!("revolve one side only: `{}[0%..{}%]`", named_or(say.name(*profile), "profile"), decimals(fraction * 100.0, 6)))
         .edit(
             Subject::Argument("profile"),
             Edit::Instead { of: say.name(*profile), put: format!("{}[0%..{}%]", say.name(*profile), decimals(fraction * 100.0, 6)) },
@@ -162,12 +163,12 @@ pub(super) fn describe_shape(fault: &SurfaceFault, say: &dyn Say) -> Option<Repo
         F::GridUneven { surface, line, index, ratio, at } => Report::new(
             "W651",
             format!(
-                "{line} {index} of {} is spaced {ratio:.1} times unlike the mean at {}",
+                "{line} {index} of {} deviates from the mean spacing by a factor of {ratio:.1} at {}",
                 say.quoted(*surface, "this grid"),
                 say.point(*at)
             ),
         )
-        .at(*surface, "one parameter serves all rows")
+        .at(*surface, "all rows share one parameter")
         .help("resample the rows: `[for r in rows: spline(r).points(20)]`"),
         F::OffsetFolds { surface, distance, largest, at } => {
             let message = format!(

@@ -159,7 +159,7 @@ impl Describe for SweepFault {
                     say.point(*nearest)
                 ),
             )
-            .at(*guide, "too short, even with a quarter more at each end")
+            .at(*guide, "too short, even extended by a quarter at each end")
             .help("draw this guide as far as the main guide goes, or cut the main guide: `c[A..B]`"),
             F::GuideDoublesBack { guide, law, at } => Report::new(
                 "E635",
@@ -169,7 +169,7 @@ impl Describe for SweepFault {
                     say.point(*at)
                 ),
             )
-            .at(*guide, "turns round against the sweep")
+            .at(*guide, "turns back here")
             .help("take the run of it that goes one way, `c[A..B]`, or another `law:`"),
             F::MainGuideOnAxis { guide, at, off } => Report::new(
                 "E637",
@@ -181,18 +181,18 @@ impl Describe for SweepFault {
                 ),
             )
             .at(*guide, "meets the axis")
-            .help("write another guide first, one that goes round the axis"),
+            .help("list another guide first, one that does not meet the axis"),
             F::GuideExtended { guide, length, share, end } => Report::new(
                 "N638",
                 format!(
-                    "{} was made {} longer ({}% of its length), to {}, so that it reaches every station",
+                    "{} was extended by {} ({}% of its length), to {}, so that it reaches every station",
                     say.quoted(*guide, "a guide"),
                     say.length(*length),
                     decimals(100.0 * share, 1),
                     say.point(*end)
                 ),
             )
-            .at(*guide, "goes on as it ends"),
+            .at(*guide, "extrapolated at its end"),
             F::DifferentGuides { section, guide, gap, at } => Report::new(
                 "E640",
                 format!(
@@ -204,16 +204,16 @@ impl Describe for SweepFault {
                 ),
             )
             .at(*section, "must touch every guide")
-            .at(*guide, "this one it misses")
+            .at(*guide, "is not touched")
             .help("draw one of them through a point of the other, or leave this guide out of `guides:`"),
             F::SectionScaled { section, scale, at } => Report::new(
                 "W644",
                 format!("{} is scaled by {} to touch its guides at {}", say.quoted(*section, "a section"), few(*scale), say.point(*at)),
             )
             .at(*section, "the nearest section to that station")
-            .help("draw one more section there"),
+            .help("add a section there"),
             F::GuideCusp { guide, at, fraction, still } => {
-                let what = if *still { "bends beyond all bounds" } else { "turns back on itself" };
+                let what = if *still { "has unbounded curvature" } else { "turns back on itself" };
                 let (which, share) = (say.quoted(*guide, "the path"), decimals(100.0 * fraction, 1));
                 Report::new("E636", format!("{which} {what} at {}, {share}% of its length", say.point(*at)))
                     .at(
@@ -223,26 +223,26 @@ impl Describe for SweepFault {
                     .help(if *still {
                         "leave out control points that coincide there, or draw a wider bend"
                     } else {
-                        "take the runs before and after it, `c[0..P]` and `c[P..1]`, or draw the cusp as a bend"
+                        "take the runs before and after it, `c[0..P]` and `c[P..1]`, or replace the cusp by a bend"
                     })
             }
             F::BentRun { path, at, fraction } => Report::new(
                 "E306",
                 format!(
-                    "{} bends where it comes to or leaves its corner at {}, {}% of its length: no plane cuts that",
+                    "{} is curved beside its corner at {}, {}% of its length: a mitre needs straight runs there",
                     say.quoted(*path, "the path"),
                     say.point(*at),
                     decimals(100.0 * fraction, 1)
                 ),
             )
-            .at(*path, "runs beside a mitred corner are straight")
+            .at(*path, "runs beside a mitred corner must be straight")
             .help("`corner: round` turns the profile about the corner"),
             F::SelfIntersects { surface, path, at, reach, radius } => {
                 let why = match radius {
                     Some(radius) => {
                         format!("it reaches {} from a path that bends with a radius of {} there", say.length(*reach), say.length(*radius))
                     }
-                    None => format!("the run of the path between its corners is too short for what reaches {} from it", say.length(*reach)),
+                    None => format!("the path between its corners is too short for a section that reaches {} from it", say.length(*reach)),
                 };
                 Report::new("W639", format!("{} crosses itself at {}: {why}", say.quoted(*surface, "this sweep"), say.point(*at)))
                     .at(*path, "bends too sharply for this section")
@@ -264,7 +264,7 @@ fn describe_section(fault: &SweepFault, say: &dyn Say) -> Report {
         F::SectionsNotParallel { a, b, angle, off, at } if a == b => Report::new(
             "E631",
             format!(
-                "{} is not flat: at {} it is {} ({}) off the plane that travels",
+                "{} is not flat: at {} it is {} ({}) off its plane",
                 say.quoted(*a, "a section"),
                 say.point(*at),
                 say.length(*off),
@@ -296,7 +296,7 @@ fn describe_section(fault: &SweepFault, say: &dyn Say) -> Report {
                 say.point(*at)
             ),
         )
-        .at(*section, "its plane misses the axis, or it crosses it")
+        .at(*section, "its plane misses the axis, or it crosses the axis")
         .help("draw the section in a plane through `axis:`, on one side of it"),
         F::SectionNotNormal { section, guide, angle, off, at } => Report::new(
             "E633",

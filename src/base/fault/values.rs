@@ -187,7 +187,7 @@ impl LengthRange {
     fn words(&self, say: &dyn Say) -> String {
         match self {
             Self::Positive => "above 0".to_owned(),
-            Self::Within(limit) => format!("within {} either way", say.length(*limit)),
+            Self::Within(limit) => format!("between -{0} and {0}", say.length(*limit)),
             Self::BelowRadius(radius, None) => format!("below the radius, {}, on this side", say.length(*radius)),
             Self::BelowRadius(radius, Some(at)) => {
                 format!("below {} on this side, the curve's radius at {}", say.length(*radius), say.point(*at))
@@ -195,7 +195,7 @@ impl LengthRange {
             Self::MeetsAtCorner(at) => format!("small enough for both sides of the corner at {} to meet", say.point(*at)),
             Self::LeavesOfSide(from, to) => {
                 let (from, to) = say.pair(*from, *to);
-                format!("small enough to leave something of the side from {from} to {to}")
+                format!("small enough to leave a part of the side from {from} to {to}")
             }
         }
     }
@@ -212,8 +212,8 @@ impl Describe for ValueFault {
             Self::OutsideRange { argument, found, range } => outside(argument, found.clone(), range),
             Self::LengthOutside { argument, found, range } => outside(argument, say.length(*found), &range.words(say)),
             Self::NotItsPlane { argument, by } => {
-                let found = format!("one that the curve leaves by {}", say.length(*by));
-                outside(argument, found, "the normal of a plane that holds the curve")
+                let found = format!("one whose plane the curve leaves by {}", say.length(*by));
+                outside(argument, found, "the normal of a plane that contains the curve")
             }
             Self::NotAcross { argument, angle, to } => {
                 outside(argument, format!("{} to it", say.angle(*angle)), &format!("at right angles to {to}"))
@@ -253,13 +253,11 @@ impl Describe for ValueFault {
                 .help("`report` what it selects from, or remove it"),
             Self::NotMeshed { of, group, meshes } => {
                 let meshes: Vec<String> = meshes.iter().map(|mesh| format!("`{mesh}`")).collect();
-                let message = format!("nothing of the group `{group}` is in {}: no file has a set of it", meshes.join(" or "));
-                Report::new("W224", message)
-                    .at(*of, "its things are not meshed")
-                    .help("mesh what it holds as well, or group what is meshed")
+                let message = format!("no member of the group `{group}` is in {}: no file has a set of it", meshes.join(" or "));
+                Report::new("W224", message).at(*of, "its members are not meshed").help("mesh its members too, or group what is meshed")
             }
             Self::OfNothing { of, function, result } => {
-                Report::new("W729", format!("`{function}` of no condition is {result}: this check looks at nothing"))
+                Report::new("W729", format!("`{function}` of an empty list is {result}: this check tests nothing"))
                     .at(*of, "an empty list")
                     .help("check that there is something first: `check len(list) > 0`")
             }
@@ -273,25 +271,25 @@ impl Describe for ValueFault {
             Self::NotInThisVersion { what } => {
                 Report::new("E230", format!("{what} is not in this version")).label(Subject::Call, "asked for here")
             }
-            Self::Work => Report::new("E217", "this takes more work than it may")
+            Self::Work => Report::new("E217", "this call exceeds its work limit")
                 .label(Subject::Call, "made here")
                 .note("the limit of one call is fixed; `--max-work` does not change it")
-                .help("fewer or simpler parts, and points that are not far off by mistake"),
-            Self::StageWork { what } => Report::new("E217", format!("{what} takes more work than it may"))
-                .help("fewer or simpler curves and surfaces, and points that are not far off by mistake"),
-            Self::RowWork { of, what } => Report::new("E217", format!("{what} takes more work than it may"))
+                .help("use fewer or simpler parts; look for points that are far off by mistake"),
+            Self::StageWork { what } => Report::new("E217", format!("{what} exceeds its work limit"))
+                .help("use fewer or simpler curves and surfaces; look for points that are far off by mistake"),
+            Self::RowWork { of, what } => Report::new("E217", format!("{what} exceeds its work limit"))
                 .at(*of, "measured for the report")
-                .help("fewer or simpler parts, and points that are not far off by mistake"),
+                .help("use fewer or simpler parts; look for points that are far off by mistake"),
             Self::LooseBox { of, by, share } => {
                 let (name, by) = (say.quoted(*of, "this surface"), say.length(*by));
                 let message = format!("the box of {name} may be too large by up to {by}, {} % of its diagonal", decimals(share * 100.0, 4));
                 Report::new("W227", message)
-                    .at(*of, "has more places that are extreme alike than are looked at")
-                    .help("it holds the surface; the boxes of parts of it (`split`) are closer")
+                    .at(*of, "has more equally extreme places than are examined")
+                    .help("it contains the surface; boxes of parts of it (`split`) are tighter")
             }
-            Self::Limit { what, limit } => {
-                Report::new("E217", format!("{what} is too much")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))
-            }
+            Self::Limit { what, limit } => Report::new("E217", format!("{what} exceeds its limit"))
+                .label(Subject::Call, "made here")
+                .help(format!("the limit is {limit}")),
         }
     }
 }

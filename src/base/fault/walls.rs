@@ -88,22 +88,20 @@ impl Describe for WallFault {
                 format!("{} has a crease of {} at {}", say.quoted(*surface, "the surface"), say.angle(*angle), say.point(*at)),
             )
             .at(*surface, "its normals jump there")
-            .at(*offset, "has no one place beside the crease")
-            .help(
-                "make two surfaces of it that meet at the crease, each from what of its curves lies on one side, and move them one by one",
-            ),
+            .at(*offset, "is not unique at the crease")
+            .help("build two surfaces that meet at the crease, each from the parts of the curves on its side, and offset each"),
             Self::Tip { offset, surface, at } => {
                 Report::new("E670", format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
-                    .at(*surface, "its normals do not come together there")
-                    .at(*offset, "has no one place beside the tip")
+                    .at(*surface, "its normals have no common limit there")
+                    .at(*offset, "is not unique at the tip")
                     .help("cut the tip off first, `trim(s, by: …, keep: …)`")
             }
             Self::Pieces { offset, surface } => {
                 let name = say.quoted(*surface, "the surface");
-                Report::new("E670", format!("{name} is made of triangles between which its curvature jumps: its offset has no net"))
+                Report::new("E670", format!("{name} is made of triangles, and its curvature jumps between them: its offset has no net"))
                     .at(*surface, "made of triangles")
-                    .at(*offset, "cannot be moved along its normals")
-                    .help("make a net of it first: `grid` through points of it in rows")
+                    .at(*offset, "has no smooth offset")
+                    .help("build a net first: `grid` through rows of its points")
             }
             Self::Edge { wall, a, b, at, why } => {
                 edge((*a, *b), *at, *why, say).at(*a, "this face").at(*b, "and this one").at(*wall, "asked for here")
@@ -118,26 +116,24 @@ fn edge((a, b): (Origin, Origin), at: DVec3, why: WallEdge, say: &dyn Say) -> Re
     match why {
         WallEdge::Gap { apart } => {
             report(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
-                .help("let one of them be the border of the other one, or give the model a larger `tolerance`")
+                .help("build both on the same curve, or set a larger `tolerance`")
         }
-        WallEdge::Loose => {
-            report(format!("{x} and {y} do not hang together: on which side of {y} the wall is to be is not told, at {place}"))
-                .help("one shell for each piece that hangs together, or `side: both`")
-        }
-        WallEdge::Three => report(format!("{x} and {y} share the edge at {place} with a third face: which walls meet there is not told"))
+        WallEdge::Loose => report(format!("{x} and {y} are not connected: the side of the wall on {y} is not determined, at {place}"))
+            .help("make a shell of each connected piece, or set `side: both`"),
+        WallEdge::Three => report(format!("{x} and {y} share the edge at {place} with a third face: which walls meet there is ambiguous"))
             .help("thicken the faces on one side of the edge first, then the others"),
         WallEdge::Part => report(format!("{x} and {y} share a part of a border at {place}, not a whole edge"))
             .help("divide the longer border where the shorter one ends, `split(s, by: …)`"),
         WallEdge::Mixed => report(format!("the edge of {x} and {y} is sharp at some places and smooth at others, as at {place}"))
             .help("divide both faces there, `split(s, by: …)`"),
         WallEdge::Apart { distance } => {
-            report(format!("{x} and {y}, each moved by {}, do not meet beside their edge at {place}", say.length(distance.abs())))
+            report(format!("the offsets of {x} and {y} by {} do not meet near their edge at {place}", say.length(distance.abs())))
                 .help("a thinner wall, or faces at an angle farther from 180°")
         }
         WallEdge::Corner => report(format!("the walls at the corner {place} of {x} and {y} do not meet in one point"))
             .help("let borders cross edges at right angles, and no more than three faces meet in a corner"),
         WallEdge::Gone { distance } => {
-            report(format!("nothing is left of {x} beside {place} when it is moved by {}", say.length(distance.abs())))
+            report(format!("nothing is left of the offset of {x} near {place} at a distance of {}", say.length(distance.abs())))
                 .help("a thinner wall, or one on the other side, `side:`")
         }
     }

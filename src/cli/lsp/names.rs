@@ -157,11 +157,11 @@ pub fn rename(document: &Document, position: &Value, name: &str, others: &Others
     let sound = crate::lang::syntax::outline::outline(&format!("let {name} = 0"));
     let is_name = sound.first().and_then(|o| o.name).is_some_and(|n| n.start == 4 && n.end as usize == 4 + name.len());
     if !is_name || sound.len() != 1 {
-        return Err(format!("`{name}` is no name"));
+        return Err(format!("`{name}` is not a valid name"));
     }
-    let (all, read) = meanings(document, position, others).ok_or("this is no name of the script")?;
+    let (all, read) = meanings(document, position, others).ok_or("this is not a name of the script")?;
     if read.found.iter().any(|o| read.text_of(o) == name) {
-        return Err(format!("`{name}` stands in the script already"));
+        return Err(format!("`{name}` is already in the script"));
     }
     let edits = |ranges: Vec<Value>| ranges.into_iter().map(|range| json!({ "range": range, "newText": name })).collect::<Vec<Value>>();
     let changes: serde_json::Map<String, Value> = all.into_iter().map(|(uri, ranges)| (uri, Value::Array(edits(ranges)))).collect();

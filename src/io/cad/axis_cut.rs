@@ -227,18 +227,18 @@ fn chosen(parts: Vec<Turned>, axis: &Axis, is_closed: bool, loops: &FaceLoops, s
         let is_open = is_closed && meant.iter().filter(|part| beside(part) == most).count() > 1 && loops.wind_about(axis);
         let doubt = is_open.then(|| {
             format!(
-                "its profile covers it {} times, and nothing tells which way it looks; its normals are taken away from its axis",
+                "its profile covers it {} times, and its orientation is ambiguous; its normals are taken to point away from its axis",
                 meant.len()
             )
         });
         return Ok((vec![best.part.clone()], doubt));
     }
     if !points.is_empty() {
-        return Err(damage(format!("its axis cuts its profile into {count} parts, and nothing tells which of them is meant")));
+        return Err(damage(format!("its axis cuts its profile into {count} parts, and it is ambiguous which is meant")));
     }
     if is_closed && !loops.vertices.is_empty() {
         let doubt = format!(
-            "its axis cuts its profile into {count} parts, and nothing tells which of them is meant; the one that runs up the axis is taken"
+            "its axis cuts its profile into {count} parts, and it is ambiguous which is meant; the one that runs up the axis is used"
         );
         return Ok((vec![best.part.clone()], Some(doubt)));
     }

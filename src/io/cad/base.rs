@@ -114,7 +114,7 @@ impl Base {
         let first = net.poles[0];
         let flat = net.poles.iter().all(|q| projected(*q).distance(projected(first)) <= tolerance.rounding);
         if flat {
-            return Err(damage("all its control points are one point"));
+            return Err(damage("all its control points coincide"));
         }
         Ok(net.surface(SurfaceKind::Nurbs, origin, tolerance))
     }
@@ -185,7 +185,7 @@ impl Base {
             Self::Ruled { rails: [a, b], .. } => Ok(ruled_net(&a.to_nurbs(tolerance)?, &b.to_nurbs(tolerance)?)),
             Self::Unbounded { axis, .. } => match self.whole_turn(reach, Origin::NONE)? {
                 Some((profile, _)) => Ok(revolve::net(&profile.to_nurbs(tolerance)?, axis, std::f64::consts::TAU)),
-                None => Err(damage("it has no end")),
+                None => Err(damage("it is infinite")),
             },
         }
     }

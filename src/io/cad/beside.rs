@@ -17,7 +17,7 @@ impl Base {
     /// Fails where the surface has creases or tips, or where nothing is left of it.
     pub fn beside(self, distance: f64, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<(Self, bool), Damage> {
         if !distance.is_finite() {
-            return Err(damage("its distance is no number"));
+            return Err(damage("its distance is not a number"));
         }
         let fine = Tolerance { point: FINE * tolerance.point, ..*tolerance };
         let (range, surface) = match &self {

@@ -73,7 +73,7 @@ impl Faces {
     pub fn bodies(&self, tolerance: &Tolerance) -> Result<Bodies<'_>, Damage> {
         let body = self.model.body(&self.shell, &self.network, tolerance)?;
         if body.faces.is_empty() {
-            return Err(damage("it is thinner than the distance within which edges are one, so it has no face"));
+            return Err(damage("it is thinner than the gluing distance, so it has no face"));
         }
         let grounds = par::try_map(body.faces.len(), |k| self.ground(&body.faces[k], tolerance))?;
         let placed = Placed::new(&body, &grounds, tolerance);
@@ -97,7 +97,7 @@ impl Faces {
     fn ground(&self, face: &BodyFace, tolerance: &Tolerance) -> Result<Ground, Damage> {
         let surface = &self.model.surfaces[face.surface.index()].surface;
         let found = ground::ground(surface, &self.model.patches[face.patch.index()], tolerance)?;
-        found.ok_or_else(|| damage("a plane without a border is no face"))
+        found.ok_or_else(|| damage("a plane without a border is not a face"))
     }
 
     /// The curves of the edges that some face uses.
@@ -179,7 +179,7 @@ impl Bodies<'_> {
             0 => (format!("the face `{}`", name(first)), "which is"),
             n => (format!("{} faces, such as `{}`,", n + 1, name(first)), "which are"),
         };
-        Some(format!("{what} of `{whole}`, {are} thinner than the distance within which edges are one"))
+        Some(format!("{what} of `{whole}`, {are} thinner than the gluing distance"))
     }
 }
 

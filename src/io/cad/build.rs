@@ -150,18 +150,18 @@ impl Face {
     }
 }
 
-/// "its loops do not agree which side is the face, …".
+/// "its loops disagree on which side the face is, …".
 fn told(doubt: &Doubt, unit: &str) -> String {
     let percent = decimals(doubt.share * 100.0, 1);
     let why = match doubt.by {
-        Ground::Border => format!("{percent} % of the border of the surface that no curve runs along speaks for it"),
-        Ground::Inner => format!("{percent} % of the curves that are run there and back lie in it"),
-        Ground::Point => "a point inside the face lies in it".to_owned(),
-        Ground::Directions => format!("{percent} % of their length has it on its left"),
-        Ground::Size => "their directions cancel, so its size decided".to_owned(),
+        Ground::Border => format!("it has {percent} % of the surface border without curves"),
+        Ground::Inner => format!("it has {percent} % of the curves that are run in both directions"),
+        Ground::Point => "it has a point inside the face".to_owned(),
+        Ground::Directions => format!("it is on the left of {percent} % of their length"),
+        Ground::Size => "it was chosen by size, since their directions cancel".to_owned(),
     };
     let at = doubt.at.to_array().map(|x| decimals(x, 3)).join(", ");
-    format!("its loops do not agree which side of them is the face, near ({at}) {unit}; the side that is kept: {why}")
+    format!("its loops disagree on which side the face is, near ({at}) {unit}; one side is kept: {why}")
 }
 
 fn chains(borders: &[Border]) -> Vec<Chain> {

@@ -26,7 +26,7 @@ impl Rule {
         match self {
             Self::Border => "a border was snapped to its surface",
             Self::Ends => "a gap in a border was closed",
-            Self::Accuracy => "a border was taken to be as exact as the file says that it is",
+            Self::Accuracy => "the stated accuracy of the file was applied to a border",
         }
     }
 }

@@ -138,11 +138,11 @@ fn check_knots(knots: &[f64], points: usize, degree: usize) -> Result<(), Damage
     }
     let (first, last) = (knots[degree], knots[points]);
     if first >= last {
-        return Err(damage("its knots leave it no parameters"));
+        return Err(damage("its knots give it no range of parameters"));
     }
     let torn = knots.chunk_by(|a, b| a == b).find(|same| first < same[0] && same[0] < last && same.len() > degree);
     match torn {
-        Some(same) => Err(damage(format!("the knot {} stands {} times and tears the surface of degree {degree}", same[0], same.len()))),
+        Some(same) => Err(damage(format!("the knot {} occurs {} times, which tears the surface of degree {degree}", same[0], same.len()))),
         None => Ok(()),
     }
 }

@@ -92,7 +92,7 @@ impl Book {
             book.places.insert(entry.d, k);
         }
         if spilled.0 > 0 {
-            let what = format!("{} lines of parameters have a separator in column 65, where nothing may stand; it is read", spilled.0);
+            let what = format!("{} lines of parameters have a separator in column 65, which must be blank; it is read", spilled.0);
             book.warnings.push(Malformed::line(spilled.1, what));
         }
         let Records { entries, warnings, .. } = records;
@@ -166,7 +166,7 @@ impl Book {
                 return Ok(whole.filter(|m| *m != DAffine3::IDENTITY));
             }
             let Data::Matrix(m) = self.data(matrix)? else {
-                return Err(damage(format!("its matrix is {}, which is none", self.said(matrix))));
+                return Err(damage(format!("its matrix is {}, which is not a matrix", self.said(matrix))));
             };
             let m = DAffine3 { translation: m.translation * self.scale, ..*m };
             whole = Some(whole.map_or(m, |inner| m * inner));
@@ -197,7 +197,7 @@ fn read_one(entry: &Entry, text: &[u8], list: &super::params::Tokens) -> Result<
     let note = if !list.ended {
         Some("the values end without the separator of records".to_owned())
     } else {
-        list.miscounted.first().map(|k| format!("value {} is a text that is not as long as it says", k + 1))
+        list.miscounted.first().map(|k| format!("value {} is a text that is not as long as stated", k + 1))
     };
     Ok((decoded, note))
 }

@@ -107,7 +107,7 @@ fn ellipse(level: &Level, center: DVec2, q: impl Fn(DVec2) -> DVec2, [start, end
 /// The middle pole is where the tangents M·X₀ and M·X₂ meet; putting the piece into the equation gives w² = −X₀ᵀMX₂ / 2X₁ᵀMX₁.
 fn branch(level: &Level, form: &DMat3, [start, end]: [DVec2; 2]) -> Result<Curve, Damage> {
     if start == end {
-        return Err(damage("its ends are one point"));
+        return Err(damage("its ends coincide"));
     }
     let (x0, x2) = (start.extend(1.0), end.extend(1.0));
     let meet = (*form * x0).cross(*form * x2);

@@ -77,7 +77,7 @@ impl Book {
         match data {
             Data::Line { start, end, unbounded } => {
                 if *unbounded {
-                    self.warn(d, "the line has no end; the segment between its two points stands for it");
+                    self.warn(d, "the line has no end; the segment between its two points is used");
                 }
                 Ok(build::line(*start * scale, *end * scale, origin)?)
             }
@@ -113,7 +113,7 @@ impl Book {
             }
             Data::Damaged => Err(damage(format!("{} is damaged", self.said(d)))),
             Data::Busy => Err(damage(format!("{} is made of itself", self.said(d)))),
-            _ => Err(damage(format!("{} is no curve", self.said(d)))),
+            _ => Err(damage(format!("{} is not a curve", self.said(d)))),
         }
     }
 

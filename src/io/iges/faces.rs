@@ -59,7 +59,7 @@ impl Book {
                 self.walled(d, d, true, &[border])
             }
             Data::Busy => Err(damage("it is made of itself")),
-            _ => Err(damage("it is no face")),
+            _ => Err(damage("it is not a face")),
         };
         self.decoded[k].data = data;
         made
@@ -175,7 +175,7 @@ impl Book {
         for edge in edges.iter().filter(|e| !e.is_vertex) {
             let (list, index) = edge.edge;
             let Data::Edges(all) = self.data(list)? else {
-                return Err(damage(format!("{} is no list of edges", self.said(list))));
+                return Err(damage(format!("{} is not a list of edges", self.said(list))));
             };
             let found = index.checked_sub(1).and_then(|k| all.get(k)).copied();
             let found = found.ok_or_else(|| damage(format!("the list at D{list} has no edge {index}")))?;
@@ -223,7 +223,7 @@ impl Book {
         }
         if worst > 0.0 {
             let worst = self.length(worst);
-            self.warn(d, format!("curves of its border in (u, v) are up to {worst} off those in space, which count"));
+            self.warn(d, format!("curves of its border in (u, v) are up to {worst} off those in space, which are used"));
         }
     }
 }

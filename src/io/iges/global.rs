@@ -43,12 +43,12 @@ pub fn read(sections: &Sections, warnings: &mut Vec<Malformed>) -> Global {
     let line = sections.global.first().map_or(1, |l| l.line);
     let mut warn = |what: String| warnings.push(Malformed::line(line, what));
     if sections.global.is_empty() {
-        warn("there is no global section: values are parted by commas, and the unit is the inch".to_owned());
+        warn("there is no global section: values are separated by commas, and the unit is the inch".to_owned());
     }
     let mut text = joined(&sections.global, CONTENT);
     let separators = separators(&text).unwrap_or_else(|| {
         if !sections.global.is_empty() {
-            warn("the separators cannot be read; comma and semicolon are taken".to_owned());
+            warn("the separators cannot be read; comma and semicolon are assumed".to_owned());
         }
         Separators::default()
     });
@@ -56,14 +56,14 @@ pub fn read(sections: &Sections, warnings: &mut Vec<Malformed>) -> Global {
     let list = tokens(&text, separators);
     for k in &list.miscounted {
         let read = value(&text, &list.tokens, *k);
-        warn(format!("the text in field {} of the global section is not as long as it says; it is read as `{read}`", k + 1));
+        warn(format!("the text in field {} of the global section is not as long as stated; it is read as `{read}`", k + 1));
     }
     let (place, unit_factor) = unit(&text, &list.tokens, &mut warn);
     let scale = match number(&text, &list.tokens, 12) {
         None => 1.0,
         Some(scale) if scale > 0.0 => scale,
         Some(scale) => {
-            warn(format!("the model scale {scale} is not above 0; 1 is taken"));
+            warn(format!("the model scale {scale} is not above 0; 1 is used"));
             1.0
         }
     };
@@ -149,18 +149,18 @@ fn unit(text: &[u8], tokens: &[Token], warn: &mut impl FnMut(String)) -> (usize,
     let by_flag = flag.and_then(|f| UNITS.iter().position(|u| u.0 as f64 == f));
     let place = match (by_flag, by_name) {
         (Some(a), Some(b)) if a != b => {
-            warn(format!("the unit is {} by its number and {} by its name; the number counts", UNITS[a].1[0], UNITS[b].1[0]));
+            warn(format!("the unit is {} by its number and {} by its name; the number is used", UNITS[a].1[0], UNITS[b].1[0]));
             a
         }
         (Some(a), _) => a,
         (None, Some(b)) => {
             if flag != Some(NAMED as f64) {
-                warn(format!("the unit's number cannot be read; its name {} counts", UNITS[b].1[0]));
+                warn(format!("the unit's number cannot be read; its name {} is used", UNITS[b].1[0]));
             }
             b
         }
         (None, None) => {
-            warn("the file names no unit; the standard takes the inch (say `unit:` where that is wrong)".to_owned());
+            warn("the file names no unit; by the standard it is the inch (set `unit:` if that is wrong)".to_owned());
             DEFAULT_UNIT
         }
     };

@@ -64,14 +64,14 @@ pub fn sections<'a>(bytes: &'a [u8], warnings: &mut Vec<Malformed>) -> Result<Se
                     warnings.push(Malformed::at(
                         number,
                         column as u64 + 1,
-                        format!("the section letter {} stands in column {}, not 73", letter as char, column + 1),
+                        format!("the section letter {} is in column {}, not 73", letter as char, column + 1),
                     ));
                 }
                 (letter, Line { content: &text[..column], sequence, line: number, shift })
             }
             _ => {
                 let Some(letter) = before.filter(|_| found.start + found.global.len() > 0) else {
-                    return Err(Malformed::line(number, "this is no IGES file: column 73 holds none of the letters S, G, D, P and T"));
+                    return Err(Malformed::line(number, "this is not an IGES file: column 73 holds none of the letters S, G, D, P and T"));
                 };
                 warnings.push(Malformed::line(number, format!("the line has no section letter and is taken for {}", letter as char)));
                 (letter, Line { content: &text[..text.len().min(CONTENT)], sequence: 0, line: number, shift: 0 })

@@ -150,9 +150,9 @@ impl<'a> Reader<'a> {
             Token::Empty => Ok(0.0),
             Token::Bare(from, to) => match real(&self.text[from..to]) {
                 Some(x) => Ok(x),
-                None => Err(damage(format!("`{}` is no number ({what}, value {value})", shown(&self.text[from..to])))),
+                None => Err(damage(format!("`{}` is not a number ({what}, value {value})", shown(&self.text[from..to])))),
             },
-            Token::Text(..) => Err(damage(format!("a text stands where the {what} is wanted (value {value})"))),
+            Token::Text(..) => Err(damage(format!("a text is given where the {what} is expected (value {value})"))),
         }
     }
 

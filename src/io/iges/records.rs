@@ -135,11 +135,11 @@ fn int(field: &[u8]) -> Option<i64> {
 
 fn entry(first: &Line, second: &Line, d: u32) -> Result<Entry, String> {
     let (a, b) = (fields(first), fields(second));
-    let wanted = |field: &[u8], what: &str| int(field).ok_or_else(|| format!("`{}` is no {what}", super::params::shown(field)));
+    let wanted = |field: &[u8], what: &str| int(field).ok_or_else(|| format!("`{}` is not a valid {what}", super::params::shown(field)));
     let kind = wanted(a[0], "entity type")?;
     let again = int(b[0]).unwrap_or(0);
     if kind <= 0 || (again != kind && again != 0) {
-        return Err(format!("its lines speak of entity types {kind} and {again}"));
+        return Err(format!("its lines name entity types {kind} and {again}"));
     }
     let start = wanted(a[1], "line of the parameter section")?;
     let optional = |field: &[u8]| int(field).unwrap_or(0);

@@ -73,7 +73,7 @@ impl Book {
                 let profile = self.curve(*profile, Place::SPACE)?;
                 let by = *end * scale - profile.start();
                 if by.length() <= self.tolerance.rounding {
-                    return Err(damage("it is swept by nothing"));
+                    return Err(damage("it has no curve to sweep"));
                 }
                 Ok(Base::Swept { profile, by })
             }
@@ -91,7 +91,7 @@ impl Book {
             }
             Data::Damaged => Err(damage(format!("{} is damaged", self.said(d)))),
             Data::Busy => Err(damage(format!("{} is made of itself", self.said(d)))),
-            _ => Err(damage(format!("{} is no surface", self.said(d)))),
+            _ => Err(damage(format!("{} is not a surface", self.said(d)))),
         }
     }
 
@@ -113,7 +113,7 @@ impl Book {
         }
         let (base, folds) = base.beside(distance, &Box3::EMPTY, self.origin, &self.tolerance)?;
         if folds {
-            self.warn(d, "it turns back over itself where its surface bends tighter than its distance");
+            self.warn(d, "it folds over where its surface bends more tightly than its distance");
         }
         Ok(base)
     }
@@ -133,7 +133,7 @@ impl Book {
         let other = self.base(d, 0);
         match other {
             Ok(other) if off(self, &other)? < here * NUDGE.sqrt() => {
-                self.warn(d, "its borders are on its other side, which counts");
+                self.warn(d, "its borders are on its other side, which is used");
                 Ok(other)
             }
             _ => {
@@ -192,13 +192,13 @@ impl Book {
     }
 
     fn point(&self, d: Pointer) -> Result<DVec3, Damage> {
-        let Data::Point(p) = self.data(d)? else { return Err(damage(format!("{} is no point", self.said(d)))) };
+        let Data::Point(p) = self.data(d)? else { return Err(damage(format!("{} is not a point", self.said(d)))) };
         let m = self.placement(self.entry(d).map_or(0, |e| e.transform))?;
         Ok(m.map_or(*p * self.scale, |m| m.transform_point3(*p * self.scale)))
     }
 
     fn direction(&self, d: Pointer) -> Result<DVec3, Damage> {
-        let Data::Direction(v) = self.data(d)? else { return Err(damage(format!("{} is no direction", self.said(d)))) };
+        let Data::Direction(v) = self.data(d)? else { return Err(damage(format!("{} is not a direction", self.said(d)))) };
         let m = self.placement(self.entry(d).map_or(0, |e| e.transform))?;
         math::unit(m.map_or(*v, |m| m.transform_vector3(*v)), 0.0).ok_or_else(|| damage("a direction has no length"))
     }
@@ -232,7 +232,7 @@ fn angles(start: f64, end: f64) -> Result<(f64, f64), Damage> {
     let end = if end <= start { end + turn } else { end };
     let sweep = end - start;
     if sweep <= 0.0 || sweep > turn * (1.0 + NUDGE) {
-        return Err(damage(format!("its angles run from {start} to {end}, which is no part of a turn")));
+        return Err(damage(format!("its angles run from {start} to {end}, which is not part of a turn")));
     }
     Ok((start, if sweep > turn * (1.0 - EPSILON) { start + turn } else { end }))
 }

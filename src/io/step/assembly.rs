@@ -382,7 +382,7 @@ impl Walk<'_, '_> {
         let direction = |k: Option<u32>| k.map(|k| self.step.direction(k)).transpose();
         let z = direction(z)?.unwrap_or(glam::DVec3::Z);
         let x = direction(x)?.unwrap_or_else(|| crate::base::math::any_normal(z));
-        let x = crate::base::math::unit(x.reject_from_normalized(z), 0.0).ok_or_else(|| damage("its axes are one"))?;
+        let x = crate::base::math::unit(x.reject_from_normalized(z), 0.0).ok_or_else(|| damage("its axes coincide"))?;
         let right = z.cross(x);
         let mirrors = direction(y)?.is_some_and(|y| y.dot(right) < 0.0);
         let to = Frame { at, x, y: right, z };

@@ -59,12 +59,12 @@ impl Step<'_> {
             }
             b"OFFSET_CURVE_3D" => {
                 let Course::Bounded(of) = self.course(row.entity(1)?, depth + 1)? else {
-                    return Err(damage("it is the offset of a curve without ends"));
+                    return Err(damage("it is the offset of an infinite curve"));
                 };
                 Course::Bounded(build::offset(&of, row.number(2)? * self.scale, self.direction(row.entity(4)?)?, self.origin)?)
             }
             b"B_SPLINE_CURVE_WITH_KNOTS" | b"BEZIER_CURVE" | b"UNIFORM_CURVE" | b"QUASI_UNIFORM_CURVE" => Course::Bounded(self.spline(k)?),
-            _ => return Err(damage(format!("{} is no curve that can be read", self.said(k)))),
+            _ => return Err(damage(format!("{} is not a curve that can be read", self.said(k)))),
         };
         if let Course::Bounded(curve) = &course {
             check_reach([curve.bbox().min, curve.bbox().max])?;
@@ -82,7 +82,7 @@ impl Step<'_> {
         if let Some(row) = self.file.under(k, b"COMPOSITE_CURVE") {
             return Ok(Course::Bounded(self.composite(row.entities(0)?, depth)?));
         }
-        Err(damage(format!("{} is no curve that can be read", self.said(k))))
+        Err(damage(format!("{} is not a curve that can be read", self.said(k))))
     }
 
     /// The curve that an entity is, with ends: all of an ellipse.
@@ -195,7 +195,7 @@ impl Step<'_> {
             Course::Endless(endless) => {
                 let (a, b) = (endless.parameter(from), endless.parameter(to));
                 if closed && !endless.closes() {
-                    return Err(damage("its ends are one point"));
+                    return Err(damage("its ends coincide"));
                 }
                 let b = match endless.closes() {
                     true if closed => a + TURN,
@@ -265,19 +265,19 @@ impl Step<'_> {
                 let of = self.course(geometry, 0).map_err(|Damage(why)| damage(format!("{}: {why}", self.said(geometry))))?;
                 self.between(&of, ends, row.flag(4, true), closed)
             }
-            b"ORIENTED_EDGE" => Err(damage("an edge that has a direction stands where one without should")),
+            b"ORIENTED_EDGE" => Err(damage("an oriented edge is given where a plain edge is expected")),
             b"SUBEDGE" => self.edge_between(row.entity(3)?, [row.entity(1)?, row.entity(2)?]),
             b"EDGE" => {
                 let ends = [self.vertex(row.entity(1)?)?, self.vertex(row.entity(2)?)?];
                 Ok(build::line(ends[0], ends[1], self.origin)?)
             }
-            _ => Err(damage(format!("{} is no edge", self.said(k)))),
+            _ => Err(damage(format!("{} is not an edge", self.said(k)))),
         }
     }
 
     fn edge_between(&mut self, parent: u32, [first, last]: [u32; 2]) -> Result<Curve, Damage> {
         if self.file.name(parent) != b"EDGE_CURVE" {
-            return Err(damage(format!("{} is no edge with a curve", self.said(parent))));
+            return Err(damage(format!("{} is not an edge with a curve", self.said(parent))));
         }
         let ends = [self.vertex(first)?, self.vertex(last)?];
         let whole = self.edge(parent)?;

@@ -37,7 +37,7 @@ impl Step<'_> {
                     };
                     return self.bounded_face(&of.entities(0)?, Some(own.entity(0)?), own.flag(1, true), turned);
                 }
-                _ => return Err(damage(format!("{} is no face", self.said(k)))),
+                _ => return Err(damage(format!("{} is not a face", self.said(k)))),
             }
         }
         Err(damage("faces are nested too deep, or are made of themselves"))
@@ -53,7 +53,7 @@ impl Step<'_> {
             let row = self.file.parameters(*bound);
             let name = self.file.name(*bound);
             if !matches!(name, b"FACE_BOUND" | b"FACE_OUTER_BOUND") {
-                return Err(damage(format!("{} is no bound of a face", self.said(*bound))));
+                return Err(damage(format!("{} is not a bound of a face", self.said(*bound))));
             }
             let made = self.loop_of(row.entity(1)?).map_err(|Damage(why)| damage(format!("its bound #{}: {why}", self.file.id(*bound))))?;
             if made.is_empty() {
@@ -120,7 +120,7 @@ impl Step<'_> {
                 }
                 Ok(borders)
             }
-            _ => Err(damage(format!("{} is no loop", self.said(k)))),
+            _ => Err(damage(format!("{} is not a loop", self.said(k)))),
         }
     }
 

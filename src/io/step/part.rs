@@ -41,7 +41,7 @@ pub fn open<'b>(bytes: &'b [u8], options: &Options) -> Result<Opened<'b>, Malfor
     let assembly = assembly(&mut step);
     warnings.append(&mut step.warnings);
     if assembly.placed.is_empty() {
-        warnings.push(Malformed::line(1, "the file shows nothing: no shape representation has an item"));
+        warnings.push(Malformed::line(1, "the file has no shapes: no shape representation has an item"));
     }
     Ok(Opened { file, options: *options, assembly, warnings })
 }

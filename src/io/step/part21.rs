@@ -121,7 +121,7 @@ impl<'b> File<'b> {
         let (places, doubled) = Places::of(self.records.iter().map(|r| r.id));
         for k in doubled {
             let record = self.records[k as usize];
-            let what = format!("#{} stands here again; the first one counts", record.id);
+            let what = format!("#{} is defined again; the first definition is used", record.id);
             warnings.push(Malformed::line(self.line_of(record.at), what));
         }
         self.places = places;
@@ -288,7 +288,7 @@ impl<'b> Reader<'b> {
                     continue;
                 }
                 _ => {
-                    wrong.push((self.at as u32, "here should be an entity, `#1 = NAME(…);`".to_owned()));
+                    wrong.push((self.at as u32, "an entity is expected here, `#1 = NAME(…);`".to_owned()));
                     self.behind(self.at);
                     continue;
                 }
@@ -485,7 +485,7 @@ impl<'b> Reader<'b> {
 
     fn opened(&mut self, kind: Kind, at: usize) -> Result<(), Wrong> {
         if self.open.len() >= NESTED {
-            return self.fail(format!("more than {NESTED} lists stand inside each other"));
+            return self.fail(format!("more than {NESTED} lists are nested"));
         }
         self.open.push(self.tokens.len() as u32);
         self.put(kind, at, 0);

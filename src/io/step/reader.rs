@@ -146,7 +146,7 @@ impl<'f> Step<'f> {
     }
 
     fn three(&self, k: u32, what: &[u8], word: &str) -> Result<DVec3, Damage> {
-        let Some(row) = self.file.under(k, what) else { return Err(damage(format!("{} is no {word}", self.said(k)))) };
+        let Some(row) = self.file.under(k, what) else { return Err(damage(format!("{} is not a {word}", self.said(k)))) };
         let list = row.list(if self.file.is_complex(k) { 0 } else { 1 })?;
         let mut p = DVec3::ZERO;
         for (axis, value) in list.values().take(3).enumerate() {
@@ -168,13 +168,13 @@ impl<'f> Step<'f> {
 
     /// A vector in model units.
     pub fn vector(&self, k: u32) -> Result<DVec3, Damage> {
-        let Some(row) = self.file.under(k, b"VECTOR") else { return Err(damage(format!("{} is no vector", self.said(k)))) };
+        let Some(row) = self.file.under(k, b"VECTOR") else { return Err(damage(format!("{} is not a vector", self.said(k)))) };
         Ok(self.direction(row.entity(1)?)? * (row.number(2)? * self.scale))
     }
 
     /// The point of a vertex.
     pub fn vertex(&self, k: u32) -> Result<DVec3, Damage> {
-        let Some(row) = self.file.under(k, b"VERTEX_POINT") else { return Err(damage(format!("{} is no vertex", self.said(k)))) };
+        let Some(row) = self.file.under(k, b"VERTEX_POINT") else { return Err(damage(format!("{} is not a vertex", self.said(k)))) };
         self.point(row.entity(if self.file.is_complex(k) { 0 } else { 1 })?)
     }
 
@@ -188,7 +188,7 @@ impl<'f> Step<'f> {
             b"AXIS2_PLACEMENT_3D" => (direction(2)?.unwrap_or(DVec3::Z), direction(3)?),
             b"AXIS1_PLACEMENT" => (direction(2)?.unwrap_or(DVec3::Z), None),
             b"AXIS2_PLACEMENT_2D" => (DVec3::Z, direction(2)?),
-            _ => return Err(damage(format!("{} is no placement", self.said(k)))),
+            _ => return Err(damage(format!("{} is not a placement", self.said(k)))),
         };
         let x = x.and_then(|x| math::unit(x.reject_from_normalized(z), PARALLEL));
         let x = x.unwrap_or_else(|| math::unit(DVec3::X.reject_from_normalized(z), PARALLEL).unwrap_or(DVec3::Y));

@@ -43,7 +43,7 @@ impl Step<'_> {
             let (a, b) = (a * angle, b * angle);
             let sweep = if b > a { b - a } else { b - a + TURN };
             if !(sweep > 0.0 && sweep <= TURN * (1.0 + NUDGE)) {
-                return Err(damage(format!("its angles run from {a} to {b}, which is no part of a turn")));
+                return Err(damage(format!("its angles run from {a} to {b}, which is not part of a turn")));
             }
             Ok((a, if sweep >= TURN * (1.0 - EPSILON) { a + TURN } else { a + sweep }))
         };

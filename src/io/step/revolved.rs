@@ -55,7 +55,7 @@ impl Step<'_> {
         let d = math::unit(d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
         let rise = d.dot(axis.direction);
         if rise.abs() <= PARALLEL {
-            return Err(damage("its line turns in a plane without end"));
+            return Err(damage("its line turns in an infinite plane"));
         }
         if loops.reach.is_empty() {
             return Err(damage("its line has no ends"));

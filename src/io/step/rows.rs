@@ -65,7 +65,7 @@ impl<'f> Row<'f> {
     /// The list at `k`.
     pub fn list(self, k: usize) -> Result<Row<'f>, Damage> {
         let value = self.value(k)?;
-        value.list().ok_or_else(|| damage(format!("its parameter {} is no list", k + 1)))
+        value.list().ok_or_else(|| damage(format!("its parameter {} is not a list", k + 1)))
     }
 
     /// The number at `k`.
@@ -81,7 +81,11 @@ impl<'f> Row<'f> {
     /// The whole number from 0 at `k`.
     pub fn count(self, k: usize) -> Result<usize, Damage> {
         let x = self.number(k)?;
-        if x >= 0.0 && x <= f64::from(u32::MAX) && x.trunc() == x { Ok(x as usize) } else { Err(damage(format!("{x} is no count"))) }
+        if x >= 0.0 && x <= f64::from(u32::MAX) && x.trunc() == x {
+            Ok(x as usize)
+        } else {
+            Err(damage(format!("{x} is not a valid count")))
+        }
     }
 
     /// The truth value at `k`; what is unknown counts as `otherwise`.
@@ -125,7 +129,7 @@ impl<'f> Value<'f> {
         match token.kind {
             Kind::Ref if token.end != Token::NONE => Ok(token.end),
             Kind::Ref => Err(damage(format!("there is no entity #{}", token.start))),
-            _ => Err(damage("no entity stands where one should")),
+            _ => Err(damage("an entity is missing")),
         }
     }
 
@@ -144,14 +148,14 @@ impl<'f> Value<'f> {
                 match x {
                     Ok(x) if x.is_finite() => Ok(x),
                     Ok(_) => Err(damage(format!("the number {text} is too large"))),
-                    Err(_) => Err(damage(format!("`{text}` is no number"))),
+                    Err(_) => Err(damage(format!("`{text}` is not a number"))),
                 }
             }
             Kind::Typed => match self.list().and_then(|row| row.get(0)) {
                 Some(inner) if inner.token().kind == Kind::Number => inner.number(),
-                _ => Err(damage("no number stands where one should")),
+                _ => Err(damage("a number is missing")),
             },
-            _ => Err(damage("no number stands where one should")),
+            _ => Err(damage("a number is missing")),
         }
     }
 

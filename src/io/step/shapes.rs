@@ -250,7 +250,7 @@ impl<'f> Step<'f> {
                     k = row.entity(2)?;
                 }
                 b"OPEN_SHELL" | b"CLOSED_SHELL" | b"CONNECTED_FACE_SET" => return Ok((k, row.list(1)?, turned)),
-                _ => return Err(damage(format!("{} is no shell", self.said(k)))),
+                _ => return Err(damage(format!("{} is not a shell", self.said(k)))),
             }
         }
         Err(damage("shells are made of themselves"))

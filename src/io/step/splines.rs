@@ -100,7 +100,7 @@ pub fn surface(step: &Step, k: u32) -> Result<Netted, Damage> {
 }
 
 fn lists(row: Row) -> Result<Vec<Row>, Damage> {
-    row.values().map(|v| v.list().ok_or_else(|| damage("a row of its points is no list"))).collect()
+    row.values().map(|v| v.list().ok_or_else(|| damage("a row of its points is not a list"))).collect()
 }
 
 fn check(degree: usize, points: usize) -> Result<(), Damage> {
@@ -159,7 +159,7 @@ fn implied(form: Form, degree: usize, points: usize) -> Result<Vec<f64>, Damage>
         Form::QuasiUniform => (0..all).map(|k| k.saturating_sub(degree).min(spans) as f64).collect(),
         Form::Bezier => {
             if !(points - 1).is_multiple_of(degree) {
-                return Err(damage(format!("{points} points are no Bézier pieces of degree {degree}")));
+                return Err(damage(format!("{points} points are not Bézier pieces of degree {degree}")));
             }
             let pieces = (points - 1) / degree;
             (0..all).map(|k| (k.saturating_sub(1) / degree).min(pieces) as f64).collect()

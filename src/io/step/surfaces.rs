@@ -70,9 +70,9 @@ impl Step<'_> {
             }
             b"OFFSET_SURFACE" => self.beside(k, loops, depth),
             b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
-                Err(damage(format!("{} stands where a whole surface should", self.said(k))))
+                Err(damage(format!("{} is given where a whole surface is expected", self.said(k))))
             }
-            _ => Err(damage(format!("{} is no surface that can be read", self.said(k)))),
+            _ => Err(damage(format!("{} is not a surface that can be read", self.said(k)))),
         }
     }
 
@@ -104,14 +104,14 @@ impl Step<'_> {
             _ => self.base(of, &around, depth + 1)?,
         };
         if !std::mem::take(&mut self.also).is_empty() {
-            return Err(damage("its surface crosses its axis, and nothing tells which part of it is meant"));
+            return Err(damage("its surface crosses its axis, and it is ambiguous which part is meant"));
         }
         // The net of an extruded surface has the direction first, the file the curve.
         let distance = if matches!(base, Base::Swept { .. }) { -distance } else { distance };
         let reach = base.reach(&around);
         let (base, folds) = base.beside(distance, &reach, self.origin, &self.tolerance)?;
         if folds {
-            self.warn(k, "it turns back over itself where its surface bends tighter than its distance");
+            self.warn(k, "it folds over where its surface bends more tightly than its distance");
         }
         Ok(base)
     }
@@ -153,7 +153,7 @@ impl Step<'_> {
     }
 
     fn extruded(&mut self, of: &Course, along: DVec3, loops: &FaceLoops) -> Result<Base, Damage> {
-        let direction = math::unit(along, 0.0).ok_or_else(|| damage("it is swept by nothing"))?;
+        let direction = math::unit(along, 0.0).ok_or_else(|| damage("it has no curve to sweep"))?;
         if let Course::Endless(Endless::Line(p, d)) = of {
             let first = math::unit(*d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
             let normal = math::unit(first.cross(direction), PARALLEL).ok_or_else(|| damage("its line is swept along itself"))?;
@@ -161,7 +161,7 @@ impl Step<'_> {
         }
         let reach = &loops.reach;
         if reach.is_empty() {
-            return Err(damage("it is swept without end"));
+            return Err(damage("it is swept infinitely far"));
         }
         let profile = self.within(of, loops, direction)?;
         let (low, high) = reach.stretch(profile.start(), direction);

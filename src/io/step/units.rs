@@ -74,7 +74,7 @@ enum Kind {
 /// What a unit measures, in millimetres or radians.
 fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Damage> {
     if depth > NESTED {
-        return Err(damage("units are made of each other"));
+        return Err(damage("units are defined by each other"));
     }
     let checked = |kind: Kind, x: f64| {
         if x > 0.0 && x.is_finite() { Ok((kind, x)) } else { Err(damage(format!("its size is {x}"))) }

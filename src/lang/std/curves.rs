@@ -30,7 +30,7 @@ pub(super) fn unit(direction: DVec3, argument: &'static str) -> Result<DVec3, Ha
         Some(unit) => Ok(unit),
         None => {
             let found = format!("({}, {}, {})", direction.x, direction.y, direction.z);
-            Err(ValueFault::OutsideRange { argument, found, range: "a direction of some length".to_owned() }.into())
+            Err(ValueFault::OutsideRange { argument, found, range: "a direction other than 0".to_owned() }.into())
         }
     }
 }
@@ -128,7 +128,7 @@ builtins! {
     /// Straight segments through points.
     ///
     /// `round:` puts an arc of that radius in the place of every corner, in the plane of its two sides; a closed one then
-    /// starts where the arc of its first corner ends. A radius that does not fit is E414, which tells the largest one.
+    /// starts where the arc of its first corner ends. A radius that does not fit is E414, which states the largest one.
     /// ```loft
     /// curve border = polyline([(0, 0), (4m, 0), (4m, 3m)], closed: true)
     /// curve plate = polyline([(0, 0), (4m, 0), (4m, 3m), (0, 3m)], closed: true, round: 500mm)
@@ -424,7 +424,7 @@ builtins! {
     /// The curve lies to the left of a plane curve seen against `normal:`, the surface along the normals. Offsets of planes, of extrusions across the plane
     /// of their profile and of revolutions are of the same kind, exactly; other surfaces become bicubic nets that keep the
     /// distance within `tolerance:`, the model's when left out. The loops of a trimmed surface go with it. Where a surface bends
-    /// tighter than the distance its offset folds over: W664 tells the place and the largest distance. A crease is E670: divide the
+    /// tighter than the distance its offset folds over: W664 states the place and the largest distance. A crease is E670: divide the
     /// surface there.
     /// ```loft
     /// curve inner = line((0, 0), (4m, 0))

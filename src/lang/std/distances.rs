@@ -126,7 +126,7 @@ builtins! {
 
     /// The angle between directions, straight curves and planes.
     ///
-    /// Between two directions or curves, which have a sense, 0 to 180 degrees; with a plane 0 to 90.
+    /// Between two directions or curves 0 to 180 degrees; with a plane 0 to 90.
     /// ```loft
     /// let a = angle((1, 0, 0), (0, 1, 0)) // => 90deg
     /// curve rafter = line((0, 0, 0), (1m, 0, 1m))
@@ -153,8 +153,8 @@ builtins! {
 
     /// How far points are from a curve, surface or shell.
     ///
-    /// A record: `distances` in order of the points, of faces positive on the side of the normal, and of their sizes `max`, `mean`
-    /// and `rms`; `at` is the point that is farthest.
+    /// A record: `distances` in order of the points, of faces positive on the side of the normal; `max`, `mean` and `rms` of their
+    /// absolute values; and `at`, the farthest point.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface slab = extrude(south, by: (0, 2m, 0))

@@ -99,8 +99,8 @@ builtins! {
     ///
     /// Points give a curve, rows of points a surface. With `tolerance:` no point is farther than that from the result, and no knot
     /// of it can be left out, so that it has few spans; the first and the last point of a curve and the corners of a surface are met. Without it all points
-    /// are met; the ends then run as the parabola through their three points does, or along `start:` and `end:`. Everything is
-    /// cubic and twice continuously differentiable, but at corners: turns of the data above `kinks:`. `deviation` tells how far
+    /// are met; the end tangents are those of the parabola through three points at each end, or `start:` and `end:`. Everything is
+    /// cubic and twice continuously differentiable, but at corners: turns of the data above `kinks:`. `deviation` gives how far
     /// the points are from the result.
     /// ```loft
     /// let measured = [for i in 0..41: (i * 100mm, sin(i * 9deg) * 400mm, 0)]

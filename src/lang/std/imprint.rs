@@ -30,9 +30,9 @@ builtins! {
     /// Surfaces cut by each other, so that a mesh of the pieces conforms.
     ///
     /// Each is cut by edges of the others that lie on it and by the curves in which it crosses them; a line that ends inside a
-    /// face cuts nothing off it. Of what several cover the first one's piece is taken alone. Pieces stand in the order of their surfaces
-    /// and belong to their sets. A group of one of the surfaces, and a rule on it, speaks of all its pieces, also of those taken from
-    /// the first one; of a piece it speaks of that piece alone.
+    /// face cuts nothing off it. A region that several cover is a piece of the first one only. Pieces come in the order of their surfaces
+    /// and belong to their sets. A group of one of the surfaces, and a rule on it, applies to all its pieces, also to those of the
+    /// first one; on a piece it applies to that piece alone.
     /// ```loft
     /// surface slab = plane(polyline([(0, 0, 0), (9m, 0, 0), (9m, 9m, 0), (0, 9m, 0)], closed: true))
     /// surface column = extrude(circle(center: (5m, 5m, 0), radius: 1m), by: (0, 0, -3m))

@@ -93,10 +93,10 @@ builtins! {
     /// One record for each stretch that they share: by the faces of the first list, then along the border of each. `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
     /// 0 to 90 degrees whatever their sides; of each the least, the largest, the mean and the place of the largest. They are
     /// taken at 200 or more equally spaced points and refined round the extremes. `c0` says that the gap stays within
-    /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are told. Where more
-    /// than two faces meet, each two of them have a record.
+    /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are listed. Where more
+    /// than two faces meet, each pair has a record.
     /// Of a shell these are its edges between two faces, glued as the shell glues them. Faces that share no edge are E618;
-    /// `within:` takes borders that are so far apart for shared ones.
+    /// `within:` counts borders up to this distance apart as shared.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
@@ -108,7 +108,7 @@ builtins! {
     fn connection(
         /// A surface, a shell, or several.
         a: Faces,
-        /// What it joins; left out, the inner edges of `a` are told.
+        /// What it joins; left out, the inner edges of `a` are listed.
         b: Option<Faces>,
         /// Largest distance of borders that count as shared; when left out that of the shell, else the model's tolerance.
         within: Option<Length>,
@@ -142,7 +142,7 @@ builtins! {
 fields! {
     /// The largest distance between the faces at an edge, or in a surface's net.
     ///
-    /// Of the borders of the faces, or of the curves of the net where they should meet. `none` where only one face is at an edge; where more than two meet it is the largest of each two. `none` too of a surface that
+    /// Of the borders of the faces, or of the curves of the net where they should meet. `none` where only one face is at an edge; where more than two meet it is the largest of all pairs. `none` too of a surface that
     /// was not made through a net.
     fn gap(of: EdgeOrSurface) -> Option<Length> = |cx, of| {
         Ok(match of {
@@ -152,8 +152,8 @@ fields! {
     };
     /// Largest angle between the normals of the faces at an edge.
     ///
-    /// From 0 to 90 degrees, whatever their sides; `none` where only one face is, and where more than two meet the largest of
-    /// each two.
+    /// From 0 to 90 degrees, whatever their sides; `none` where only one face is; where more than two meet, the largest of
+    /// all pairs.
     fn angle(of: EdgeOf) -> Option<Angle> = |cx, of| {
         Ok(along(cx, &of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
     };

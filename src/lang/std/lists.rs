@@ -130,7 +130,7 @@ builtins! {
         }
     };
 
-    /// A list in ascending order; members that are equal keep theirs.
+    /// A list in ascending order; equal members keep their order.
     ///
     /// ```loft
     /// let a = sort([3mm, 1mm, 2mm]) // => [1mm, 2mm, 3mm]

@@ -85,11 +85,11 @@ fields! {
     fn bbox(of: Chain) -> Value = |cx, of| Ok(record_of(cx, curve_bbox(&of)));
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     ///
-    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
+    /// Where thousands of places are equally extreme it may be larger: W227 says by how much at most. It contains every point.
     fn bbox(of: Surface) -> Value = |cx, of| Ok(box_of(cx, &[of]));
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     ///
-    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
+    /// Where thousands of places are equally extreme it may be larger: W227 says by how much at most. It contains every point.
     fn bbox(of: Arc<ShellValue>) -> Value = |cx, of| Ok(box_of(cx, &of.surfaces));
     /// The smallest box along the axes that holds all nodes. Its members are `min`, `max`, `size` and `diagonal`.
     fn bbox(of: Arc<MeshValue>) -> Value = |cx, of| {

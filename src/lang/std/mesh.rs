@@ -87,7 +87,7 @@ fields! {
         let mesh = cx.mesh(&of)?;
         mesh.chord_error(&tolerance).map(Length).ok_or_else(|| ValueFault::NoFaces { mesh: mesh.name.clone() }.into())
     };
-    /// Whether a mesh is a closed skin.
+    /// Whether a mesh is closed.
     ///
     /// Each edge is then used by two faces, in opposite senses.
     fn watertight(of: Arc<MeshValue>) -> bool = |cx, of| Ok(cx.mesh(&of)?.is_watertight());

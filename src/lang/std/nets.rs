@@ -40,8 +40,8 @@ builtins! {
     /// Smooth surface through a net of profiles and guides (Gordon).
     ///
     /// Every profile crosses every guide; the surface contains all of them. They come in any order and direction, and a curve
-    /// may be given twice where the net closes. Profiles run along u, guides along v; guides may end in one point, a pole. What stands out over
-    /// the net is left out with a note. The blend is by cubic splines: where the curves are smooth the surface is.
+    /// may be given twice where the net closes. Profiles run along u, guides along v; guides may end in one point, a pole. What extends past
+    /// the net is ignored with a note. The blend is by cubic splines: where the curves are smooth the surface is.
     /// ```loft
     /// let profiles = [for y in [0m, 1m, 2m]: spline([(0, y, 0), (1m, y, 300mm - y / 10), (2m, y, 0)])]
     /// let guides = [for i in 0..3: spline([for p in profiles: p.at(i * 50%)])]
@@ -74,7 +74,7 @@ builtins! {
     /// closed one from the start that twists least, corner to corner. All are open or all closed; the first and the last one may be
     /// a point, where the surface has a pole. u runs along the sections. `start:` and `end:` say how it leaves the first one and
     /// arrives at the last one: in a direction, or `natural`, without a bend. At a point a direction makes it round: flat across
-    /// that direction. `smooth:` allows to leave inner sections by as much for fewer spans, and tells by how much it does (N677).
+    /// that direction. `smooth:` lets the surface deviate from inner sections by this much, for fewer spans; N677 says by how much it does.
     /// ```loft
     /// let sections = [for i in 0..4: circle(center: (0, 0, i * 1m), radius: 1m + 300mm * sin(i * 60deg))]
     /// surface vase = skin(sections)
@@ -91,7 +91,7 @@ builtins! {
         start: Option<EndKind>,
         /// Its direction at the last section, or `natural`.
         end: Option<EndKind>,
-        /// How far inner sections may be left for fewer spans.
+        /// How far the surface may deviate from inner sections, for fewer spans.
         smooth: Option<Length>,
     ) -> Surface = |cx, sections, across, closed, start, end, smooth| {
         let tolerance = cx.tolerance()?;

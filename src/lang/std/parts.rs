@@ -61,7 +61,7 @@ fn nothing() -> Halt {
 }
 
 builtins! {
-    /// Those faces that are planes.
+    /// Faces that are planes.
     ///
     /// The form counts, within the tolerance, and not how the face is written: a spline surface that is flat is a plane.
     /// ```loft
@@ -75,7 +75,7 @@ builtins! {
         faces: Vec<Surface>,
     ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Plane)));
 
-    /// Those faces that are round cylinders, all or those of one radius.
+    /// Faces that are round cylinders, all or those of one radius.
     ///
     /// ```loft
     /// curve base = circle(center: (0, 0, 0), radius: 5mm)
@@ -92,7 +92,7 @@ builtins! {
         of_form(cx, faces, |form| matches!(form, Some(Looks::Cylinder { radius, .. }) if fits(radius)))
     };
 
-    /// Those faces that are round cones.
+    /// Faces that are round cones.
     ///
     /// ```loft
     /// let axis = line((0, 0, 0), (0, 0, 1m))
@@ -104,7 +104,7 @@ builtins! {
         faces: Vec<Surface>,
     ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Cone)));
 
-    /// Those faces that are of spheres, all or those of one radius.
+    /// Faces that are spheres, all or those of one radius.
     ///
     /// ```loft
     /// let axis = line((0, 0, 0), (0, 0, 1m))
@@ -122,9 +122,9 @@ builtins! {
         of_form(cx, faces, |form| matches!(form, Some(Looks::Sphere { radius, .. }) if fits(radius)))
     };
 
-    /// Those faces that are of ring tori, all or those of one tube radius.
+    /// Faces that are ring tori, all or those of one tube radius.
     ///
-    /// Fillets of round edges are such.
+    /// Fillets of round edges have this form.
     /// ```loft
     /// let axis = line((0, 0, 0), (0, 0, 1m))
     /// surface ring = revolve(circle(center: (3m, 0, 0), radius: 1m, normal: (0, 1, 0)), axis: axis)
@@ -140,7 +140,7 @@ builtins! {
         of_form(cx, faces, |form| matches!(form, Some(Looks::Torus { minor, .. }) if fits(minor)))
     };
 
-    /// Those faces that are none of planes, cylinders, cones, spheres and ring tori.
+    /// Faces that are not planes, cylinders, cones, spheres or ring tori.
     ///
     /// ```loft
     /// surface saddle = coons(line((0, 0, 0), (1m, 0, 0)), line((1m, 0, 0), (1m, 1m, 1m)), line((1m, 1m, 1m), (0, 1m, 0)),
@@ -152,7 +152,7 @@ builtins! {
         faces: Vec<Surface>,
     ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| form.is_none());
 
-    /// Those faces that have this name in their file.
+    /// Faces that have this name in their file.
     ///
     /// A number that the import put behind a name does not count: `named("rim")` finds `rim` and `rim_2`.
     /// ```loft
@@ -173,7 +173,7 @@ builtins! {
         Ok(faces.into_iter().filter(|face| cx.said_of(face).is_some_and(|said| fits(&said.name))).collect())
     };
 
-    /// Those faces that have this colour in their file.
+    /// Faces that have this colour in their file.
     ///
     /// The colour is the file's name of it, or red, green and blue as `"#ff8000"`.
     /// ```loft
@@ -205,7 +205,7 @@ fields! {
     fn faces(of: Arc<PartValue>) -> Vec<Surface> = |_, of| Ok(of.faces.clone());
     /// Area of all faces of a part.
     fn area(of: Arc<PartValue>) -> Area = |_, of| Ok(Area(measure::sheet(&of.faces).area));
-    /// Volume of all solids of a part. Where the file has none it is that of the skins that its faces make.
+    /// Volume of all solids of a part. Where the file has none it is that of the closed shells that its faces form.
     fn volume(of: Arc<PartValue>) -> Volume = |cx, of| Ok(Volume(volumes(cx, &of)?.0));
     /// Centre of the volume of the solids of a part. Where they enclose none it is that of the area of its faces.
     fn centroid(of: Arc<PartValue>) -> Point = |cx, of| match volumes(cx, &of) {
@@ -215,11 +215,11 @@ fields! {
     };
     /// The smallest box along the axes, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     ///
-    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
+    /// Where thousands of places are equally extreme it may be larger: W227 says by how much at most. It contains every point.
     fn bbox(of: Arc<PartValue>) -> Value = |cx, of| boxed(cx, &of.faces);
     /// The smallest box along the axes around surfaces, to 1e-6 of its diagonal. Its members are `min`, `max`, `size` and `diagonal`.
     ///
-    /// Where thousands of places are extreme alike it may be larger: W227 says by how much at most. No point stands out of it.
+    /// Where thousands of places are equally extreme it may be larger: W227 says by how much at most. It contains every point.
     fn bbox(of: Vec<Surface>) -> Value = |cx, of| boxed(cx, &of);
     /// Area of surfaces together.
     fn area(of: Vec<Surface>) -> Area = |_, of| Ok(Area(measure::sheet(&of).area));

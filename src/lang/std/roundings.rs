@@ -11,7 +11,7 @@ builtins! {
     ///
     /// Each arc touches both sides of its corner, which are cut back to it; the sides may be lines, arcs and any other curves
     /// that lie in a plane there. A closed curve whose first corner is rounded starts where the arc there ends. A radius that
-    /// does not fit is E414, which tells the largest one; two corners that share a side are looked at together.
+    /// does not fit is E414, which states the largest one; two corners that share a side are treated together.
     /// ```loft
     /// let bent = polyline([(0, 0), (4m, 0), (4m, 3m), (8m, 3m)])
     /// curve one = fillet(bent, at: (4m, 0), radius: 1m)
@@ -33,7 +33,7 @@ builtins! {
     /// Curve with straight cuts in the place of its corners.
     ///
     /// `length:` is what each of the two sides of a corner loses, along the side. A closed curve whose first corner is cut starts
-    /// where the cut there ends. A length that does not fit is E414, which tells the largest one.
+    /// where the cut there ends. A length that does not fit is E414, which states the largest one.
     /// ```loft
     /// let corner = polyline([(0, 0), (4m, 0), (4m, 3m)])
     /// curve cut = chamfer(corner, length: 1m)

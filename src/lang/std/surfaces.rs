@@ -186,15 +186,15 @@ builtins! {
     /// surface roof = coons(south, east, north, west)
     /// ```
     fn coons(
-        /// Boundary curves, and inner ones where there are.
+        /// Boundary curves and inner curves.
         curves: Rest<Chain>,
-        /// Those that run along u, where the curves alone do not tell.
+        /// Those that run along u, where the curves alone do not decide.
         u: Option<Vec<Chain>>,
         /// Those that run along v.
         v: Option<Vec<Chain>>,
-        /// The point where a side shrinks to nothing, where the curves alone do not tell.
+        /// The point to which a side shrinks, where the curves alone do not decide.
         pole: Option<Point>,
-        /// Whether the surface closes in u, where the curves alone do not tell.
+        /// Whether the surface closes in u, where the curves alone do not decide.
         closed: bool = "false",
         /// How curves are matched between their meetings.
         reparam: ReparamWord = "smooth",
@@ -212,7 +212,7 @@ builtins! {
 
     /// Transfinite surface through a grid of curves: one blend over the whole grid.
     ///
-    /// With more than three curves one way it may swing between them; `coons` does not.
+    /// With more than three curves one way it may oscillate between them; `coons` does not.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// curve north = line((0, 3m, 1m), (4m, 3m, 0))
@@ -222,15 +222,15 @@ builtins! {
     /// surface roof = transfinite(u: [south, north], v: [west, middle, east])
     /// ```
     fn transfinite(
-        /// Boundary curves, and inner ones where there are.
+        /// Boundary curves and inner curves.
         curves: Rest<Chain>,
-        /// Those that run along u, where the curves alone do not tell.
+        /// Those that run along u, where the curves alone do not decide.
         u: Option<Vec<Chain>>,
         /// Those that run along v.
         v: Option<Vec<Chain>>,
-        /// The point where a side shrinks to nothing, where the curves alone do not tell.
+        /// The point to which a side shrinks, where the curves alone do not decide.
         pole: Option<Point>,
-        /// Whether the surface closes in u, where the curves alone do not tell.
+        /// Whether the surface closes in u, where the curves alone do not decide.
         closed: bool = "false",
         /// How curves are matched between their meetings.
         reparam: ReparamWord = "smooth",
@@ -290,7 +290,7 @@ builtins! {
         }
     };
 
-    /// A curve carried to a surface: to the nearest points, or along a direction.
+    /// A curve projected to a surface: to the nearest points, or along a direction.
     ///
     /// It is a cubic within a quarter of the tolerance, lies on the surface and may trim it.
     /// ```loft
@@ -380,7 +380,7 @@ builtins! {
     ///
     /// They are the parts of which `trim(s, by:, keep:)` keeps one, in the order of their centres along x, then y, then z,
     /// whatever the order of the cutters; their areas add up to that of the surface. In a mesh of the parts a group of the surface,
-    /// and a rule on it, speaks of all of them, and of a part of that part alone. Without a declaration of its own a part is called by its
+    /// and a rule on it, applies to all of them; on a part it applies to that part alone. Without a declaration of its own a part is called by its
     /// place in its list, as `rooms[0]`, in reports and as a set in files.
     /// ```loft
     /// surface floor = plane(circle(center: (0, 0, 0), radius: 1m))
@@ -404,9 +404,9 @@ builtins! {
         keyed.into_iter().map(|(_, _, part)| finished(cx, part, &[])).collect()
     };
 
-    /// Surface that a curve leaves when it is moved along a straight way.
+    /// Surface swept by a curve along a straight line.
     ///
-    /// u runs along the way, v along the profile.
+    /// u runs along the sweep, v along the profile.
     /// ```loft
     /// curve foot = arc((0, 0, 0), (4m, 0, 0), through: (2m, 1m, 0))
     /// surface wall = extrude(foot, by: (0, 0, 3m))
@@ -422,7 +422,7 @@ builtins! {
         finished(cx, surface, &[])
     };
 
-    /// Surface that a curve leaves when it is turned about an axis.
+    /// Surface swept by a curve about an axis.
     ///
     /// u runs with the turn, v along the profile; ends of the profile on the axis are poles.
     /// ```loft

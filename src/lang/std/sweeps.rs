@@ -49,10 +49,10 @@ const ROTATIONAL: &str = "sweep(a, law: rotational, guides: [g], axis: (0, 0, 1)
 const SWEEP: &str = "sweep([a, b], law: parallel, guides: [g])";
 
 builtins! {
-    /// Surface that a curve leaves when it is carried along a path.
+    /// Surface swept by a curve along a path.
     ///
-    /// The profile may stand anywhere: it is carried rigidly, as it stands to the start of the path, and turns with the
-    /// path's direction without turning about it (the rotation-minimising frame); what is missing where a path closes is spread
+    /// The profile may be anywhere: it moves rigidly with the path, keeps its position relative to the start, and turns with the
+    /// path's direction without turning about it (the rotation-minimising frame); the twist that remains where a path closes is spread
     /// over its length. u runs along the path, v along the profile. At corners of the path the surface is cut by the bisecting
     /// plane; the runs that end in a corner must be straight. A straight path gives what `extrude` gives, an arc what `revolve` gives.
     /// ```loft
@@ -61,13 +61,13 @@ builtins! {
     /// surface pipe = along(ring, way)
     /// ```
     fn along(
-        /// The curve that is carried.
+        /// The curve that is swept.
         profile: Chain,
-        /// The way it goes.
+        /// The path of the sweep.
         path: Chain,
-        /// What it does at corners of the path: it is cut by the bisecting plane, or turned about the corner.
+        /// What happens at corners of the path: the surface is cut by the bisecting plane, or the profile turns about the corner.
         corner: CornerWord = "miter",
-        /// How far it turns about the path from the start to the end.
+        /// How far the profile turns about the path from start to end.
         twist: Angle = "0deg",
     ) -> Surface = |cx, profile, path, corner, twist| {
         let tolerance = cx.tolerance()?;

@@ -181,9 +181,9 @@ builtins! {
 
     /// Edges at which the faces of surfaces or shells turn by more than an angle.
     ///
-    /// It is the angle between the normals of the two faces on one side, 0 where they go on smoothly, 180 degrees where they
-    /// fold back; the largest along the edge counts, at 200 or more places, and of more than two faces the largest of each two.
-    /// Free edges are none (`.rims`).
+    /// The angle is that between the normals of the two faces, 0 where they join smoothly and 180 degrees where they fold
+    /// back; the largest of 200 or more places along the edge counts, and of more than two faces the largest of all pairs.
+    /// Free edges have none (`.rims`).
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
@@ -198,9 +198,9 @@ builtins! {
         angle: Angle,
     ) -> Vec<EdgeOf> = |cx, of, angle| creases(cx, &of.0, angle.0);
 
-    /// Those of some edges that lie on a plane, surface, shell or curve.
+    /// Edges that lie on a plane, surface, shell or curve.
     ///
-    /// An edge lies on it where all of it does, within the tolerance.
+    /// An edge lies on it when all of it does, within the tolerance.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
@@ -213,7 +213,7 @@ builtins! {
         carrier: Carrier,
     ) -> Vec<EdgeOf> = |cx, edges, carrier| choosing::on(cx, edges, &carrier);
 
-    /// Those of some edges that lie inside a box along the axes, its border included.
+    /// Edges that lie inside a box along the axes, its border included.
     ///
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
@@ -230,9 +230,9 @@ builtins! {
         choosing::inside(cx, edges, &around)
     };
 
-    /// Those of some edges whose length is between two lengths.
+    /// Edges whose length is between two lengths.
     ///
-    /// Both bounds count within the tolerance.
+    /// Both bounds are included, within the tolerance.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))

@@ -23,7 +23,7 @@ fn product(a: Dim, b: Dim) -> Result<Dim, Halt> {
 
 pub(super) fn not_zero(v: Vector, argument: &'static str) -> Result<(), Halt> {
     if v.0 == glam::DVec3::ZERO {
-        return Err(ValueFault::OutsideRange { argument, found: "(0, 0, 0)".into(), range: "a vector of some length".into() }.into());
+        return Err(ValueFault::OutsideRange { argument, found: "(0, 0, 0)".into(), range: "a vector other than 0".into() }.into());
     }
     Ok(())
 }

@@ -37,14 +37,14 @@ fn of_thickness(fault: Fault, side: &WallSide, thickness: f64) -> Fault {
 }
 
 builtins! {
-    /// Faces of the wall that a face or a shell becomes by a thickness.
+    /// Faces of the wall made by thickening a face or a shell.
     ///
     /// Its two sides, then the rims between their borders. The sides are offsets of the faces, see `offset`; the rims stand along their
     /// normals on free borders, those of holes too, so that the faces close: a shell of them has a volume and points outwards. Faces
-    /// that go on smoothly into each other share the moved edge; at sharp edges the moved ones run on straight to where they meet, or
+    /// that join smoothly share the moved edge; at sharp edges the moved ones are extended straight to where they meet, or
     /// are cut back there. The front of a closed shell is its outside, of an open one that of its first face. The wall encloses the
     /// area times the thickness, but for what curvature and edges add. A surface by itself, not a shell, goes round the corners of its
-    /// profile instead. Pieces that do not hang together have walls on one side only as shells of their own. Where faces do not meet it is E671, which names the edge.
+    /// profile instead. Pieces that are not connected need shells of their own for a wall on one side. Where faces do not meet it is E671, which names the edge.
     /// ```loft
     /// surface tube = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 3m))
     /// shell pipe of thicken(tube, 100mm)

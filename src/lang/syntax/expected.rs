@@ -47,7 +47,7 @@ impl Failure<'_> {
     pub fn diagnose(&self, error: &Error<Rule>) -> Diagnostic {
         let ErrorVariant::ParsingError { positives, .. } = &error.variant else {
             let place = self.tokens.span(self.base);
-            return Diagnostic::new("E109", "nested too deep", self.file, place, "this declaration needs more stack than there is")
+            return Diagnostic::new("E109", "nested too deep", self.file, place, "this declaration needs more stack than is available")
                 .help("give the inner parts names of their own with `let`");
         };
         let byte = match error.location {
@@ -172,9 +172,9 @@ impl Failure<'_> {
         let owner = self.text(stop.at - 1);
         let call = what == "(" && before == Kind::Name;
         let message = if call {
-            "the `(` of a call stands on the line of its function".to_owned()
+            "the `(` of a call must be on the line of its function".to_owned()
         } else {
-            format!("the `{what}` of an index stands on the line of what it belongs to")
+            format!("the `{what}` of an index must be on the line of what it belongs to")
         };
         let message = if what == "(" && !call { "something is missing before this `(`".to_owned() } else { message };
         let report = self
@@ -222,7 +222,7 @@ impl Failure<'_> {
         let key = self.text(stop.at - 1);
         let colon = (place, ":", format!("arguments, fields and settings take a colon: `{key}: …`"));
         let equal = (place, "==", "two values are compared by `==`".to_owned());
-        let loop_in = (place, " in ", "a loop says `in`: `for i in 0..5`".to_owned());
+        let loop_in = (place, " in ", "a loop is written with `in`: `for i in 0..5`".to_owned());
         // Outside brackets it is a setting that stands without its braces.
         let set =
             stop.at > self.base + 2 && matches!(self.tokens.kinds[self.base], Kind::Mesh | Kind::Shell | Kind::Export | Kind::Picture);
@@ -255,7 +255,7 @@ impl Failure<'_> {
         }
         let (unit, behind) = self.unit_from(stop.at)?;
         let typed = format!("{}{unit}", self.text(number));
-        let report = self.as_found(stop).help(format!("a unit stands right behind its number: `{typed}`"));
+        let report = self.as_found(stop).help(format!("a unit directly follows its number: `{typed}`"));
         let stretch = self.tokens.stretch(number, behind - 1);
         Some(if self.parses_with(stretch, &typed) { report.put(stretch, typed) } else { report })
     }
@@ -349,17 +349,17 @@ impl Failure<'_> {
                     format!("{} {own} = …", self.text(self.base))
                 })
             }
-            (Kind::Fn, Some(Kind::OpenCurly)) if stop.wants(Rule::eq) => Some(format!("the body stands behind `=`: fn {own}(…) = …")),
+            (Kind::Fn, Some(Kind::OpenCurly)) if stop.wants(Rule::eq) => Some(format!("the body follows `=`: fn {own}(…) = …")),
             (Kind::Fn, _) if stop.wants(Rule::parameters) || stop.wants(Rule::lpar) => Some(format!("fn {own}(x) = …")),
             (Kind::Point, Some(Kind::Comma)) if stop.wants(Rule::EOI) => Some("a point has brackets around it: (x, y, z)".to_owned()),
             (_, Some(Kind::For)) if stop.wants(Rule::EOI) => {
-                Some("the `for` of a family stands behind its name: curve ribs for i in 0..5 = …".to_owned())
+                Some("the `for` of a family follows its name: curve ribs for i in 0..5 = …".to_owned())
             }
             (_, Some(Kind::If)) if stop.wants(Rule::EOI) => {
                 Some("a choice is a value that starts with `if`: let height = if wide then 3m else 2m".to_owned())
             }
             (_, Some(Kind::In)) if keyword == Kind::Let && stop.wants(Rule::EOI) => {
-                Some("only a `let` inside an expression has an `in`; this one holds for the whole script".to_owned())
+                Some("only a `let` inside an expression has an `in`; this one applies to the whole script".to_owned())
             }
             _ => None,
         }

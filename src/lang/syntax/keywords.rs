@@ -33,7 +33,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "check",
         (Kind::Check, Keyword::Check),
         "check condition\ncheck \"label\": condition\ncheck ribs[i].length > 1m for i in 0..5",
-        "What must hold: a run fails, and writes nothing, while a check does not. Its sides, their difference and the tolerance are told.",
+        "A condition that must hold; otherwise the run fails and writes nothing. Both sides, their difference and the tolerance are reported.",
     ),
     opens(
         "curve",
@@ -48,7 +48,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "export things to \"file.ending\"\nexport things to \"file.ending\" { settings }\nexport plates[i] for i in 0..3 to \"plate_{i}.stl\"",
         "A file, in the format of its ending. All files of a run are put in place together, when every check has passed.",
     ),
-    inside("false", Kind::False, "false", "The condition that does not hold."),
+    inside("false", Kind::False, "false", "A condition that does not hold."),
     opens(
         "fn",
         (Kind::Fn, Keyword::Fn),
@@ -78,7 +78,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "in",
         Kind::In,
         "for i in list\nlet x = a in value\nparam p = a in a to b",
-        "What is run over, where a name holds, or what is allowed.",
+        "The list of a loop, the value in which a local name is valid, or the allowed range.",
     ),
     opens(
         "let",
@@ -96,7 +96,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "modeling",
         (Kind::Modeling, Keyword::ModelingCurve),
         "modeling curve name = chain\nmodeling curve name for i in list = chain",
-        "A chain of links of the network, which surfaces stand on: `south[A .. ribs[2]] + ribs[2][south .. B]`.",
+        "A chain of links of the network, from which surfaces are built: `south[A .. ribs[2]] + ribs[2][south .. B]`.",
     ),
     inside(
         "near",
@@ -106,12 +106,12 @@ pub static WORDS: [KeywordDoc; 36] = [
     ),
     inside("none", Kind::None, "none", "No value; an empty cell of a table."),
     inside("not", Kind::Not, "not a", "True when the condition is false."),
-    inside("of", Kind::Of, "mesh name of things", "What a shell, group or mesh holds; nested lists are flattened."),
+    inside("of", Kind::Of, "mesh name of things", "What a shell, group or mesh contains; nested lists are flattened."),
     inside(
         "on",
         Kind::On,
         "on things { count: 20  bias: 2 }",
-        "A clause of a mesh: settings for the links, curves, edges or faces named. The later of two equal rules holds.",
+        "A clause of a mesh: settings for the links, curves, edges or faces named. The later of two equal rules applies.",
     ),
     inside("or", Kind::OrWord, "a or b", "True when either is; the right side is evaluated only when the left is false."),
     opens(
@@ -132,27 +132,27 @@ pub static WORDS: [KeywordDoc; 36] = [
         "report",
         (Kind::Report, Keyword::Report),
         "report value\nreport \"title\": value\nreport value for i in list",
-        "A table in the summary and the JSON report: of records, lists, or what an entity tells of itself. One entity shows its members \
+        "A table in the summary and the JSON report: of records, lists, or the members of an entity. One entity shows its members \
          (those of its kind in the reference) a row each, with units; a family, a group or several things a row for each thing. A list \
-         among the members is told by how many it holds.",
+         among the members is shown by its length.",
     ),
     opens(
         "shell",
         (Kind::Shell, Keyword::Shell),
         "shell name of surfaces",
-        "Surfaces that are one: a composite surface, or the skin of a solid when it closes.",
+        "Surfaces joined to one: a composite surface, or the boundary of a solid when it is closed.",
     ),
     opens(
         "snap",
         (Kind::Snap, Keyword::Snap),
         "snap length",
-        "For measured data: curve ends closer than this are moved together before anything is built; what is made from them stands where they went. Every move is told.",
+        "For measured data: curve ends closer than this are moved together before anything is built; what is made from them follows. Every move is reported.",
     ),
     opens(
         "surface",
         (Kind::Surface, Keyword::Surface),
         "surface name = value\nsurface name for i in list = value",
-        "A surface of the model, with patches, edges and vertices. `-s` turns its side.",
+        "A surface of the model, with patches, edges and vertices. `-s` reverses its normal.",
     ),
     inside("then", Kind::Then, "if condition then a else b", "The value when the condition is true."),
     inside("to", Kind::To, "export things to \"file.stl\"\nparam p = 3 in 1 to 5", "Where a file goes, or the last value allowed."),
@@ -163,7 +163,7 @@ pub static WORDS: [KeywordDoc; 36] = [
         "When two points are one, and how sharp a turn is a kink. Default 1e-6 of the model's diagonal, rounded down to a power of ten, and \
          0.1deg.",
     ),
-    inside("true", Kind::True, "true", "The condition that holds."),
+    inside("true", Kind::True, "true", "A condition that holds."),
     opens("units", (Kind::Units, Keyword::Units), "units m", "The model unit: of bare lengths, reports and files. Default mm."),
     opens(
         "use",

@@ -74,7 +74,7 @@ impl Refused {
             Self::Chain { span, left, middle, right } => {
                 let help = format!("{} and {} {} {}", text(*left), text(*middle), text(*span), text(*right));
                 let gap = Span { start: place(*span).start, end: place(*span).start };
-                Diagnostic::new("E102", "comparisons do not chain", file, place(*span), "a second comparison")
+                Diagnostic::new("E102", "comparisons cannot be chained", file, place(*span), "a second comparison")
                     .help(help)
                     .put(gap, format!("and {} ", text(*middle)))
             }
@@ -200,7 +200,7 @@ impl Mistake {
                     format!("`{whole}` is the square of {digits}{unit}").replace("square", if power == "2" { "square" } else { "cube" }),
                     file,
                     at,
-                    "the power takes the number along",
+                    "the power applies to the number too",
                 )
                 .help(format!("write `{digits}{unit}{power}`, or `({digits}{unit})^{power}` if this is meant"))
                 .put(whole_at, format!("{digits}{unit}{power}"))
@@ -256,9 +256,9 @@ fn strange_sign(sign: &str, file: FileId, at: Span) -> Diagnostic {
         "||" => "write `or`".to_owned(),
         "|" => "write `or`, or `[a, b]` for a list".to_owned(),
         "**" => "write `^`".to_owned(),
-        "%" => "a ratio has its `%` glued to the number, `5%`; a remainder is `mod(a, b)`".to_owned(),
-        "->" | "=>" => "the type of a result stands behind a colon: `fn f(x: length): curve = …`".to_owned(),
-        "°" => "write `deg`, glued to the number: `30deg`".to_owned(),
+        "%" => "in a ratio `%` directly follows the number, `5%`; a remainder is `mod(a, b)`".to_owned(),
+        "->" | "=>" => "the type of a result follows a colon: `fn f(x: length): curve = …`".to_owned(),
+        "°" => "write `deg` directly after the number: `30deg`".to_owned(),
         "×" | "·" => "write `*`".to_owned(),
         "÷" => "write `/`".to_owned(),
         "−" | "–" | "—" => "write `-`".to_owned(),
@@ -327,7 +327,7 @@ fn bad_number(text: &str, unit: usize, fault: Fault, file: FileId, at: Span) -> 
         }
         Fault::Underscore => {
             let meant = number::repaired(text);
-            report(format!("`{text}` is not a number"), "`_` stands between two digits").help(meant.clone()).put(at, meant)
+            report(format!("`{text}` is not a number"), "`_` is allowed between two digits").help(meant.clone()).put(at, meant)
         }
         Fault::SecondDot => report(format!("`{text}` has two decimal points"), "one number, one dot"),
         Fault::TooLarge => {
@@ -357,7 +357,7 @@ fn no_keyword(source: &str, file: FileId, at: Span, next: Option<Span>, binds: b
     if let Some(sign) = ["+=", "-=", "*=", "/="].iter().find(|sign| behind.starts_with(**sign)) {
         let operator = sign.trim_end_matches('=');
         return Diagnostic::new("E106", format!("`{word}` cannot be changed by `{sign}`"), file, at, "no declaration starts with this")
-            .help(format!("a name keeps its value; what comes of it has a name of its own: `let … = {word} {operator} …`"));
+            .help(format!("a name keeps its value; the result needs a name of its own: `let … = {word} {operator} …`"));
     }
     let message =
         if matches!(word, "if" | "for") { format!("no declaration starts with `{word}`") } else { format!("`{word}` is not a keyword") };

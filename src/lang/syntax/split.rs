@@ -188,7 +188,7 @@ impl Splitter<'_> {
         if *count > OPERATORS_IN_A_ROW {
             self.deep(at, "operators in a row", OPERATORS_IN_A_ROW);
         } else if self.waiting > 4 * NESTED_BRACKETS {
-            self.deep(at, "operators that wait for each other", 4 * NESTED_BRACKETS);
+            self.deep(at, "operators nested in each other", 4 * NESTED_BRACKETS);
         }
     }
 
@@ -210,7 +210,7 @@ impl Splitter<'_> {
         let Some(item) = self.open.last_mut() else { return };
         item.height = (item.height + usize::from(inner == 0)).max(inner);
         if item.height > EXPRESSION_HEIGHT {
-            self.deep(at, "operators on each other", EXPRESSION_HEIGHT);
+            self.deep(at, "operators, fields and indices nested in each other", EXPRESSION_HEIGHT);
         }
     }
 

@@ -18,7 +18,7 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
             face.uneven.map(|why| match why {
                 Uneven::Row(step) => format!("with a piece of border of {}, as narrow as a row would be", short(step)),
                 Uneven::Beside(step) => format!("beside a free one that needs steps of {}, which rows do not follow", short(step)),
-                Uneven::Together => "whose map would fall together with that of another face".to_owned(),
+                Uneven::Together => "whose map would coincide with that of another face".to_owned(),
                 Uneven::Sharp(angle) => format!("whose map would have angles of {}°", short(angle.to_degrees())),
             })
         };

@@ -12,7 +12,7 @@ use crate::mesh::size::sizing::{FREE_ONLY, KEYS, free_only_origin};
 /// What is to be said about a mesh and the rules of its plan, by their places in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
-    /// W701: a rule that decides nothing.
+    /// W701: a rule without effect.
     Unused {
         /// The rule.
         rule: usize,

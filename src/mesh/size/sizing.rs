@@ -211,7 +211,7 @@ impl Sizing {
         for (k, key) in FREE_ONLY.into_iter().enumerate() {
             let idle = free_only_origin(plan, key).is_some() && !free && (key == "smooth" || plan.refines.is_empty());
             self.taken[first + k] = !idle;
-            self.homeless[first + k] = idle.then(|| format!("`{key}` is for faces made freely, and there is none here"));
+            self.homeless[first + k] = idle.then(|| format!("`{key}` is for freely meshed faces, and there is none here"));
         }
     }
 
@@ -352,7 +352,7 @@ impl Sizing {
             return Ok(());
         }
         if rule.count.is_none() && rule.size.is_none() && rule.bias.is_none() {
-            self.homeless[index] = Some(format!("`elements` and `method` speak of faces, this is {} {what}", article(what)));
+            self.homeless[index] = Some(format!("`elements` and `method` apply to faces, this is {} {what}", article(what)));
             return Ok(());
         }
         for Lines { uses, links, rank, length } in lines {
@@ -454,7 +454,7 @@ impl Sizing {
         }
     }
 
-    /// W706 for rules overridden by equal ones, W701 for rules that decide nothing.
+    /// W706 for rules overridden by equal ones, W701 for rules without effect.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut pairs = self.overridden.clone();
         pairs.sort_unstable();
@@ -465,7 +465,7 @@ impl Sizing {
             if *taken || pairs.iter().any(|p| p.0 == rule) {
                 continue;
             }
-            let why = self.homeless[rule].clone().unwrap_or_else(|| "other settings ask for more, or inner rules say it all".to_owned());
+            let why = self.homeless[rule].clone().unwrap_or_else(|| "other settings or inner rules always apply instead".to_owned());
             remarks.push(Remark::Unused { rule, why });
         }
         remarks.extend(self.sharp.clone());

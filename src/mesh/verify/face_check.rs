@@ -73,7 +73,7 @@ impl Defect {
     fn words(self) -> String {
         match self {
             Self::Empty => "there is no element".to_owned(),
-            Self::Kind => "elements are of another kind than asked".to_owned(),
+            Self::Kind => "elements are of another kind than asked for".to_owned(),
             Self::Node(_) => "an element has a node of another face or the same node twice".to_owned(),
             Self::Loose(_) => "nodes are in no element".to_owned(),
             Self::Edge(_, found, wanted) => {
@@ -81,7 +81,7 @@ impl Defect {
             }
             Self::Torn => "edges inside are not shared by two elements".to_owned(),
             Self::Euler(found, wanted) => format!("the Euler number inside is {found} and should be {wanted}"),
-            Self::Folded => "elements lie over each other".to_owned(),
+            Self::Folded => "elements overlap".to_owned(),
             Self::Extent(found, wanted) => {
                 format!(
                     "elements cover {} of the parameter plane, where the loops of the surface bound {}, or cover other parts of it",

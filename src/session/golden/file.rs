@@ -306,10 +306,10 @@ impl Reader {
 
     fn head_line(&mut self, word: &str, rest: &str, k: usize) -> Result<(), String> {
         match word {
-            "loft" => return Err("`loft golden` stands there twice".to_owned()),
+            "loft" => return Err("`loft golden` is given twice".to_owned()),
             "made" => {
                 if self.head.made_at.replace(k).is_some() {
-                    return Err("`made by` stands there twice".to_owned());
+                    return Err("`made by` is given twice".to_owned());
                 }
                 self.head.made_by = Some(maker(rest).ok_or("expected `made by loft 0.1.0 mesher 1`")?);
             }
@@ -317,7 +317,7 @@ impl Reader {
                 let found = crate::base::text::parse_real(rest).filter(|x| x.is_finite() && *x >= 0.0);
                 let found = found.ok_or("expected a number of at least 0: `tolerance 1e-9`")?;
                 if self.head.tolerance.replace(found).is_some() {
-                    return Err("`tolerance` stands there twice".to_owned());
+                    return Err("`tolerance` is given twice".to_owned());
                 }
             }
             "compare" => {

@@ -71,7 +71,7 @@ pub fn parse_line(content: &str) -> Result<Line, String> {
     for part in fields {
         let (field, value) = pair(kind, part)?;
         if line.get(field.word).is_some() {
-            return Err(format!("`{}` stands there twice", if field.word.is_empty() { part } else { field.word }));
+            return Err(format!("`{}` is given twice", if field.word.is_empty() { part } else { field.word }));
         }
         line.pairs.push((field.word, value));
     }
@@ -95,7 +95,7 @@ fn name_of(kind: &str, name: &str) -> Result<String, String> {
             unquoted(name).map_err(|_| format!("expected the name of the {kind} between quotes, then two blanks"))
         }
         _ if name.contains(char::is_whitespace) => {
-            Err(format!("`{name}` is no name: put two blanks before each word, or the name between quotes"))
+            Err(format!("`{name}` is not a name: put two blanks before each word, or the name between quotes"))
         }
         _ => Ok(name.to_owned()),
     }
@@ -113,11 +113,11 @@ fn pair(kind: &str, part: &str) -> Result<(Field, Value), String> {
             return Err(format!("a {kind} says `pass` or `fail`, got `{part}`"));
         }
         let known: Vec<&str> = fields.map(|f| f.word).collect();
-        return Err(format!("`{word}` is no word of a {kind} line; its words are {}", known.join(", ")));
+        return Err(format!("`{word}` is not a word of a {kind} line; its words are {}", known.join(", ")));
     };
     match Value::parse(field.kind, text) {
         Ok(value) => Ok((*field, value)),
-        Err(wanted) => Err(format!("`{word}` needs {wanted}, got `{text}`; words stand two blanks apart")),
+        Err(wanted) => Err(format!("`{word}` needs {wanted}, got `{text}`; words are two blanks apart")),
     }
 }
 
@@ -171,7 +171,7 @@ mod tests {
         check("check \"a  \\\"b\\\"\"  fail");
         check("check `a.length  > 3m`  pass  left 4 m  right 3 m  within 1e-6 m");
         check("curve `line(A, \"a  b\")`  kind line  from (0, 0, 1) m  spread (1, 2, 3, 4, 5, 6) m2");
-        check("W701 `near` decides nothing  at `near A { size: 20mm }`");
+        check("W701 this rule has no effect  at `near A { size: 20mm }`");
         check("modeling \"a + b\"  length 4 m  links 2  kinks 0");
         check("E802 it lies outside  at `\"../x\"`  in parts/ribs.loft  more 3");
     }
@@ -181,10 +181,10 @@ mod tests {
         let said = |text| parse_line(text).unwrap_err();
         assert!(said("network curves 4").contains("has no name"), "{}", said("network curves 4"));
         assert!(said("mesh fine  nodes 63 triangles 96").contains("two blanks"));
-        assert!(said("mesh fine  node 63").starts_with("`node` is no word of a mesh line"));
+        assert!(said("mesh fine  node 63").starts_with("`node` is not a word of a mesh line"));
         assert!(said("check \"a\"  passed").contains("`pass` or `fail`"));
         assert!(said("surface roof top  area 1 m2").contains("between quotes"));
-        assert_eq!(said("mesh m  nodes 1  nodes 2"), "`nodes` stands there twice");
+        assert_eq!(said("mesh m  nodes 1  nodes 2"), "`nodes` is given twice");
     }
 
     #[test]

@@ -228,7 +228,7 @@ fn unreadable(test: &Test, golden: &str, flaws: &[Flaw], accept: bool) -> CaseRe
     if flaws.len() > tell::MOST + 1 {
         result.said.push(Said::Words(format!("and {} more", flaws.len() - tell::MOST - 1)));
     }
-    if accept { result.help("the head is written by hand, and only you can mend it") } else { result }
+    if accept { result.help("the head is written by hand, and only you can fix it") } else { result }
 }
 
 /// A model on its way through its cases.
@@ -358,8 +358,7 @@ impl Model<'_> {
         let this = Maker::this();
         match &self.golden.head.made_by {
             Some(maker) if *maker != this => {
-                let mesher =
-                    if maker.mesher == this.mesher { "" } else { "; the mesher is another one, so meshes may differ with good reason" };
+                let mesher = if maker.mesher == this.mesher { "" } else { "; the mesher has another version, so meshes may differ" };
                 vec![Said::Words(format!("made by {}, compared by {}{mesher}", maker.text(), this.text()))]
             }
             _ => Vec::new(),
@@ -374,7 +373,7 @@ impl Model<'_> {
         for section in self.golden.sections.iter().filter(|s| !is_run(s.case.as_deref())) {
             let (name, what) = match &section.case {
                 Some(case) => (self.name(Some(case)), format!("the section [{case}] belongs to no `case` of the head")),
-                None => (self.test.name.clone(), "lines stand above the first section, and the head names cases".to_owned()),
+                None => (self.test.name.clone(), "there are lines above the first section, and the head names cases".to_owned()),
             };
             found.push(CaseResult::new(name, Verdict::Orphaned, what).help(format!("loft test --accept {} drops it", self.test.name)));
         }

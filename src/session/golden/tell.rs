@@ -61,7 +61,7 @@ fn one(change: &Change, allowance: Allowance) -> Vec<Said> {
             let many = fresh.len() > 2;
             let over = is_turned_over(moves, allowance);
             let is_left_out = |m: &Move| many && m.old.is_none() || over && matches!(m.word, "side" | "inside" | "hash");
-            let turned = over.then(|| "turned over, it shows its other side".to_owned());
+            let turned = over.then(|| "its normals are reversed".to_owned());
             let told = turned.into_iter().chain(moves.iter().filter(|m| !is_left_out(m)).flat_map(|m| in_words(m, moves, allowance)));
             let words = told.chain(many.then(|| format!("{} are new", fresh.join(", "))));
             head.into_iter().chain(words.map(|w| Said::Words(format!("{}: {w}", subject(new))))).collect()

@@ -135,7 +135,7 @@ fn groups(text: &str) -> Result<Value, String> {
         rest = after.trim_start();
     }
     if let Some((_, (name, _))) = found.iter().enumerate().find(|(k, g)| found[..*k].iter().any(|o| o.0 == g.0)) {
-        return Err(format!("each group once, and `{name}` stands there twice"));
+        return Err(format!("each group once, and `{name}` is given twice"));
     }
     if found.is_empty() { Err(wanted()) } else { Ok(Value::Groups(found)) }
 }
@@ -183,6 +183,6 @@ mod tests {
         assert_eq!(said(Kind::Count, "63 triangles 96"), "a whole number");
         assert_eq!(said(Kind::Real(Measure::Length(2)), "9.4 m"), "a number and its unit like `12.5 m2`");
         assert_eq!(said(Kind::Real(Measure::Length(1)), "nan m"), "a number and its unit like `12.5 m`");
-        assert_eq!(said(Kind::Groups, "a:1 a:2"), "each group once, and `a` stands there twice");
+        assert_eq!(said(Kind::Groups, "a:1 a:2"), "each group once, and `a` is given twice");
     }
 }

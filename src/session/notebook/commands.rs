@@ -32,17 +32,12 @@ pub const COMMANDS: &[Command] = &[
     Command { word: "links", takes: "CURVE", docs: "Links that a curve runs over", run: Notebook::links },
     Command { word: "why", takes: "NAME", docs: "What a name depends on, and what depends on it", run: Notebook::why },
     Command { word: "explain", takes: "NAME", docs: "How a name came about, in detail", run: |n, what| n.explain(what) },
-    Command { word: "remove", takes: "NAME", docs: "Takes out a declaration that nothing stands on", run: |n, name| n.remove(name, false) },
-    Command {
-        word: "remove!",
-        takes: "NAME",
-        docs: "Takes out a declaration and all that stands on it",
-        run: |n, name| n.remove(name, true),
-    },
-    Command { word: "undo", takes: "", docs: "Goes back by one change, and says which", run: |n, _| n.back(true) },
-    Command { word: "redo", takes: "", docs: "Takes an undo back", run: |n, _| n.back(false) },
+    Command { word: "remove", takes: "NAME", docs: "Removes a declaration that nothing uses", run: |n, name| n.remove(name, false) },
+    Command { word: "remove!", takes: "NAME", docs: "Removes a declaration and all that uses it", run: |n, name| n.remove(name, true) },
+    Command { word: "undo", takes: "", docs: "Undoes the last change, and says which", run: |n, _| n.back(true) },
+    Command { word: "redo", takes: "", docs: "Redoes the last undone change", run: |n, _| n.back(false) },
     Command { word: "set", takes: "PARAM=VALUE", docs: "Gives a param another value", run: Notebook::set },
-    Command { word: "mesh", takes: "NAME", docs: "Builds a mesh and tells its counts and quality", run: Notebook::mesh },
+    Command { word: "mesh", takes: "NAME", docs: "Builds a mesh and shows its counts and quality", run: Notebook::mesh },
     Command { word: "view", takes: "", docs: "The model in a browser: comes with `loft view`, not in this version", run: |_, _| not_yet() },
     Command { word: "run", takes: "", docs: "Runs the whole model and writes its files", run: Notebook::whole_run },
     Command { word: "time", takes: "", docs: "How long the last entry took and what was reused", run: Notebook::time },
@@ -52,9 +47,14 @@ pub const COMMANDS: &[Command] = &[
         docs: "Draws a thing into a file, and on terminals that can, here",
         run: Notebook::render,
     },
-    Command { word: "edit", takes: "", docs: "Opens the script in $VISUAL or $EDITOR and goes on with what is saved", run: Notebook::edit },
+    Command {
+        word: "edit",
+        takes: "",
+        docs: "Opens the script in $VISUAL or $EDITOR and continues with what is saved",
+        run: Notebook::edit,
+    },
     Command { word: "reload", takes: "", docs: "Reads the loaded file again (`:undo` takes that back)", run: Notebook::reload },
-    Command { word: "load", takes: "FILE", docs: "Goes on with a script", run: |n, file| n.load_file(file) },
+    Command { word: "load", takes: "FILE", docs: "Continues with a script", run: |n, file| n.load_file(file) },
     Command { word: "save", takes: "FILE", docs: "Writes a script that gives this model", run: Notebook::save },
     Command {
         word: "reset",
@@ -238,7 +238,7 @@ impl Notebook {
         let plain: String = name.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
         let file = if file.is_empty() { format!("{}.png", plain.trim_end_matches('_')) } else { unquoted(file).to_owned() };
         let path = Path::new(&file);
-        let Some(end) = path.file_name() else { return Answer::failure(format!("{file} is no file name")) };
+        let Some(end) = path.file_name() else { return Answer::failure(format!("{file} is not a file name")) };
         let Some(view) = View::named("isometric") else { return Answer::failure("there is no view") };
         let wanted = Wanted { names: vec![name.to_owned()], zoom: Vec::new(), spec: PictureSpec::of_file(&end.to_string_lossy(), view) };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -135,7 +135,7 @@ impl Notebook {
             let mut order: Vec<String> = gone[1..].iter().rev().map(|g| self.title(&self.now.symbols[*g])).collect();
             order.truncate(12);
             return Answer::failure(format!(
-                "E510 × `{name}` carries {}\n  help: remove {} first, or `:remove! {name}` to take all {}",
+                "E510 × `{name}` is used by {}\n  help: remove {} first, or `:remove! {name}` to remove all {}",
                 first.join(", "),
                 order.join(", "),
                 gone.len()
@@ -191,7 +191,7 @@ impl Notebook {
             Err(answer) => return answer,
         };
         if wrong {
-            return Answer::failure(format!("`{name}` is no mesh"));
+            return Answer::failure(format!("`{name}` is not a mesh"));
         }
         let mut answer = Answer { failed: found.is_empty(), ..Answer::default() };
         let before = std::mem::take(&mut self.now.said);

@@ -105,7 +105,7 @@ impl Notebook {
 
     pub(super) fn links(&mut self, name: &str) -> Answer {
         self.tabled(&mut |cx, network| {
-            let Some(Value::Curve(chain)) = cx.value_of(name) else { return Err(format!("`{name}` is no curve of this model")) };
+            let Some(Value::Curve(chain)) = cx.value_of(name) else { return Err(format!("`{name}` is not a curve of this model")) };
             let tolerance = cx.tolerance_used().ok_or("the model has no tolerance yet")?;
             match network.links_of(&chain, &tolerance) {
                 Some(found) => Ok(links(network, &found, (cx.unit().name, &tolerance))),

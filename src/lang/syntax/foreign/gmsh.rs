@@ -8,7 +8,7 @@ use crate::lang::syntax::token::Kind;
 /// Names that are given to entities, which Gmsh numbers: `p1`, `c1`, `l1`, `s1`.
 const NAMED: &str = "an entity has a name instead of a number";
 /// Where what Gmsh says of its mesh is said.
-const MESHED: &str = "settings stand in braces behind `mesh … of …`";
+const MESHED: &str = "settings follow `mesh … of …` in braces";
 
 /// What a statement makes: the words before its number, in its own language; the function in Python; and what it makes.
 const KINDS: &[(&str, &str, Entity)] = &[

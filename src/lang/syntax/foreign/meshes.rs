@@ -34,7 +34,7 @@ impl Refusal<'_> {
             None => self.fresh.next(self.source, "mesh"),
         };
         let braces = if settings.is_empty() { String::new() } else { format!(" {{ {} }}", settings.join("  ")) };
-        self.replaced("what is meshed stands behind `of`, settings in braces", format!("mesh {name} of {of}{braces}"))
+        self.replaced("what is meshed follows `of`, settings follow in braces", format!("mesh {name} of {of}{braces}"))
     }
 
     /// `circle(center=A, radius=5)`: every `=` of the declaration that stands behind a name in brackets.
@@ -56,6 +56,6 @@ impl Refusal<'_> {
             from = at + 1;
         }
         typed.push_str(self.text(from, self.end));
-        self.replaced("the name of an argument stands before a colon", typed)
+        self.replaced("the name of an argument is followed by a colon", typed)
     }
 }

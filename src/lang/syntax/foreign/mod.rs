@@ -278,7 +278,7 @@ impl Refusal<'_> {
         let head = matches!(self.tokens.kinds[self.base], Kind::Units | Kind::Tolerance | Kind::Snap);
         let sign = matches!(self.kind(self.base + 1)?, Kind::Equals | Kind::Colon);
         let typed = format!("{} {}", self.text(self.base, self.base + 1), self.text(self.base + 2, self.end).trim_matches('"'));
-        if head && sign { self.replaced("no sign stands between them", typed) } else { None }
+        if head && sign { self.replaced("there is no sign between them", typed) } else { None }
     }
 
     /// `const k = 3`, `double k = 3`.
@@ -394,7 +394,7 @@ impl Refusal<'_> {
         let Some(path) = (first..end).find(|&t| self.tokens.kinds[t] == Kind::Text) else {
             let path = self.find(first, Kind::To)? + 1;
             let typed = format!("{} \"{}\"", self.text(self.base, path), self.text(path, end));
-            return self.replaced("the name of a file stands in quotes", typed);
+            return self.replaced("the name of a file is in quotes", typed);
         };
         let things = if path == first {
             let skip = usize::from(matches!(self.kind(path + 1), Some(Kind::Comma | Kind::Of | Kind::In)));
@@ -403,10 +403,7 @@ impl Refusal<'_> {
             let as_word = path > first && self.tokens.kinds[path - 1] == Kind::As;
             self.text(first, path - usize::from(as_word)).trim_end().trim_end_matches(',').trim_end()
         };
-        self.replaced(
-            "the file stands behind `to`",
-            format!("{} {things} to {}", self.text(self.base, self.base + 1), self.text(path, path + 1)),
-        )
+        self.replaced("the file follows `to`", format!("{} {things} to {}", self.text(self.base, self.base + 1), self.text(path, path + 1)))
     }
 
     /// Settings without braces, behind them, or behind a comma.
@@ -435,9 +432,9 @@ impl Refusal<'_> {
         let rest = rest.trim_end_matches(['}', ' ', '\n']);
         let joined: Vec<&str> = [inner.trim(), rest].into_iter().filter(|t| !t.is_empty()).collect();
         let of = if self.tokens.kinds[self.base] == Kind::Mesh {
-            "settings stand in braces behind `mesh … of …`"
+            "settings follow `mesh … of …` in braces"
         } else {
-            "settings stand in braces"
+            "settings are in braces"
         };
         self.replaced(of, format!("{} {{ {} }}", head_text.trim_end(), joined.join("  ")))
     }
@@ -451,7 +448,7 @@ impl Refusal<'_> {
         let name = self.text(self.base + 1, self.base + 2);
         let typed = format!("{}\nmesh {name}_mesh of {name} {}", self.text(self.base, self.at), self.text(self.at, self.end));
         let whole = typed.split_once('\n').is_some_and(|(a, b)| is_declaration(a) && is_declaration(b));
-        whole.then(|| Meant { why: "settings stand in braces behind `mesh … of …`", typed, at: self.whole() })
+        whole.then(|| Meant { why: "settings follow `mesh … of …` in braces", typed, at: self.whole() })
     }
 
     /// `mesh m = plate { … }`, `group g: plate`.
@@ -460,7 +457,7 @@ impl Refusal<'_> {
         if !collects || !matches!(self.kind(self.base + 2)?, Kind::Equals | Kind::Colon | Kind::In) {
             return None;
         }
-        self.replaced("what it is made of stands behind `of`", self.with(self.base + 2, self.base + 3, "of"))
+        self.replaced("what it is made of follows `of`", self.with(self.base + 2, self.base + 3, "of"))
     }
 
     /// `point A(0, 0, 0)`, `curve c(…)`.
@@ -496,7 +493,7 @@ impl Refusal<'_> {
         }
         let typed = format!("{}.{}", self.text(before, self.at), self.text(behind, behind + 1));
         let works = is_declaration(&self.with(before, behind + 1, &typed));
-        works.then(|| Meant { why: "decimals stand behind a dot", typed, at: Some(self.tokens.stretch(before, behind)) })
+        works.then(|| Meant { why: "decimals follow a dot", typed, at: Some(self.tokens.stretch(before, behind)) })
     }
 
     /// `[i * 2 for i in range(4)]`
@@ -512,7 +509,7 @@ impl Refusal<'_> {
         }
         let typed = format!("[{}: {}]", ranges(self.text(self.at, end)), self.text(start, self.at));
         let works = is_declaration(&self.with(open, end + 1, &typed));
-        works.then(|| Meant { why: "the loop stands first", typed, at: Some(self.tokens.stretch(open, end)) })
+        works.then(|| Meant { why: "the loop comes first", typed, at: Some(self.tokens.stretch(open, end)) })
     }
 
     /// `a if c else b`
@@ -524,7 +521,7 @@ impl Refusal<'_> {
         let other = self.find(self.at + 1, Kind::Else).filter(|t| *t < end)?;
         let typed = format!("if {} then {} else {}", self.text(self.at + 1, other), self.text(start, self.at), self.text(other + 1, end));
         let works = is_declaration(&self.with(start, end, &typed));
-        works.then(|| Meant { why: "the condition stands first", typed, at: Some(self.tokens.stretch(start, end - 1)) })
+        works.then(|| Meant { why: "the condition comes first", typed, at: Some(self.tokens.stretch(start, end - 1)) })
     }
 
     /// `param w: 4m`, `a[1:3]`

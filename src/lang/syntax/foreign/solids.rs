@@ -52,7 +52,7 @@ impl Refusal<'_> {
                 "a solid is the shell of its faces, and a face is cut by others",
                 "surface part = trim(first, by: second, keep: (…, …, …))",
             ),
-            "union" => ("surfaces that are one make a shell", "shell name of …"),
+            "union" => ("joined surfaces are a shell", "shell name of …"),
             "hull" | "minkowski" => ("a surface through curves is made of them", "surface name = skin([…, …])"),
             _ => return None,
         };
@@ -63,7 +63,7 @@ impl Refusal<'_> {
     pub(super) fn block_of_python(&self) -> Option<Meant> {
         let opens = self.text(self.base, self.base + 1) == "with" && self.find(self.base, Kind::Colon).is_some();
         opens.then(|| Meant {
-            why: "nothing is opened for what is made: delete this line, and give each thing a name",
+            why: "nothing needs to be opened: delete this line, and give each thing a name",
             typed: "surface name = …".to_owned(),
             at: None,
         })

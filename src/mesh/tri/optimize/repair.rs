@@ -10,7 +10,7 @@ use crate::mesh::tri::optimize::flips::GAIN;
 use crate::mesh::tri::shape::Star;
 use crate::mesh::tri::triangulation::Patch;
 
-/// Share of the quality that is there which a first guess must have to be searched on.
+/// Minimum quality of the start, relative to the current worst, for the search to run.
 const MIN_START_RATIO: f64 = 0.6;
 /// Work of a bad triangle that is looked at, and of a patch that is planned anew, in evaluations of the surface.
 const MEND_WORK: u64 = 20;
