@@ -89,6 +89,9 @@ fn what_cannot_be_is_an_error_with_a_code() {
     assert_eq!(MeshPlan::new("m").size(0.0).mesh(&model).unwrap_err().to_string(), "E306 `size` must be more than 0, got 0");
     assert_eq!(MeshPlan::new("m").order(3).mesh(&model).unwrap_err().code(), "E306");
     assert_eq!(MeshPlan::new("m").count("weast", 3).mesh(&model).unwrap_err().code(), "E201");
+    assert_eq!(MeshPlan::new("m").bias("roof", 2.0).mesh(&model).unwrap_err().to_string(), "E306 `bias` must be on a curve, got `roof`");
+    assert_eq!(MeshPlan::new("m").method_on("south", Method::Mapped).mesh(&model).unwrap_err().code(), "E306");
+    assert!(model.surfaces()[0].point(f64::NAN, 7.0).iter().all(|x| x.is_finite()));
     assert_eq!(model.with_unit("furlong").unwrap_err().code(), "E306");
 }
 

@@ -1,6 +1,5 @@
 //! Curves made in Rust or by a script.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -12,6 +11,7 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::{self, Ends, Motion, Spline, build};
+use crate::lang::units::radians;
 use crate::network::Chain;
 
 /// A curve in space. Cheap to clone.
@@ -220,5 +220,5 @@ pub(super) fn rotation(about: impl Into<[f64; 3]>, axis: impl Into<[f64; 3]>, de
     if !degrees.is_finite() {
         return Err(Error::outside("degrees", degrees, "a finite number"));
     }
-    Ok(Motion::rotation(place("about", about)?, direction("axis", axis)?, degrees / 360.0 * TAU))
+    Ok(Motion::rotation(place("about", about)?, direction("axis", axis)?, radians(degrees)))
 }

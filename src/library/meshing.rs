@@ -63,7 +63,7 @@ impl MeshPlan {
         faces.settle(&mut plan, scene, self.flip, &model.tolerance).map_err(failed)?;
         for (name, said) in &self.rules {
             for target in targets(model, name)? {
-                plan.rules.push(rule(target, *said));
+                plan.rules.push(rule(target, *said, name)?);
             }
         }
         for (name, things) in &self.groups {
@@ -161,14 +161,21 @@ fn targets(model: &Model, name: &str) -> Result<Vec<Target>, Error> {
     })
 }
 
-fn rule(target: Target, said: Said) -> Rule {
+/// What is said of a target; E306 where it means nothing for such a thing.
+fn rule(target: Target, said: Said, name: &str) -> Result<Rule, Error> {
+    let is_curve = matches!(target, Target::Chain(_));
     let mut rule = Rule::on(target, Origin::NONE);
     match said {
         Said::Count(n) => rule.count = Some((n, Origin::NONE)),
         Said::Size(size) => rule.size = Some((size, Origin::NONE)),
-        Said::Bias(bias) => rule.bias = Some((bias, Origin::NONE)),
+        Said::Bias(bias) if is_curve => rule.bias = Some((bias, Origin::NONE)),
+        Said::Bias(_) => return Err(Error::outside("bias", format!("`{name}`"), "on a curve")),
+        Said::Elements(_) | Said::Method(_) if is_curve => {
+            let key = if matches!(said, Said::Elements(_)) { "elements" } else { "method" };
+            return Err(Error::outside(key, format!("`{name}`"), "on a surface or shell"));
+        }
         Said::Elements(elements) => rule.elements = Some((elements, Origin::NONE)),
         Said::Method(method) => rule.method = Some((method, Origin::NONE)),
     }
-    rule
+    Ok(rule)
 }

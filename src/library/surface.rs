@@ -10,6 +10,7 @@ use crate::base::limits::CALL_WORK;
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::geometry::Motion;
+use crate::lang::units::radians;
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow};
 use crate::session::report::DiagnosticRow;
@@ -105,7 +106,7 @@ impl Surface {
         tolerance: &Tolerance,
     ) -> Result<Self, Error> {
         let axis = surface::revolve::Axis { about: place("about", about)?, direction: direction("axis", axis)? };
-        let angle = degrees.to_radians();
+        let angle = radians(degrees);
         made(vec![profile.clone()], tolerance, |chains| Ok((surface::revolve(&chains[0], &axis, angle, fresh(), tolerance)?, Vec::new())))
     }
 
@@ -178,14 +179,22 @@ impl Surface {
         self.surface.kind().name()
     }
 
-    /// The point at u and v, each from 0 to 1.
+    /// The point at u and v; outside of their range that of the nearest place inside.
     pub fn point(&self, u: f64, v: f64) -> [f64; 3] {
+        let (u, v) = self.inside(u, v);
         self.surface.point(u, v).to_array()
     }
 
-    /// The unit normal at u and v.
+    /// The unit normal at u and v, as [`Surface::point`] takes them.
     pub fn normal(&self, u: f64, v: f64) -> [f64; 3] {
+        let (u, v) = self.inside(u, v);
         self.surface.normal(u, v).to_array()
+    }
+
+    fn inside(&self, u: f64, v: f64) -> (f64, f64) {
+        let share = |x: f64, most: f64| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
+        let u = share(u, 1.0);
+        (u, share(v, if self.surface.domain() == Domain::Triangle { 1.0 - u } else { 1.0 }))
     }
 
     /// Its area, square model units, with a relative error of 1e-10; infinite for an unbounded plane.
