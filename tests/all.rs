@@ -33,6 +33,7 @@ mod intersect_surfaces;
 mod io;
 mod isoline;
 mod joins;
+mod library;
 mod lists;
 mod lsp;
 mod mesh;

@@ -55,6 +55,7 @@ pub fn read<T: Plain>(bytes: &[u8]) -> Option<T> {
 }
 
 /// Implements [`Plain`] for a structure field by field, in the order given.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! plain {
     ($name:ty { $($field:ident),* $(,)? }) => {

@@ -69,6 +69,7 @@ pub trait StableHash {
 
 /// Implements [`StableHash`] for a structure field by field. Every field must be named, as content or behind `but` as one that
 /// adds nothing, so that a new field cannot be forgotten.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! content {
     ($name:ty { $($field:ident),* $(,)? } $(but { $($idle:ident),* $(,)? })?) => {
@@ -82,6 +83,7 @@ macro_rules! content {
 }
 
 /// Implements [`StableHash`] for an enumeration without fields by the numbers of its variants.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! content_of_word {
     ($($name:ty),* $(,)?) => {

@@ -1,6 +1,7 @@
 //! Typed 32-bit ids into plain arrays.
 
 /// Declares id types: `ids! { /// A node of the network. NodeId }`.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident),+ $(,)?) => { $(

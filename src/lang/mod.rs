@@ -41,7 +41,7 @@ mod outputs;
 mod params;
 pub mod part;
 mod pictures;
-mod places;
+pub(crate) mod places;
 pub mod plans;
 mod recall;
 mod refine;

@@ -583,6 +583,7 @@ impl<T: IntoValue> IntoValue for Option<T> {
 /// Declares an enum whose variants are words of the language.
 ///
 /// `choices! { /// How … pub enum Reparam { /// C1. Smooth = "smooth", /// As in the paper. Linear = "linear" } }`
+#[doc(hidden)]
 #[macro_export]
 macro_rules! choices {
     ($(#[$doc:meta])* pub enum $name:ident { $($(#[$vdoc:meta])* $variant:ident = $word:literal),+ $(,)? }) => {

@@ -1,8 +1,9 @@
 //! Curves of a mesh that follow a line of constant u or v of one of its faces: the face is cut there, so that the curve
 //! lies on mesh lines.
 
+use crate::base::fault::Fault;
+use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Halt};
 use crate::lang::scene::Scene;
 use crate::mesh::Plan;
 use crate::mesh::request::plan::Target;
@@ -15,8 +16,7 @@ use crate::surface::{Domain, IsoLine, Nearest, Surface, chain_breaks};
 const EACH: usize = 24;
 
 /// The scene with its faces cut along the curves of a plan that follow their lines; the rules of the plan speak of the pieces.
-pub fn along_curves(cx: &Cx, scene: Scene, plan: &mut Plan) -> Result<Scene, Halt> {
-    let tolerance = cx.tolerance()?;
+pub fn along_curves(scene: Scene, plan: &mut Plan, tolerance: &Tolerance, job: &Job) -> Result<Scene, Fault> {
     let mut cuts: Vec<(SurfaceId, Lines)> = Vec::new();
     for (id, _) in &plan.surfaces {
         let surface = &scene.model.surfaces[id.index()].surface;
@@ -25,7 +25,7 @@ pub fn along_curves(cx: &Cx, scene: Scene, plan: &mut Plan) -> Result<Scene, Hal
         }
         let mut lines = Lines::default();
         for (_, chain) in &plan.curves {
-            match followed(surface, chain, &tolerance) {
+            match followed(surface, chain, tolerance) {
                 Some(IsoLine::U(u)) => lines.u.push(u),
                 Some(IsoLine::V(v)) => lines.v.push(v),
                 None => {}
@@ -38,7 +38,7 @@ pub fn along_curves(cx: &Cx, scene: Scene, plan: &mut Plan) -> Result<Scene, Hal
     if cuts.is_empty() {
         return Ok(scene);
     }
-    let model = Model::build_cut(scene.model.surfaces.clone(), &cuts, (&scene.network, &tolerance), cx.job)?;
+    let model = Model::build_cut(scene.model.surfaces.clone(), &cuts, (&scene.network, tolerance), job)?;
     let cut = Scene { model: model.into(), network: scene.network.clone() };
     let rules = plan.rules.iter_mut().map(|rule| &mut rule.target);
     for target in rules.chain(plan.groups.iter_mut().flat_map(|group| &mut group.members)) {

@@ -8,17 +8,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::similar::similar_names;
 use super::staging::{Counted, Staging};
+pub use super::store::Outputs;
+use super::store::Store;
 use crate::base::limits;
 use crate::io::{FileError, Files};
-
-/// What a run does with its outputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outputs {
-    /// They are written.
-    Written,
-    /// They are only counted: `loft check`.
-    Counted,
-}
 
 /// Texts that stand in an editor, by resolved path: what is read instead of the files of these names.
 pub type Unsaved = Arc<BTreeMap<PathBuf, Arc<str>>>;
@@ -82,17 +75,6 @@ impl Disk {
         Self { shown_home: PathBuf::new(), ..self }
     }
 
-    /// What becomes of outputs.
-    pub fn outputs(&self) -> Outputs {
-        self.outputs
-    }
-
-    /// The resolved name of the script itself, beside which its imports are looked for.
-    pub fn script_name(&self, shown: &str) -> String {
-        let name = Path::new(shown).file_name().unwrap_or_default();
-        self.home.join(name).to_string_lossy().into_owned()
-    }
-
     /// The outputs that are staged; a clone can discard them from another thread.
     pub fn staging(&self) -> &Staging {
         &self.staging
@@ -104,27 +86,6 @@ impl Disk {
             Ok(inside) => self.shown_home.join(inside).to_string_lossy().into_owned(),
             Err(_) => resolved.to_owned(),
         }
-    }
-
-    /// What tells the file of an output from all others: its real folder and its name, letter case aside, since many
-    /// systems do not tell that apart; `None` where it may not stand.
-    pub fn file_of(&self, path: &str) -> Option<String> {
-        self.place(path).ok().map(|place| same_file(&place))
-    }
-
-    /// The files that were read, told apart as [`Disk::file_of`] does.
-    pub fn files_read(&self) -> BTreeSet<String> {
-        self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|path| same_file(path)).collect()
-    }
-
-    /// Where an output stands, for people: as seen from the working directory, in full where it is not below that.
-    pub fn told_place(&self, path: &str) -> String {
-        let place = normal_form(&self.out.join(path)).unwrap_or_else(|| self.out.join(path));
-        let here = std::env::current_dir().unwrap_or_default();
-        let below = place.strip_prefix(&here).ok().map(Path::to_owned);
-        // The folder of the script has its links resolved, the working directory may be named with some.
-        let below = below.or_else(|| place.strip_prefix(here.canonicalize().ok()?).ok().map(Path::to_owned));
-        below.unwrap_or(place).to_string_lossy().into_owned()
     }
 
     /// Where an output may stand: inside the output folder, links resolved.
@@ -188,6 +149,42 @@ impl Files for Disk {
             }
         };
         written.map_err(|error| FileError::Other(plain(&error)))
+    }
+}
+
+impl Store for Disk {
+    fn outputs(&self) -> Outputs {
+        self.outputs
+    }
+
+    fn script_name(&self, shown: &str) -> String {
+        let name = Path::new(shown).file_name().unwrap_or_default();
+        self.home.join(name).to_string_lossy().into_owned()
+    }
+
+    fn file_of(&self, path: &str) -> Option<String> {
+        self.place(path).ok().map(|place| same_file(&place))
+    }
+
+    fn files_read(&self) -> BTreeSet<String> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|path| same_file(path)).collect()
+    }
+
+    fn told_place(&self, path: &str) -> String {
+        let place = normal_form(&self.out.join(path)).unwrap_or_else(|| self.out.join(path));
+        let here = std::env::current_dir().unwrap_or_default();
+        let below = place.strip_prefix(&here).ok().map(Path::to_owned);
+        // The folder of the script has its links resolved, the working directory may be named with some.
+        let below = below.or_else(|| place.strip_prefix(here.canonicalize().ok()?).ok().map(Path::to_owned));
+        below.unwrap_or(place).to_string_lossy().into_owned()
+    }
+
+    fn commit(&self) -> io::Result<()> {
+        self.staging.commit().map(|_| ())
+    }
+
+    fn discard(&self) {
+        self.staging.discard();
     }
 }
 

@@ -3,15 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::disk::{Disk, same_file};
+use super::disk::same_file;
+use super::store::Store;
 use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
 use crate::lang::cx::Cx;
 
 /// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a
-/// module or a file that it imports; gives the files in question, as [`Disk::file_of`] tells them apart: none of them is
+/// module or a file that it imports; gives the files in question, as [`Store::file_of`] tells them apart: none of them is
 /// written. `script` is the resolved name of the script.
-pub fn one_file_each(cx: &mut Cx, disk: &Disk, script: &str) -> BTreeSet<String> {
+pub fn one_file_each(cx: &mut Cx, disk: &dyn Store, script: &str) -> BTreeSet<String> {
     let exports = cx.exports().into_iter().map(|spec| (spec.path_origin, spec.path));
     let pictures = cx.pictures().into_iter().map(|spec| (spec.path_origin, spec.path));
     let outputs: Vec<(Origin, String)> = exports.chain(pictures).collect();

@@ -9,12 +9,12 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::Scene;
-use crate::lang::value::{BodyKind, Home, ModuleId, Value};
+use crate::lang::value::{BodyKind, Home, ModuleId, ShellValue, Value};
 use crate::mesh::request::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Elements, Method, Plan, Rule};
 use crate::model::carry::Stage;
-use crate::model::{Model, SharedEdge, SurfaceId};
-use crate::network::Chain;
+use crate::model::{Model, SharedEdge, Shell, SurfaceId};
+use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
 /// Finds what the values of a mesh stand for.
@@ -26,7 +26,7 @@ struct Finder<'s> {
 
 /// The faces of a mesh by what decides their sides.
 #[derive(Default)]
-struct Faces {
+pub struct Faces {
     /// Those of no closed shell, with `true` where the other side was given.
     loose: Vec<(SurfaceId, bool)>,
     /// Those of closed shells.
@@ -35,6 +35,56 @@ struct Faces {
     imprint: Option<Origin>,
     /// Those of each solid or closed shell of an imported part.
     bodies: Vec<BTreeSet<SurfaceId>>,
+}
+
+impl Faces {
+    /// Adds surfaces by themselves, with `true` where the other side was given.
+    pub fn add_surfaces(&mut self, plan: &mut Plan, found: &[(SurfaceId, bool)]) {
+        self.loose.extend(found);
+        plan.surfaces.extend(found);
+    }
+
+    /// Adds the surfaces of a shell.
+    pub fn add_shell(&mut self, plan: &mut Plan, shell: &ShellValue, built: &Shell) {
+        self.imprint = self.imprint.or(shell.imprint);
+        for (surface, _) in &built.surfaces {
+            let near = plan.glue.entry(*surface).or_insert(built.near);
+            *near = near.max(built.near);
+        }
+        if shell.body == Some(BodyKind::Solid) || shell.body.is_some() && built.closed {
+            self.bodies.push(built.surfaces.iter().map(|s| s.0).collect());
+        }
+        if built.closed {
+            self.closed.extend(built.surfaces.iter().map(|s| s.0));
+        } else {
+            self.loose.extend(&built.surfaces);
+        }
+        plan.surfaces.extend(&built.surfaces);
+    }
+
+    /// Puts each face into the plan once, glues those by themselves as a shell of them would be, and gives faces that are of no closed
+    /// shell the sides of the shell that they would make; `flip` turns all.
+    pub fn settle(&self, plan: &mut Plan, (model, network): (&Model, &Network), flip: bool, tolerance: &Tolerance) -> Result<(), Fault> {
+        // A face of several shells, or one that is listed again, is there once.
+        let mut listed = BTreeSet::new();
+        plan.surfaces.retain(|(surface, _)| listed.insert(*surface));
+        let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
+        let near = model.reach(alone.iter().copied(), None, tolerance);
+        plan.glue.extend(alone.into_iter().map(|s| (s, near)));
+        let mut loose = self.loose.clone();
+        loose.retain(|(s, _)| !self.closed.contains(s));
+        let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
+        let sides: BTreeMap<SurfaceId, bool> = model.outward(&loose, near, network, tolerance)?.into_iter().collect();
+        for (surface, other) in &mut plan.surfaces {
+            *other = sides.get(surface).copied().unwrap_or(*other) != flip;
+        }
+        Ok(())
+    }
+
+    /// The body of each surface that shares nodes with its own body alone.
+    pub fn apart(&self, plan: &Plan, scene: &Scene, tolerance: &Tolerance) -> BTreeMap<SurfaceId, usize> {
+        super::bodies::apart(plan, &self.bodies, scene, tolerance)
+    }
 }
 
 /// The plan of a mesh and the surface model it is made on. Notes about shells go to `sink`.
@@ -52,14 +102,11 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     for (value, _) in &spec.things {
         finder.add(cx, (&mut plan, &mut faces), value, sink)?;
     }
-    // A face of several shells, or one that is listed again, is there once.
-    let mut listed = BTreeSet::new();
-    plan.surfaces.retain(|(surface, _)| listed.insert(*surface));
-    // Surfaces by themselves are glued as a shell of them would be.
-    let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
-    let near = scene.model.reach(alone.iter().copied(), None, &tolerance);
-    plan.glue.extend(alone.into_iter().map(|s| (s, near)));
-    finder.turn(&mut plan, &faces, near, spec, sink)?;
+    let flip = spec.flip.filter(|said| said.0);
+    faces.settle(&mut plan, (&scene.model, &scene.network), flip.is_some(), &tolerance)?;
+    if let (Some((_, rule)), true) = (flip, plan.surfaces.is_empty()) {
+        sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
+    }
     settings(&mut plan, spec);
     for rule in &spec.rules {
         let first = plan.rules.len();
@@ -126,9 +173,9 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
             plan.imprint = Some((imprint, origin));
         }
     } else {
-        plan.bodies = super::bodies::apart(&plan, &faces.bodies, &scene, &tolerance);
+        plan.bodies = faces.apart(&plan, &scene, &tolerance);
     }
-    let scene = super::cuts::along_curves(cx, scene, &mut plan)?;
+    let scene = super::cuts::along_curves(scene, &mut plan, &tolerance, cx.job)?;
     Ok((plan, scene))
 }
 
@@ -182,49 +229,18 @@ pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 impl Finder<'_> {
-    /// Gives faces that are of no closed shell the sides of the shell that they would make, and turns all where that is asked.
-    fn turn(&self, plan: &mut Plan, faces: &Faces, near: f64, spec: &MeshSpec, sink: &mut Vec<Fault>) -> Result<(), Halt> {
-        let mut loose = faces.loose.clone();
-        loose.retain(|(s, _)| !faces.closed.contains(s));
-        let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
-        let sides: BTreeMap<SurfaceId, bool> =
-            self.scene.model.outward(&loose, near, &self.scene.network, &self.tolerance)?.into_iter().collect();
-        let flip = spec.flip.filter(|said| said.0);
-        for (surface, other) in &mut plan.surfaces {
-            *other = sides.get(surface).copied().unwrap_or(*other) != flip.is_some();
-        }
-        if let (Some((_, rule)), true) = (flip, plan.surfaces.is_empty()) {
-            sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
-        }
-        Ok(())
-    }
-
     /// Adds a thing of the `of` list.
     fn add(&self, cx: &mut Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Halt> {
         match value {
             Value::Surface(surface) => {
                 let found = self.scene.find_all([surface])?;
-                faces.loose.extend(found.iter().copied());
-                plan.surfaces.extend(found);
+                faces.add_surfaces(plan, &found);
             }
             Value::Shell(shell) => {
                 // Whether it is open was said where the shell is declared.
                 let mut said = Vec::new();
                 let built = self.scene.shell(shell, &self.tolerance, &mut said)?;
-                faces.imprint = faces.imprint.or(shell.imprint);
-                for (surface, _) in &built.surfaces {
-                    let near = plan.glue.entry(*surface).or_insert(built.near);
-                    *near = near.max(built.near);
-                }
-                if shell.body == Some(BodyKind::Solid) || shell.body.is_some() && built.closed {
-                    faces.bodies.push(built.surfaces.iter().map(|s| s.0).collect());
-                }
-                if built.closed {
-                    faces.closed.extend(built.surfaces.iter().map(|s| s.0));
-                } else {
-                    faces.loose.extend(built.surfaces.iter().copied());
-                }
-                plan.surfaces.extend(built.surfaces);
+                faces.add_shell(plan, shell, &built);
                 // What touches is told of the mesh where it is so there.
                 sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N') && fault.code().0 != "W667"));
             }

@@ -196,7 +196,7 @@ pub struct GroupRow {
 
 crate::plain!(GroupRow { name, nodes, elements });
 
-/// A check.
+/// A check of the script.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CheckRow {
     /// Its label, or its source text.
@@ -248,15 +248,18 @@ impl Table {
     }
 }
 
-/// A value of a table.
+/// A value of a check or table.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
-#[allow(missing_docs)]
 pub enum Cell {
+    /// None.
     #[default]
     Missing,
+    /// True or false.
     Bool(bool),
+    /// A plain number, a length in model units or an angle in degrees.
     Number(f64),
+    /// Text or a word.
     Text(String),
     /// Points and other short lists of numbers.
     List(Vec<Cell>),
@@ -309,7 +312,7 @@ pub struct UnmadeRow {
     pub because: Option<String>,
 }
 
-/// A diagnostic.
+/// An error, a warning or a note about the script.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct DiagnosticRow {
     /// Code, for example `E501`.
@@ -330,12 +333,16 @@ pub struct DiagnosticRow {
 
 /// A place that a diagnostic speaks of; counts characters from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-#[allow(missing_docs)]
 pub struct LabelRow {
+    /// The script, as it is called in messages.
     pub file: String,
+    /// Its line, from 1.
     pub line: usize,
+    /// Its column, from 1.
     pub column: usize,
+    /// How many characters it speaks of.
     pub length: usize,
+    /// A few words about them.
     pub text: String,
 }
 

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::collect;
-use super::disk::{Disk, Outputs};
 use super::export;
 use super::kept::Kept;
 use super::picture_paths;
@@ -12,6 +11,7 @@ use super::pictures;
 use super::report::{OutputRow, Report, Timings, VERSION};
 use super::row_work::RowWork;
 use super::stages::Stages;
+use super::store::{Outputs, Store};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Severity, ValueFault};
 use crate::base::job::{Job, TooMuchWork};
@@ -99,12 +99,12 @@ impl Outcome {
 }
 
 /// Runs it.
-pub fn run(task: &Task, disk: &Disk, job: &Job) -> Outcome {
+pub fn run(task: &Task, disk: &dyn Store, job: &Job) -> Outcome {
     run_seen(task, disk, job, &mut |_| {})
 }
 
 /// Runs it and shows `look` the evaluated model before it goes.
-pub fn run_seen(task: &Task, disk: &Disk, job: &Job, look: &mut dyn FnMut(&mut Cx<'_>)) -> Outcome {
+pub fn run_seen(task: &Task, disk: &dyn Store, job: &Job, look: &mut dyn FnMut(&mut Cx<'_>)) -> Outcome {
     let stages = Stages::new(task.clock);
     Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(look).0
 }
@@ -121,7 +121,7 @@ pub struct Again<'k> {
 
 /// Runs it again: what did not change since the run before is taken over. The outcome is the same to the last bit as
 /// that of [`run`].
-pub fn run_again(task: &Task, disk: &Disk, job: &Job, again: Again) -> Outcome {
+pub fn run_again(task: &Task, disk: &dyn Store, job: &Job, again: Again) -> Outcome {
     let Again { kept, light, look } = again;
     let Kept { memory, stages } = std::mem::take(kept);
     let found = stages.cache.as_ref().map_or(0, |cache| cache.found());
@@ -141,7 +141,7 @@ struct Run<'r> {
     cx: Cx<'r>,
     stages: &'r Stages<'r>,
     task: &'r Task<'r>,
-    disk: &'r Disk,
+    disk: &'r dyn Store,
     report: Report,
     meshes: Vec<(String, Arc<Mesh>)>,
     bug: Option<&'static str>,
@@ -158,7 +158,7 @@ struct Run<'r> {
 }
 
 impl<'r> Run<'r> {
-    fn new(task: &'r Task<'r>, mut cx: Cx<'r>, disk: &'r Disk, stages: &'r Stages<'r>) -> Self {
+    fn new(task: &'r Task<'r>, mut cx: Cx<'r>, disk: &'r dyn Store, stages: &'r Stages<'r>) -> Self {
         let report = Report { loft: VERSION, model: task.name.to_owned(), ..Report::default() };
         cx.whole = task.full;
         Self {
@@ -462,14 +462,14 @@ impl<'r> Run<'r> {
             ok = false;
         }
         if (ok || self.task.keep_going || self.task.picture.is_some()) && !interrupted {
-            if let Err(error) = self.disk.staging().commit() {
+            if let Err(error) = self.disk.commit() {
                 diagnostics.push(Diagnostic::without_place("E808", format!("cannot write {error}")));
                 ok = false;
                 self.report.outputs.clear();
                 self.report.renamed.clear();
             }
         } else {
-            self.disk.staging().discard();
+            self.disk.discard();
             self.report.outputs.clear();
             self.report.renamed.clear();
         }

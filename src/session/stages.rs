@@ -1,6 +1,5 @@
 //! The stages of the pipeline over the kernel floors: curves to network, surfaces to model, plans to meshes.
 
-use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
@@ -10,7 +9,6 @@ use crate::base::job::Job;
 use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
-use crate::geometry::Curve;
 use crate::lang::cx::{Cx, Halt, Parts, Pipeline, Snapping, Turn};
 use crate::lang::plans::MeshSpec;
 use crate::lang::scene::Scene;
@@ -21,13 +19,12 @@ use crate::mesh::cache::reuse::Shelf;
 use crate::mesh::size::remark::Remark;
 use crate::model::Model;
 use crate::model::topology::Named;
-use crate::network::chain::same_curve;
-use crate::network::graph::Input;
 use crate::network::snap::{Hold, SnapEnd, snap};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
 use super::kept::{KeptMesh, KeptModel, KeptNetwork, KeptStages, Place};
+use super::network_inputs::inputs;
 use super::report::MeshRow;
 use super::{canonical, collect, plan};
 
@@ -152,7 +149,9 @@ impl Pipeline for Stages<'_> {
 
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt> {
         let tolerance = cx.tolerance()?;
-        let inputs = inputs(cx, parts, &tolerance);
+        let curves: Vec<(String, &Chain)> = parts.curves.iter().map(|c| (c.name.to_string(), &c.value)).collect();
+        let (modeling, surfaces) = (parts.modeling.iter().map(|m| &m.value), parts.surfaces.iter().map(|s| &s.value));
+        let inputs = inputs(&curves, (modeling.collect(), surfaces.collect()), &|origin| cx.name(origin), &tolerance);
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
         if let Some(kept) = self.kept()
             && let Some(before) = kept.networks.get(&module).filter(|before| before.fits(&inputs, &points, &tolerance))
@@ -283,81 +282,4 @@ fn say_all(cx: &mut Cx, sink: &[Fault]) {
             _ => {}
         }
     }
-}
-
-/// Curves found again by their shape: curves that are one share their ends.
-#[derive(Default)]
-struct Shapes {
-    by_ends: BTreeMap<[u64; 6], Vec<usize>>,
-}
-
-impl Shapes {
-    fn key(curve: &Curve) -> [u64; 6] {
-        let (a, b) = (curve.start(), curve.end());
-        // Adding zero makes the two zeros one.
-        [a.x, a.y, a.z, b.x, b.y, b.z].map(|x| (x + 0.0).to_bits())
-    }
-
-    fn find(&self, curve: &Curve, inputs: &[Input]) -> Option<usize> {
-        self.by_ends.get(&Self::key(curve))?.iter().copied().find(|&i| same_curve(&inputs[i].curve, curve))
-    }
-
-    fn add(&mut self, curve: &Curve, index: usize) {
-        self.by_ends.entry(Self::key(curve)).or_default().push(index);
-    }
-}
-
-/// What goes into the network, in canonical order: declared curves, nameless and `let` ones that declared surfaces stand on,
-/// with cuts where runs of modeling curves end. Other `let` curves are construction geometry and stay out.
-fn inputs(cx: &Cx, parts: &Parts, tolerance: &Tolerance) -> Vec<Input> {
-    let whole = |c: &crate::lang::cx::Declared<Chain>| {
-        let curve = c.value.whole_curve().cloned().or_else(|| c.value.runs().first().map(|run| run.curve.clone()))?;
-        Some(Input { name: c.name.to_string(), curve, cuts: Vec::new() })
-    };
-    let mut inputs: Vec<Input> = parts.curves.iter().filter_map(whole).collect();
-    canonical::sort_curves(&mut inputs, tolerance);
-    let modeling = parts.modeling.iter().map(|m| &m.value);
-    let below = || parts.surfaces.iter().flat_map(|s| s.value.chains().iter());
-    if modeling.len() == 0 && below().next().is_none() {
-        return inputs;
-    }
-    let mut shapes = Shapes::default();
-    inputs.iter().enumerate().for_each(|(i, input)| shapes.add(&input.curve, i));
-    add_nameless(cx, below(), (&mut inputs, &mut shapes), tolerance);
-    for run in modeling.chain(below()).flat_map(Chain::runs) {
-        let Some(index) = shapes.find(&run.curve, &inputs) else { continue };
-        let length = run.curve.length();
-        let inside = [run.s0, run.s1].into_iter().map(|s| if s > length { s - length } else { s });
-        inputs[index].cuts.extend(inside.filter(|s| *s > 0.0 && *s < length));
-    }
-    inputs.iter_mut().for_each(|input| input.cuts.sort_by(f64::total_cmp));
-    canonical::sort_curves(&mut inputs, tolerance);
-    inputs
-}
-
-/// Adds the curves of chains that no input is, under the text they were made by.
-fn add_nameless<'p>(
-    cx: &Cx,
-    chains: impl Iterator<Item = &'p Chain>,
-    (inputs, shapes): (&mut Vec<Input>, &mut Shapes),
-    tolerance: &Tolerance,
-) {
-    let runs = chains.flat_map(Chain::runs).filter(|run| shapes.find(&run.curve, inputs).is_none());
-    let mut nameless: Vec<(Curve, String)> = runs.map(|run| (run.curve.clone(), cx.name(run.curve.origin()))).collect();
-    canonical::sort_named(&mut nameless, tolerance);
-    let mut names: BTreeMap<String, usize> = inputs.iter().map(|i| (i.name.clone(), 1)).collect();
-    for (curve, name) in nameless {
-        if shapes.find(&curve, inputs).is_none() {
-            shapes.add(&curve, inputs.len());
-            inputs.push(Input { name: unique(&mut names, name), curve, cuts: Vec::new() });
-        }
-    }
-}
-
-/// The name, or with a number behind it where it is taken.
-fn unique(names: &mut BTreeMap<String, usize>, name: String) -> String {
-    let name = if name.is_empty() { "curve".to_owned() } else { name };
-    let taken = names.entry(name.clone()).or_insert(0);
-    *taken += 1;
-    if *taken == 1 { name } else { format!("{name} ({taken})") }
 }

@@ -54,6 +54,32 @@ pub struct Settings {
     pub origin: Origin,
 }
 
+/// E304 unless there are enough sections, all open or all closed, and points only where they may be.
+pub fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> Result<()> {
+    let wrong = |found: String, range: &str| -> Result<()> {
+        Err(ValueFault::OutsideRange { argument: "sections", found, range: range.to_owned() }.into())
+    };
+    let least = if closed { 3 } else { 2 };
+    if sections.len() < least {
+        return wrong(format!("{} sections", sections.len()), &format!("at least {least}"));
+    }
+    let is_point = |s: &Section| matches!(s, Section::Point(_));
+    let last = sections.len() - 1;
+    if let Some(k) = (0..=last).find(|k| is_point(&sections[*k]) && (closed || (*k != 0 && *k != last))) {
+        let may = if closed { "curves only where it is closed" } else { "points at the first and the last place only" };
+        return wrong(format!("a point at place {k}"), may);
+    }
+    if sections.iter().all(is_point) {
+        return wrong("points only".to_owned(), "a curve between them");
+    }
+    let curves = || sections.iter().filter_map(|s| if let Section::Curve(c) = s { Some(c) } else { None });
+    let (rings, all) = (curves().filter(|c| c.is_closed(tolerance)).count(), curves().count());
+    if rings != 0 && rings != all {
+        return wrong(format!("{rings} closed of {all} curves"), "all open or all closed");
+    }
+    Ok(())
+}
+
 /// The surface through sections in the order given, u along them, with warnings (W607, W614, N677).
 ///
 /// Every section is read in the direction, and every closed one from the start, in which it runs nearest to the section

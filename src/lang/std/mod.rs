@@ -149,18 +149,21 @@ pub fn fields() -> impl Iterator<Item = &'static Builtin> {
 /// Declares functions: docs, name, typed parameters with docs and defaults (loft text), result and body.
 ///
 /// The body is a closure without captures `|cx, a, b| -> Result<_, Halt>`; kernel faults convert with `?`.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! builtins {
     ($($body:tt)+) => { $crate::builtin_table! { BUILTINS $($body)+ } };
 }
 
 /// Declares fields: functions of one value, written `x.f` or `f(x)`; entries of one name differ by what they take.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! fields {
     ($($body:tt)+) => { $crate::builtin_table! { FIELDS $($body)+ } };
 }
 
 /// The table behind [`builtins!`] and [`fields!`].
+#[doc(hidden)]
 #[macro_export]
 macro_rules! builtin_table {
     ($table:ident $(
@@ -192,6 +195,7 @@ macro_rules! builtin_table {
 }
 
 /// `Some(text)` or `None`.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! optional_default {
     () => {

@@ -1,0 +1,181 @@
+//! A plan carried out on a model: names become surfaces, shells and curves, and the mesher makes the mesh.
+
+use std::sync::Arc;
+
+use super::curve::place as point;
+use super::error::Error;
+use super::mesh::Mesh;
+use super::model::Model;
+use super::plan::{MeshPlan, Said};
+use crate::base::fault::Fault;
+use crate::base::job::Job;
+use crate::base::origin::Origin;
+use crate::lang::cx::Halt;
+use crate::lang::settings::bounds;
+use crate::lang::units::{number_text, radians};
+use crate::mesh;
+use crate::mesh::request::plan::{GroupRequest, Place, Refine};
+use crate::mesh::{Plan, Rule, Target};
+use crate::model::SurfaceId;
+use crate::model::topology::Shell;
+use crate::session::cuts::along_curves;
+use crate::session::plan::Faces;
+
+/// What a name stands for in a model.
+enum Thing {
+    Surface(SurfaceId),
+    Shell(usize),
+    Curve(usize),
+}
+
+impl MeshPlan {
+    /// The mesh of a model by this plan.
+    ///
+    /// Fails with E201 for a name that the model does not have, E306 for a number out of its range, E7xx where a face cannot be meshed as
+    /// asked.
+    pub fn mesh(&self, model: &Model) -> Result<Mesh, Error> {
+        self.in_range()?;
+        let mut plan = Plan::of(&self.name, Vec::new());
+        self.settings(&mut plan);
+        let mut faces = Faces::default();
+        let mut said: Vec<Fault> = Vec::new();
+        let failed = |fault: Fault| Error::of_fault(&fault, &model.speaker());
+        for name in &self.things {
+            match find(model, name)? {
+                Thing::Surface(id) => faces.add_surfaces(&mut plan, &[(id, false)]),
+                Thing::Shell(k) => faces.add_shell(&mut plan, &model.shells[k], &built(model, k, &mut said)?),
+                Thing::Curve(_) => {
+                    return Err(Error::outside("of", format!("the curve `{name}`"), "surfaces and shells; curves are `lines`"));
+                }
+            }
+        }
+        if self.things.is_empty() {
+            let all: Vec<_> = model.surfaces.iter().filter_map(|s| place(model, s.name())).map(|id| (id, false)).collect();
+            faces.add_surfaces(&mut plan, &all);
+        }
+        for name in &self.lines {
+            match find(model, name)? {
+                Thing::Curve(k) => plan.curves.push((name.clone(), model.curves[k].chain.clone())),
+                _ => return Err(Error::outside("lines", format!("`{name}`"), "curves")),
+            }
+        }
+        let scene = (model.scene.model.as_ref(), model.scene.network.as_ref());
+        faces.settle(&mut plan, scene, self.flip, &model.tolerance).map_err(failed)?;
+        for (name, said) in &self.rules {
+            for target in targets(model, name)? {
+                plan.rules.push(rule(target, *said, name)?);
+            }
+        }
+        for (name, things) in &self.groups {
+            let members: Vec<Vec<Target>> = things.iter().map(|thing| targets(model, thing)).collect::<Result<_, _>>()?;
+            plan.groups.push(GroupRequest { name: name.clone(), members: members.concat(), origin: Origin::NONE });
+        }
+        for (near, size, radius) in &self.refines {
+            let at = vec![Place::Point(point("near", *near)?)];
+            plan.refines.push(Refine { at, size: (*size, Origin::NONE), radius: *radius, origin: Origin::NONE });
+        }
+        plan.bodies = faces.apart(&plan, &model.scene, &model.tolerance);
+        let (mesh, found) = self.build(plan, model).map_err(failed)?;
+        said.extend(found);
+        let groups = self.groups.iter().map(|group| group.0.clone()).collect();
+        Ok(Mesh::new(Arc::new(mesh), (model.tolerance, model.unit), groups, model.rows(&said)))
+    }
+
+    /// The mesh of a finished plan with what is to be said about its rules.
+    fn build(&self, mut plan: Plan, model: &Model) -> Result<(mesh::Mesh, Vec<Fault>), Fault> {
+        let job = Job::new();
+        let scene = along_curves(model.scene.clone(), &mut plan, &model.tolerance, &job)?;
+        let evened = scene.model.evened(plan.surfaces.iter().map(|surface| surface.0));
+        let stage = evened.as_ref().unwrap_or(scene.model.as_ref());
+        let input = mesh::Input { plan: &plan, model: stage, network: &scene.network, tolerance: &model.tolerance };
+        let built = mesh::Outline::new(&input)?.build(&input, None, &job)?;
+        let said = built.remarks.iter().map(|remark| remark.fault(&input)).collect();
+        Ok((built.mesh, said))
+    }
+
+    fn settings(&self, plan: &mut Plan) {
+        let said = |x: Option<f64>| x.map(|x| (x, Origin::NONE));
+        plan.size = said(self.size);
+        plan.chord_error = said(self.chord_error);
+        plan.angle_error = said(self.angle_error.map(radians));
+        plan.min_size = said(self.min_size);
+        plan.growth = said(self.growth);
+        plan.elements = self.elements;
+        plan.order = self.order;
+        plan.method = self.method;
+        plan.conforming = self.conforming;
+    }
+
+    /// E306 for the first number that is out of the range that scripts have for it.
+    fn in_range(&self) -> Result<(), Error> {
+        let whole = [("size", self.size), ("chord_error", self.chord_error), ("angle_error", self.angle_error)];
+        let more = [("min_size", self.min_size), ("growth", self.growth), ("order", Some(f64::from(self.order)))];
+        let of_rules = self.rules.iter().filter_map(|(_, said)| match said {
+            Said::Count(n) => Some(("count", f64::from(*n))),
+            Said::Size(size) => Some(("size", *size)),
+            Said::Bias(bias) => Some(("bias", *bias)),
+            Said::Elements(_) | Said::Method(_) => None,
+        });
+        let of_refines = self.refines.iter().flat_map(|(_, size, radius)| [("size", *size), ("radius", *radius)]);
+        let said = whole.into_iter().chain(more).filter_map(|(key, x)| Some((key, x?)));
+        for (key, x) in said.chain(of_rules).chain(of_refines) {
+            let wrong =
+                if x.is_finite() { bounds(key).iter().find(|bound| !(bound.0)(x)).map(|bound| bound.1) } else { Some("a finite number") };
+            if let Some(range) = wrong {
+                return Err(Error::outside(key, number_text(x), range));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The place of a declared surface in the surface model.
+fn place(model: &Model, name: &str) -> Option<SurfaceId> {
+    model.scene.model.surfaces.iter().position(|named| named.name == name).map(SurfaceId::at)
+}
+
+/// What a name stands for; E201 where it stands for nothing.
+fn find(model: &Model, name: &str) -> Result<Thing, Error> {
+    if let Some(id) = place(model, name) {
+        return Ok(Thing::Surface(id));
+    }
+    let shell = model.shells.iter().position(|shell| *shell.name == *name).map(Thing::Shell);
+    let curve = || model.curves.iter().position(|curve| curve.name() == name).map(Thing::Curve);
+    shell.or_else(curve).ok_or_else(|| Error::new("E201", format!("`{name}` is no surface, shell or curve of the model")))
+}
+
+/// A shell as the surface model sees it.
+fn built(model: &Model, k: usize, said: &mut Vec<Fault>) -> Result<Shell, Error> {
+    model.scene.shell(&model.shells[k], &model.tolerance, said).map_err(|halt| match halt {
+        Halt::Fault(fault) => Error::of_fault(&fault, &model.speaker()),
+        _ => Error::new("E999", format!("a bug in loft: the shell `{}` is not in its model", model.shells[k].name)),
+    })
+}
+
+/// What rules and groups say of a thing they say of these.
+fn targets(model: &Model, name: &str) -> Result<Vec<Target>, Error> {
+    Ok(match find(model, name)? {
+        Thing::Surface(id) => vec![Target::Surface(id)],
+        Thing::Shell(k) => built(model, k, &mut Vec::new())?.surfaces.iter().map(|found| Target::Surface(found.0)).collect(),
+        Thing::Curve(k) => vec![Target::Chain(model.curves[k].chain.clone())],
+    })
+}
+
+/// What is said of a target; E306 where it means nothing for such a thing.
+fn rule(target: Target, said: Said, name: &str) -> Result<Rule, Error> {
+    let is_curve = matches!(target, Target::Chain(_));
+    let mut rule = Rule::on(target, Origin::NONE);
+    match said {
+        Said::Count(n) => rule.count = Some((n, Origin::NONE)),
+        Said::Size(size) => rule.size = Some((size, Origin::NONE)),
+        Said::Bias(bias) if is_curve => rule.bias = Some((bias, Origin::NONE)),
+        Said::Bias(_) => return Err(Error::outside("bias", format!("`{name}`"), "on a curve")),
+        Said::Elements(_) | Said::Method(_) if is_curve => {
+            let key = if matches!(said, Said::Elements(_)) { "elements" } else { "method" };
+            return Err(Error::outside(key, format!("`{name}`"), "on a surface or shell"));
+        }
+        Said::Elements(elements) => rule.elements = Some((elements, Origin::NONE)),
+        Said::Method(method) => rule.method = Some((method, Origin::NONE)),
+    }
+    Ok(rule)
+}
