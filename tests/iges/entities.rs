@@ -390,7 +390,7 @@ fn circles(f: &mut File) {
 fn circles_of_pointers_end() {
     let part = part(circles);
     assert!(part.curves.len() > 1 && part.curves.iter().any(|c| (c.value.length() - 7.0).abs() < 1e-15));
-    for expected in ["made of itself", "in a circle", "no surface", "repeats"] {
+    for expected in ["made of itself", "in a circle", "not a surface", "repeats"] {
         assert!(part.warnings.iter().any(|w| w.what.contains(expected)), "{expected}: {:#?}", part.warnings);
     }
 }
