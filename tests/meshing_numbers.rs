@@ -417,7 +417,7 @@ fn looser_limits_never_take_more_steps_along_a_curve() {
             assert!(steps <= before, "{profile}{limit}°: {steps} after {before}");
             before = steps;
             assert!(turn(&mesh) <= limit.to_radians() * 1.0001, "{profile}{limit}°: {}", turn(&mesh).to_degrees());
-            // UniformSize steps over samples of the tangent.
+            // Even steps over samples of the tangent.
             let geometry = &mesh.geometries.0[0];
             let jets: Vec<(DVec3, DVec3)> = (0..=1000)
                 .map(|k| f64::from(k) / 1000.0)

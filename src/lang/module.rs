@@ -23,7 +23,7 @@ pub(super) enum State {
     Waiting,
     /// Being evaluated; being asked for now is a cycle.
     Running,
-    /// Dependencies for the tolerance before it was known.
+    /// Asked for the tolerance before it was known.
     Suspended,
     /// Evaluated.
     Done(Value),

@@ -1,4 +1,4 @@
-//! MemoryBudget for lists: what a run holds is counted before it is made, so that no script eats the machine.
+//! A memory budget for lists: what a run holds is counted before it is made, so that no script eats the machine.
 //!
 //! A member takes 32 bytes and a list of its own some more. What a declaration made on the way is given back when it is
 //! evaluated, all but the value that it keeps.

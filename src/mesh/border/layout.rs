@@ -43,7 +43,7 @@ pub struct Face {
     pub elements: Elements,
     /// Method.
     pub method: Method,
-    /// FaceInput freely: grown from its border instead of mapped.
+    /// Made freely: grown from its border instead of mapped.
     pub free: bool,
     /// Target size inside, model units, and the rule that says so.
     pub size: (f64, Option<usize>),

@@ -29,7 +29,7 @@ pub struct FaceInput<'a> {
 /// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
 pub(crate) fn outlined(made: &FaceInput, face: &Face) -> Option<(FaceBorder, Chart, Outline)> {
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    // FaceInput ready once for the border and the chart.
+    // Made ready once for the border and the chart.
     let _ready = surface.power_form();
     let mut border = border(made, face);
     let chart = Chart::new(surface, border.uv.iter().copied())?;

@@ -62,7 +62,7 @@ pub trait ParametricSurface: Sync {
     fn clamp(&self, xy: DVec2) -> DVec2;
 }
 
-/// SizeRequests edge length over a surface.
+/// Wanted edge length over a surface.
 pub trait SizeField: Sync {
     /// Model units, positive.
     fn size(&self, xy: DVec2, p: DVec3) -> f64;

@@ -4,7 +4,7 @@ use crate::mesh::mapped::grid::{Grid, GridIds};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds, lattice_points};
 use crate::surface::Surface;
 
-/// FaceGeometries of the faces of a mesh, in the order of its faces; they ride along for measuring and never decide whether two
+/// Geometries of the faces of a mesh, in the order of its faces; they ride along for measuring and never decide whether two
 /// meshes are equal.
 #[derive(Clone, Debug, Default)]
 pub struct FaceGeometries(pub Vec<FaceGeometry>);

@@ -354,7 +354,7 @@ pub fn stationary(c: [f64; 3]) -> Option<(f64, [f64; 3])> {
     l.iter().all(|x| *x > 0.0).then(|| (c[0] * l[1] * l[2] + c[1] * l[2] * l[0] + c[2] * l[0] * l[1], l))
 }
 
-/// SizeRequests edge length for limits at a place: of an equilateral triangle, however it lies.
+/// Wanted edge length for limits at a place: of an equilateral triangle, however it lies.
 ///
 /// On the local quadric of principal curvatures k1 ≥ |k2| it is at most k1 h² (1/8 + max(k2/k1, 0)/24) away.
 pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
@@ -384,7 +384,7 @@ const MOST_TALL: f64 = 2.0;
 /// Lengths tried for them.
 const MORE_TRIES: usize = 8;
 
-/// SizeRequests length of an edge along a direction of a border, where triangles may be long, on a face that is nowhere wider than
+/// Wanted length of an edge along a direction of a border, where triangles may be long, on a face that is nowhere wider than
 /// `wide`: by the curvature along it, and by the twist; where triangles may lean along the border, `leans`, by what is left of the twist for those
 /// that lean to where there is none, as along the lines of a cylinder.
 ///

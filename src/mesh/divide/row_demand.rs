@@ -12,7 +12,7 @@ const CELLS: usize = 32;
 /// Room that a row has above the size (language reference, mesh settings).
 pub const SIZE_ROOM: f64 = 1.05;
 
-/// SizeRequests steps in one direction of a face: for the size, and the least for chord and angle.
+/// Wanted steps in one direction of a face: for the size, and the least for chord and angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RowDemand {
     /// For the size.

@@ -15,7 +15,7 @@ use crate::model::glue::root;
 pub struct Stretch {
     /// Least count that limits (chord, angle, shape) allow, with at least 1.
     pub least: u32,
-    /// SizeRequests count: the largest of size and limits.
+    /// Wanted count: the largest of size and limits.
     pub demand: u32,
     /// A written count.
     pub written: Option<u32>,

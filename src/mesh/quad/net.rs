@@ -17,7 +17,7 @@ pub struct Net {
     pub xy: Vec<DVec2>,
     /// Unit normals of the surface there; zero where there is none.
     pub normal: Vec<DVec3>,
-    /// SizeRequests lengths.
+    /// Wanted lengths.
     pub size: Vec<f64>,
     /// Number of border nodes.
     pub fixed: u32,

@@ -37,7 +37,7 @@ const ROUNDS: usize = 64;
 /// What is lowered by less is not carried on.
 const MIN_GAIN: f64 = 0.99;
 
-/// SizeRequests lengths along a segment, from its start to its end, linear between places.
+/// Wanted lengths along a segment, from its start to its end, linear between places.
 #[derive(Clone, Debug)]
 pub struct BorderSpacing {
     /// Fractions of the length, 0 to 1.
@@ -285,7 +285,7 @@ impl SpacingSolver<'_> {
         }
     }
 
-    /// BorderSpacings of segments by the borders that face them alone; longer by `slope` away from there. Those that rows of mapped
+    /// Spacings of segments by the borders that face them alone; longer by `slope` away from there. Those that rows of mapped
     /// faces do not follow are apart.
     fn narrowed(&self, slope: f64) -> (Vec<Option<BorderSpacing>>, Vec<Option<BorderSpacing>>) {
         let mut places: [Vec<Vec<(f64, f64)>>; 2] = [vec![Vec::new(); self.even.len()], vec![Vec::new(); self.even.len()]];
@@ -508,7 +508,7 @@ impl Sampler<'_> {
     }
 }
 
-/// SizeRequests lengths along the segments of one face.
+/// Wanted lengths along the segments of one face.
 fn of_face(input: &Input, layout: &Layout, (f, rows): (usize, &[Beside]), limits: &Limits) -> Vec<(usize, Vec<f64>)> {
     let own = &layout.faces[f];
     let surface = &input.model.surfaces[own.surface.index()].surface;

@@ -80,7 +80,7 @@ pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<Beside>>
         let surface = &input.model.surfaces[own.surface.index()].surface;
         let bends = own.free && !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
         let asked = bends || limits.chord.is_some() && is_off(input, own, surface);
-        // FaceInput ready once for all sides.
+        // Made ready once for all sides.
         let _ready = if asked { surface.power_form() } else { None };
         let sides = own.sides.iter().enumerate().filter(|_| asked);
         sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, (k, u)))).collect()

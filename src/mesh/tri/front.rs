@@ -69,7 +69,7 @@ pub struct PlacedNodes {
     pub xy: Vec<DVec2>,
     /// Points.
     pub p: Vec<DVec3>,
-    /// SizeRequests lengths there.
+    /// Wanted lengths there.
     pub size: Vec<f64>,
     /// There would have been more than the limit.
     pub full: bool,

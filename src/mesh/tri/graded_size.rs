@@ -1,4 +1,4 @@
-//! SizeRequests lengths over a face: a grid over its chart that no length grows faster across than allowed.
+//! Wanted lengths over a face: a grid over its chart that no length grows faster across than allowed.
 
 use glam::{DVec2, DVec3};
 

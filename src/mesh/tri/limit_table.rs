@@ -40,7 +40,7 @@ impl LimitRatio {
     }
 }
 
-/// LimitTable of the triangles of a triangulation, each found once for the same corners at the same places.
+/// Limit ratios of the triangles of a triangulation, each found once for the same corners at the same places.
 #[derive(Default)]
 pub struct LimitTable {
     seen: Vec<([DVec2; 3], LimitRatio)>,

@@ -62,7 +62,7 @@ pub struct MeshOptimizer<'a> {
     pub triangulation: Triangulation,
     /// Their surface.
     pub chart_surface: &'a dyn ParametricSurface,
-    /// SizeRequests lengths.
+    /// Wanted lengths.
     pub field: &'a dyn SizeField,
     /// How.
     pub settings: OptimizeSettings,

@@ -37,7 +37,7 @@ const MAX_SAMPLES: usize = 16;
 pub struct Plot<'a> {
     /// The surface.
     pub chart_surface: &'a dyn ParametricSurface,
-    /// SizeRequests lengths.
+    /// Wanted lengths.
     pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,

@@ -20,7 +20,7 @@ pub struct Triangulation {
     pub p: Vec<DVec3>,
     /// Their places in the chart.
     pub xy: Vec<DVec2>,
-    /// SizeRequests lengths.
+    /// Wanted lengths.
     pub size: Vec<f64>,
     /// Number of border nodes.
     pub fixed: u32,

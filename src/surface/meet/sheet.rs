@@ -162,7 +162,7 @@ impl Cell {
         self.size.0.max(self.size.1)
     }
 
-    /// Interval of the points along a vector.
+    /// Range of the points along a vector.
     pub fn along(&self, n: DVec3) -> Interval {
         let (s, (a, b)) = (&self.enclosure, self.enclosure.half);
         let (ra, rb) = (Interval::around_zero(a), Interval::around_zero(b));

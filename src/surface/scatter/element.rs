@@ -108,7 +108,7 @@ impl Piece {
         }
     }
 
-    /// Interval3 over the part of it in a rectangle: Taylor's formula about the middle of that part's box, with second derivatives
+    /// Ranges over the part of it in a rectangle: Taylor's formula about the middle of that part's box, with second derivatives
     /// that are linear, and the hulls of Bézier ordinates.
     pub fn heights(&self, low: DVec2, high: DVec2) -> Heights {
         let (own_low, own_high) = self.bounds();

@@ -31,7 +31,7 @@ pub struct Height {
     pub d2: [f64; 3],
 }
 
-/// Interval3 of the same.
+/// Ranges of the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Heights {
     /// Value.
@@ -290,7 +290,7 @@ impl Field {
         }
     }
 
-    /// Interval3 of the height over a rectangle: those of every piece that meets it, and of what is beyond the border there.
+    /// Ranges of the height over a rectangle: those of every piece that meets it, and of what is beyond the border there.
     fn heights(&self, u: (f64, f64), v: (f64, f64)) -> Heights {
         let (low, high) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
         let ((i0, i1), (j0, j1)) = (span(self.table.cells, u.0, u.1), span(self.table.cells, v.0, v.1));
@@ -314,7 +314,7 @@ impl Field {
         whole.unwrap_or(Heights { h: Interval::default(), d1: [Interval::default(); 2], d2: [Interval::default(); 3] })
     }
 
-    /// Interval3 of what goes on beyond a side and its ends, as far as a rectangle with these corners (model units) reaches.
+    /// Ranges of what goes on beyond a side and its ends, as far as a rectangle with these corners (model units) reaches.
     fn outside(&self, rim: &Rim, corners: &[DVec2; 4], far: f64) -> Heights {
         let piece = &self.pieces[rim.piece];
         let (t, n) = (rim.along, -rim.along.perp());
