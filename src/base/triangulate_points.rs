@@ -31,7 +31,7 @@ pub struct Triangles {
 pub const NO_TRIANGLE: u32 = u32::MAX;
 
 /// One of so many nodes looks whether the triangulation should go on when it is asked where it is.
-const MAX_SAMPLES: u32 = 32;
+const NODES_PER_LOOK: u32 = 32;
 
 #[derive(Clone, Copy)]
 struct Node {
@@ -43,7 +43,7 @@ impl HasPosition for Node {
     type Scalar = f64;
     fn position(&self) -> Point2<f64> {
         // The only place of ours that a long triangulation comes by: every predicate asks for its points.
-        if self.index.is_multiple_of(MAX_SAMPLES) {
+        if self.index.is_multiple_of(NODES_PER_LOOK) {
             job::look();
         }
         self.at

@@ -17,7 +17,7 @@ const BOXES: usize = 3;
 /// Degree up to which bounds over those of a net of one weight are near enough.
 const PLAIN: usize = 3;
 /// Bounds over smaller boxes as a share of those over larger ones, from which on boxes are small enough.
-const MIN_GAIN: f64 = 0.75;
+const MAX_BOUND_RATIO: f64 = 0.75;
 /// What bounds in any direction weigh beside those along the normal: triangles hardly lean.
 const LEANING: f64 = 0.1;
 /// Halvings of a box along each direction.
@@ -106,7 +106,7 @@ impl Thirds {
                 let inner: Vec<(usize, usize)> = (0..BOXES * BOXES).map(|k| (i * BOXES + k % BOXES, j * BOXES + k / BOXES)).collect();
                 let of_parts: f64 = inner.iter().map(|(i, j)| self.nodes[j * n + i].third.weight(high - low)).sum();
                 // What is one over the whole span and over its boxes will be over smaller ones.
-                if of_parts < MIN_GAIN * (BOXES * BOXES) as f64 * over((low, high)).weight(high - low) {
+                if of_parts < MAX_BOUND_RATIO * (BOXES * BOXES) as f64 * over((low, high)).weight(high - low) {
                     open.extend(inner.into_iter().map(|(i, j)| (j * n + i, self.area((i, j)), [0; 2])));
                 }
             }
@@ -120,7 +120,7 @@ impl Thirds {
                 (0.5 * (parts[0].1.weight(wide) + parts[1].1.weight(wide)), axis, parts)
             });
             let Some((weight, axis, parts)) = tries.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-            if weight < MIN_GAIN * whole {
+            if weight < MAX_BOUND_RATIO * whole {
                 halved += 1;
                 let first = self.nodes.len();
                 self.nodes[node].halves = Some((axis, first as u32));

@@ -9,11 +9,11 @@ use crate::model::segments::SegmentUse;
 use crate::network::Chain;
 
 /// Shares of a segment at which it is looked at.
-const MAX_SAMPLES: [f64; 7] = [0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0];
+const SAMPLE_SHARES: [f64; 7] = [0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0];
 
 /// Fractions of a chain at places of a segment; `None` where one is off it.
-fn fractions(input: &Input, layout: &Layout, chain: &Chain, segment: usize) -> [Option<f64>; MAX_SAMPLES.len()] {
-    MAX_SAMPLES.map(|share| {
+fn fractions(input: &Input, layout: &Layout, chain: &Chain, segment: usize) -> [Option<f64>; SAMPLE_SHARES.len()] {
+    SAMPLE_SHARES.map(|share| {
         let (fraction, _, distance) = chain.closest(layout.point(segment, share));
         (distance <= input.tolerance.point).then_some(fraction)
     })
@@ -59,12 +59,12 @@ pub fn cut_short(input: &Input, layout: &Layout, chain: &Chain, known: &[usize])
     let touches = |segment: &usize| {
         let ends = layout.pieces.segments[*segment].ends;
         let corners = [ends.0, ends.1].map(|j| layout.pieces.junctions[j]);
-        Box3::of(MAX_SAMPLES.map(|share| layout.point(*segment, share)).into_iter().chain(corners)).touches(&around, near)
+        Box3::of(SAMPLE_SHARES.map(|share| layout.point(*segment, share)).into_iter().chain(corners)).touches(&around, near)
     };
     // Two neighbouring places of one on the other, and what lies between them.
     let of_segment = |segment: usize| {
         let on = |share: f64| chain.closest(layout.point(segment, share)).2 <= near;
-        MAX_SAMPLES.windows(2).any(|w| [w[0], 0.5 * (w[0] + w[1]), w[1]].into_iter().all(on))
+        SAMPLE_SHARES.windows(2).any(|w| [w[0], 0.5 * (w[0] + w[1]), w[1]].into_iter().all(on))
     };
     let of_chain = |segment: usize| {
         let on = |k: u32| layout.distance(segment, chain.point(f64::from(k) / f64::from(2 * PLACES))) <= near;

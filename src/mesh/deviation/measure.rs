@@ -14,16 +14,16 @@ use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::deviation::triangle::stationary;
 use crate::mesh::mapped::grid::{Grid, triangle_rows};
 use crate::surface::quick::PowerForm;
-use crate::surface::{Domain, Surface, foot_within};
+use crate::surface::{Domain, Surface, foot_within, step};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
 /// Share of what a triangle seems to be off that it is at least, where it does not only seem so.
-const MIN_GAIN: f64 = 0.5;
+const MIN_TRUE_SHARE: f64 = 0.5;
 /// Triangles that one thread measures at a time.
 const BATCH: usize = 1024;
 /// Triangles of a row that are followed at most, but for those that only seem far.
-const FOLLOWED: usize = 64;
+const FOLLOWED: usize = 256;
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
 pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
@@ -52,7 +52,8 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
             let point = |(u, v)| surface.point_by(quick.as_ref(), u, v);
             let of_half = |k: usize| {
                 let at = beside_pole(surface, halves[k].map(|n| uv[n]));
-                of_triangle(&point, at, halves[k].map(|n| nodes[ids[n] as usize]))
+                let seen = of_triangle(&point, at, halves[k].map(|n| nodes[ids[n] as usize]));
+                bounded((surface, quick.as_ref()), seen)
             };
             let batches = par::map(halves.len().div_ceil(BATCH), |batch| {
                 (batch * BATCH..halves.len().min((batch + 1) * BATCH)).map(of_half).collect::<Vec<_>>()
@@ -252,6 +253,19 @@ fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points
     seen
 }
 
+/// The point with its distance from a near surface point, which its foot is no farther than: where (u, v) shear a surface, what is off along
+/// the normal of the triangle may be less than the distance.
+fn bounded((surface, quick): (&Surface, Option<&PowerForm>), seen: Seen) -> Seen {
+    let jet = surface.jet_by(quick, seen.uv.0, seen.uv.1);
+    let gap = seen.p - jet.p;
+    let Some(by) = step(jet.du, jet.dv, gap) else { return Seen { seems: gap.length(), ..seen } };
+    let (closed_u, closed_v) = surface.closed();
+    let held = |x: f64, closed: bool| if closed { x } else { x.clamp(0.0, 1.0) };
+    let uv = (held(seen.uv.0 + by.x, closed_u), held(seen.uv.1 + by.y, closed_v));
+    let there = surface.point_by(quick, uv.0, uv.1).distance(seen.p);
+    if there < gap.length() { Seen { seems: there, uv, ..seen } } else { Seen { seems: gap.length(), ..seen } }
+}
+
 /// Follows the triangles that seem farthest to their feet: the distance of the farthest.
 fn follow((surface, quick): (&Surface, Option<&PowerForm>), mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
     farthest.retain(|s| s.seems > tolerance.rounding);
@@ -270,7 +284,7 @@ fn follow((surface, quick): (&Surface, Option<&PowerForm>), mut farthest: Vec<Se
         }
         let distance = foot_within((surface, quick), seen.p, seen.uv, u, v).0;
         // What only seems far, as beside a pole, is passed by.
-        followed += usize::from(distance >= MIN_GAIN * seen.seems);
+        followed += usize::from(distance >= MIN_TRUE_SHARE * seen.seems);
         most = f64::max(most, distance);
     }
     most

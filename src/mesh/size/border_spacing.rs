@@ -35,7 +35,7 @@ const MOST_PLACES: usize = 1 << 20;
 /// Rounds in which short steps are carried on to neighbours.
 const ROUNDS: usize = 64;
 /// What is lowered by less is not carried on.
-const MIN_GAIN: f64 = 0.99;
+const CHANGE_WORTH_CARRYING: f64 = 0.99;
 
 /// Wanted lengths along a segment, from its start to its end, linear between places.
 #[derive(Clone, Debug)]
@@ -274,9 +274,9 @@ impl SpacingSolver<'_> {
     fn why(&self, k: usize, (f, length): (f64, f64), (bent, gap): (Option<&BorderSpacing>, Option<&BorderSpacing>)) -> Why {
         let size = self.ask.size[k];
         let sources = &self.ask.wanted.sources;
-        let about = |x: f64| x * MIN_GAIN <= length;
+        let about = |x: f64| x * CHANGE_WORTH_CARRYING <= length;
         match sources.who(self.layout.point(k, f), size) {
-            _ if length >= size * MIN_GAIN => Why::Size,
+            _ if length >= size * CHANGE_WORTH_CARRYING => Why::Size,
             Some(least) if about(least.size) => Why::Refined(sources.items()[least.item as usize].tag as usize),
             _ if length <= self.ask.wanted.written => Why::Floor,
             _ if bent.is_some_and(|spacing| about(spacing.length_at(f))) => Why::Bends,
@@ -376,7 +376,7 @@ impl SpacingSolver<'_> {
             }
             let found = par::map(now.len(), |n| self.within(&groups[now[n]], spacings));
             for (k, spacing) in found.into_iter().flatten() {
-                if spacing.at.iter().zip(&spacing.lengths).any(|(f, l)| *l < MIN_GAIN * spacings[k].length_at(*f)) {
+                if spacing.at.iter().zip(&spacing.lengths).any(|(f, l)| *l < CHANGE_WORTH_CARRYING * spacings[k].length_at(*f)) {
                     // Two faces may both have lowered it.
                     spacings[k] = lower_of(&spacings[k], &spacing);
                     open.extend(&of_segment[k]);

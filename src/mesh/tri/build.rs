@@ -141,7 +141,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
     let corner = |n: u32| (task.outline.xy[n as usize], task.outline.p[n as usize]);
     // Breadth first: what is left when there are too many is small.
     let mut open: VecDeque<_> = (0..kept.len()).filter(|t| kept[*t]).map(|t| coarse.corners[t].map(corner)).collect();
-    let (mut total, mut left) = (0.0, MAX_SAMPLES + open.len());
+    let (mut total, mut left) = (0.0, MAX_DIVIDED + open.len());
     while let Some(c) = open.pop_front() {
         let middle = (c.iter().map(|c| c.0).sum::<DVec2>() / 3.0, c.iter().map(|c| c.1).sum::<DVec3>() / 3.0);
         let size = task.field.size(middle.0, middle.1);
@@ -163,7 +163,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
 }
 
 /// Triangles that are divided when nodes are counted ahead, beside those between border nodes.
-const MAX_SAMPLES: usize = 10_000;
+const MAX_DIVIDED: usize = 10_000;
 /// Nodes up to which lengths are taken as one over a triangle.
 const FEW: f64 = 8.0;
 /// Ratio of lengths that count as one.

@@ -34,7 +34,7 @@ const ROUNDS: usize = 8;
 /// Passes in which pairs are joined whose bounds are too large before the nodes round them are moved.
 const RELAXED_ROUNDS: usize = 2;
 /// A round that takes out a smaller share of the nodes is the last one.
-const MIN_GAIN: f64 = 0.002;
+const MIN_REMOVED_SHARE: f64 = 0.002;
 /// Least quality of a triangle that is made: long ones are meant, needles are not.
 const LEAST: f64 = 0.01;
 /// A flip must lower the sum of the squares of two bounds to this share: none goes to and fro.
@@ -127,7 +127,7 @@ impl Thinner<'_> {
             gone += thinning.join(job)?;
             thinning.flip();
             thinning.relax(job)?;
-            if gone as f64 <= MIN_GAIN * n as f64 {
+            if gone as f64 <= MIN_REMOVED_SHARE * n as f64 {
                 break;
             }
         }

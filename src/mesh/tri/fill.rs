@@ -7,7 +7,7 @@ use crate::mesh::chart::outline::is_left;
 /// Nodes round a cell that is filled by looking at all its triangulations.
 pub const MOST: usize = 12;
 /// Errors that differ by less count as one; then the larger least angle is better.
-const SIZE_RATIO_EQUAL: f64 = 0.99;
+const ERROR_RATIO_EQUAL: f64 = 0.99;
 
 /// The triangles of a cell, by the places of their corners in its polygon, and the worst error among them.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,10 +33,10 @@ impl Worth {
     }
 
     fn beats(&self, other: &Self) -> bool {
-        if self.load < SIZE_RATIO_EQUAL * other.load {
+        if self.load < ERROR_RATIO_EQUAL * other.load {
             return true;
         }
-        other.load >= SIZE_RATIO_EQUAL * self.load && self.sharpest < other.sharpest
+        other.load >= ERROR_RATIO_EQUAL * self.load && self.sharpest < other.sharpest
     }
 }
 
@@ -63,7 +63,7 @@ pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f
                 }
                 // What the parts beside it cost alone is too much.
                 let least = a.0.load.max(b.0.load);
-                if best[i * n + k].is_some_and(|(known, _)| known.load < SIZE_RATIO_EQUAL * least) {
+                if best[i * n + k].is_some_and(|(known, _)| known.load < ERROR_RATIO_EQUAL * least) {
                     continue;
                 }
                 let error = load([i, j, k]);

@@ -27,7 +27,7 @@ const APART: f64 = 0.7;
 const TAKEN: f64 = 0.5 * APART;
 /// Distance of two places, as a share of the wanted length, within which what is near to one counts as near to the other: nodes may be as
 /// much nearer to each other.
-const SIZE_RATIO_EQUAL: f64 = 0.02;
+const SAME_PLACE_SHARE: f64 = 0.02;
 /// Nearest distance of a node to an edge of the border, as a share of the wanted length.
 const CLEAR: f64 = 0.52;
 /// How far along the border its samples are apart, as a share of the wanted length.
@@ -227,7 +227,7 @@ impl Front<'_> {
             return;
         }
         let off = new.p.distance_squared(p + way * length);
-        if off > SIZE_RATIO_EQUAL * SIZE_RATIO_EQUAL * there * there && self.near_node(new.p, there) {
+        if off > SAME_PLACE_SHARE * SAME_PLACE_SHARE * there * there && self.near_node(new.p, there) {
             return;
         }
         let arm = ahead.unwrap_or(new.p - p);

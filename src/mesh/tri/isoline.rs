@@ -193,7 +193,7 @@ impl<'a> Cells<'a> {
         let both = nearest(below.iter().filter(|x| above.contains(x)), wanted);
         let any = || nearest(below.iter().chain(&above), wanted);
         let alike = || {
-            let reach = reach * SIZE_RATIO_EQUAL;
+            let reach = reach * SAME_CUT_SHARE;
             nearest(self.cuts[axis].range(Sorted(wanted - reach)..=Sorted(wanted + reach)).map(|x| &x.0), wanted)
         };
         self.kink(k, axis).or(both).or_else(any).or_else(alike).unwrap_or(wanted)
@@ -250,7 +250,7 @@ impl<'a> Cells<'a> {
 }
 
 /// Share of that within which a value is taken that is cut elsewhere.
-const SIZE_RATIO_EQUAL: f64 = 0.2;
+const SAME_CUT_SHARE: f64 = 0.2;
 
 /// Values of two sides, each with the one that stands for it; sorted.
 fn facing(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {

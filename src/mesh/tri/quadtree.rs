@@ -31,7 +31,7 @@ const PLACES: u32 = 8;
 /// Roots along a side at most.
 const ROOTS: f64 = 2048.0;
 /// Places along each direction at which the largest wanted length is looked for.
-const MAX_SAMPLES: usize = 16;
+const SAMPLES_PER_DIRECTION: usize = 16;
 
 /// What a tree is made for.
 pub struct Plot<'a> {
@@ -79,12 +79,12 @@ pub fn nodes(task: &Plot) -> Result<PlacedNodes, Trouble> {
 
 /// The largest wanted length over a box of the chart, by looking.
 fn largest(task: &Plot, low: DVec2, high: DVec2) -> f64 {
-    let at = |k: usize| (k as f64 + 0.5) / MAX_SAMPLES as f64;
+    let at = |k: usize| (k as f64 + 0.5) / SAMPLES_PER_DIRECTION as f64;
     let size = |k: usize| {
-        let xy = task.chart_surface.clamp(low + (high - low) * DVec2::new(at(k % MAX_SAMPLES), at(k / MAX_SAMPLES)));
+        let xy = task.chart_surface.clamp(low + (high - low) * DVec2::new(at(k % SAMPLES_PER_DIRECTION), at(k / SAMPLES_PER_DIRECTION)));
         task.field.size(xy, task.chart_surface.spot(xy).p)
     };
-    (0..MAX_SAMPLES * MAX_SAMPLES).map(size).fold(0.0, f64::max).min((high - low).max_element())
+    (0..SAMPLES_PER_DIRECTION * SAMPLES_PER_DIRECTION).map(size).fold(0.0, f64::max).min((high - low).max_element())
 }
 
 /// Longer side of a cell in space, its middle in the chart and in space.

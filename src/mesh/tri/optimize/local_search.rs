@@ -22,7 +22,7 @@ const SHARE: f64 = 0.4;
 /// Share of how bad a place is that may be left of it.
 const LESS: f64 = 0.9;
 /// How bad it may be after the first sweeps, over what it has to come below.
-const MIN_START_RATIO: f64 = 3.0;
+const MAX_START_RATIO: f64 = 3.0;
 
 /// A change of the triangles.
 enum Change {
@@ -167,7 +167,7 @@ impl MeshOptimizer<'_> {
                 best = Some(Swept { bad: now.bad, places });
                 most = now.bad;
             }
-            if round == SWEEPS || round == FIRST && now.bad > MIN_START_RATIO * most {
+            if round == SWEEPS || round == FIRST && now.bad > MAX_START_RATIO * most {
                 break;
             }
             let mut moved = false;
