@@ -6,7 +6,7 @@ use super::curve::place as point;
 use super::error::Error;
 use super::mesh::Mesh;
 use super::model::Model;
-use super::plan::{MeshPlan, Said};
+use super::plan::{MeshPlan, Setting};
 use crate::base::fault::Fault;
 use crate::base::job::Job;
 use crate::base::origin::Origin;
@@ -50,7 +50,14 @@ impl MeshPlan {
             }
         }
         if self.things.is_empty() {
-            let all: Vec<_> = model.surfaces.iter().filter_map(|s| place(model, s.name())).map(|id| (id, false)).collect();
+            let placed = |surface: &super::surface::Surface| match find(model, surface.name())? {
+                Thing::Surface(id) => Ok((id, false)),
+                _ => Err(Error::new("E999", format!("a bug in loft: the surface `{}` is not in its model", surface.name()))),
+            };
+            let all = model.surfaces.iter().map(placed).collect::<Result<Vec<_>, Error>>()?;
+            if all.is_empty() && self.lines.is_empty() {
+                return Err(Error::outside("of", "a model without surfaces", "surfaces and shells"));
+            }
             faces.add_surfaces(&mut plan, &all);
         }
         for name in &self.lines {
@@ -85,9 +92,7 @@ impl MeshPlan {
     fn build(&self, mut plan: Plan, model: &Model) -> Result<(mesh::Mesh, Vec<Fault>), Fault> {
         let job = Job::new();
         let scene = along_curves(model.scene.clone(), &mut plan, &model.tolerance, &job)?;
-        let evened = scene.model.evened(plan.surfaces.iter().map(|surface| surface.0));
-        let stage = evened.as_ref().unwrap_or(scene.model.as_ref());
-        let input = mesh::Input { plan: &plan, model: stage, network: &scene.network, tolerance: &model.tolerance };
+        let input = mesh::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &model.tolerance };
         let built = mesh::Outline::new(&input)?.build(&input, None, &job)?;
         let said = built.remarks.iter().map(|remark| remark.fault(&input)).collect();
         Ok((built.mesh, said))
@@ -111,10 +116,10 @@ impl MeshPlan {
         let whole = [("size", self.size), ("chord_error", self.chord_error), ("angle_error", self.angle_error)];
         let more = [("min_size", self.min_size), ("growth", self.growth), ("order", Some(f64::from(self.order)))];
         let of_rules = self.rules.iter().filter_map(|(_, said)| match said {
-            Said::Count(n) => Some(("count", f64::from(*n))),
-            Said::Size(size) => Some(("size", *size)),
-            Said::Bias(bias) => Some(("bias", *bias)),
-            Said::Elements(_) | Said::Method(_) => None,
+            Setting::Count(n) => Some(("count", f64::from(*n))),
+            Setting::Size(size) => Some(("size", *size)),
+            Setting::Bias(bias) => Some(("bias", *bias)),
+            Setting::Elements(_) | Setting::Method(_) => None,
         });
         let of_refines = self.refines.iter().flat_map(|(_, size, radius)| [("size", *size), ("radius", *radius)]);
         let said = whole.into_iter().chain(more).filter_map(|(key, x)| Some((key, x?)));
@@ -141,7 +146,7 @@ fn find(model: &Model, name: &str) -> Result<Thing, Error> {
     }
     let shell = model.shells.iter().position(|shell| *shell.name == *name).map(Thing::Shell);
     let curve = || model.curves.iter().position(|curve| curve.name() == name).map(Thing::Curve);
-    shell.or_else(curve).ok_or_else(|| Error::new("E201", format!("`{name}` is no surface, shell or curve of the model")))
+    shell.or_else(curve).ok_or_else(|| Error::new("E201", format!("`{name}` is not a surface, shell or curve of the model")))
 }
 
 /// A shell as the surface model sees it.
@@ -152,7 +157,7 @@ fn built(model: &Model, k: usize, said: &mut Vec<Fault>) -> Result<Shell, Error>
     })
 }
 
-/// What rules and groups say of a thing they say of these.
+/// What rules and groups on a thing apply to.
 fn targets(model: &Model, name: &str) -> Result<Vec<Target>, Error> {
     Ok(match find(model, name)? {
         Thing::Surface(id) => vec![Target::Surface(id)],
@@ -161,21 +166,21 @@ fn targets(model: &Model, name: &str) -> Result<Vec<Target>, Error> {
     })
 }
 
-/// What is said of a target; E306 where it means nothing for such a thing.
-fn rule(target: Target, said: Said, name: &str) -> Result<Rule, Error> {
+/// A setting of a target; E306 where such a thing does not have it.
+fn rule(target: Target, said: Setting, name: &str) -> Result<Rule, Error> {
     let is_curve = matches!(target, Target::Chain(_));
     let mut rule = Rule::on(target, Origin::NONE);
     match said {
-        Said::Count(n) => rule.count = Some((n, Origin::NONE)),
-        Said::Size(size) => rule.size = Some((size, Origin::NONE)),
-        Said::Bias(bias) if is_curve => rule.bias = Some((bias, Origin::NONE)),
-        Said::Bias(_) => return Err(Error::outside("bias", format!("`{name}`"), "on a curve")),
-        Said::Elements(_) | Said::Method(_) if is_curve => {
-            let key = if matches!(said, Said::Elements(_)) { "elements" } else { "method" };
+        Setting::Count(n) => rule.count = Some((n, Origin::NONE)),
+        Setting::Size(size) => rule.size = Some((size, Origin::NONE)),
+        Setting::Bias(bias) if is_curve => rule.bias = Some((bias, Origin::NONE)),
+        Setting::Bias(_) => return Err(Error::outside("bias", format!("`{name}`"), "on a curve")),
+        Setting::Elements(_) | Setting::Method(_) if is_curve => {
+            let key = if matches!(said, Setting::Elements(_)) { "elements" } else { "method" };
             return Err(Error::outside(key, format!("`{name}`"), "on a surface or shell"));
         }
-        Said::Elements(elements) => rule.elements = Some((elements, Origin::NONE)),
-        Said::Method(method) => rule.method = Some((method, Origin::NONE)),
+        Setting::Elements(elements) => rule.elements = Some((elements, Origin::NONE)),
+        Setting::Method(method) => rule.method = Some((method, Origin::NONE)),
     }
     Ok(rule)
 }

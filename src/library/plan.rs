@@ -32,14 +32,14 @@ pub struct MeshPlan {
     pub(super) method: Method,
     pub(super) conforming: bool,
     pub(super) flip: bool,
-    pub(super) rules: Vec<(String, Said)>,
+    pub(super) rules: Vec<(String, Setting)>,
     pub(super) refines: Vec<([f64; 3], f64, f64)>,
     pub(super) groups: Vec<(String, Vec<String>)>,
 }
 
-/// What is said of one thing.
+/// A setting of one thing.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Said {
+pub(super) enum Setting {
     Count(u32),
     Size(f64),
     Bias(f64),
@@ -136,34 +136,34 @@ impl MeshPlan {
 
 /// Settings of parts of the mesh.
 impl MeshPlan {
-    fn say(mut self, thing: &str, said: Said) -> Self {
-        self.rules.push((thing.to_owned(), said));
+    fn set(mut self, thing: &str, setting: Setting) -> Self {
+        self.rules.push((thing.to_owned(), setting));
         self
     }
 
     /// So many edges along a curve, or along each side of the faces of a surface, 1 at least.
     pub fn count(self, thing: &str, edges: u32) -> Self {
-        self.say(thing, Said::Count(edges))
+        self.set(thing, Setting::Count(edges))
     }
 
     /// Another edge length on a curve or surface, model units, above 0.
     pub fn size_on(self, thing: &str, size: f64) -> Self {
-        self.say(thing, Said::Size(size))
+        self.set(thing, Setting::Size(size))
     }
 
     /// Last edge over first edge along a curve, above 0.
     pub fn bias(self, curve: &str, ratio: f64) -> Self {
-        self.say(curve, Said::Bias(ratio))
+        self.set(curve, Setting::Bias(ratio))
     }
 
     /// Other elements on a surface.
     pub fn elements_on(self, surface: &str, elements: Elements) -> Self {
-        self.say(surface, Said::Elements(elements))
+        self.set(surface, Setting::Elements(elements))
     }
 
     /// Another method on a surface.
     pub fn method_on(self, surface: &str, method: Method) -> Self {
-        self.say(surface, Said::Method(method))
+        self.set(surface, Setting::Method(method))
     }
 
     /// Edges of a length near a point, up to a distance from it, both model units; from there they grow.

@@ -204,9 +204,7 @@ impl Pipeline for Stages<'_> {
         let (plan, Scene { model, network }) = plan::of(cx, module, spec, &mut sink)?;
         let (k, of) = cx.place_of_mesh(module, &spec.name);
         let _phase = cx.job.phase(format!("meshing {} ({k} of {of})", spec.name));
-        let evened = model.evened(plan.surfaces.iter().map(|surface| surface.0));
-        let model = evened.as_ref().unwrap_or(model.as_ref());
-        let input = mesh::Input { plan: &plan, model, network: &network, tolerance: &tolerance };
+        let input = mesh::Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance };
         let made = self.made(&input, (module, spec.name.clone()), cx.job);
         self.found().mesh_seconds += (self.clock)() - start;
         // What the plan has to say comes first, also when the mesh fails.
@@ -241,7 +239,8 @@ impl Stages<'_> {
         };
         let kept = || kept.lock().unwrap_or_else(PoisonError::into_inner);
         let key = outline.key(input);
-        let surfaces: Vec<&Surface> = input.plan.surfaces.iter().map(|(id, _)| &input.model.surfaces[id.index()].surface).collect();
+        let surfaces: Vec<Surface> = outline.surfaces(input).into_iter().cloned().collect();
+        let surfaces: Vec<&Surface> = surfaces.iter().collect();
         if let Some(before) = kept().mesh(&place, key, &surfaces) {
             self.count_reused();
             return Ok(of(before));

@@ -29,7 +29,7 @@ pub(super) struct SweptProfile {
 #[derive(Clone, Debug)]
 enum Way {
     /// Along a vector: each run's curve as it is seen along it, all in the plane through the origin.
-    Straight { by: DVec3, seen: Vec<Curve>, is_across: bool },
+    Straight { by: DVec3, direction: DVec3, seen: Vec<Curve>, is_across: bool },
     /// About an axis: the profile lies in the half plane from the axis along the unit vector `out`.
     Turn { about: DVec3, axis: DVec3, out: DVec3, angle: f64 },
 }
@@ -49,7 +49,7 @@ impl SweptProfile {
                 let seen = chain.runs().iter().map(|run| seen_along(&run.curve, direction)).collect::<Option<Vec<Curve>>>()?;
                 let heights = || framing(&chain).into_iter().flatten().map(|p| (p - chain.start()).dot(direction).abs());
                 let is_across = heights().fold(0.0, f64::max) <= ROUNDING_SHARE * chain.bbox().diagonal();
-                Way::Straight { by, seen, is_across }
+                Way::Straight { by, direction, seen, is_across }
             }
             Path::Turn { about, axis, angle } => Way::Turn { about, axis, out: half_plane(&chain, about, axis)?, angle },
         };
@@ -65,9 +65,8 @@ impl SweptProfile {
     /// The same with v as the profile's fraction.
     fn along_profile(&self, p: DVec3) -> Option<(f64, f64)> {
         match &self.way {
-            Way::Straight { by, seen, is_across } => {
-                let direction = by.normalize();
-                let (v, foot) = self.nearest_seen(seen, p - direction * direction.dot(p));
+            Way::Straight { by, direction, seen, is_across } => {
+                let (v, foot) = self.nearest_seen(seen, p - *direction * direction.dot(p));
                 let u = (p - foot).dot(*by) / by.length_squared();
                 (*is_across || (0.0..=1.0).contains(&u)).then(|| (u.clamp(0.0, 1.0), v))
             }

@@ -84,7 +84,7 @@ impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
     /// the file has them: as they were found to be, else what it says that may lie between two points that are one.
     pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Made, Damage> {
-        if let Some(why) = self.beyond_repair() {
+        if let Some(why) = self.beyond_repair(tolerance) {
             return Err(why);
         }
         let found = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
@@ -99,15 +99,17 @@ impl Face {
     }
 
     /// Why its borders are no borders of its surface: they are off by too large a share of their size.
-    fn beyond_repair(&self) -> Option<Damage> {
-        let loops: Vec<Vec<Border>> = self.outer.iter().chain(&self.holes).cloned().collect();
-        let share = self.off.distance / reach(&loops).diagonal();
+    fn beyond_repair(&self, tolerance: &Tolerance) -> Option<Damage> {
+        if self.off.distance <= tolerance.point {
+            return None;
+        }
+        let share = self.off.distance / reach(self.outer.iter().chain(&self.holes)).diagonal();
         let percent = decimals(share * 100.0, 0);
         let why = match self.off.rule {
             Rule::Ends => format!("a gap in its border is {percent} % of its size"),
             _ => format!("its border is off its surface by {percent} % of its size"),
         };
-        (!loops.is_empty() && share > MOST_REPAIR).then(|| damage(why))
+        (share > MOST_REPAIR).then(|| damage(why))
     }
 
     fn within(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {

@@ -196,8 +196,8 @@ pub fn least_area(loops: &[&Vec<Border>]) -> f64 {
 }
 
 /// The box around all curves of loops.
-pub fn reach(loops: &[Vec<Border>]) -> Box3 {
-    loops.iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union)
+pub fn reach<'a>(loops: impl IntoIterator<Item = &'a Vec<Border>>) -> Box3 {
+    loops.into_iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union)
 }
 
 /// The curves that a curve is made of.

@@ -259,24 +259,27 @@ fn bounded((surface, quick): (&Surface, Option<&PowerForm>), seen: Seen) -> Seen
     let jet = surface.jet_by(quick, seen.uv.0, seen.uv.1);
     let gap = seen.p - jet.p;
     let Some(by) = step(jet.du, jet.dv, gap) else { return Seen { seems: gap.length(), ..seen } };
-    let (closed_u, closed_v) = surface.closed();
-    let held = |x: f64, closed: bool| if closed { x } else { x.clamp(0.0, 1.0) };
-    let uv = (held(seen.uv.0 + by.x, closed_u), held(seen.uv.1 + by.y, closed_v));
+    let ((u0, u1), (v0, v1)) = ranges(surface);
+    let uv = ((seen.uv.0 + by.x).clamp(u0, u1), (seen.uv.1 + by.y).clamp(v0, v1));
     let there = surface.point_by(quick, uv.0, uv.1).distance(seen.p);
     if there < gap.length() { Seen { seems: there, uv, ..seen } } else { Seen { seems: gap.length(), ..seen } }
+}
+
+/// The ranges of u and v in which feet lie: a trimmed face may run over the seam of the surface below.
+fn ranges(surface: &Surface) -> ((f64, f64), (f64, f64)) {
+    let whole = |closed: bool| {
+        let over = closed && surface.domain() == Domain::Loop;
+        if over { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) }
+    };
+    let (u, v) = surface.closed();
+    (whole(u), whole(v))
 }
 
 /// Follows the triangles that seem farthest to their feet: the distance of the farthest.
 fn follow((surface, quick): (&Surface, Option<&PowerForm>), mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
     farthest.retain(|s| s.seems > tolerance.rounding);
     farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
-    // A trimmed face may run over the seam of the surface below.
-    let whole = |closed: bool| {
-        let over = closed && surface.domain() == Domain::Loop;
-        if over { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) }
-    };
-    let (u, v) = surface.closed();
-    let (u, v) = (whole(u), whole(v));
+    let (u, v) = ranges(surface);
     let (mut most, mut followed) = (0.0, 0);
     for seen in farthest {
         if seen.seems < most || followed == FOLLOWED {

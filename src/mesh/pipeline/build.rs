@@ -24,8 +24,8 @@ use crate::mesh::request::work::{too_many, too_much_work, work_on};
 use crate::mesh::size::remark::Remark;
 use crate::mesh::verify::contact_bodies::{self, Body};
 use crate::mesh::verify::contacts;
-use crate::model::{PatchId, SurfaceId};
-use crate::surface::Domain;
+use crate::model::{Model, PatchId, SurfaceId};
+use crate::surface::{Domain, Surface};
 
 /// Samples along each direction of a patch when the box of what is meshed is taken.
 const SAMPLES: usize = 9;
@@ -43,6 +43,8 @@ pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
 
 /// What a mesh stands on, laid out; nothing is divided yet. Enough to tell whether a mesh that was made before is this one.
 pub struct Outline {
+    /// The model with nets in parameters in which they run evenly, where some do not.
+    evened: Option<Model>,
     layouts: Vec<Layout>,
     size: f64,
     surfaces: BTreeMap<SurfaceId, Digest>,
@@ -53,6 +55,8 @@ impl Outline {
     ///
     /// Fails with E230 for methods of a later version.
     pub fn new(input: &Input) -> Result<Self> {
+        let evened = input.model.evened(input.plan.surfaces.iter().map(|surface| surface.0));
+        let input = &within(input, &evened);
         let patches: Vec<(PatchId, bool)> =
             input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
         let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
@@ -70,13 +74,19 @@ impl Outline {
         let surfaces = &input.model.surfaces;
         let digest = |s: SurfaceId| StableHasher::new("surface").with(&surfaces[s.index()].surface).finish();
         let surfaces = input.plan.surfaces.iter().map(|(s, _)| (*s, digest(*s))).collect();
-        Ok(Self { layouts, size, surfaces })
+        Ok(Self { evened, layouts, size, surfaces })
     }
 
     /// A digest of all that the mesh depends on, of its content alone: in every run and on every machine the same mesh has
     /// the same key. Where things stand in a script, and what the mesh does not touch, is no part of it.
     pub fn key(&self, input: &Input) -> Digest {
-        key::of(input, &self.layouts, self.size, &self.surfaces)
+        key::of(&within(input, &self.evened), &self.layouts, self.size, &self.surfaces)
+    }
+
+    /// The surfaces of the plan on which the faces of the mesh lie, in its order.
+    pub fn surfaces<'a>(&'a self, input: &Input<'a>) -> Vec<&'a Surface> {
+        let surfaces = &within(input, &self.evened).model.surfaces;
+        input.plan.surfaces.iter().map(|(id, _)| &surfaces[id.index()].surface).collect()
     }
 
     /// Makes the mesh, with parts of others in `reuse` and its own left there.
@@ -88,7 +98,9 @@ impl Outline {
     }
 
     /// The same, with the work that it took but for that of its free faces; as much as it may where it took more.
-    pub fn measured(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> (Result<Built>, u64) {
+    pub fn measured(mut self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> (Result<Built>, u64) {
+        let evened = self.evened.take();
+        let input = &within(input, &evened);
         let surfaces = &input.plan.surfaces;
         let most = work_on(surfaces.iter().map(|(s, _)| &input.model.surfaces[s.index()].surface));
         // The borders of each face are looked at before any element is made.
@@ -128,6 +140,11 @@ impl Outline {
         }
         Ok(Built { remarks, ..merge(input, parts)? })
     }
+}
+
+/// The same on another model, where there is one.
+fn within<'a>(input: &Input<'a>, evened: &'a Option<Model>) -> Input<'a> {
+    Input { model: evened.as_ref().unwrap_or(input.model), ..*input }
 }
 
 /// Parts one after the other as one mesh, with its named sets.
