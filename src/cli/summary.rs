@@ -171,7 +171,7 @@ fn unmade(report: &Report) -> Option<Grid> {
         let line = if row.file == report.model { row.line.to_string() } else { format!("{}:{}", row.file, row.line) };
         let because = match row.because.as_deref() {
             None => "an error of its own".to_owned(),
-            Some("") => "what could not be read".to_owned(),
+            Some("") => "an error in what it uses".to_owned(),
             Some(name) => name.to_owned(),
         };
         grid.rows.push(vec![row.name.clone(), row.what.clone(), line, because]);

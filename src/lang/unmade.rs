@@ -28,7 +28,7 @@ pub enum Why {
     Failed,
     /// It depends on this one, which failed.
     Waits(String),
-    /// It depends on something that could not be read.
+    /// It uses something that could not be read, or a mesh, network or model that failed.
     Unread,
 }
 
