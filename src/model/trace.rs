@@ -54,7 +54,9 @@ impl Trace {
         // Along a pole all is rounding.
         let rounding = EPSILON * start.abs().max(end.abs()).max_element();
         let scale = start.distance(end).max(trace.speed(0.5)).max(rounding / MEASURE_ACCURACY);
-        let mut open = vec![(0.0, 1.0, DEPTH)];
+        let stops = [vec![0.0], surface.breaks_between(from, to), vec![1.0]].concat();
+        // A short span between two knots may be run through so fast that no sample of a longer stretch sees it.
+        let mut open: Vec<(f64, f64, u32)> = stops.windows(2).rev().map(|w| (w[0], w[1], DEPTH)).collect();
         while let Some((a, b, left)) = open.pop() {
             job::look();
             let panel = quadrature::kronrod(a, b, |t| trace.speed(t));
@@ -246,5 +248,28 @@ impl Track {
     /// Points at a quarter, a half and three quarters of the length; what tells two edges with the same ends apart.
     pub fn probes(&self) -> [DVec3; 3] {
         [0.25, 0.5, 0.75].map(|f| self.point(f * self.length()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::origin::Origin;
+    use crate::surface::nurbs::{Net, nurbs};
+
+    #[test]
+    fn a_short_span_between_knots_counts() {
+        let tolerance = Tolerance::new(1e-6, 30.0);
+        let rows: Vec<Vec<DVec3>> =
+            (0..8).map(|j| (0..2).map(|i| DVec3::new(f64::from(i), 3.0 * f64::from(j), 0.0)).collect()).collect();
+        let knots_v = [vec![0.0; 6], vec![0.02, 5.0], vec![10.0; 6]].concat();
+        let net = Net { rows: &rows, weights: None };
+        let plane = nurbs(&net, (1, 5), (None, Some(&knots_v)), Origin::NONE, &tolerance).unwrap();
+        let side = Trace::new(&plane, (1.0, 0.0), (1.0, 1.0));
+        assert!((side.length() - 21.0).abs() < 1e-8, "{}", side.length());
+        let back = Trace::new(&plane, (0.0, 1.0), (1.0, 0.0));
+        let half = back.uv(back.at_length(0.5 * back.length()));
+        assert!((back.length_at(back.at_length(4.0)) - 4.0).abs() < 1e-8);
+        assert!(half.1 < 0.5, "most of the way is near v = 0: {half:?}");
     }
 }

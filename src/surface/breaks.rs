@@ -1,5 +1,6 @@
 //! Parameters where a surface is less than smooth: where quadrature and bounds have to split.
 
+use super::core::Surface;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
 
@@ -23,6 +24,15 @@ pub fn chain_breaks(chain: &Chain) -> Vec<f64> {
         }
     }
     tidy(all, f64::EPSILON * 64.0)
+}
+
+impl Surface {
+    /// Shares of the way along a straight line between two (u, v) at which it crosses one of [`Surface::breaks`], ascending, 0 and 1 left out.
+    pub fn breaks_between(&self, from: (f64, f64), to: (f64, f64)) -> Vec<f64> {
+        let (us, vs) = self.breaks();
+        let along = |lines: Vec<f64>, a: f64, b: f64| lines.into_iter().filter(move |_| a != b).map(move |x| (x - a) / (b - a));
+        tidy(along(us, from.0, to.0).chain(along(vs, from.1, to.1)).collect(), f64::EPSILON * 64.0)
+    }
 }
 
 /// Distinct knots strictly inside the domain of a clamped knot vector.
