@@ -260,8 +260,7 @@ mod tests {
     #[test]
     fn a_short_span_between_knots_counts() {
         let tolerance = Tolerance::new(1e-6, 30.0);
-        let rows: Vec<Vec<DVec3>> =
-            (0..8).map(|j| (0..2).map(|i| DVec3::new(f64::from(i), 3.0 * f64::from(j), 0.0)).collect()).collect();
+        let rows: Vec<Vec<DVec3>> = (0..8).map(|j| (0..2).map(|i| DVec3::new(f64::from(i), 3.0 * f64::from(j), 0.0)).collect()).collect();
         let knots_v = [vec![0.0; 6], vec![0.02, 5.0], vec![10.0; 6]].concat();
         let net = Net { rows: &rows, weights: None };
         let plane = nurbs(&net, (1, 5), (None, Some(&knots_v)), Origin::NONE, &tolerance).unwrap();
