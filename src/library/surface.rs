@@ -10,7 +10,7 @@ use crate::base::limits::CALL_WORK;
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::geometry::Motion;
-use crate::lang::units::radians;
+use crate::lang::values::units::radians;
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow};
 use crate::session::report::DiagnosticRow;

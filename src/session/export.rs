@@ -14,10 +14,10 @@ use crate::io::endings::{IGES, STEP, Sort, misfit};
 use crate::io::json::{self, Json};
 use crate::io::table::{self, Cell, Table};
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
-use crate::lang::cx::{Cx, Halt};
-use crate::lang::plans::ExportSpec;
-use crate::lang::scene::side_of;
-use crate::lang::value::{Dim, MeshValue, ModuleId, Record, Value};
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::side_of;
+use crate::lang::values::plans::ExportSpec;
+use crate::lang::values::value::{Dim, MeshValue, ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
 
@@ -168,7 +168,7 @@ pub(super) fn put(
 pub(super) fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>) {
     let model = cx.unit();
     match spec.units {
-        Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::units::convert(1.0, unit, model, 1))),
+        Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::values::units::convert(1.0, unit, model, 1))),
         _ => (model.name, None),
     }
 }
@@ -331,7 +331,7 @@ fn csv_table(cx: &Cx, rows: &[std::sync::Arc<Record>]) -> Table {
     let cell = |value: Option<&Value>| match value {
         None | Some(Value::None) => Cell::None,
         Some(Value::Number(q)) if q.dim.is_none() => Cell::Number(q.value),
-        Some(Value::Number(q)) => Cell::Quantity(q.value, crate::lang::units::unit_text(q.dim, cx.unit())),
+        Some(Value::Number(q)) => Cell::Quantity(q.value, crate::lang::values::units::unit_text(q.dim, cx.unit())),
         Some(Value::Text(t) | Value::Word(t)) => Cell::Text(t.to_string()),
         Some(other) => Cell::Text(cx.show(other)),
     };
