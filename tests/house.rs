@@ -71,7 +71,7 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// fault of the kernel and what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
 /// results, where the files of a run come from, what goldens hold of every thing and which bodies a mesh keeps apart, `library` the names at the root of the crate, `draw` an alphabet, `mesh` proofs of its limits, what it takes over, how places of
 /// borders are followed, what a map is foreseen to give and the check of every mesh,
-/// `io` solids and assemblies in and out,
+/// `io` solids and assemblies in and out, and types that formats share in files of their own,
 /// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves, each other and themselves, and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
 /// memory between runs, all words with their documentation, the forms of other languages it knows, and the formatter.
 const CEILINGS: &[(&str, usize)] = &[
@@ -81,7 +81,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("surface", 25_400),
     ("model", 6_400),
     ("mesh", 24_300),
-    ("io", 16_500),
+    ("io", 16_800),
     ("draw", 3_000),
     ("lang", 29_250),
     ("session", 11_900),
