@@ -4,12 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use lofting::base::math;
 use lofting::base::origin::Origin;
-use lofting::base::par;
 use lofting::base::triangulate::newell;
-use lofting::io::deck::{Deck, Encoding, FORMATS, Format, Loss, Options, Renamed, format_for};
-use lofting::io::{json, obj_read, stl_read, table};
+use lofting::base::{math, par};
+use lofting::io::files::loss::{Loss, Renamed};
+use lofting::io::formats::choice::format_for;
+use lofting::io::formats::list::FORMATS;
+use lofting::io::mesh_files::deck::{Deck, Encoding, Options};
+use lofting::io::mesh_files::format::Format;
+use lofting::io::mesh_files::{obj_read, stl_read};
+use lofting::io::tables::{json, table};
 use lofting::mesh::{FaceRange, Group, Mesh};
 use proptest::prelude::*;
 

@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::base::text::real;
-use crate::io::table::{Cell, Layout, Reading, read};
-use crate::io::table_places::Places;
+use crate::io::tables::cell_places::Places;
+use crate::io::tables::table::{Cell, Layout, Reading, read};
 use crate::lang::run::{SetCell, TableRow};
 use crate::lang::syntax::ast::Span;
 

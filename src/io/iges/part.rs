@@ -6,21 +6,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::book::{Book, NESTED};
-use super::curves::Place;
-use super::entities::{Data, Pointer};
-use super::levels::Levels;
-use super::records;
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
-use crate::base::job;
-use crate::base::limits;
 use crate::base::tolerance::Tolerance;
-use crate::io::cad::base::Base;
+use crate::base::{job, limits};
+use crate::io::cad::base_surface::Base;
 use crate::io::cad::damage::Damage;
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::part::{Group, Item, Names, Options, Part, Place as Made, Shades, Unusable};
+use crate::io::iges::curves::Place;
+use crate::io::iges::entity_data::{Data, Pointer};
+use crate::io::iges::entity_table::{Book, NESTED};
+use crate::io::iges::levels::Levels;
+use crate::io::iges::records;
 
 /// Kinds of entities that hold faces.
 const FACES: &[u32] = &[186, 510, 514];

@@ -5,14 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::part21::File;
-use super::reader::{Frame, Step};
-use super::units::{Units, of_context};
-use crate::base::job;
-use crate::base::limits;
+use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::step::reader::{Frame, Step};
+use crate::io::step::records::File;
+use crate::io::step::units::{Units, of_context};
 
 /// Products and representations inside each other.
 const DEEP: usize = 64;

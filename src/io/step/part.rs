@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::assembly::{Assembly, Instance, Placed, assembly};
-use super::looks::{Color, Looks};
-use super::part21::{self, File};
-use super::reader::Step;
-use super::shapes::{Bundle, Item as Shape, Sort, Unread};
-use super::units::Units;
-use super::validation::{self, Given, Of};
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
-use crate::base::job;
-use crate::base::limits;
 use crate::base::tolerance::Tolerance;
+use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::damage::Damage;
 use crate::io::cad::part::{Figure, Group, Item, Names, Options, Part, Place, Shades, Stated};
+use crate::io::step::assembly::{Assembly, Instance, Placed, assembly};
+use crate::io::step::items::{Bundle, Item as Shape, Sort, Unread};
+use crate::io::step::part21;
+use crate::io::step::reader::Step;
+use crate::io::step::records::File;
+use crate::io::step::styles::{Color, Looks};
+use crate::io::step::units::Units;
+use crate::io::step::validation::{self, Given, Of};
 
 /// A file read as far as its records and the places of its products, no geometry yet.
 #[derive(Debug)]

@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use glam::{BVec3, DAffine3, DMat3, DVec3};
 
-use super::Maker;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::NUDGE;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind, build};
-use crate::io::cad::base::Base;
-use crate::io::cad::carry::carried;
-use crate::io::cad::compose::{composed, fitted};
+use crate::io::cad::base_surface::Base;
+use crate::io::cad::curve_on_surface::{composed, fitted};
+use crate::io::cad::curves::carried;
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::iges::sheet::{Role, Values};
+use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::write::maker::Maker;
 use crate::surface::{Domain, NurbsSurface, Side, Surface};
 
 impl Maker<'_> {
