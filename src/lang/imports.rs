@@ -79,7 +79,7 @@ impl Cx<'_> {
             "stp" | "step" | "p21" => self.step_file(&file, &bytes),
             _ => {
                 let layout = Layout::of_extension(&ending).unwrap_or(Layout::Blanks);
-                let table = io::tables::table::read(&bytes, &Reading { layout, header: file.header, is_unit: &is_unit });
+                let table = io::tables::table_read::read(&bytes, &Reading { layout, header: file.header, is_unit: &is_unit });
                 self.table_value(&file, table.map_err(|at| file.malformed(at))?)
             }
         }

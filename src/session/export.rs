@@ -13,7 +13,8 @@ use crate::io::curve_files::polylines::{Drawing, Polyline};
 use crate::io::formats::choice::curve_format_for;
 use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
 use crate::io::tables::json::{self, Json};
-use crate::io::tables::table::{self, Cell, Table};
+use crate::io::tables::table::{Cell, Table};
+use crate::io::tables::table_write;
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
 use crate::lang::cx::{Cx, Halt};
 use crate::lang::plans::ExportSpec;
@@ -296,7 +297,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
         }
         "csv" => {
             let table = csv_table(cx, &rows);
-            put(spec, files, &mut |out| table::write_csv(&table, out).map(|()| Vec::new()))
+            put(spec, files, &mut |out| table_write::write_csv(&table, out).map(|()| Vec::new()))
         }
         _ => Err(misfit(spec.path_origin, &spec.path, Sort::Records).into()),
     }

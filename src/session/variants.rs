@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use crate::base::text::real;
 use crate::io::tables::cell_places::Places;
-use crate::io::tables::table::{Cell, Layout, Reading, read};
+use crate::io::tables::table::{Cell, Layout, Reading};
+use crate::io::tables::table_read::read;
 use crate::lang::run::{SetCell, TableRow};
 use crate::lang::syntax::ast::Span;
 

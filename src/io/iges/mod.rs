@@ -20,6 +20,7 @@ mod faces;
 mod global;
 mod levels;
 mod lines;
+mod open;
 mod params;
 mod part;
 mod records;
@@ -28,4 +29,4 @@ pub mod write;
 
 pub use crate::io::cad::part::{Group, Item, Options, Part};
 pub use crate::io::iges::entity_writer::Sheet;
-pub use crate::io::iges::part::{Opened, open};
+pub use crate::io::iges::open::{Opened, open};

@@ -47,7 +47,7 @@ pub struct ObjGroup {
 
 /// Reads an OBJ, or says in which line it stops making sense.
 pub fn read(bytes: &[u8]) -> Result<Obj, Malformed> {
-    let text = crate::io::tables::table::decode(bytes)?;
+    let text = crate::io::tables::text::decode(bytes)?;
     let mut scan = Scan::default();
     let mut joined = String::new();
     let mut start = 0;

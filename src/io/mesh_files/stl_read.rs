@@ -7,7 +7,7 @@ use crate::base::job;
 use crate::base::text::parse_real;
 use crate::io::mesh_files::obj_read::group_of;
 use crate::io::mesh_files::weld::weld;
-use crate::io::tables::table::decode;
+use crate::io::tables::text::decode;
 use crate::mesh::{FaceRange, Mesh};
 
 /// Bytes of the header of a binary file, and of each triangle.

@@ -17,9 +17,11 @@ mod faces;
 mod file_check;
 mod items;
 mod line_index;
+mod open;
 mod parameters;
 mod part;
 mod part21;
+mod product_tables;
 mod reader;
 mod records;
 mod revolved;
@@ -32,4 +34,4 @@ mod units;
 mod validation;
 pub mod write;
 
-pub use crate::io::step::part::{Opened, open};
+pub use crate::io::step::open::{Opened, open};

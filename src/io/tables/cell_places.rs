@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::io::tables::table::{decode, separator, without_comments};
+use crate::io::tables::text::{decode, separator, without_comments};
 
 /// The text of a csv with the places of its cells.
 #[derive(Clone, Debug)]

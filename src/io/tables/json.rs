@@ -10,7 +10,7 @@ use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visit
 use crate::base::fault::Malformed;
 use crate::base::limits;
 use crate::base::text::push_real;
-use crate::io::tables::table::decode;
+use crate::io::tables::text::decode;
 
 /// A JSON value.
 #[derive(Clone, Debug, PartialEq)]
