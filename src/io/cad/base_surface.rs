@@ -8,7 +8,7 @@ use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::nurbs::projected;
 use crate::geometry::{Curve, Motion, build};
 use crate::io::cad::control_nets::ruled_net;
-use crate::io::cad::curves::{carried, carried_pole, check_reach};
+use crate::io::cad::curves::{check_reach, transformed, transformed_pole};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::network::Chain;
@@ -42,7 +42,7 @@ pub enum Base {
     },
     /// u is the profile's parameter from 0 to 1, v runs along `by`.
     Swept {
-        /// The curve that is carried.
+        /// The curve that is swept.
         profile: Curve,
         /// How far.
         by: DVec3,
@@ -119,18 +119,18 @@ impl Base {
         Ok(net.surface(SurfaceKind::Nurbs, origin, tolerance))
     }
 
-    /// Carried by a matrix; a turned surface by one that distorts becomes a net.
-    pub fn carried(self, m: &DAffine3, tolerance: &Tolerance) -> Result<Self, Damage> {
+    /// Transformed by a matrix; a turned surface by one that distorts becomes a net.
+    pub fn transformed(self, m: &DAffine3, tolerance: &Tolerance) -> Result<Self, Damage> {
         let point = |p: DVec3| m.transform_point3(p);
         let turns = |v: DVec3| m.transform_vector3(v).normalize_or_zero();
         // A mirror turns the sense of a rotation.
         let sense = m.matrix3.determinant().signum();
         let moved = |axis: &Axis| Axis { about: point(axis.about), direction: turns(axis.direction) * sense };
         Ok(match self {
-            Self::Net(net, range) => Self::Net(carried_net(net, m), range),
+            Self::Net(net, range) => Self::Net(transformed_net(net, m), range),
             Self::Plane(at, u, v) => Self::Plane(point(at), turns(u), turns(v)),
             Self::Turned { axis, profile, angles, first } if is_rigid(m) => {
-                Self::Turned { axis: moved(&axis), profile: carried(&profile, m, tolerance)?, angles, first }
+                Self::Turned { axis: moved(&axis), profile: transformed(&profile, m, tolerance)?, angles, first }
             }
             Self::Unbounded { axis, radius, slope, reference } if is_rigid(m) => {
                 let slope = slope * sense;
@@ -139,13 +139,15 @@ impl Base {
             Self::Unbounded { .. } => return Err(damage("its matrix distorts it")),
             Self::Turned { .. } => {
                 let net = self.net(&Box3::EMPTY, tolerance)?;
-                Self::Net(carried_net(net, m), [f64::NAN; 4])
+                Self::Net(transformed_net(net, m), [f64::NAN; 4])
             }
-            Self::Round { axis, profile } if is_rigid(m) => Self::Round { axis: moved(&axis), profile: carried(&profile, m, tolerance)? },
-            Self::Round { .. } => Self::Net(carried_net(self.net(&Box3::EMPTY, tolerance)?, m), [f64::NAN; 4]),
-            Self::Swept { profile, by } => Self::Swept { profile: carried(&profile, m, tolerance)?, by: m.transform_vector3(by) },
+            Self::Round { axis, profile } if is_rigid(m) => {
+                Self::Round { axis: moved(&axis), profile: transformed(&profile, m, tolerance)? }
+            }
+            Self::Round { .. } => Self::Net(transformed_net(self.net(&Box3::EMPTY, tolerance)?, m), [f64::NAN; 4]),
+            Self::Swept { profile, by } => Self::Swept { profile: transformed(&profile, m, tolerance)?, by: m.transform_vector3(by) },
             Self::Ruled { rails: [a, b], by_length } => {
-                Self::Ruled { rails: [carried(&a, m, tolerance)?, carried(&b, m, tolerance)?], by_length }
+                Self::Ruled { rails: [transformed(&a, m, tolerance)?, transformed(&b, m, tolerance)?], by_length }
             }
         })
     }
@@ -287,8 +289,8 @@ fn is_rigid(m: &DAffine3) -> bool {
     [off.x_axis, off.y_axis, off.z_axis].iter().all(|c| c.abs().max_element() <= NUDGE)
 }
 
-fn carried_net(net: NurbsSurface, m: &DAffine3) -> NurbsSurface {
-    let poles = net.poles.iter().map(|q| carried_pole(*q, m)).collect();
+fn transformed_net(net: NurbsSurface, m: &DAffine3) -> NurbsSurface {
+    let poles = net.poles.iter().map(|q| transformed_pole(*q, m)).collect();
     NurbsSurface { poles, ..net }
 }
 

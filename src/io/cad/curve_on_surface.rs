@@ -11,7 +11,7 @@ use crate::geometry::curve::Shape;
 use crate::geometry::spline::{open_slopes, through};
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::io::cad::base_surface::Base;
-use crate::io::cad::curves::carried;
+use crate::io::cad::curves::transformed;
 use crate::io::cad::damage::{Damage, damage};
 
 /// Steps along a smooth piece of the curve to begin with, and at most.
@@ -23,7 +23,7 @@ const STEPS: (usize, usize) = (8, 4096);
 pub fn composed(base: &Base, uv: &Curve, tolerance: &Tolerance, origin: Origin) -> Result<Option<Curve>, Damage> {
     if let Base::Plane(at, u, v) = base {
         let m = DAffine3::from_mat3_translation(DMat3::from_cols(*u, *v, u.cross(*v)), *at);
-        return Ok(Some(carried(uv, &m, tolerance)?.with_origin(origin)));
+        return Ok(Some(transformed(uv, &m, tolerance)?.with_origin(origin)));
     }
     let curve = match along_line(base, uv) {
         Some(exact) => exact,

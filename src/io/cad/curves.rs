@@ -1,4 +1,4 @@
-//! Curves of CAD files: carried exactly, put in a row, and looked at before anything is computed from them.
+//! Curves of CAD files: transformed exactly, put in a row, and looked at before anything is computed from them.
 
 use std::sync::Arc;
 
@@ -62,8 +62,8 @@ pub fn weight(curve: &Curve) -> usize {
     }
 }
 
-/// The curve carried by any affine map, exactly; an offset within the tolerance.
-pub fn carried(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Curve, Damage> {
+/// The curve transformed by any affine map, exactly; an offset within the tolerance.
+pub fn transformed(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Curve, Damage> {
     let origin = curve.origin();
     Ok(match curve.shape() {
         Shape::Line(a, b) => Curve::new(Shape::Line(m.transform_point3(*a), m.transform_point3(*b)), curve.kind(), origin),
@@ -74,7 +74,7 @@ pub fn carried(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Cur
             Curve::new(Shape::Arc(moved), kind, origin)
         }
         Shape::Composite(c) => {
-            let pieces: Result<Vec<Curve>, Damage> = c.pieces.iter().map(|piece| carried(piece, m, tolerance)).collect();
+            let pieces: Result<Vec<Curve>, Damage> = c.pieces.iter().map(|piece| transformed(piece, m, tolerance)).collect();
             Curve::new(Shape::Composite(Arc::new(Composite::new(pieces?))), curve.kind(), origin)
         }
         Shape::Nurbs(c) => from_nurbs(c, m, curve),
@@ -83,12 +83,12 @@ pub fn carried(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Cur
 }
 
 fn from_nurbs(c: &Nurbs, m: &DAffine3, like: &Curve) -> Curve {
-    let poles = c.poles.iter().map(|q| carried_pole(*q, m)).collect();
+    let poles = c.poles.iter().map(|q| transformed_pole(*q, m)).collect();
     let moved = Nurbs { poles, knots: c.knots.clone(), ..*c };
     Curve::new(Shape::Nurbs(Arc::new(moved)), like.kind(), like.origin())
 }
 
-/// A homogeneous control point carried.
-pub fn carried_pole(q: DVec4, m: &DAffine3) -> DVec4 {
+/// A homogeneous control point transformed.
+pub fn transformed_pole(q: DVec4, m: &DAffine3) -> DVec4 {
     (m.transform_point3(projected(q)) * q.w).extend(q.w)
 }

@@ -100,17 +100,17 @@ impl Face {
 }
 
 impl Face {
-    /// Carried by a motion; one that mirrors keeps the side it looks to.
+    /// Moved by a motion; one that mirrors keeps the side it looks to.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let carried = |border: &Vec<Border>| {
+        let transformed = |border: &Vec<Border>| {
             let one = |b: &Border| Border { space: b.space.moved(motion), uv: b.uv.clone() };
             border.iter().map(one).collect::<Vec<Border>>()
         };
         Self {
             base: self.base.moved(motion),
             also: self.also.iter().map(|surface| surface.moved(motion)).collect(),
-            outer: self.outer.as_ref().map(carried),
-            holes: self.holes.iter().map(carried).collect(),
+            outer: self.outer.as_ref().map(transformed),
+            holes: self.holes.iter().map(transformed).collect(),
             flipped: self.flipped != motion.mirrors(),
             against: self.against != motion.mirrors(),
             inside: self.inside.map(|p| motion.point(p)),

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, DVec4};
 use crate::geometry::composite::Composite;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind, build};
-use crate::io::cad::curves::{carried, check_reach, check_weights, ordered, weight};
+use crate::io::cad::curves::{check_reach, check_weights, ordered, transformed, weight};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::iges::conics::{self, Level};
 use crate::io::iges::entity_data::{Data, Pointer, SplineData};
@@ -60,7 +60,7 @@ impl Book {
             Some(m) if !place.in_uv => {
                 let made = made?;
                 self.copy(weight(&made))?;
-                carried(&made, &m, &self.tolerance)?
+                transformed(&made, &m, &self.tolerance)?
             }
             _ => made?,
         };

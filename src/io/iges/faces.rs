@@ -8,7 +8,7 @@ use crate::geometry::{Curve, closest};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, backwards, pieces};
 use crate::io::cad::curve_on_surface::composed;
-use crate::io::cad::curves::carried;
+use crate::io::cad::curves::transformed;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::{Face, Known};
 use crate::io::cad::face_loops::FaceLoops;
@@ -212,7 +212,7 @@ impl Book {
         let mut worst = 0.0_f64;
         for border in loops.iter_mut().flatten() {
             let moved = match (&map, &border.uv) {
-                (Some(m), Some(uv)) => carried(uv, m, &self.tolerance).ok(),
+                (Some(m), Some(uv)) => transformed(uv, m, &self.tolerance).ok(),
                 _ => None,
             };
             border.uv = moved.filter(|uv| {

@@ -136,8 +136,8 @@ impl Maker {
             Ok(matrix) => matrix,
             Err(Damage(why)) => return self.skipped(d, &why),
         };
-        let carry = |p: DVec3| matrix.map_or(p * self.book.scale, |m| m.transform_point3(p * self.book.scale));
-        let value: Vec<DVec3> = points.into_iter().map(carry).collect();
+        let place = |p: DVec3| matrix.map_or(p * self.book.scale, |m| m.transform_point3(p * self.book.scale));
+        let value: Vec<DVec3> = points.into_iter().map(place).collect();
         if value.iter().any(|p| p.abs().max_element() > limits::COORDINATE) {
             return self.skipped(d, "its coordinates are too large");
         }

@@ -30,7 +30,7 @@ impl Book {
         let made = self.base_of(d, &data, depth);
         self.decoded[k].data = data;
         let base = match matrix {
-            Some(m) => made?.carried(&m, &self.tolerance)?,
+            Some(m) => made?.transformed(&m, &self.tolerance)?,
             None => made?,
         };
         Ok(base)
@@ -110,7 +110,7 @@ impl Book {
             }
             let matrix = self.placement(self.entry(of).map_or(0, |e| e.transform))?;
             let base = self.base_of(of, &Data::Round { kind, at, axis, sizes, reference }, depth + 1)?;
-            return matrix.map_or(Ok(base.clone()), |m| base.carried(&m, &self.tolerance));
+            return matrix.map_or(Ok(base.clone()), |m| base.transformed(&m, &self.tolerance));
         }
         let (base, folds) = base.beside(distance, &Box3::EMPTY, self.origin, &self.tolerance)?;
         if folds {

@@ -108,7 +108,7 @@ impl Made {
     ) -> Result<Items, String> {
         let mut items = Items::default();
         let still = Motion::translation(DVec3::ZERO);
-        records.carry((product.motion != still).then(|| product.motion.inverse().in_units(setup.scale.model)));
+        records.set_frame((product.motion != still).then(|| product.motion.inverse().in_units(setup.scale.model)));
         for thing in product.things.iter().map(|k| &things[*k]) {
             job::look();
             // What has the name of its place has that of the product, which may stand elsewhere too.
@@ -128,7 +128,7 @@ impl Made {
             self.left_out.extend(own.left_out);
             self.thin_area += uses as f64 * own.thin_area;
         }
-        records.carry(None);
+        records.set_frame(None);
         Ok(items)
     }
 }

@@ -14,7 +14,7 @@ pub struct Id(u32);
 pub struct Records {
     text: Vec<u8>,
     count: u32,
-    /// What carries points and directions, lengths in units of the file.
+    /// What transforms points and directions, lengths in units of the file.
     frame: Option<Motion>,
 }
 
@@ -56,8 +56,8 @@ impl Records {
         self.put("DIRECTION", |v| v.text("").point(d))
     }
 
-    /// Points and directions from here on are carried: into the frame of a product, or not at all.
-    pub fn carry(&mut self, frame: Option<Motion>) {
+    /// Points and directions from here on are transformed: into the frame of a product, or not at all.
+    pub fn set_frame(&mut self, frame: Option<Motion>) {
         self.frame = frame;
     }
 
