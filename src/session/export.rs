@@ -9,10 +9,12 @@ use crate::base::fault::{Edit, FileFault, Say};
 use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
-use crate::io::curves::{Drawing, Polyline, curve_format_for};
-use crate::io::endings::{IGES, STEP, Sort, misfit};
-use crate::io::json::{self, Json};
-use crate::io::table::{self, Cell, Table};
+use crate::io::curve_files::polylines::{Drawing, Polyline};
+use crate::io::formats::choice::curve_format_for;
+use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
+use crate::io::tables::json::{self, Json};
+use crate::io::tables::table::{Cell, Table};
+use crate::io::tables::table_write;
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
 use crate::lang::eval::context::{Cx, Halt};
 use crate::lang::eval::scene::side_of;
@@ -295,7 +297,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
         }
         "csv" => {
             let table = csv_table(cx, &rows);
-            put(spec, files, &mut |out| table::write_csv(&table, out).map(|()| Vec::new()))
+            put(spec, files, &mut |out| table_write::write_csv(&table, out).map(|()| Vec::new()))
         }
         _ => Err(misfit(spec.path_origin, &spec.path, Sort::Records).into()),
     }

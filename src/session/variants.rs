@@ -5,8 +5,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::base::text::real;
-use crate::io::table::{Cell, Layout, Reading, read};
-use crate::io::table_places::Places;
+use crate::io::tables::cell_places::Places;
+use crate::io::tables::table::{Cell, Layout, Reading};
+use crate::io::tables::table_read::read;
 use crate::lang::declare::params::{SetCell, TableRow};
 use crate::lang::diag::span::Span;
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::base::fault::{FileFault, Malformed};
 use crate::base::limits;
 use crate::base::origin::Origin;
-use crate::io::table::{Layout, Reading};
+use crate::io::tables::table::{Layout, Reading};
 use crate::io::{self, Cell, Json, Obj};
 use crate::lang::eval::bind::Signature;
 use crate::lang::eval::context::{Cx, Halt};
@@ -63,15 +63,15 @@ impl Cx<'_> {
         let file = File { path: &written, origin, unit, header };
         match ending.as_str() {
             "json" => {
-                let json = io::json::read(&bytes).map_err(|at| file.malformed(at))?;
+                let json = io::tables::json::read(&bytes).map_err(|at| file.malformed(at))?;
                 Ok(self.json(json))
             }
             "obj" => {
-                let obj = io::obj_read::read(&bytes).map_err(|at| file.malformed(at))?;
+                let obj = io::mesh_files::obj_read::read(&bytes).map_err(|at| file.malformed(at))?;
                 Ok(self.obj(&file, obj))
             }
             "stl" => {
-                let (mesh, repairs) = io::stl_read::read(&bytes, stem(&written)).map_err(|at| file.malformed(at))?;
+                let (mesh, repairs) = io::mesh_files::stl_read::read(&bytes, stem(&written)).map_err(|at| file.malformed(at))?;
                 self.repaired(&file, repairs);
                 let mesh = self.imported_mesh(&file, mesh);
                 Ok(self.record([("mesh", mesh)]))
@@ -80,7 +80,7 @@ impl Cx<'_> {
             "stp" | "step" | "p21" => self.step_file(&file, &bytes),
             _ => {
                 let layout = Layout::of_extension(&ending).unwrap_or(Layout::Blanks);
-                let table = io::table::read(&bytes, &Reading { layout, header: file.header, is_unit: &is_unit });
+                let table = io::tables::table_read::read(&bytes, &Reading { layout, header: file.header, is_unit: &is_unit });
                 self.table_value(&file, table.map_err(|at| file.malformed(at))?)
             }
         }
